@@ -1,0 +1,33 @@
+// Error policy. A bug stops the program through CHECK, printing both values. Bad input is an InputError, shown as one
+// line `error: FILE: what is wrong (what would be right)` and exit code 2. A failure at run time is a RunError, exit 1.
+#pragma once
+
+#include <cstdlib>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+namespace lambent {
+
+/// What the user gave is wrong: a file, an option, a value. `what()` is the whole line without the leading "error: ".
+struct InputError : std::runtime_error {
+  InputError(const std::string& place, const std::string& reason) : std::runtime_error(place + ": " + reason) {}
+};
+
+/// The machine failed us: no context, disk full, a shader that does not compile at start.
+struct RunError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+template <class A, class B>
+[[noreturn]] void checkFailed(const char* text, const A& a, const B& b, const char* file, int line) {
+  std::cerr << file << ":" << line << ": CHECK(" << text << ") failed: " << a << " against " << b << std::endl;
+  std::abort();
+}
+
+} // namespace lambent
+
+#define CHECK(cond) ((cond) ? void() : ::lambent::checkFailed(#cond, "false", "true", __FILE__, __LINE__))
+#define CHECK_EQ(a, b) ((a) == (b) ? void() : ::lambent::checkFailed(#a " == " #b, (a), (b), __FILE__, __LINE__))
+#define CHECK_LT(a, b) ((a) < (b) ? void() : ::lambent::checkFailed(#a " < " #b, (a), (b), __FILE__, __LINE__))
+#define CHECK_LE(a, b) ((a) <= (b) ? void() : ::lambent::checkFailed(#a " <= " #b, (a), (b), __FILE__, __LINE__))

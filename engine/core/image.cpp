@@ -1,0 +1,86 @@
+#include "engine/core/image.h"
+
+#include "engine/core/error.h"
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <system_error>
+
+#include <stb/stb_image_write.h>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+// IEC 61966-2-1.
+float srgbFromLinear(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+float linearFromSrgb(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+void writeAtomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  // The random part keeps two programs that write the same target apart; the extension stays last because some
+  // encoders choose their format by it.
+  fs::path temporary = file;
+  temporary.replace_filename("." + file.stem().string() + "." + std::to_string(std::random_device{}()) +
+                             file.extension().string());
+  std::error_code ignored;
+  if (!file.parent_path().empty() && !fs::is_directory(file.parent_path(), ignored))
+    throw RunError(file.string() + ": cannot be written: there is no folder " + file.parent_path().string());
+  try {
+    write(temporary);
+    fs::rename(temporary, file);
+  } catch (const fs::filesystem_error& e) {
+    fs::remove(temporary, ignored);
+    throw RunError(file.string() + ": cannot be written: " + e.code().message());
+  } catch (...) {
+    fs::remove(temporary, ignored);
+    throw;
+  }
+}
+
+void writePng(const fs::path& file, const Image8& image) {
+  CHECK_EQ(image.rgb.size(), size_t(image.width) * image.height * 3);
+  writeAtomically(file, [&](const fs::path& temporary) {
+    if (!stbi_write_png(temporary.c_str(), image.width, image.height, 3, image.rgb.data(), image.width * 3))
+      throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+  });
+}
+
+Image readPfm(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read (no such file?)");
+  std::string kind;
+  long width = 0, height = 0;
+  float scale = 0;
+  in >> kind >> width >> height >> scale;
+  if (!in || (kind != "PF" && kind != "Pf"))
+    throw InputError(file.string(), "is not a PFM picture (the header would be: PF, width height, scale)");
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
+    throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
+                                        " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+  if (scale == 0 || !std::isfinite(scale)) throw InputError(file.string(), "the scale in the PFM header is not a number");
+  in.get(); // exactly one white-space character ends the header
+
+  const int channels = kind == "PF" ? 3 : 1;
+  const bool swapBytes = (scale < 0) != (std::endian::native == std::endian::little);
+  Image image{int(width), int(height)};
+  std::vector<uint32_t> row(size_t(width) * channels);
+  for (int y = image.height - 1; y >= 0; --y) { // PFM stores the bottom row first
+    in.read(reinterpret_cast<char*>(row.data()), std::streamsize(row.size() * sizeof(uint32_t)));
+    if (!in) throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        uint32_t bits = row[size_t(x) * channels + (channels == 3 ? c : 0)];
+        if (swapBytes) bits = bits >> 24 | (bits >> 8 & 0xff00u) | (bits << 8 & 0xff0000u) | bits << 24;
+        image.at(x, y)[c] = std::bit_cast<float>(bits);
+      }
+  }
+  return image;
+}
+
+} // namespace lambent

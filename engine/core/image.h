@@ -1,0 +1,48 @@
+// Images on disk. Outputs go to a temporary name beside the target and are renamed, so nothing is ever half-written.
+#pragma once
+
+#include "engine/core/math.h"
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace lambent {
+
+/// Larger pictures are refused on reading, so that a damaged header cannot ask for all memory.
+inline constexpr int kMaxImageSide = 32768;
+
+/// Linear RGB float image, row 0 at the top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<vec3> pixels;
+
+  Image() = default;
+  Image(int w, int h, vec3 fill = vec3(0)) : width(w), height(h), pixels(size_t(w) * h, fill) {}
+  vec3& at(int x, int y) { return pixels[size_t(y) * width + x]; }
+  const vec3& at(int x, int y) const { return pixels[size_t(y) * width + x]; }
+};
+
+/// 8-bit RGB, row 0 at the top (already display-encoded).
+struct Image8 {
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgb;
+};
+
+float srgbFromLinear(float linear);
+float linearFromSrgb(float encoded);
+
+/// 32-bit float RGB, ZIP.
+void writeExr(const std::filesystem::path& file, const Image& image);
+/// Reads R,G,B (or `layer`.R, …). Throws InputError naming what the file has instead.
+Image readExr(const std::filesystem::path& file, const std::string& layer = {});
+/// Portable float map, colour or grey (grey is repeated in all three channels). The header's scale is taken as byte
+/// order only.
+Image readPfm(const std::filesystem::path& file);
+void writePng(const std::filesystem::path& file, const Image8& image);
+
+/// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
+/// the folder cannot be written.
+void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+
+} // namespace lambent

@@ -1,0 +1,90 @@
+// OpenEXR in and out: 32-bit float RGB, scan lines, ZIP.
+
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+namespace lambent {
+
+namespace {
+
+constexpr const char* kChannels[3] = {"R", "G", "B"};
+
+/// Slice of one component of the tightly packed vec3 pixels. `origin` is where pixel (0, 0) of the data window's
+/// coordinate system would be, which may lie outside the array.
+Imf::Slice slice(const vec3* origin, int component, int width) {
+  char* base = reinterpret_cast<char*>(const_cast<vec3*>(origin)) + component * sizeof(float);
+  return {Imf::FLOAT, base, sizeof(vec3), sizeof(vec3) * size_t(width)};
+}
+
+std::string channelNames(const Imf::ChannelList& channels) {
+  std::string names;
+  for (auto c = channels.begin(); c != channels.end(); ++c)
+    names += (names.empty() ? "" : ", ") + std::string(c.name());
+  return names.empty() ? "none" : names;
+}
+
+} // namespace
+
+void writeExr(const std::filesystem::path& file, const Image& image) {
+  CHECK_EQ(image.pixels.size(), size_t(image.width) * image.height);
+  if (image.pixels.empty()) throw RunError(file.string() + ": cannot be written: the picture has no pixels");
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer frame;
+    for (int c = 0; c < 3; ++c) {
+      header.channels().insert(kChannels[c], Imf::Channel(Imf::FLOAT));
+      frame.insert(kChannels[c], slice(image.pixels.data(), c, image.width));
+    }
+    try {
+      Imf::OutputFile out(temporary.c_str(), header);
+      out.setFrameBuffer(frame);
+      out.writePixels(image.height);
+    } catch (const std::exception& e) {
+      throw RunError(file.string() + ": cannot be written: " + e.what());
+    }
+  });
+}
+
+Image readExr(const std::filesystem::path& file, const std::string& layer) {
+  if (!std::filesystem::is_regular_file(file)) throw InputError(file.string(), "no such file");
+  try {
+    Imf::InputFile in(file.c_str());
+    const Imf::ChannelList& channels = in.header().channels();
+    const auto window = in.header().dataWindow();
+    const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
+    if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
+      throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
+                                          " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+    Image image{int(width), int(height)};
+    // Arithmetic on addresses as integers: the origin of a shifted data window is not inside the array.
+    const auto origin = reinterpret_cast<const vec3*>(reinterpret_cast<intptr_t>(image.pixels.data()) -
+                                                      (window.min.y * intptr_t(width) + window.min.x) *
+                                                          intptr_t(sizeof(vec3)));
+    Imf::FrameBuffer frame;
+    for (int c = 0; c < 3; ++c) {
+      const std::string name = layer.empty() ? kChannels[c] : layer + "." + kChannels[c];
+      const Imf::Channel* channel = channels.findChannel(name);
+      if (!channel)
+        throw InputError(file.string(), "has no channel " + name + " (it has: " + channelNames(channels) + ")");
+      if (channel->xSampling != 1 || channel->ySampling != 1)
+        throw InputError(file.string(), "channel " + name + " is stored at reduced resolution (full expected)");
+      frame.insert(name, slice(origin, c, image.width));
+    }
+    in.setFrameBuffer(frame);
+    in.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw InputError(file.string(), std::string("cannot be read as OpenEXR: ") + e.what());
+  }
+}
+
+} // namespace lambent

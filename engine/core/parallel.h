@@ -1,0 +1,17 @@
+// Parallel loops over index ranges on TBB. A body writes only to its own indices, so results do not depend on the
+// number of threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace lambent {
+
+/// Bounds the worker threads of all later loops; 0 = all cores. Must be called from the main thread.
+void setThreadCount(int threads);
+int threadCount();
+
+/// Calls body(begin, end) over disjoint blocks of at most `grain` indices that cover [0, n).
+void parallelFor(size_t n, size_t grain, const std::function<void(size_t, size_t)>& body);
+
+} // namespace lambent

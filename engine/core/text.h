@@ -1,0 +1,14 @@
+// Small text helpers for messages to people.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lambent {
+
+/// The candidate with the fewest single-letter edits to `name` (case ignored), the first of equals; empty when there
+/// are no candidates or when even the best would have to be mostly rewritten, so that a guess would mislead.
+std::string nearestName(std::string_view name, std::span<const std::string> candidates);
+
+} // namespace lambent

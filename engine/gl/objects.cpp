@@ -1,0 +1,205 @@
+#include "engine/gl/objects.h"
+
+#include "engine/core/error.h"
+
+#include <map>
+#include <mutex>
+
+namespace lambent::gl {
+
+namespace {
+
+std::mutex memoryMutex;
+std::map<std::string, uint64_t>& memory() {
+  static std::map<std::string, uint64_t> bytes;
+  return bytes;
+}
+
+GLenum glTarget(TextureKind kind) {
+  switch (kind) {
+  case TextureKind::Flat: return GL_TEXTURE_2D;
+  case TextureKind::Array: return GL_TEXTURE_2D_ARRAY;
+  case TextureKind::Cube: return GL_TEXTURE_CUBE_MAP;
+  case TextureKind::CubeArray: return GL_TEXTURE_CUBE_MAP_ARRAY;
+  }
+  return GL_TEXTURE_2D;
+}
+
+bool isCube(TextureKind kind) { return kind == TextureKind::Cube || kind == TextureKind::CubeArray; }
+
+uint64_t bytesOf(const TextureDesc& desc) {
+  uint64_t texels = 0;
+  for (int level = 0; level < desc.levels; ++level)
+    texels += uint64_t(std::max(1, desc.width >> level)) * std::max(1, desc.height >> level);
+  return texels * desc.layers * (isCube(desc.kind) ? 6 : 1) * texelBytes(desc.format);
+}
+
+GLuint makeTexture(const TextureDesc& desc) {
+  GLuint name = 0;
+  glCreateTextures(glTarget(desc.kind), 1, &name);
+  if (desc.kind == TextureKind::Array || desc.kind == TextureKind::CubeArray)
+    glTextureStorage3D(name, desc.levels, desc.format, desc.width, desc.height,
+                       desc.layers * (isCube(desc.kind) ? 6 : 1));
+  else
+    glTextureStorage2D(name, desc.levels, desc.format, desc.width, desc.height);
+  const GLint filter = desc.linear ? GL_LINEAR : GL_NEAREST;
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, desc.levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : filter);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
+  for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
+  if (desc.depthCompare) {
+    glTextureParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTextureParameteri(name, GL_TEXTURE_COMPARE_FUNC, desc.compareGreater ? GL_GEQUAL : GL_LEQUAL);
+  }
+  return name;
+}
+
+GLuint makeBuffer(uint64_t bytes, const void* data, GLbitfield flags) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferStorage(name, GLsizeiptr(bytes), data, flags);
+  return name;
+}
+
+template <class Create> GLuint make(Create create) {
+  GLuint name = 0;
+  create(1, &name);
+  return name;
+}
+
+} // namespace
+
+int texelBytes(GLenum format) {
+  switch (format) {
+  case GL_DEPTH_COMPONENT16: return 2;
+  case GL_RGBA8:
+  case GL_SRGB8_ALPHA8:
+  case GL_R32F:
+  case GL_DEPTH_COMPONENT32F: return 4;
+  case GL_RGBA16F: return 8;
+  case GL_RGBA32F: return 16;
+  }
+  checkFailed("a texture format of this project", format, 0, __FILE__, __LINE__);
+}
+
+std::vector<std::pair<std::string, uint64_t>> memoryByOwner() {
+  const std::lock_guard lock(memoryMutex);
+  return {memory().begin(), memory().end()};
+}
+
+namespace detail {
+
+Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t bytes)
+    : kind_(kind), name_(name), bytes_(bytes), owner_(label.substr(0, label.find('/'))) {
+  if (!label.empty()) glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
+  if (bytes_ == 0) return;
+  const std::lock_guard lock(memoryMutex);
+  memory()[owner_] += bytes_;
+}
+
+Object::~Object() {
+  if (name_ == 0) return;
+  switch (kind_) {
+  case GL_TEXTURE: glDeleteTextures(1, &name_); break;
+  case GL_BUFFER: glDeleteBuffers(1, &name_); break;
+  case GL_FRAMEBUFFER: glDeleteFramebuffers(1, &name_); break;
+  case GL_VERTEX_ARRAY: glDeleteVertexArrays(1, &name_); break;
+  case GL_SAMPLER: glDeleteSamplers(1, &name_); break;
+  case GL_QUERY: glDeleteQueries(1, &name_); break;
+  default: CHECK_EQ(kind_, 0u);
+  }
+  if (bytes_ == 0) return;
+  const std::lock_guard lock(memoryMutex);
+  if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
+}
+
+void Object::swap(Object& other) noexcept {
+  std::swap(kind_, other.kind_);
+  std::swap(name_, other.name_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(owner_, other.owner_);
+}
+
+} // namespace detail
+
+Texture::Texture(const std::string& label, const TextureDesc& desc)
+    : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
+
+void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
+
+Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
+    : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
+
+void Buffer::write(uint64_t offset, uint64_t size, const void* data) const {
+  CHECK_LE(offset + size, bytes());
+  if (size > 0) glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
+}
+
+void Buffer::bindUniform(int binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name()); }
+
+void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
+  CHECK_LE(offset + size, bytes());
+  glBindBufferRange(GL_UNIFORM_BUFFER, GLuint(binding), name(), GLintptr(offset), GLsizeiptr(size));
+}
+
+Framebuffer::Framebuffer(const std::string& label)
+    : Object(GL_FRAMEBUFFER, make([](GLsizei n, GLuint* names) { glCreateFramebuffers(n, names); }), label, 0) {}
+
+Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth)
+    : Framebuffer(label) {
+  std::vector<GLenum> targets;
+  for (const Texture* color : colors) {
+    targets.push_back(GLenum(GL_COLOR_ATTACHMENT0 + targets.size()));
+    glNamedFramebufferTexture(name(), targets.back(), color->name(), 0);
+  }
+  if (depth) glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  glNamedFramebufferDrawBuffers(name(), GLsizei(targets.size()), targets.data());
+  CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
+}
+
+void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {
+  glNamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture.name(), 0, layer);
+}
+
+void Framebuffer::bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name()); }
+
+VertexArray::VertexArray(const std::string& label)
+    : Object(GL_VERTEX_ARRAY, make([](GLsizei n, GLuint* names) { glCreateVertexArrays(n, names); }), label, 0) {}
+
+Sampler::Sampler(const std::string& label)
+    : Object(GL_SAMPLER, make([](GLsizei n, GLuint* names) { glCreateSamplers(n, names); }), label, 0) {}
+
+Query::Query(GLenum target)
+    : Object(GL_QUERY, make([target](GLsizei n, GLuint* names) { glCreateQueries(target, n, names); }), {}, 0) {}
+
+void PipelineState::apply() const {
+  const auto set = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
+  // Depth writes happen only with the test enabled, so a pass that writes without testing uses GL_ALWAYS.
+  set(GL_DEPTH_TEST, depthTest);
+  glDepthMask(depthWrite ? GL_TRUE : GL_FALSE);
+  glDepthFunc(depthFunc);
+  set(GL_DEPTH_CLAMP, depthClamp);
+  set(GL_BLEND, add || blendAlpha);
+  if (add)
+    glBlendFunc(GL_ONE, GL_ONE);
+  else
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glViewport(x, y, width, height);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(x, y, width, height);
+}
+
+void drawFullscreen() {
+  // The core profile wants a vertex array even for a draw without attributes. Names belong to a context, and making an
+  // empty one costs nothing next to the draw, so nothing is kept.
+  const VertexArray empty("fullscreen");
+  glBindVertexArray(empty.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+}
+
+} // namespace lambent::gl

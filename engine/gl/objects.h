@@ -1,0 +1,137 @@
+// OpenGL objects as move-only values: labelled, made with direct state access, immutable storage. A label starts with
+// its owner ("vpl maps/faces"), under which its memory is counted.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lambent::gl {
+
+/// Bytes of textures and buffers that are alive, by owner (the label up to '/'), ascending by name.
+std::vector<std::pair<std::string, uint64_t>> memoryByOwner();
+
+namespace detail {
+
+/// Owns one GL name and its share of the memory count.
+class Object {
+ public:
+  Object() = default;
+  Object(GLenum kind, GLuint name, const std::string& label, uint64_t bytes);
+  Object(Object&& other) noexcept { swap(other); }
+  Object& operator=(Object&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Object();
+
+  explicit operator bool() const { return name_ != 0; }
+  GLuint name() const { return name_; }
+  uint64_t bytes() const { return bytes_; }
+
+ private:
+  void swap(Object& other) noexcept;
+
+  GLenum kind_ = 0; // as for glObjectLabel
+  GLuint name_ = 0;
+  uint64_t bytes_ = 0;
+  std::string owner_;
+};
+
+} // namespace detail
+
+enum class TextureKind { Flat, Array, Cube, CubeArray };
+
+struct TextureDesc {
+  TextureKind kind = TextureKind::Flat;
+  GLenum format = GL_RGBA8; // sized
+  int width = 1, height = 1;
+  int layers = 1; // array layers; cubes, not faces, for CubeArray
+  int levels = 1;
+  bool linear = false;       // minification and magnification filter
+  bool depthCompare = false; // for shadow samplers; lit where reference ≥ stored when `compareGreater`, else ≤
+  bool compareGreater = false;
+};
+
+class Texture : public detail::Object {
+ public:
+  Texture() = default;
+  Texture(const std::string& label, const TextureDesc& desc);
+
+  const TextureDesc& desc() const { return desc_; }
+  int width() const { return desc_.width; }
+  int height() const { return desc_.height; }
+  void bind(int unit) const;
+
+ private:
+  TextureDesc desc_;
+};
+
+/// Bytes of one texel of a sized format. Only formats that this project uses.
+int texelBytes(GLenum format);
+
+class Buffer : public detail::Object {
+ public:
+  Buffer() = default;
+  /// `data` may be null. `flags` as for glNamedBufferStorage; dynamic storage by default.
+  Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+
+  template <class T> static Buffer of(const std::string& label, std::span<const T> data, GLbitfield flags = 0) {
+    return Buffer(label, data.size_bytes(), data.data(), flags);
+  }
+  void write(uint64_t offset, uint64_t bytes, const void* data) const;
+  void bindUniform(int binding) const;
+  void bindUniform(int binding, uint64_t offset, uint64_t bytes) const;
+};
+
+class Framebuffer : public detail::Object {
+ public:
+  Framebuffer() = default;
+  explicit Framebuffer(const std::string& label);
+  /// Whole textures as attachments. Aborts when incomplete: formats are ours, so that is a bug.
+  Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
+
+  /// Attaches one layer (cube face: 6·cube + face) as depth.
+  void attachDepthLayer(const Texture& texture, int layer) const;
+  void bind() const;
+};
+
+class VertexArray : public detail::Object {
+ public:
+  VertexArray() = default;
+  explicit VertexArray(const std::string& label);
+};
+
+class Sampler : public detail::Object {
+ public:
+  Sampler() = default;
+  explicit Sampler(const std::string& label);
+};
+
+class Query : public detail::Object {
+ public:
+  Query() = default;
+  explicit Query(GLenum target);
+};
+
+/// All fixed-function state a pass depends on; `apply` sets every field, so nothing leaks from pass to pass.
+struct PipelineState {
+  bool depthTest = false;
+  bool depthWrite = false;
+  GLenum depthFunc = GL_GREATER;
+  bool add = false;         // destination + source
+  bool blendAlpha = false;  // source over
+  bool depthClamp = false;  // casters outside the depth range are kept at its ends
+  int x = 0, y = 0, width = 0, height = 0; // viewport and scissor
+  void apply() const;
+};
+
+/// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
+void drawFullscreen();
+
+} // namespace lambent::gl

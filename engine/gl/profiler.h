@@ -1,0 +1,60 @@
+// Times of GPU passes, and the scope that every GPU command runs in: debug group + timer + row.
+#pragma once
+
+#include "engine/core/profile.h"
+#include "engine/gl/objects.h"
+
+#include <deque>
+#include <map>
+
+namespace lambent::gl {
+
+/// Queries: GPU timestamps, read without waiting, so a row shows the latest known time of its name (a few frames old).
+/// Finish: glFinish around each pass; exact everywhere, but the CPU waits.
+enum class Timing { Queries, Finish };
+
+class GpuProfiler {
+ public:
+  explicit GpuProfiler(Timing timing = Timing::Finish) : timing_(timing) {}
+
+  /// Finds out whether timestamps tell the truth here: fills a texture with a costly known load and compares the two
+  /// ways. llvmpipe's queries cover about one tile of the work. Chooses Queries when they agree within a factor of two,
+  /// else Finish; returns the choice.
+  Timing calibrate();
+  void choose(Timing timing) { timing_ = timing; }
+  Timing timing() const { return timing_; }
+
+  /// Rows since the last call, in the order the scopes ended; clears them.
+  std::vector<StageTime> takeRows();
+
+ private:
+  friend class PassScope;
+  struct Pending {
+    std::string name;
+    Query begin, end;
+  };
+  void collectFinishedQueries();
+
+  Timing timing_;
+  std::vector<StageTime> rows_;
+  std::deque<Pending> pending_;
+  std::vector<std::pair<Query, Query>> freeQueries_;
+  std::map<std::string, double> latestGpuMs_;
+};
+
+/// All GL commands of a pass run inside one of these. Scopes may nest; the outer row then includes the inner.
+class PassScope {
+ public:
+  PassScope(GpuProfiler& profiler, std::string name);
+  ~PassScope();
+  PassScope(const PassScope&) = delete;
+  PassScope& operator=(const PassScope&) = delete;
+
+ private:
+  GpuProfiler& profiler_;
+  std::string name_;
+  std::chrono::steady_clock::time_point begin_;
+  Query beginQuery_, endQuery_;
+};
+
+} // namespace lambent::gl

@@ -1,0 +1,137 @@
+#include "engine/gl/program.h"
+
+#include "engine/core/error.h"
+
+#include <spdlog/spdlog.h>
+
+namespace lambent::gl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// File numbers of a compiler's log explained: "0 = gather.frag, 1 = lib/gbuffer.glsl".
+std::string fileNumbers(const ShaderText& source) {
+  std::string text;
+  for (size_t i = 0; i < source.files.size(); ++i)
+    text += (i ? ", " : "") + std::to_string(i) + " = " + source.files[i].filename().string();
+  return text;
+}
+
+GLuint compile(GLenum stage, const ShaderText& source) {
+  const GLuint shader = glCreateShader(stage);
+  const char* text = source.text.c_str();
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  GLint ok = 0, length = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok) return shader;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string log(size_t(std::max(1, length)), ' ');
+  glGetShaderInfoLog(shader, length, nullptr, log.data());
+  glDeleteShader(shader);
+  throw RunError("shader " + source.files[0].string() + " does not compile (files: " + fileNumbers(source) + ")\n" +
+                 log.c_str());
+}
+
+} // namespace
+
+std::string ProgramDesc::key() const {
+  std::string key = vertex + '|' + fragment;
+  for (const std::string& define : defines) key += '|' + define;
+  return key;
+}
+
+Program::~Program() { glDeleteProgram(name_); }
+
+void Program::use() const { glUseProgram(name_); }
+
+int Program::location(const char* uniform) const {
+  const auto [entry, isNew] = locations_.try_emplace(uniform, -1);
+  if (isNew) entry->second = glGetUniformLocation(name_, uniform);
+  return entry->second;
+}
+
+void Program::set(const char* uniform, int value) const { glProgramUniform1i(name_, location(uniform), value); }
+void Program::set(const char* uniform, float value) const { glProgramUniform1f(name_, location(uniform), value); }
+void Program::set(const char* uniform, const vec2& v) const { glProgramUniform2fv(name_, location(uniform), 1, &v.x); }
+void Program::set(const char* uniform, const vec3& v) const { glProgramUniform3fv(name_, location(uniform), 1, &v.x); }
+void Program::set(const char* uniform, const vec4& v) const { glProgramUniform4fv(name_, location(uniform), 1, &v.x); }
+void Program::set(const char* uniform, const glm::ivec2& v) const {
+  glProgramUniform2iv(name_, location(uniform), 1, &v.x);
+}
+void Program::set(const char* uniform, const mat4& m) const {
+  glProgramUniformMatrix4fv(name_, location(uniform), 1, GL_FALSE, &m[0].x);
+}
+
+const Program& ProgramCache::get(const ProgramDesc& desc) {
+  std::unique_ptr<Program>& slot = programs_[desc.key()];
+  if (!slot || slot->name_ == 0) {
+    slot.reset(new Program);
+    slot->desc_ = desc;
+    build(*slot);
+  }
+  return *slot;
+}
+
+void ProgramCache::build(Program& program) const {
+  const ShaderText vertex = loadShader(folder_, program.desc_.vertex, program.desc_.defines);
+  const ShaderText fragment = loadShader(folder_, program.desc_.fragment, program.desc_.defines);
+  program.files_.clear();
+  for (const ShaderText* source : {&vertex, &fragment})
+    for (const fs::path& file : source->files) program.files_.push_back({file, fs::last_write_time(file)});
+
+  const GLuint vertexShader = compile(GL_VERTEX_SHADER, vertex);
+  GLuint fragmentShader = 0;
+  try {
+    fragmentShader = compile(GL_FRAGMENT_SHADER, fragment);
+  } catch (...) {
+    glDeleteShader(vertexShader);
+    throw;
+  }
+  const GLuint name = glCreateProgram();
+  glAttachShader(name, vertexShader);
+  glAttachShader(name, fragmentShader);
+  glLinkProgram(name);
+  glDeleteShader(vertexShader);
+  glDeleteShader(fragmentShader);
+  GLint ok = 0, length = 0;
+  glGetProgramiv(name, GL_LINK_STATUS, &ok);
+  if (!ok) {
+    glGetProgramiv(name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(size_t(std::max(1, length)), ' ');
+    glGetProgramInfoLog(name, length, nullptr, log.data());
+    glDeleteProgram(name);
+    throw RunError("program " + program.desc_.key() + " does not link\n" + log.c_str());
+  }
+  const std::string label = program.desc_.key().substr(0, 200); // GL_MAX_LABEL_LENGTH is at least 256
+  glObjectLabel(GL_PROGRAM, name, GLsizei(label.size()), label.c_str());
+  glDeleteProgram(program.name_);
+  program.name_ = name;
+  program.locations_.clear();
+}
+
+std::vector<std::string> ProgramCache::reloadChanged() {
+  std::vector<std::string> messages;
+  for (auto& [key, program] : programs_) {
+    bool changed = false;
+    for (Program::SourceFile& file : program->files_) {
+      std::error_code error; // an editor may be replacing the file at this moment: look again next time
+      const auto written = fs::last_write_time(file.path, error);
+      if (error || written == file.written) continue;
+      file.written = written; // so that a file that fails is tried again only when it changes again
+      changed = true;
+    }
+    if (!changed) continue;
+    try {
+      build(*program);
+      messages.push_back("reloaded " + program->desc_.fragment);
+    } catch (const RunError& error) {
+      messages.push_back(error.what());
+    }
+  }
+  for (const std::string& message : messages) spdlog::info("{}", message);
+  return messages;
+}
+
+} // namespace lambent::gl

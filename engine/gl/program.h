@@ -1,0 +1,91 @@
+// Shader programs from files: #include, variants by defines, hot reload that keeps the last good program.
+#pragma once
+
+#include "engine/core/math.h"
+#include "engine/gl/objects.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <unordered_map>
+
+namespace lambent::gl {
+
+/// Files relative to the shader folder, and macros ("NAME" or "NAME value") that select the variant.
+struct ProgramDesc {
+  std::string vertex = "fullscreen.vert";
+  std::string fragment;
+  std::vector<std::string> defines = {};
+
+  std::string key() const;
+};
+
+class Program {
+ public:
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  GLuint name() const { return name_; }
+  void use() const;
+
+  // Uniforms by name; a name that the variant does not have is ignored (the compiler may have removed it).
+  void set(const char* uniform, int value) const;
+  void set(const char* uniform, float value) const;
+  void set(const char* uniform, const vec2& value) const;
+  void set(const char* uniform, const vec3& value) const;
+  void set(const char* uniform, const vec4& value) const;
+  void set(const char* uniform, const glm::ivec2& value) const;
+  void set(const char* uniform, const mat4& value) const;
+
+ private:
+  friend class ProgramCache;
+  Program() = default;
+  int location(const char* uniform) const;
+
+  struct SourceFile {
+    std::filesystem::path path;
+    std::filesystem::file_time_type written;
+  };
+  ProgramDesc desc_;
+  GLuint name_ = 0;
+  std::vector<SourceFile> files_; // all that went in, with includes
+  mutable std::unordered_map<std::string, int> locations_;
+};
+
+/// Text of a shader with its includes expanded once each; #line directives number the files in the order of `files`.
+struct ShaderText {
+  std::string text;
+  std::vector<std::filesystem::path> files;
+};
+/// `#include "name"` is looked for beside the including file, then in `folder`. `defines` go below #version.
+/// Throws RunError naming file and line of an include that is not there.
+ShaderText loadShader(const std::filesystem::path& folder, const std::string& file,
+                      const std::vector<std::string>& defines);
+
+/// LAMBENT_SHADERS, else ../share/lambent/shaders beside the executable, else shaders of the source tree. Throws
+/// RunError naming the places when none exists.
+std::filesystem::path findShaderFolder();
+
+/// Programs of one context, compiled when first asked for. References stay valid for the life of the cache.
+class ProgramCache {
+ public:
+  explicit ProgramCache(std::filesystem::path folder = findShaderFolder()) : folder_(std::move(folder)) {}
+
+  /// Throws RunError with the compiler's log when the program has never compiled.
+  const Program& get(const ProgramDesc& desc);
+
+  /// Compiles anew what changed on disk. A program that fails keeps its last good version. Returns one message per
+  /// program touched: "reloaded gather.frag", or the file and the compiler's log.
+  std::vector<std::string> reloadChanged();
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  void build(Program& program) const;
+
+  std::filesystem::path folder_;
+  std::map<std::string, std::unique_ptr<Program>> programs_;
+};
+
+} // namespace lambent::gl

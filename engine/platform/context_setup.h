@@ -1,0 +1,10 @@
+// What both context routes do once a context is current.
+#pragma once
+
+namespace lambent {
+
+/// Checks version and limits (RunError), installs the debug callback, and sets the clip convention
+/// (lower left, depth 0..1) that every pass relies on.
+void setUpContext();
+
+} // namespace lambent

@@ -1,0 +1,81 @@
+// What a scene is made of and never changes while it runs: meshes, materials, textures. Filled by the importer.
+#pragma once
+
+#include "engine/core/math.h"
+
+#include <string>
+#include <vector>
+
+namespace lambent {
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+enum class AlphaMode : uint8_t { Opaque, Mask };
+
+/// 8-bit RGBA image; row 0 is the row at v = 0 (glTF: the top row of the file). `srgb`: colours are sRGB-encoded,
+/// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w).
+struct TextureImage {
+  std::string name;
+  int width = 0, height = 0;
+  bool srgb = true;
+  std::vector<u8vec4> texels; // width * height
+  vec4 averageLinear{1};
+};
+
+/// A use of an image by a material: which UV set, wrap modes, filter, and KHR_texture_transform as a matrix
+/// (uvImage = uvTransform * (uv, 1)).
+struct TextureRef {
+  uint32_t image = kNone; // index into SceneAssets::images; kNone = no texture (white)
+  uint32_t uvSet = 0;     // 0 or 1
+  Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+  bool nearest = false;
+  mat3 uvTransform{1};
+};
+
+/// Lambert surface. Albedo = baseColor (factor) × texture × vertex colour. Emission is radiance, W/(m² sr) per channel,
+/// front side only unless doubleSided. Both sides reflect.
+struct Material {
+  std::string name;
+  vec3 baseColor{1};
+  float alpha = 1;
+  TextureRef baseColorTexture;
+  vec3 emission{0}; // emissiveFactor × emissiveStrength
+  TextureRef emissiveTexture;
+  AlphaMode alphaMode = AlphaMode::Opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+
+  bool emits() const { return maxComponent(emission) > 0; }
+};
+
+/// A run of triangles of one mesh that share a material.
+struct Primitive {
+  uint32_t firstTriangle = 0, triangleCount = 0;
+  uint32_t material = 0;
+  Aabb boundsObject;
+};
+
+/// Triangle mesh in object space, metres. `normals` always has one unit vector per vertex (made by the importer where
+/// the file has none); `uv0`, `uv1`, `colors` are empty or one per vertex (colours linear RGBA).
+struct Mesh {
+  std::string name;
+  std::vector<vec3> positions, normals;
+  std::vector<vec2> uv0, uv1;
+  std::vector<vec4> colors;
+  std::vector<uvec3> triangles; // indices into the vertex arrays; sorted by primitive
+  std::vector<Primitive> primitives;
+  Aabb boundsObject;
+};
+
+struct SceneAssets {
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
+  std::vector<TextureImage> images;
+};
+
+/// Bilinear (or nearest) lookup of a material's texture at mesh coordinates (before uvTransform), as linear RGBA.
+/// White when the reference has no image.
+vec4 sampleTexture(const SceneAssets& assets, const TextureRef& ref, vec2 uv);
+
+} // namespace lambent

@@ -1,0 +1,177 @@
+// The first picture of a file that has no camera. The rule:
+//
+// 1. Stand on each of 3x3 places spread over the plan, at eye height (1.6 m above the floor found there, or half of the
+//    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these looks
+//    meet the front of a surface: seen from within a closed object they meet the backs, and over open ground
+//    the upper half meets nothing.
+// 2. No place inside: an object or a stage. View it from outside: from the front, a little to the right and above,
+//    so far away that its bounding sphere fits a vertical angle of 50 degrees.
+// 3. Else stand at the place that sees farthest along the plan's axes, step back almost to the wall behind, and look
+//    level along that line. Ties go to the longer axis of the plan.
+//
+// Rays are tried against all triangles: a second's work is not worth a tree that nothing else here needs, and the
+// tracer belongs to a later layer.
+
+#include "engine/core/parallel.h"
+#include "engine/scene/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+constexpr float kFovY = 50.0f / 180 * kPi;
+constexpr float kEyeHeight = 1.6f;      // metres
+constexpr float kInsideShare = 0.7f;    // of looks that must meet a front
+constexpr int kPlaces = 3;              // along each side of the plan
+constexpr float kOwnRadius = 0.3f;      // metres kept between the eye and the wall behind it
+
+struct Triangle {
+  vec3 a, edge1, edge2;
+};
+
+/// All instances' triangles in world space, wound so that the cross product of the edges is the front.
+std::vector<Triangle> worldTriangles(const Scene& scene) {
+  std::vector<Triangle> triangles;
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance& m, const WorldTransform& w) {
+    const Mesh& mesh = scene.assets.meshes[m.mesh];
+    const bool mirrored = glm::determinant(mat3(w.worldFromNode)) < 0;
+    for (const uvec3& t : mesh.triangles) {
+      vec3 p[3];
+      for (int c = 0; c < 3; ++c)
+        p[c] = vec3(w.worldFromNode * vec4(mesh.positions[t[c]], 1));
+      if (mirrored) std::swap(p[1], p[2]);
+      triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});
+    }
+  });
+  return triangles;
+}
+
+struct Look {
+  vec3 origin, direction;
+  float distance = kInfinity; // to what it meets
+  bool front = false;
+};
+
+/// Möller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997), both sides.
+void meet(Look& look, const Triangle& t) {
+  const vec3 p = glm::cross(look.direction, t.edge2);
+  const float det = glm::dot(t.edge1, p);
+  if (det == 0) return;
+  const vec3 s = look.origin - t.a;
+  const float inv = 1 / det, u = inv * glm::dot(s, p);
+  if (!(u >= 0 && u <= 1)) return;
+  const vec3 q = glm::cross(s, t.edge1);
+  const float v = inv * glm::dot(look.direction, q);
+  if (!(v >= 0 && u + v <= 1)) return;
+  const float distance = inv * glm::dot(t.edge2, q);
+  if (!(distance > 1e-4f && distance < look.distance)) return;
+  look.distance = distance;
+  look.front = det > 0;
+}
+
+void meetAll(std::vector<Look>& looks, const std::vector<Triangle>& triangles) {
+  parallelFor(looks.size(), 4, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (const Triangle& t : triangles)
+        meet(looks[i], t);
+  });
+}
+
+/// Towards the faces, edges and corners of a cube, four of them level along the axes first: +X, -X, +Z, -Z.
+std::array<vec3, 26> lookDirections() {
+  std::array<vec3, 26> directions = {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1), vec3(0, 0, -1)};
+  size_t n = 4;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (y != 0 || (x != 0 && z != 0)) directions[n++] = glm::normalize(vec3(x, y, z));
+  return directions;
+}
+
+struct Place {
+  vec3 eye{0};
+  bool inside = false;
+  float reach[4] = {}; // level along +X, -X, +Z, -Z
+};
+
+std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb& bounds) {
+  // Down and up from the middle of the height, to find floor and ceiling.
+  std::vector<Look> vertical;
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    const vec2 plan((float(i % kPlaces) + 1) / (kPlaces + 1), (float(i / kPlaces) + 1) / (kPlaces + 1));
+    const vec3 middle = bounds.lo + bounds.size() * vec3(plan.x, 0.5f, plan.y);
+    vertical.push_back({middle, vec3(0, -1, 0)});
+    vertical.push_back({middle, vec3(0, 1, 0)});
+  }
+  meetAll(vertical, triangles);
+
+  const auto directions = lookDirections();
+  std::vector<Place> places;
+  std::vector<Look> looks;
+  for (size_t i = 0; i < vertical.size(); i += 2) {
+    const float middle = vertical[i].origin.y;
+    const float floor = std::max(middle - vertical[i].distance, bounds.lo.y);
+    const float ceiling = std::min(middle + vertical[i + 1].distance, bounds.hi.y);
+    Place place;
+    place.eye = vertical[i].origin;
+    place.eye.y = floor + std::min(kEyeHeight, 0.5f * (ceiling - floor));
+    places.push_back(place);
+    for (const vec3& d : directions)
+      looks.push_back({place.eye, d});
+  }
+  meetAll(looks, triangles);
+  for (size_t i = 0; i < places.size(); ++i) {
+    const Look* own = &looks[i * directions.size()];
+    const auto fronts = std::count_if(own, own + directions.size(), [](const Look& l) { return l.front; });
+    places[i].inside = float(fronts) >= kInsideShare * float(directions.size());
+    for (int k = 0; k < 4; ++k)
+      places[i].reach[k] = own[k].distance;
+  }
+  return places;
+}
+
+CameraView viewFromOutside(const Aabb& bounds) {
+  const float radius = std::max(0.5f * bounds.diameter(), 1e-3f);
+  const vec3 direction = glm::normalize(vec3(0.5f, 0.4f, 1));
+  CameraView view = lookAt(bounds.centre() + direction * (radius / std::sin(0.5f * kFovY)), bounds.centre(), kFovY);
+  view.near = 0.01f * radius;
+  return view;
+}
+
+CameraView viewFromInside(const std::vector<Place>& places, const Aabb& bounds) {
+  const int longAxis = bounds.size().x >= bounds.size().z ? 0 : 1; // X or Z
+  CameraView best;
+  float bestLength = -1;
+  for (const Place& place : places) {
+    if (!place.inside) continue;
+    for (const int axis : {longAxis, 1 - longAxis}) {
+      const vec3 along = axis == 0 ? vec3(1, 0, 0) : vec3(0, 0, 1);
+      const int component = axis == 0 ? 0 : 2;
+      // An opening counts up to the scene's own end.
+      const float ahead = std::min(place.reach[2 * axis], bounds.hi[component] - place.eye[component]);
+      const float behind = std::min(place.reach[2 * axis + 1], place.eye[component] - bounds.lo[component]);
+      if (ahead + behind <= bestLength * 1.001f) continue;
+      bestLength = ahead + behind;
+      const vec3 eye = place.eye - along * std::max(behind - std::max(kOwnRadius, 0.08f * bestLength), 0.0f);
+      best = lookAt(eye, eye + along, kFovY);
+      best.near = std::clamp(0.002f * bestLength, 0.005f, 0.1f);
+    }
+  }
+  return best;
+}
+
+} // namespace
+
+CameraView defaultView(const Scene& scene) {
+  const Aabb bounds = worldBounds(scene);
+  if (bounds.empty()) return lookAt(vec3(0, 0, 2), vec3(0), kFovY);
+  const std::vector<Place> places = tryPlaces(worldTriangles(scene), bounds);
+  const bool inside = std::any_of(places.begin(), places.end(), [](const Place& p) { return p.inside; });
+  return inside ? viewFromInside(places, bounds) : viewFromOutside(bounds);
+}
+
+} // namespace lambent

@@ -1,0 +1,163 @@
+// glTF nodes to entities, and the importer's entry point.
+
+#include "engine/core/text.h"
+#include "engine/scene/gltf_import.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace gltf {
+
+namespace {
+
+/// Replaces a matrix by translation, rotation and scale where these say the same; a sheared one stays.
+void decompose(Transform& t) {
+  if (!t.matrix) return;
+  const mat4& m = *t.matrix;
+  if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return;
+  Transform parts;
+  parts.translation = vec3(m[3]);
+  for (int c = 0; c < 3; ++c)
+    parts.scale[c] = glm::length(vec3(m[c]));
+  if (!(glm::min(parts.scale.x, glm::min(parts.scale.y, parts.scale.z)) > 0)) return;
+  if (glm::determinant(mat3(m)) < 0) parts.scale.x = -parts.scale.x;
+  parts.rotation = glm::normalize(glm::quat_cast(
+      mat3(vec3(m[0]) / parts.scale.x, vec3(m[1]) / parts.scale.y, vec3(m[2]) / parts.scale.z)));
+  const mat4 again = parts.local();
+  for (int c = 0; c < 3; ++c)
+    if (glm::length(again[c] - m[c]) > 1e-5f * glm::length(m[c])) return;
+  t = parts;
+}
+
+std::vector<int> rootsOf(const Document& doc, const std::string& sceneName) {
+  if (!sceneName.empty()) {
+    std::vector<std::string> names;
+    for (size_t i = 0; i < doc.scenes.size(); ++i) {
+      if (doc.scenes[i].name == sceneName || std::to_string(i) == sceneName) return doc.scenes[i].nodes;
+      names.push_back(doc.scenes[i].name.empty() ? std::to_string(i) : doc.scenes[i].name);
+    }
+    std::string known;
+    for (const std::string& n : names)
+      known += (known.empty() ? "" : ", ") + n;
+    throw InputError(doc.file.string(), "has no scene '" + sceneName + "' (it has: " +
+                                            (known.empty() ? "none" : known) + ")");
+  }
+  if (doc.defaultScene >= 0) return doc.at(doc.scenes, doc.defaultScene, "scene", "default scene").nodes;
+  if (!doc.scenes.empty()) return doc.scenes[0].nodes;
+  // A file without scenes is a library of nodes; those without a parent are shown.
+  std::vector<bool> isChild(doc.nodes.size(), false);
+  for (const Node& n : doc.nodes)
+    for (const int c : n.children)
+      if (c >= 0 && size_t(c) < isChild.size()) isChild[size_t(c)] = true;
+  std::vector<int> roots;
+  for (size_t i = 0; i < doc.nodes.size(); ++i)
+    if (!isChild[i]) roots.push_back(int(i));
+  return roots;
+}
+
+void addCamera(Import& import, Entity e, const Node& node, const std::string& place) {
+  const Camera& camera = import.doc.at(import.doc.cameras, node.camera, "camera", place);
+  import.scene.registry.emplace<CameraLens>(e, camera.lens);
+  if (node.name.empty() && !camera.name.empty()) import.scene.registry.emplace<Name>(e, camera.name);
+}
+
+void addPunctual(Import& import, Entity e, const Node& node, const std::string& place) {
+  const Light& light = import.doc.at(import.doc.lights, node.light, "light", place);
+  PunctualLight out = light.light;
+  if (light.type == "point") {
+    out.type = LightType::Point;
+  } else if (light.type == "spot") {
+    out.type = LightType::Spot;
+  } else if (light.type == "directional") {
+    out.type = LightType::Directional;
+  } else {
+    import.doc.warn(place + ": light type '" + light.type + "' is not one of glTF's; left out");
+    return;
+  }
+  import.scene.registry.emplace<PunctualLight>(e, out);
+  if (node.name.empty() && !light.name.empty()) import.scene.registry.emplace<Name>(e, light.name);
+}
+
+} // namespace
+
+void importNodes(Import& import, const std::string& sceneName) {
+  Document& doc = import.doc;
+  Registry& registry = import.scene.registry;
+  import.entities.assign(doc.nodes.size(), Entity());
+  import.worldFromNode.assign(doc.nodes.size(), mat4(1));
+
+  // Depth first, children in file order, on a stack of our own: files may nest nodes deeper than ours is.
+  struct Visit {
+    int node, parent;
+  };
+  std::vector<Visit> stack;
+  std::vector<int> order;
+  const auto push = [&](const std::vector<int>& nodes, int parent) {
+    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it)
+      stack.push_back({*it, parent});
+  };
+  push(rootsOf(doc, sceneName), -1);
+  while (!stack.empty()) {
+    const auto [index, parent] = stack.back();
+    stack.pop_back();
+    const std::string parentPlace =
+        parent < 0 ? "scene" : label("node", size_t(parent), doc.nodes[size_t(parent)].name);
+    Node& node = doc.nodes[(doc.checkIndex(index, doc.nodes.size(), "node", parentPlace), size_t(index))];
+    if (import.reached(index))
+      doc.fail(label("node", size_t(index), node.name),
+               "is reached twice: it has two parents, or the nodes form a cycle (a tree expected)");
+    order.push_back(index);
+    decompose(node.transform);
+    const Entity e = registry.create();
+    import.entities[size_t(index)] = e;
+    mat4& world = import.worldFromNode[size_t(index)];
+    world = node.transform.local();
+    if (!node.name.empty()) registry.emplace<Name>(e, node.name);
+    registry.emplace<Transform>(e, node.transform);
+    if (parent >= 0) {
+      registry.emplace<Parent>(e, import.entities[size_t(parent)]);
+      world = import.worldFromNode[size_t(parent)] * world;
+    }
+    registry.emplace<WorldTransform>(e, world);
+    push(node.children, index);
+  }
+
+  for (const int index : order) { // after all nodes are placed, because skins refer to joints anywhere
+    const Node& node = doc.nodes[size_t(index)];
+    const std::string place = label("node", size_t(index), node.name);
+    const Entity e = import.entities[size_t(index)];
+    if (node.camera >= 0) addCamera(import, e, node, place);
+    if (node.light >= 0) addPunctual(import, e, node, place);
+    if (node.mesh < 0) continue;
+    doc.checkIndex(node.mesh, doc.meshes.size(), "mesh", place);
+    const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0 ? index : -1);
+    if (mesh != kNone) registry.emplace<MeshInstance>(e, mesh);
+  }
+}
+
+} // namespace gltf
+
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName) {
+  gltf::Import import;
+  try {
+    import.doc = gltf::readDocument(file);
+    gltf::importNodes(import, sceneName);
+    gltf::importAnimations(import);
+    gltf::decodeImages(import);
+  } catch (const std::bad_alloc&) {
+    throw InputError(file.string(), "needs more memory than this machine gives");
+  }
+  Scene scene = std::move(import.scene);
+  scene.file = file;
+  if (scene.assets.materials.empty()) scene.assets.materials.emplace_back().name = "default";
+  scene.warnings = std::move(import.doc.warnings);
+  for (const auto& [text, count] : import.counted)
+    scene.warnings.push_back(std::to_string(count) + " " + text);
+  if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
+  animate(scene, 0);
+  return scene;
+}
+
+} // namespace lambent

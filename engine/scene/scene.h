@@ -1,0 +1,76 @@
+// The scene: an ECS registry that owns everything that lives, and the assets it refers to. This header is the contents
+// page of engine/scene, in data-flow order: load → animate → extract.
+#pragma once
+
+#include "engine/ecs/registry.h"
+#include "engine/scene/assets.h"
+#include "engine/scene/components.h"
+#include "engine/scene/scene_view.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lambent {
+
+struct Scene {
+  Registry registry;
+  SceneAssets assets;
+  std::vector<AnimationClip> animations; // from the file; all play, looped
+  vec3 skyRadiance{0};
+  std::filesystem::path file;
+  std::vector<std::string> warnings; // one line each: what the file holds that is shown differently or left out
+};
+
+/// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).
+/// Throws InputError naming file, place and reason.
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {});
+
+/// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
+void animate(Scene& scene, double time);
+/// Only the second half: for callers that changed Transform components themselves.
+void updateWorldTransforms(Scene& scene);
+
+/// Adds a light that is not in the file (world space).
+Entity addLight(Scene& scene, const LightView& light, const std::string& name);
+
+/// Node called `name`, else nothing.
+std::optional<Entity> findByName(const Scene& scene, const std::string& name);
+
+/// Box around all mesh instances, world space, at their present transforms.
+Aabb worldBounds(const Scene& scene);
+
+/// Cameras of the file, by name, posed at the present transforms. `near` follows the file.
+struct NamedCamera {
+  std::string name;
+  CameraView view;
+};
+std::vector<NamedCamera> sceneCameras(const Scene& scene);
+
+/// View for a file without camera: the whole scene from the front, a little to the right and above, 50° vertical;
+/// inside and level when the scene is large and enclosing (see default_view.cpp for the rule).
+CameraView defaultView(const Scene& scene);
+
+/// Camera at `eye` looking at `target`, +Y up (another up where the view is vertical).
+CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
+
+/// Rotation that turns -Z to `direction` and keeps +Y upwards as far as possible: for lights and cameras. Identity when
+/// the direction has no length.
+quat rotationTowards(const vec3& direction);
+
+/// Turns the registry into a SceneView; keeps what it needs to tell what moved since its last call.
+/// Spans stay valid until the next call.
+class SceneExtractor {
+ public:
+  SceneView extract(const Scene& scene, const CameraView& camera, double time);
+
+ private:
+  std::vector<InstanceView> instances_;
+  std::vector<LightView> lights_;
+  CameraView camera_;
+  vec3 sky_{0};
+  bool first_ = true;
+};
+
+} // namespace lambent

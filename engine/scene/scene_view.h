@@ -1,0 +1,77 @@
+// The scene of one frame as plain spans, extracted from the ECS: what the GI module reads. World space.
+#pragma once
+
+#include "engine/core/math.h"
+#include "engine/scene/assets.h"
+
+#include <span>
+
+namespace lambent {
+
+/// One placed mesh. `id` is stable while the entity lives; instances keep their order between frames.
+struct InstanceView {
+  uint32_t id = 0;
+  uint32_t mesh = 0; // index into SceneAssets::meshes
+  mat4 worldFromObject{1};
+  mat4 worldFromObjectBefore{1}; // of the previous extraction; equal when it did not move
+  bool moved = false;
+  Aabb boundsWorld;
+};
+
+enum class LightType : uint8_t { Point, Spot, Directional };
+
+/// A punctual light. Intensity is W/sr per channel for point and spot, irradiance W/m² (facing the light) for
+/// directional: glTF's candela and lux taken as they are. Spot falloff is glTF's own.
+struct LightView {
+  uint32_t id = 0;
+  LightType type = LightType::Point;
+  vec3 position{0};
+  vec3 direction{0, -1, 0}; // unit, the way the light travels
+  vec3 intensity{1};
+  float range = kInfinity; // metres; glTF's smooth window, infinite when absent
+  float innerConeCos = 1, outerConeCos = 0.70710678f;
+  bool changed = false; // anything of it differs from the previous extraction
+};
+
+struct CameraView {
+  mat4 worldFromView{1}; // camera looks along -Z of view space, rigid (no scale)
+  float fovY = 1.0f;     // radians; ignored when orthoHalfHeight > 0
+  float orthoHalfHeight = 0;
+  float near = 0.05f; // metres; the far plane is at infinity
+  int width = 320, height = 180;
+
+  vec3 position() const { return vec3(worldFromView[3]); }
+  float aspect() const { return float(width) / float(height); }
+};
+
+struct SceneChanges {
+  bool first = true;     // nothing was extracted before
+  bool camera = true;    // pose, lens or size
+  bool lights = true;    // any light added, removed, moved or changed; sky
+  bool geometry = true;  // any instance moved
+  bool instances = true; // instances were added or removed
+};
+
+struct SceneView {
+  const SceneAssets* assets = nullptr;
+  std::span<const InstanceView> instances;
+  std::span<const LightView> lights;
+  vec3 skyRadiance{0}; // constant over the sphere
+  CameraView camera;
+  Aabb boundsWorld; // of all instances
+  SceneChanges changes;
+  double time = 0; // seconds
+};
+
+/// World direction through the point (u, v) of the picture, u to the right and v down in [0,1], and its origin.
+struct CameraRay {
+  vec3 origin, direction; // direction is unit
+};
+CameraRay cameraRay(const CameraView& camera, float u, float v);
+
+/// Reversed-Z projection with infinite far plane (perspective: depth = near / distance along -Z; 0 at infinity), for
+/// glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE). For an orthographic camera depth falls linearly from 1 to 0 over
+/// [near, orthoFar].
+mat4 clipFromView(const CameraView& camera, float orthoFar = 1000.0f);
+
+} // namespace lambent

@@ -1,0 +1,52 @@
+// Shots: scripted camera paths with moving lights and objects, as JSON (format in README). Paths are relative to the
+// shot file. Unknown keys are errors that name the nearest known key.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+#include <map>
+
+namespace lambent {
+
+struct CameraKey {
+  double t = 0; // seconds
+  vec3 eye{0}, target{0};
+  float fovY = 1.0f; // radians (degrees in the file)
+};
+
+/// Any subset of a node's placement and a light's colour at time t; absent fields keep the node's own value.
+struct NodeKey {
+  double t = 0;
+  std::optional<vec3> position;   // metres, in the parent's space
+  std::optional<vec3> rotation;   // degrees, Euler XYZ in the file; intrinsic Y·X·Z order
+  std::optional<vec3> direction;  // lights: the way the light travels, world space
+  std::optional<vec3> intensity;  // lights: per channel
+};
+
+struct Shot {
+  std::filesystem::path file;
+  std::filesystem::path scene;
+  double fps = 30, seconds = 0;
+  std::vector<CameraKey> camera;                      // empty: the scene's own camera
+  std::map<std::string, std::vector<NodeKey>> lights; // by node name
+  std::map<std::string, std::vector<NodeKey>> objects;
+  std::vector<vec2> pixels;               // tracked pixels, (u,v) in [0,1], v down
+  std::map<std::string, std::string> set; // settings that belong to the shot, as --set key=value
+
+  int frameCount() const;
+};
+
+/// Throws InputError for a missing file, bad JSON (with line), unknown key, wrong type, keys out of time order.
+Shot loadShot(const std::filesystem::path& file);
+/// Written to a temporary name, then renamed.
+void saveShot(const Shot& shot, const std::filesystem::path& file);
+
+/// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
+/// after the last. Requires shot.camera not empty.
+CameraView shotCamera(const Shot& shot, double t);
+
+/// animate(scene, t), then the shot's light and object keys (linear between keys), then world transforms.
+/// Throws InputError for a node that the scene lacks (nearest name given).
+void poseShot(Scene& scene, const Shot& shot, double t);
+
+} // namespace lambent

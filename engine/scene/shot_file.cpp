@@ -1,0 +1,254 @@
+// Shot files: strict JSON in, tidy JSON out. Every message says where in the file: "shot.json: camera.keys[2].fov: …".
+
+#include "engine/core/image.h"
+#include "engine/core/text.h"
+#include "engine/scene/shot.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr float kDegree = kPi / 180;
+
+/// One JSON value and where it is, with typed readers that refuse anything else.
+class Field {
+ public:
+  Field(const json& value, std::string file, std::string path)
+      : value_(value), file_(std::move(file)), path_(std::move(path)) {}
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError(file_, path_.empty() ? reason : path_ + ": " + reason);
+  }
+  /// Refuses keys that are not in `known`.
+  void checkKeys(const std::vector<std::string>& known) const {
+    checkObject();
+    for (const auto& [key, value] : value_.items()) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      const std::string nearest = nearestName(key, known);
+      fail("unknown key '" + key + "' (" + (nearest.empty() ? "known: " + join(known) : "did you mean " + nearest) +
+           "?)");
+    }
+  }
+  void checkObject() const {
+    if (!value_.is_object()) fail("is not an object ({...} expected)");
+  }
+  bool has(const char* key) const { return value_.contains(key); }
+  Field operator[](const std::string& key) const {
+    if (!value_.contains(key)) fail("lacks the key '" + key + "'");
+    return {value_[key], file_, path_.empty() ? key : path_ + "." + key};
+  }
+  /// Calls fn(element) for each element of an array.
+  template <class Fn> void elements(Fn&& fn) const {
+    if (!value_.is_array()) fail("is not a list ([...] expected)");
+    for (size_t i = 0; i < value_.size(); ++i)
+      fn(Field(value_[i], file_, path_ + "[" + std::to_string(i) + "]"));
+  }
+  /// Calls fn(key, member) for each member of an object.
+  template <class Fn> void members(Fn&& fn) const {
+    checkObject();
+    for (const auto& [key, value] : value_.items())
+      fn(key, Field(value, file_, path_ + "." + key));
+  }
+
+  double number() const {
+    if (!value_.is_number()) fail("is not a number");
+    return value_.get<double>();
+  }
+  float single() const {
+    const auto v = float(number());
+    if (!std::isfinite(v)) fail("is a number beyond single precision");
+    return v;
+  }
+  std::string text() const {
+    if (!value_.is_string()) fail("is not text (\"...\" expected)");
+    return value_.get<std::string>();
+  }
+  /// Text, or a number or truth value as text.
+  std::string scalarText() const {
+    if (value_.is_string()) return value_.get<std::string>();
+    if (value_.is_number() || value_.is_boolean()) return value_.dump();
+    fail("is not a text, number, true or false");
+  }
+  template <int N> glm::vec<N, float> vector() const {
+    glm::vec<N, float> v(0);
+    int n = 0;
+    elements([&](const Field& f) {
+      if (n < N) v[n] = f.single();
+      ++n;
+    });
+    if (n != N) fail("has " + std::to_string(n) + " numbers (" + std::to_string(N) + " expected)");
+    return v;
+  }
+
+ private:
+  static std::string join(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& n : names)
+      all += (all.empty() ? "" : ", ") + n;
+    return all;
+  }
+
+  const json& value_;
+  std::string file_, path_;
+};
+
+/// Time of a key, which must lie after the one before.
+double keyTime(const Field& key, double before) {
+  const double t = key["t"].number();
+  if (!(t > before)) key["t"].fail("is not after the key before it (keys go up in time)");
+  return t;
+}
+
+std::vector<CameraKey> readCamera(const Field& camera) {
+  camera.checkKeys({"keys"});
+  std::vector<CameraKey> keys;
+  camera["keys"].elements([&](const Field& k) {
+    k.checkKeys({"t", "eye", "target", "fov"});
+    CameraKey key;
+    key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
+    key.eye = k["eye"].vector<3>();
+    key.target = k["target"].vector<3>();
+    if (key.eye == key.target) k["target"].fail("is the same point as the eye");
+    if (k.has("fov")) {
+      const float degrees = k["fov"].single();
+      if (!(degrees > 0 && degrees < 180)) k["fov"].fail("is out of range (degrees, between 0 and 180)");
+      key.fovY = degrees * kDegree;
+    } else {
+      key.fovY = keys.empty() ? 60 * kDegree : keys.back().fovY;
+    }
+    keys.push_back(key);
+  });
+  return keys;
+}
+
+std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool lights) {
+  std::map<std::string, std::vector<NodeKey>> out;
+  nodes.members([&](const std::string& name, const Field& node) {
+    node.checkKeys({"keys"});
+    std::vector<NodeKey>& keys = out[name];
+    node["keys"].elements([&](const Field& k) {
+      k.checkKeys(lights ? std::vector<std::string>{"t", "position", "rotation", "direction", "intensity"}
+                         : std::vector<std::string>{"t", "position", "rotation"});
+      NodeKey key;
+      key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
+      if (k.has("position")) key.position = k["position"].vector<3>();
+      if (k.has("rotation")) key.rotation = k["rotation"].vector<3>();
+      if (k.has("direction")) {
+        key.direction = k["direction"].vector<3>();
+        if (glm::length(*key.direction) == 0) k["direction"].fail("has no length");
+      }
+      if (k.has("intensity")) {
+        key.intensity = k["intensity"].vector<3>();
+        if (glm::min(key.intensity->x, glm::min(key.intensity->y, key.intensity->z)) < 0)
+          k["intensity"].fail("is negative");
+      }
+      keys.push_back(key);
+    });
+  });
+  return out;
+}
+
+json parse(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError(file.string(), "no such file");
+  if (!fs::is_regular_file(file, error)) throw InputError(file.string(), "is not a file (a shot in JSON expected)");
+  std::ifstream in(file);
+  if (!in) throw InputError(file.string(), "cannot be opened for reading");
+  try {
+    return json::parse(in);
+  } catch (const json::exception& e) {
+    std::string reason = e.what();
+    if (const size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+    throw InputError(file.string(), "is not JSON: " + reason);
+  }
+}
+
+template <int N> json toJson(const glm::vec<N, float>& v) {
+  json list = json::array();
+  for (int i = 0; i < N; ++i)
+    list.push_back(v[i]);
+  return list;
+}
+
+json toJson(const std::map<std::string, std::vector<NodeKey>>& nodes) {
+  json out = json::object();
+  for (const auto& [name, keys] : nodes) {
+    json list = json::array();
+    for (const NodeKey& k : keys) {
+      json key{{"t", k.t}};
+      if (k.position) key["position"] = toJson(*k.position);
+      if (k.rotation) key["rotation"] = toJson(*k.rotation);
+      if (k.direction) key["direction"] = toJson(*k.direction);
+      if (k.intensity) key["intensity"] = toJson(*k.intensity);
+      list.push_back(std::move(key));
+    }
+    out[name]["keys"] = std::move(list);
+  }
+  return out;
+}
+
+} // namespace
+
+Shot loadShot(const fs::path& file) {
+  const json document = parse(file);
+  const Field root(document, file.string(), "");
+  root.checkKeys({"shot", "scene", "fps", "seconds", "camera", "lights", "objects", "pixels", "set"});
+  if (root["shot"].number() != 1) root["shot"].fail("is not a version this program reads (1 expected)");
+  Shot shot;
+  shot.file = file;
+  shot.scene = (file.parent_path() / root["scene"].text()).lexically_normal();
+  if (root.has("fps")) shot.fps = root["fps"].number();
+  if (!(shot.fps > 0 && shot.fps <= 1000)) root["fps"].fail("is out of range (frames per second, above 0 to 1000)");
+  shot.seconds = root["seconds"].number();
+  if (!(shot.seconds >= 0 && shot.seconds <= 86400)) root["seconds"].fail("is out of range (0 to 86400)");
+  if (root.has("camera")) shot.camera = readCamera(root["camera"]);
+  if (root.has("lights")) shot.lights = readNodes(root["lights"], true);
+  if (root.has("objects")) shot.objects = readNodes(root["objects"], false);
+  if (root.has("pixels"))
+    root["pixels"].elements([&](const Field& p) {
+      const vec2 uv = p.vector<2>();
+      if (glm::min(uv.x, uv.y) < 0 || glm::max(uv.x, uv.y) > 1) p.fail("is outside the picture (0 to 1)");
+      shot.pixels.push_back(uv);
+    });
+  if (root.has("set"))
+    root["set"].members([&](const std::string& key, const Field& value) { shot.set[key] = value.scalarText(); });
+  return shot;
+}
+
+void saveShot(const Shot& shot, const fs::path& file) {
+  std::error_code error;
+  fs::path scene = fs::proximate(shot.scene, file.parent_path().empty() ? "." : file.parent_path(), error);
+  if (error) scene = fs::absolute(shot.scene);
+  json out{{"shot", 1}, {"scene", scene.generic_string()}, {"fps", shot.fps}, {"seconds", shot.seconds}};
+  if (!shot.camera.empty()) {
+    json keys = json::array();
+    for (const CameraKey& k : shot.camera)
+      keys.push_back({{"t", k.t}, {"eye", toJson(k.eye)}, {"target", toJson(k.target)}, {"fov", k.fovY / kDegree}});
+    out["camera"]["keys"] = std::move(keys);
+  }
+  if (!shot.lights.empty()) out["lights"] = toJson(shot.lights);
+  if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
+  if (!shot.pixels.empty()) {
+    out["pixels"] = json::array();
+    for (const vec2& p : shot.pixels)
+      out["pixels"].push_back(toJson(p));
+  }
+  if (!shot.set.empty()) out["set"] = shot.set;
+  writeAtomically(file, [&](const fs::path& temporary) {
+    std::ofstream stream(temporary);
+    stream << out.dump(2) << "\n";
+    stream.close();
+    if (!stream) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+  });
+}
+
+} // namespace lambent

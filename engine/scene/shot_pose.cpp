@@ -1,0 +1,151 @@
+// A shot at time t: its camera, and its nodes in a scene.
+
+#include "engine/core/text.h"
+#include "engine/scene/shot.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// Catmull-Rom through keys at uneven times: cubic Hermite whose tangents are the slopes between the neighbours,
+/// one-sided at the ends, where it also holds.
+template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
+  const auto after = std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  if (after == keys.begin()) return value(keys.front());
+  if (after == keys.end()) return value(keys.back());
+  const size_t i = size_t(after - keys.begin()) - 1;
+  const auto slope = [&](size_t k) {
+    const size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, keys.size() - 1);
+    return (value(keys[b]) - value(keys[a])) / float(keys[b].t - keys[a].t);
+  };
+  const auto span = float(keys[i + 1].t - keys[i].t), u = float((t - keys[i].t) / (keys[i + 1].t - keys[i].t));
+  const float u2 = u * u, u3 = u2 * u;
+  return (2 * u3 - 3 * u2 + 1) * value(keys[i]) + (u3 - 2 * u2 + u) * span * slope(i) +
+         (3 * u2 - 2 * u3) * value(keys[i + 1]) + (u3 - u2) * span * slope(i + 1);
+}
+
+float linearFov(const std::vector<CameraKey>& keys, double t) {
+  const auto after = std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  if (after == keys.begin()) return keys.front().fovY;
+  if (after == keys.end()) return keys.back().fovY;
+  const auto before = after - 1;
+  return glm::mix(before->fovY, after->fovY, float((t - before->t) / (after->t - before->t)));
+}
+
+struct Between {
+  vec3 from, to;
+  float u;
+};
+
+/// The keys around t that set `field`; nothing where no key does.
+std::optional<Between> around(const std::vector<NodeKey>& keys, std::optional<vec3> NodeKey::*field, double t) {
+  const NodeKey *before = nullptr, *after = nullptr;
+  for (const NodeKey& k : keys) {
+    if (!(k.*field)) continue;
+    if (k.t <= t) before = &k;
+    if (k.t > t && !after) after = &k;
+  }
+  if (!before && !after) return {};
+  if (!before) return Between{*(after->*field), *(after->*field), 0};
+  if (!after) return Between{*(before->*field), *(before->*field), 0};
+  return Between{*(before->*field), *(after->*field), float((t - before->t) / (after->t - before->t))};
+}
+
+std::optional<vec3> linear(const std::vector<NodeKey>& keys, std::optional<vec3> NodeKey::*field, double t) {
+  const auto b = around(keys, field, t);
+  return b ? std::optional(glm::mix(b->from, b->to, b->u)) : std::nullopt;
+}
+
+/// Angles are mixed, not orientations, so that a turn of 360 degrees between two keys is one.
+quat rotationFromDegrees(const vec3& degrees) {
+  const vec3 r = glm::radians(degrees);
+  return glm::angleAxis(r.y, vec3(0, 1, 0)) * glm::angleAxis(r.x, vec3(1, 0, 0)) * glm::angleAxis(r.z, vec3(0, 0, 1));
+}
+
+void place(Transform& t, std::optional<vec3> position, std::optional<quat> rotation) {
+  if (!t.matrix) {
+    if (position) t.translation = *position;
+    if (rotation) t.rotation = *rotation;
+    return;
+  }
+  if (rotation) { // of a sheared matrix only the lengths of its axes can be kept
+    const mat3 r = glm::mat3_cast(*rotation);
+    for (int c = 0; c < 3; ++c)
+      (*t.matrix)[c] = vec4(r[c] * glm::length(vec3((*t.matrix)[c])), 0);
+  }
+  if (position) (*t.matrix)[3] = vec4(*position, 1);
+}
+
+/// The node called `name`, or an error that names the nearest of those that have a T.
+template <class T> Entity findNode(Scene& scene, const Shot& shot, const std::string& name, const char* what) {
+  std::optional<Entity> found;
+  std::vector<std::string> names;
+  scene.registry.each<Name, T>([&](Entity e, const Name& n, const T&) {
+    if (!found && n.value == name) found = e;
+    names.push_back(n.value);
+  });
+  if (found) return *found;
+  const std::string nearest = nearestName(name, names);
+  throw InputError(shot.file.string(), "the scene has no " + std::string(what) + " called '" + name + "'" +
+                                           (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+}
+
+void poseNode(Scene& scene, Entity e, const std::vector<NodeKey>& keys, double t) {
+  const auto degrees = linear(keys, &NodeKey::rotation, t);
+  place(scene.registry.get<Transform>(e), linear(keys, &NodeKey::position, t),
+        degrees ? std::optional(rotationFromDegrees(*degrees)) : std::nullopt);
+}
+
+/// Turns a light to a direction in world space, whatever its parents do: needs their world transforms.
+void aimLight(Scene& scene, Entity e, const vec3& direction) {
+  Registry& registry = scene.registry;
+  vec3 inParent = direction;
+  if (const Parent* p = registry.tryGet<Parent>(e)) {
+    const mat3 worldFromParent(registry.get<WorldTransform>(p->entity).worldFromNode);
+    if (std::abs(glm::determinant(worldFromParent)) > 0) inParent = glm::inverse(worldFromParent) * direction;
+  }
+  place(registry.get<Transform>(e), std::nullopt, rotationTowards(inParent));
+}
+
+/// Mixed along the great circle where the two differ by less than half a turn.
+vec3 mixDirections(const Between& b) {
+  const vec3 from = glm::normalize(b.from), to = glm::normalize(b.to);
+  const float angle = std::acos(glm::clamp(glm::dot(from, to), -1.0f, 1.0f));
+  if (angle < 1e-3f || angle > kPi - 1e-3f) return b.u < 0.5f ? from : to;
+  return (std::sin((1 - b.u) * angle) * from + std::sin(b.u * angle) * to) / std::sin(angle);
+}
+
+} // namespace
+
+int Shot::frameCount() const { return std::max(1, int(std::lround(fps * seconds))); }
+
+CameraView shotCamera(const Shot& shot, double t) {
+  CHECK(!shot.camera.empty());
+  const vec3 eye = spline(shot.camera, t, [](const CameraKey& k) { return k.eye; });
+  const vec3 target = spline(shot.camera, t, [](const CameraKey& k) { return k.target; });
+  return lookAt(eye, target, linearFov(shot.camera, t));
+}
+
+void poseShot(Scene& scene, const Shot& shot, double t) {
+  animate(scene, t);
+  std::vector<std::pair<Entity, vec3>> aims;
+  for (const auto& [name, keys] : shot.objects)
+    poseNode(scene, findNode<Transform>(scene, shot, name, "node"), keys, t);
+  for (const auto& [name, keys] : shot.lights) {
+    const Entity e = findNode<PunctualLight>(scene, shot, name, "light");
+    poseNode(scene, e, keys, t);
+    if (const auto intensity = linear(keys, &NodeKey::intensity, t))
+      scene.registry.get<PunctualLight>(e).intensity = *intensity;
+    if (const auto direction = around(keys, &NodeKey::direction, t)) aims.emplace_back(e, mixDirections(*direction));
+  }
+  updateWorldTransforms(scene);
+  if (aims.empty()) return;
+  for (const auto& [e, direction] : aims)
+    aimLight(scene, e, direction);
+  updateWorldTransforms(scene);
+}
+
+} // namespace lambent

@@ -1,0 +1,31 @@
+// RayQuery over a scene with Embree (3 or 4): one bottom-level scene per mesh, instanced by a top-level scene.
+#pragma once
+
+#include "engine/trace/ray_query.h"
+
+namespace lambent {
+
+class EmbreeQuery final : public RayQuery {
+ public:
+  /// Builds the bottom level of every mesh. `assets` must outlive the query.
+  explicit EmbreeQuery(const SceneAssets& assets);
+  ~EmbreeQuery() override;
+
+  /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went.
+  void update(const SceneView& view);
+
+  void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
+  void distances(std::span<const Ray> rays, std::span<float> t) const override;
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const override;
+  using RayQuery::closest;
+  using RayQuery::occluded;
+
+  /// Version of the library in use, e.g. "3.13.5".
+  static std::string version();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace lambent

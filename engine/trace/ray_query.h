@@ -1,0 +1,81 @@
+// Rays against the scene. One abstract type, two makers: Embree (embree_query.h) and analytic shapes for
+// tests (analytic_query.h). All calls are const, thread-safe, serial inside (callers run blocks in parallel) and
+// deterministic.
+#pragma once
+
+#include "engine/core/math.h"
+#include "engine/scene/scene_view.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace lambent {
+
+/// A half line or segment, world space; direction need not be unit when tMax bounds it (t is in units of direction).
+struct Ray {
+  vec3 origin{0};
+  vec3 direction{0, 0, 1};
+  float tMax = kInfinity;
+};
+
+/// What a ray met. `normal` is the shading normal and `geometricNormal` the triangle's, both unit and both turned to
+/// the side the ray came from. `emission` is what this side emits (zero on the back of a single-sided emitter).
+struct SurfaceHit {
+  float t = kInfinity; // kInfinity: nothing met, the rest is unset
+  vec3 position{0};
+  vec3 normal{0};
+  vec3 geometricNormal{0};
+  vec3 albedo{0};
+  vec3 emission{0};
+  uint32_t instance = kNone; // index into SceneView::instances
+  uint32_t primitive = 0;    // of the instance's mesh
+  uint32_t triangle = 0;     // within the primitive
+
+  bool valid() const { return t < kInfinity; }
+};
+
+/// Rays of one stage, for the frame log.
+struct RayCounts {
+  uint64_t closest = 0, occlusion = 0;
+  RayCounts& operator+=(const RayCounts& o) {
+    closest += o.closest;
+    occlusion += o.occlusion;
+    return *this;
+  }
+};
+
+class RayQuery {
+ public:
+  virtual ~RayQuery() = default;
+
+  /// Closest hits; hits.size() == rays.size(). Coherent neighbours are traced faster. NaN rays count as misses.
+  virtual void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const = 0;
+  /// Distance only, in units of each ray's direction, kInfinity where nothing is met.
+  virtual void distances(std::span<const Ray> rays, std::span<float> t) const = 0;
+  /// 1 where something lies on the segment (0, tMax), else 0.
+  virtual void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const = 0;
+
+  SurfaceHit closest(const Ray& ray) const {
+    SurfaceHit h;
+    closest({&ray, 1}, {&h, 1});
+    return h;
+  }
+  bool occluded(const Ray& ray) const {
+    uint8_t b;
+    occluded({&ray, 1}, {&b, 1});
+    return b != 0;
+  }
+};
+
+/// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again.
+/// The offset grows with the coordinates' size (float spacing).
+inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal) {
+  const float scale = glm::max(1.0f, maxComponent(glm::abs(position)));
+  return position + geometricNormal * (scale * 2e-5f + 1e-4f);
+}
+
+/// Shadow segment from a to b, both already off their surfaces: blocked where `occluded` says so.
+inline Ray segment(const vec3& a, const vec3& b) { return {a, b - a, 1.0f - 1e-4f}; }
+
+} // namespace lambent

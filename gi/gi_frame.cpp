@@ -1,0 +1,278 @@
+#include "gi/gi_frame.h"
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+#include "engine/trace/embree_query.h"
+#include "gi/render/passes.h"
+#include "gi/vpl/smc.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Box of everything the camera sees: what sun and sky maps must cover. From a fixed grid of camera rays, so it is the
+/// same every time; grown by a tenth for what lies between the rays.
+Aabb visibleBounds(const RayQuery& rays, const SceneView& view, RayCounts& counts) {
+  Aabb box;
+  for (const VisiblePoint& p : findVisiblePoints(rays, view.camera, 1024, 0, 0, counts)) box.add(p.position);
+  if (box.empty()) return view.boundsWorld;
+  const vec3 margin = 0.05f * box.size() + 0.02f * box.diameter();
+  box.lo = glm::max(box.lo - margin, view.boundsWorld.lo);
+  box.hi = glm::min(box.hi + margin, view.boundsWorld.hi);
+  return box;
+}
+
+Image imageOf(const CameraView& camera, std::vector<vec3> pixels) {
+  Image image;
+  image.width = camera.width;
+  image.height = camera.height;
+  image.pixels = std::move(pixels);
+  return image;
+}
+
+} // namespace
+
+struct GiFrame::State {
+  Settings settings;
+  uint32_t seed;
+
+  gl::ProgramCache programs;
+  gl::GpuProfiler profiler;
+  PassContext context{programs, profiler};
+  GBufferPass gbufferPass{context};
+  LightShadowPass lightShadowPass{context};
+  ParaboloidMapPass emitterMapPass{context, "emitter maps"};
+  VplLightBuffer emitterBuffer{context, "emitters"};
+  DirectPass directPass{context};
+  ParaboloidMapPass vplMapPass{context, "vpl maps"};
+  VplLightBuffer vplBuffer{context, "vpls"};
+  GatherPass gatherPass{context};
+  FilterPass filterPass{context};
+  IndirectUpload indirectUpload{context};
+  CompositePass compositePass{context};
+  mutable DisplayPass displayPass{context};
+
+  const SceneAssets* assets = nullptr;
+  std::unique_ptr<GpuScene> gpuScene;
+  std::unique_ptr<EmbreeQuery> rays;
+  VplSet vpls;
+  std::vector<VplLight> lights;
+  std::vector<uint32_t> staleMaps; // slots whose map may show where a moved object was, oldest first
+  float farDistance = 0;
+  bool calibrated = false;
+  float exposure = 0;
+
+  FrameResults results;
+  CameraView camera;
+  FrameStats stats;
+
+  State(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
+
+  void prepare(const SceneView& view);
+  VplChanges moveVpls(const SceneView& view, const LightSet& lights, const std::function<void(int, int)>& progress);
+  std::vector<uint32_t> mapsToDraw(const SceneView& view, const VplChanges& changes);
+  DirectLight drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lights, const GBuffer& gbuffer);
+  IndirectLight drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer);
+  void takeGpuRows() {
+    for (StageTime& row : profiler.takeRows()) stats.stages.push_back(std::move(row));
+  }
+};
+
+GiFrame::GiFrame(const Settings& settings, uint32_t seed) : state_(std::make_unique<State>(settings, seed)) {}
+GiFrame::~GiFrame() = default;
+
+// The frame -----------------------------------------------------------------------------------------------------------
+
+const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(int, int)>& progress) {
+  State& s = *state_;
+  const auto begin = Clock::now();
+  s.prepare(view);
+
+  const EffectPlan plan = planEffects(view, s.settings);
+  const LightSet lights = collectLights(view);
+  const VplChanges changes = plan.indirect ? s.moveVpls(view, lights, progress) : VplChanges{};
+  const GBuffer gbuffer = s.gbufferPass.run({*s.gpuScene, view.camera});
+  const DirectLight direct = s.drawDirect(view, plan, lights, gbuffer);
+  const IndirectLight indirect = plan.indirect ? s.drawIndirect(view, changes, gbuffer) : IndirectLight{};
+  const Picture picture = s.compositePass.run({gbuffer, direct, indirect, view.skyRadiance});
+  s.takeGpuRows();
+
+  if (s.settings.image.exposure > 0)
+    s.exposure = s.settings.image.exposure;
+  else if (s.exposure <= 0)
+    s.exposure = measureExposure(picture);
+
+  s.results.gbuffer = gbuffer;
+  s.results.direct = direct;
+  s.results.indirect = indirect;
+  s.results.picture = picture;
+  s.results.vpls = &s.vpls;
+  s.results.skyRadiance = view.skyRadiance;
+  s.results.sceneDiameter = s.farDistance;
+  s.camera = view.camera;
+  s.stats.vplsKept = changes.kept;
+  s.stats.vplsMoved = uint32_t(changes.movedSlots.size());
+  s.stats.vplsInvalid = changes.invalid;
+  s.stats.vplsAlive = changes.alive;
+  s.stats.burst = changes.burst;
+  s.stats.plan = plan.oneLine();
+  s.stats.wallMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  return s.stats;
+}
+
+/// Takes over what changed in the scene.
+void GiFrame::State::prepare(const SceneView& view) {
+  CHECK(view.assets != nullptr);
+  const uint32_t frame = stats.frame + (assets ? 1 : 0);
+  stats = {};
+  stats.frame = frame;
+  results = {};
+  if (!calibrated) {
+    if (settings.debug.timing == TimingMode::Auto)
+      profiler.calibrate();
+    else
+      profiler.choose(settings.debug.timing == TimingMode::Queries ? gl::Timing::Queries : gl::Timing::Finish);
+    calibrated = true;
+  }
+  stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
+  {
+    CpuScope scope(stats.stages, "scene");
+    if (assets != view.assets) {
+      assets = view.assets;
+      gpuScene = std::make_unique<GpuScene>(programs, *assets);
+      rays = std::make_unique<EmbreeQuery>(*assets);
+      vpls = {};
+    }
+    rays->update(view);
+    gpuScene->place(view.instances);
+  }
+}
+
+VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& lightSet,
+                                    const std::function<void(int, int)>& progress) {
+  VplUpdateLog log;
+  const VplChanges changes = updateVpls(vpls, {view, *rays, lightSet, settings.smc, seed}, log, progress);
+  for (StageTime& row : log.stages) stats.stages.push_back(std::move(row));
+  stats.raysPoints = log.points;
+  stats.raysValidation = log.validation;
+  stats.raysCandidates = log.candidates;
+  stats.raysRadiosity = log.radiosity;
+  stats.vplsRelit = log.relit;
+  return changes;
+}
+
+DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lightSet,
+                                       const GBuffer& gbuffer) {
+  const ShadowSettings& shadow = settings.shadow;
+  const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance,
+                                                     visibleBounds(*rays, view, stats.raysPoints), view.boundsWorld,
+                                                     view.changes.geometry || view.changes.instances, shadow});
+  DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
+  VplLights emitters;
+  ParaboloidMaps maps;
+  if (plan.emissiveSurfaces) {
+    std::vector<VplLight> samples;
+    std::vector<MapPose> poses;
+    for (const EmitterPatch& p : emitterPatches(lightSet, shadow.emitterSamples)) {
+      const EmitterSample sample{p.position, p.normal, p.radiance, p.area};
+      samples.push_back(emitterLight(sample));
+      poses.push_back(emitterPose(sample));
+    }
+    std::vector<uint32_t> dirty;
+    if (view.changes.geometry || view.changes.instances || view.changes.first)
+      for (uint32_t i = 0; i < poses.size(); ++i) dirty.push_back(i);
+    emitters = emitterBuffer.run(samples);
+    maps = emitterMapPass.run({*gpuScene, rays.get(), poses, dirty, view.boundsWorld.diameter(),
+                               shadow.emitterResolution, shadow.maker});
+    in.emitters = &emitters;
+    in.emitterMaps = &maps;
+    stats.mapsDrawn += emitterMapPass.mapsDrawn();
+  }
+  return directPass.run(in);
+}
+
+/// Maps of moved slots, and while objects move a few of the others in turn.
+std::vector<uint32_t> GiFrame::State::mapsToDraw(const SceneView& view, const VplChanges& changes) {
+  const float wanted = view.boundsWorld.diameter();
+  if (wanted > farDistance || wanted < 0.5f * farDistance) { // the maps' unit: all are drawn anew when it changes
+    farDistance = view.changes.geometry && farDistance > 0 ? 1.25f * wanted : wanted;
+    std::vector<uint32_t> all(vpls.slots.size());
+    for (uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    staleMaps.clear();
+    return all;
+  }
+  std::vector<uint32_t> dirty = changes.movedSlots;
+  if (view.changes.geometry || view.changes.instances) {
+    std::vector<uint8_t> listed(vpls.slots.size(), 0);
+    for (uint32_t i : staleMaps) listed[i] = 1;
+    for (uint32_t i = 0; i < vpls.slots.size(); ++i)
+      if (!listed[i]) staleMaps.push_back(i);
+  }
+  const size_t again = std::min<size_t>(settings.shadow.refresh, staleMaps.size());
+  dirty.insert(dirty.end(), staleMaps.begin(), staleMaps.begin() + again);
+  staleMaps.erase(staleMaps.begin(), staleMaps.begin() + again);
+  std::sort(dirty.begin(), dirty.end());
+  dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
+  return dirty;
+}
+
+IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer) {
+  if (settings.smc.visibility == VplVisibility::Rays) {
+    CpuScope scope(stats.stages, "gather by rays");
+    return indirectUpload.run(imageOf(
+        view.camera, gatherByRays(*rays, view.camera, vpls.slots, settings.gather, stats.raysGather)));
+  }
+  lights.clear();
+  for (const Vpl& v : vpls.slots) lights.push_back(vplLight(v));
+  const VplLights vplLights = vplBuffer.run(lights);
+  std::erase_if(staleMaps, [&](uint32_t slot) { return slot >= vpls.slots.size(); });
+  const std::vector<uint32_t> dirty = mapsToDraw(view, changes);
+  const std::vector<MapPose> poses = mapPoses(vpls);
+  const ParaboloidMaps maps = vplMapPass.run({*gpuScene, rays.get(), poses, dirty, farDistance,
+                                              settings.shadow.resolution, settings.shadow.maker});
+  stats.mapsDrawn += vplMapPass.mapsDrawn();
+  stats.shadowMaker = vplMapPass.makerReport();
+  const RawIndirect raw = gatherPass.run({gbuffer, vplLights, &maps, settings.shadow.bias, settings.gather});
+  results.raw = raw;
+  results.vplMaps = maps;
+  return filterPass.run({gbuffer, raw, settings.filter});
+}
+
+// Looking at it ---------------------------------------------------------------------------------------------------------
+
+namespace {
+const std::vector<std::string> kBufferNames = {"beauty", "direct",     "indirect", "irradiance",  "albedo", "normal", "depth",
+                                               "emission", "unfiltered", "vpls",     "shadow-maps", "nan"};
+}
+
+const std::vector<std::string>& bufferNames() { return kBufferNames; }
+
+Buffer bufferByName(const std::string& name) {
+  for (size_t i = 0; i < kBufferNames.size(); ++i)
+    if (kBufferNames[i] == name) return Buffer(i);
+  const std::string near = nearestName(name, kBufferNames);
+  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
+}
+
+Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results, state_->camera); }
+
+Image8 GiFrame::readDisplay(Buffer buffer) const {
+  state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
+  return state_->displayPass.read();
+}
+
+void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
+  state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
+  state_->displayPass.present(framebuffer, width, height);
+}
+
+Settings& GiFrame::settings() { return state_->settings; }
+const VplSet& GiFrame::vpls() const { return state_->vpls; }
+const RayQuery& GiFrame::rays() const { return *state_->rays; }
+float GiFrame::exposure() const { return state_->exposure; }
+
+} // namespace lambent

@@ -1,0 +1,46 @@
+// The picture from its parts, and the exposure that suits it.
+#include "gi/render/passes.h"
+
+#include <cmath>
+
+namespace lambent {
+
+Picture CompositePass::run(const CompositeInputs& in) {
+  const gl::PassScope scope(context_.profiler, "composite");
+  const int width = in.gbuffer.width, height = in.gbuffer.height;
+  if (!black_) black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
+  if (!radiance_ || radiance_.width() != width || radiance_.height() != height) {
+    radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
+    framebuffer_ = gl::Framebuffer("composite", {&radiance_});
+  }
+  const gl::Program& program = context_.programs.get({.fragment = "composite.frag"});
+  program.use();
+  program.set("skyRadiance", in.skyRadiance);
+  in.gbuffer.depth->bind(0);
+  in.gbuffer.albedo->bind(2);
+  in.gbuffer.emission->bind(3);
+  (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
+  (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
+  framebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+  return {&radiance_};
+}
+
+float measureExposure(const Picture& picture) {
+  const int width = picture.radiance->width(), height = picture.radiance->height();
+  std::vector<vec4> texels(size_t(width) * height);
+  glGetTextureImage(picture.radiance->name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)),
+                    texels.data());
+  double logSum = 0;
+  size_t count = 0;
+  for (const vec4& texel : texels) {
+    const float y = luminance(vec3(texel));
+    if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
+    logSum += std::log(double(y));
+    ++count;
+  }
+  return count == 0 ? 1.0f : float(0.18 / std::exp(logSum / double(count)));
+}
+
+} // namespace lambent

@@ -1,0 +1,56 @@
+// From gathered subsets to irradiance at every pixel. Paper 1, section 4.5: cross-bilateral filter over normals and
+// positions. Our kernel is a tent of 7×7 (theirs a box), so that all 16 subsets weigh the same at every pixel.
+#include "gi/render/gather.h"
+
+namespace lambent {
+
+void FilterPass::resolve(const FilterInputs& in, bool filtered, gl::Texture& target, gl::Framebuffer& framebuffer) {
+  const int width = in.gbuffer.width, height = in.gbuffer.height;
+  if (!target || target.width() != width || target.height() != height) {
+    target = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
+    framebuffer = gl::Framebuffer("filter", {&target});
+  }
+  gl::ProgramDesc desc{.fragment = "filter.frag"};
+  if (filtered) desc.defines.push_back("FILTER");
+  const gl::Program& program = context_.programs.get(desc);
+  program.use();
+  program.set("tileSize", in.raw.deinterleaved ? tileSize(in.gbuffer) : glm::ivec2(0));
+  program.set("normalPower", in.filter.normalPower);
+  program.set("distanceSigma", in.filter.distance);
+  in.gbuffer.camera->bindUniform(0);
+  in.gbuffer.depth->bind(0);
+  in.gbuffer.normal->bind(1);
+  in.raw.irradiance->bind(2);
+  framebuffer.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+}
+
+IndirectLight FilterPass::run(const FilterInputs& in) {
+  const gl::PassScope scope(context_.profiler, "filter");
+  // A full gather has nothing to mix: every pixel has seen every light.
+  if (!in.raw.deinterleaved) return {in.raw.irradiance};
+  resolve(in, in.filter.on, irradiance_, framebuffer_);
+  return {&irradiance_};
+}
+
+const gl::Texture& FilterPass::interleave(const GBuffer& gbuffer, const RawIndirect& raw) {
+  const gl::PassScope scope(context_.profiler, "unfiltered view");
+  resolve({gbuffer, raw, FilterSettings{}}, false, unfiltered_, unfilteredFramebuffer_);
+  return unfiltered_;
+}
+
+IndirectLight IndirectUpload::run(const Image& image) {
+  const gl::PassScope scope(context_.profiler, "irradiance upload");
+  if (!irradiance_ || irradiance_.width() != image.width || irradiance_.height() != image.height)
+    irradiance_ = gl::Texture("irradiance upload/image",
+                              {.format = GL_RGBA32F, .width = image.width, .height = image.height});
+  std::vector<vec3> bottomUp(image.pixels.size());
+  for (int y = 0; y < image.height; ++y)
+    std::copy_n(&image.pixels[size_t(y) * image.width], image.width,
+                &bottomUp[size_t(image.height - 1 - y) * image.width]);
+  glTextureSubImage2D(irradiance_.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, bottomUp.data());
+  return {&irradiance_};
+}
+
+} // namespace lambent

@@ -1,0 +1,137 @@
+// The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/test_maps.cpp checks.
+#include "engine/core/parallel.h"
+#include "gi/render/paraboloid_maps.h"
+#include "shaders/shared/octahedral.h"
+#include "shaders/shared/paraboloid.h"
+
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// The light's frame: columns tangent, bitangent, normal. The normal is rounded as VplLight stores it, since the gather
+/// builds its frame from that.
+mat3 frameOf(const MapPose& pose) {
+  const vec3 normal = unitFromOctahedral(
+      glm::unpackSnorm2x16(glm::packSnorm2x16(octahedralFromUnit(pose.normal))));
+  mat3 frame;
+  basisAround(normal, frame[0], frame[1]);
+  frame[2] = normal;
+  return frame;
+}
+
+} // namespace
+
+// Raster ---------------------------------------------------------------------------------------------------------------
+// Paper 1: a cube whose corner (1,1,1) points along the normal, so that three faces cover the hemisphere, with off-axis
+// frusta that reach over [-2,1]² around each face's axis; then one pass brings the faces into the paraboloid map.
+
+void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array,
+                                   int layer) {
+  const int faceResolution = in.resolution * 3 / 2;
+  if (!faces_ || faces_.width() != faceResolution) {
+    faces_ = gl::Texture(name_ + "/faces", {.kind = gl::TextureKind::Array,
+                                            .format = GL_DEPTH_COMPONENT32F,
+                                            .width = faceResolution,
+                                            .height = faceResolution,
+                                            .layers = 3});
+    facesFramebuffer_ = gl::Framebuffer(name_ + "/faces");
+    layerFramebuffer_ = gl::Framebuffer(name_ + "/layer");
+  }
+  // An orthonormal cube frame with (1,1,1)/√3 along z of the light's frame.
+  const float a = std::sqrt(2.0f / 3), b = std::sqrt(1.0f / 6), c = std::sqrt(0.5f), h = std::sqrt(1.0f / 3);
+  const vec3 axes[3] = {{a, 0, h}, {-b, c, h}, {-b, -c, h}};
+  const mat3 worldFromLight = frameOf(pose);
+  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  const float near = in.farDistance * 1e-5f;
+
+  facesFramebuffer_.bind();
+  gl::PipelineState{.depthTest = true, .depthWrite = true, .width = faceResolution, .height = faceResolution}.apply();
+  for (int face = 0; face < 3; ++face) {
+    const vec3 right = worldFromLight * axes[(face + 1) % 3], up = worldFromLight * axes[(face + 2) % 3],
+               forward = worldFromLight * axes[face];
+    // x' = (x/z + 2)·2/3 - 1: [-2,1] to [-1,1]; reversed depth near/z.
+    const vec4 rows[4] = {vec4(right * (2.0f / 3) + forward * (1.0f / 3), 0),
+                          vec4(up * (2.0f / 3) + forward * (1.0f / 3), 0), vec4(0, 0, 0, near), vec4(forward, 0)};
+    mat4 clipFromRelative = glm::transpose(mat4(rows[0], rows[1], rows[2], rows[3]));
+    mat4 relativeFromWorld(1);
+    relativeFromWorld[3] = vec4(-origin, 1);
+    facesFramebuffer_.attachDepthLayer(faces_, face);
+    const float nothing = 0;
+    glClearNamedFramebufferfv(facesFramebuffer_.name(), GL_DEPTH, 0, &nothing);
+    in.scene.draw(DrawKind::Depth, clipFromRelative * relativeFromWorld);
+  }
+
+  const gl::Program& program = context_.programs.get({.fragment = "map_resample.frag"});
+  program.set("resolution", float(in.resolution));
+  program.set("nearDistance", near);
+  program.set("farDistance", in.farDistance);
+  program.set("axisX", axes[0]);
+  program.set("axisY", axes[1]);
+  program.set("axisZ", axes[2]);
+  program.use();
+  faces_.bind(0);
+  layerFramebuffer_.attachDepthLayer(array, layer);
+  layerFramebuffer_.bind();
+  gl::PipelineState{.depthTest = true,
+                    .depthWrite = true,
+                    .depthFunc = GL_ALWAYS,
+                    .width = in.resolution,
+                    .height = in.resolution}
+      .apply();
+  gl::drawFullscreen();
+}
+
+void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
+  for (uint32_t slot : slots)
+    rasterInto(in, in.poses[slot], arrays_[slot / kLayersPerArray], int(slot % kLayersPerArray));
+}
+
+// Rays -----------------------------------------------------------------------------------------------------------------
+
+std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose) {
+  const int n = in.resolution;
+  const mat3 worldFromLight = frameOf(pose);
+  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  std::vector<Ray> rays;
+  std::vector<uint32_t> texelOfRay;
+  rays.reserve(size_t(n) * n);
+  texelOfRay.reserve(size_t(n) * n);
+  // 8×8 blocks keep neighbouring rays neighbours in memory, for the ray tracer's packets.
+  for (int by = 0; by < n; by += 8)
+    for (int bx = 0; bx < n; bx += 8)
+      for (int y = by; y < std::min(by + 8, n); ++y)
+        for (int x = bx; x < std::min(bx + 8, n); ++x) {
+          const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
+          if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
+          rays.push_back({origin, worldFromLight * d, in.farDistance});
+          texelOfRay.push_back(uint32_t(y * n + x));
+        }
+  std::vector<float> distances(rays.size());
+  in.rays->distances(rays, distances);
+  std::vector<uint16_t> texels(size_t(n) * n, 65535);
+  for (size_t i = 0; i < rays.size(); ++i)
+    if (distances[i] < in.farDistance)
+      texels[texelOfRay[i]] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
+  return texels;
+}
+
+void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
+  // In batches, so that the texels of 2048 maps need not wait in memory together (64 MiB at 128²).
+  constexpr size_t kBatch = 64;
+  std::vector<std::vector<uint16_t>> maps(std::min(kBatch, slots.size()));
+  for (size_t begin = 0; begin < slots.size(); begin += kBatch) {
+    const size_t count = std::min(kBatch, slots.size() - begin);
+    parallelFor(count, 1, [&](size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[slots[begin + i]]);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      const uint32_t slot = slots[begin + i];
+      glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, 0, 0, int(slot % kLayersPerArray), in.resolution,
+                          in.resolution, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
+    }
+  }
+}
+
+} // namespace lambent

@@ -1,0 +1,128 @@
+// Distance maps of VPLs and emissive samples: bookkeeping and the choice of the maker. Paper 1, section 4.4, draws them
+// on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
+#include "engine/core/error.h"
+#include "gi/render/paraboloid_maps.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace lambent {
+
+namespace {
+
+double secondsOf(const std::function<void()>& work) {
+  glFinish();
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  glFinish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+} // namespace
+
+std::vector<MapPose> mapPoses(const VplSet& set) {
+  std::vector<MapPose> poses;
+  poses.reserve(set.slots.size());
+  for (const Vpl& vpl : set.slots) poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
+  return poses;
+}
+
+ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
+  const gl::PassScope scope(context_.profiler, name_);
+  mapsDrawn_ = 0;
+  CHECK(in.farDistance > 0);
+  std::vector<uint32_t> all;
+  std::span<const uint32_t> slots = in.dirtySlots;
+  if (allocate(in)) {
+    all.resize(in.poses.size());
+    std::iota(all.begin(), all.end(), 0u);
+    slots = all;
+  }
+  for (uint32_t slot : slots) CHECK_LT(slot, in.poses.size());
+
+  ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
+  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty()) measureMakers(in, slots);
+  if (maker == ShadowMaker::Auto) maker = measuredMaker_.value_or(ShadowMaker::Rays);
+  else if (!slots.empty()) makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
+
+  if (maker == ShadowMaker::Rays)
+    drawRays(in, slots);
+  else
+    drawRaster(in, slots);
+  mapsDrawn_ = uint32_t(slots.size());
+  return {arrays_, resolution_, in.farDistance};
+}
+
+bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
+  const size_t needed = (in.poses.size() + kLayersPerArray - 1) / kLayersPerArray;
+  const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
+  const bool fits = resolution_ == in.resolution && arrays_.size() == needed && farDistance_ == in.farDistance &&
+                    (needed == 0 || arrays_.back().desc().layers == lastLayers);
+  if (fits) return false;
+  arrays_.clear();
+  for (size_t i = 0; i < needed; ++i)
+    arrays_.emplace_back(name_ + "/array " + std::to_string(i),
+                         gl::TextureDesc{.kind = gl::TextureKind::Array,
+                                         .format = GL_DEPTH_COMPONENT16,
+                                         .width = in.resolution,
+                                         .height = in.resolution,
+                                         .layers = i + 1 < needed ? kLayersPerArray : lastLayers,
+                                         .linear = smooth_,
+                                         .depthCompare = smooth_});
+  resolution_ = in.resolution;
+  farDistance_ = in.farDistance;
+  return true;
+}
+
+void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
+  // The first map of each maker pays for shaders and caches. Eight more, spread over the slots, are timed: enough to
+  // even out where they stand, and the rays' worker threads get more than one map each.
+  std::vector<uint32_t> sample;
+  for (size_t i = 0; i < std::min<size_t>(8, slots.size()); ++i)
+    sample.push_back(slots[i * slots.size() / std::min<size_t>(8, slots.size())]);
+  drawRaster(in, std::span(sample).first(1));
+  drawRays(in, std::span(sample).first(1));
+  const double rasterMs = secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
+  const double raysMs = secondsOf([&] { drawRays(in, sample); }) * 1e3 / double(sample.size());
+  measuredMaker_ = raysMs <= rasterMs ? ShadowMaker::Rays : ShadowMaker::Raster;
+  makerReport_ = measuredMaker_ == ShadowMaker::Rays
+                     ? fmt::format("rays ({:.2f} ms a map, raster {:.2f} ms)", raysMs, rasterMs)
+                     : fmt::format("raster ({:.2f} ms a map, rays {:.2f} ms)", rasterMs, raysMs);
+}
+
+std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {
+  const size_t array = slot / kLayersPerArray;
+  CHECK_LT(array, arrays_.size());
+  return readMap(arrays_[array], int(slot % kLayersPerArray), farDistance_);
+}
+
+std::vector<float> readMap(const gl::Texture& array, int layer, float farDistance) {
+  const int resolution = array.width();
+  std::vector<uint16_t> values(size_t(resolution) * resolution);
+  glGetTextureSubImage(array.name(), 0, 0, 0, layer, resolution, resolution, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
+                       GLsizei(values.size() * sizeof(uint16_t)), values.data());
+  std::vector<float> distances(values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    distances[i] = values[i] == 65535 ? kInfinity : float(values[i]) / 65535.0f * farDistance;
+  return distances;
+}
+
+MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, const MapPose& pose) {
+  const gl::PassScope scope(context_.profiler, name_ + " comparison");
+  CHECK(in.rays != nullptr);
+  const gl::Texture scratch(name_ + "/comparison", {.kind = gl::TextureKind::Array,
+                                                    .format = GL_DEPTH_COMPONENT16,
+                                                    .width = in.resolution,
+                                                    .height = in.resolution,
+                                                    .layers = 2});
+  rasterInto(in, pose, scratch, 0);
+  const std::vector<uint16_t> texels = castMap(in, pose);
+  glTextureSubImage3D(scratch.name(), 0, 0, 0, 1, in.resolution, in.resolution, 1, GL_DEPTH_COMPONENT,
+                      GL_UNSIGNED_SHORT, texels.data());
+  return {in.resolution, readMap(scratch, 0, in.farDistance), readMap(scratch, 1, in.farDistance)};
+}
+
+} // namespace lambent

@@ -1,0 +1,190 @@
+#include "gi/settings.h"
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+namespace lambent {
+
+namespace {
+
+struct Entry {
+  SettingRow row;
+  std::function<bool(Settings&, std::string_view)> set; // false: not a value of the range
+  std::function<std::string(const Settings&)> get;
+};
+
+std::string numberText(float v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", double(v));
+  return text;
+}
+
+class Table {
+ public:
+  Table() {
+    constexpr float big = 1e30f;
+    whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 32768, "VPL slots N; time of every stage grows with it");
+    whole("smc.moves", &Settings::smc, &SmcSettings::moves, 0, 32768,
+          "M_max, VPLs replaced per frame; each costs a shadow map");
+    whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "candidate rays per VPL slot");
+    whole("smc.paths", &Settings::smc, &SmcSettings::paths, 1, 4096, "light paths per VPL and candidate");
+    whole("smc.bounces", &Settings::smc, &SmcSettings::bounces, 0, 32, "indirect bounces B; 0 = direct light only");
+    whole("smc.points", &Settings::smc, &SmcSettings::points, 1, 1 << 20, "camera rays that find visible points");
+    whole("smc.validationRays", &Settings::smc, &SmcSettings::validationRays, 0, 1024,
+          "V, rays per visible point and round towards unverified VPLs");
+    whole("smc.warmup", &Settings::smc, &SmcSettings::warmup, 0, 100000, "iterations before the first picture");
+    whole("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, 0, 1024,
+          "k of the density for rendering; 0 = max(1, floor(sqrt(N)/32)) (paper 1, eq. 8)");
+    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side"},
+           "density estimate: paper 1's, or only neighbours on the same side of the surface");
+    choice("smc.visibility", &Settings::smc, &SmcSettings::visibility, {"maps", "rays"},
+           "who tests VPLs against pixels: shadow maps, or a ray for every pair (seconds per frame)");
+    whole("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, 16, 2048,
+          "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
+    choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"},
+           "who draws VPL maps; auto measures both once and keeps the faster");
+    real("shadow.bias", &Settings::shadow, &ShadowSettings::bias, 0, 100, "depth bias of VPL maps, texels at the receiver");
+    whole("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, 0, 32768,
+          "VPL maps drawn again per frame, in turn, while objects move");
+    whole("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, 16, 16384,
+          "texels per side of a directional light's map");
+    whole("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution, 16, 8192,
+          "texels per side of a point light's cube face");
+    whole("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution, 16, 8192,
+          "texels per side of a spot light's map");
+    whole("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples, 1, 1024,
+          "shadowed samples for all emissive surfaces in direct light");
+    whole("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution, 16, 2048,
+          "texels per side of their maps");
+    whole("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, 1, 512, "directions of the sky in direct light");
+    whole("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, 16, 2048,
+          "texels per side of their maps");
+    choice("gather.mode", &Settings::gather, &GatherSettings::mode, {"interleaved", "full"},
+           "4x4 subsets and filter, or every VPL at every pixel (16 times the time)");
+    flag("gather.disk", &Settings::gather, &GatherSettings::disk,
+         "a VPL is a disk of its area: bounds its light near by (paper 3's form factor)");
+    real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
+         "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
+    real("filter.normalPower", &Settings::filter, &FilterSettings::normalPower, 0, 1024, "weight max(0, n.n')^power");
+    real("filter.distance", &Settings::filter, &FilterSettings::distance, 1e-6f, 10,
+         "deviation from the pixel's plane, share of its view distance");
+    real("image.exposure", &Settings::image, &ImageSettings::exposure, 0, big,
+         "factor on radiance before Reinhard; 0 = measured at the first picture");
+    flag("debug.nan", &Settings::debug, &DebugSettings::nan, "paint NaN magenta and infinity cyan");
+    choice("debug.timing", &Settings::debug, &DebugSettings::timing, {"auto", "queries", "finish"},
+           "GPU times by timer queries, or by finishing each pass");
+  }
+
+  std::vector<Entry> entries;
+
+ private:
+  template <class Group, class Value> auto member(Group Settings::*group, Value Group::*value) {
+    return [=](auto& s) -> auto& { return s.*group.*value; };
+  }
+
+  template <class Group>
+  void whole(const char* name, Group Settings::*group, int Group::*value, int lo, int hi, const char* help) {
+    const auto at = member(group, value);
+    add(name, help, std::to_string(lo) + ".." + std::to_string(hi),
+        [=](Settings& s, std::string_view text) {
+          int v = 0;
+          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+          if (error != std::errc() || end != text.data() + text.size() || v < lo || v > hi) return false;
+          at(s) = v;
+          return true;
+        },
+        [=](const Settings& s) { return std::to_string(at(s)); });
+  }
+
+  template <class Group>
+  void real(const char* name, Group Settings::*group, float Group::*value, float lo, float hi, const char* help) {
+    const auto at = member(group, value);
+    add(name, help, hi >= 1e30f ? "at least " + numberText(lo) : numberText(lo) + ".." + numberText(hi),
+        [=](Settings& s, std::string_view text) {
+          float v = 0;
+          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+          if (error != std::errc() || end != text.data() + text.size() || !(v >= lo && v <= hi)) return false;
+          at(s) = v;
+          return true;
+        },
+        [=](const Settings& s) { return numberText(at(s)); });
+  }
+
+  template <class Group> void flag(const char* name, Group Settings::*group, bool Group::*value, const char* help) {
+    const auto at = member(group, value);
+    add(name, help, "on|off",
+        [=](Settings& s, std::string_view text) {
+          if (text != "on" && text != "off") return false;
+          at(s) = text == "on";
+          return true;
+        },
+        [=](const Settings& s) { return std::string(at(s) ? "on" : "off"); });
+  }
+
+  template <class Group, class Enum>
+  void choice(const char* name, Group Settings::*group, Enum Group::*value, std::vector<std::string> names,
+              const char* help) {
+    const auto at = member(group, value);
+    std::string range;
+    for (const std::string& n : names) range += (range.empty() ? "" : "|") + n;
+    add(name, help, range,
+        [=](Settings& s, std::string_view text) {
+          for (size_t i = 0; i < names.size(); ++i)
+            if (text == names[i]) {
+              at(s) = Enum(i);
+              return true;
+            }
+          return false;
+        },
+        [=](const Settings& s) { return names[size_t(at(s))]; });
+  }
+
+  void add(const char* name, const char* help, std::string range,
+           std::function<bool(Settings&, std::string_view)> set, std::function<std::string(const Settings&)> get) {
+    const std::string defaultText = get(Settings{});
+    entries.push_back({{name, help, defaultText, std::move(range)}, std::move(set), std::move(get)});
+  }
+};
+
+const std::vector<Entry>& entries() {
+  static const Table table;
+  return table.entries;
+}
+
+const Entry& entryOf(std::string_view name) {
+  if (name == "gather") name = "gather.mode"; // the short form that the papers' variants are named by: gather=full
+  for (const Entry& e : entries())
+    if (e.row.name == name) return e;
+  std::vector<std::string> names;
+  for (const Entry& e : entries()) names.push_back(e.row.name);
+  const std::string near = nearestName(name, names);
+  throw InputError("setting " + std::string(name),
+                   "no such setting (" + (near.empty() ? "see `lambent settings`" : "did you mean " + near + "?") + ")");
+}
+
+} // namespace
+
+const std::vector<SettingRow>& settingsTable() {
+  static const std::vector<SettingRow> rows = [] {
+    std::vector<SettingRow> r;
+    for (const Entry& e : entries()) r.push_back(e.row);
+    return r;
+  }();
+  return rows;
+}
+
+void applySetting(Settings& settings, std::string_view name, std::string_view value) {
+  const Entry& e = entryOf(name);
+  if (!e.set(settings, value))
+    throw InputError("setting " + e.row.name, "cannot be '" + std::string(value) + "' (" + e.row.range + ")");
+}
+
+std::string settingText(const Settings& settings, std::string_view name) { return entryOf(name).get(settings); }
+
+} // namespace lambent

@@ -1,0 +1,108 @@
+// Paper 1, 3.2.2: which VPLs can still bring light to the image. Two things differ from the paper: points shoot in blocks
+// and a block skips what earlier blocks verified, so a handful of unverified VPLs does not draw V rays from every point;
+// and only pairs that face each other count, since others exchange no light.
+#include "engine/core/parallel.h"
+#include "engine/core/rng.h"
+#include "gi/vpl/smc.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// Whether the camera's picture holds the point (it may still be hidden).
+bool inFrustum(const CameraView& camera, const mat4& viewFromWorld, const vec3& p) {
+  const vec3 v = vec3(viewFromWorld * vec4(p, 1));
+  if (camera.orthoHalfHeight > 0)
+    return v.z < 0 && std::abs(v.y) <= camera.orthoHalfHeight &&
+           std::abs(v.x) <= camera.orthoHalfHeight * camera.aspect();
+  const float half = -v.z * std::tan(0.5f * camera.fovY);
+  return -v.z > camera.near && std::abs(v.y) <= half && std::abs(v.x) <= half * camera.aspect();
+}
+
+/// From the camera to a point off a surface.
+Ray cameraSegment(const CameraView& camera, const mat4& viewFromWorld, const vec3& p) {
+  if (camera.orthoHalfHeight <= 0) return segment(camera.position(), p);
+  const vec3 v = vec3(viewFromWorld * vec4(p, 1));
+  return segment(vec3(camera.worldFromView * vec4(v.x, v.y, 0, 1)), p);
+}
+
+vec3 offPosition(const Vpl& v) { return offsetPoint(v.position, v.geometricNormal); }
+
+} // namespace
+
+void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
+                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts) {
+  const mat4 viewFromWorld = glm::inverse(camera.worldFromView);
+  std::vector<RayCounts> perBlock((set.slots.size() + 63) / 64);
+  parallelFor(set.slots.size(), 64, [&](size_t begin, size_t end) {
+    std::vector<Ray> block;
+    std::vector<uint32_t> owner;
+    for (size_t i = begin; i < end; ++i) {
+      Vpl& v = set.slots[i];
+      v.valid = false;
+      if (!v.alive || !inFrustum(camera, viewFromWorld, v.mailbox)) continue;
+      block.push_back(cameraSegment(camera, viewFromWorld, v.mailbox));
+      owner.push_back(uint32_t(i));
+      if (geometryMoved) {
+        block.push_back(segment(v.mailbox, offPosition(v)));
+        owner.push_back(uint32_t(i));
+      }
+    }
+    std::vector<uint8_t> blocked(block.size());
+    rays.occluded(block, blocked);
+    perBlock[begin / 64].occlusion += block.size();
+    for (uint32_t i : owner) set.slots[i].valid = true;
+    for (size_t j = 0; j < block.size(); ++j)
+      if (blocked[j]) set.slots[owner[j]].valid = false;
+  });
+  for (const RayCounts& c : perBlock) counts += c;
+
+  constexpr size_t kPointsPerBlock = 256;
+  std::vector<uint32_t> open;
+  for (uint32_t round = 0; round < 2; ++round) {
+    for (size_t first = 0; first < points.size(); first += kPointsPerBlock) {
+      open.clear();
+      for (uint32_t i = 0; i < set.slots.size(); ++i)
+        if (set.slots[i].alive && !set.slots[i].valid) open.push_back(i);
+      if (open.empty()) return;
+      // Fewer open VPLs than V: each point tries each of them once at most.
+      const size_t tries = std::min<size_t>(raysPerPoint, open.size());
+      const size_t count = std::min(kPointsPerBlock, points.size() - first);
+      std::vector<uint32_t> found(count * tries, kNone); // slot that this ray verified
+      std::vector<RayCounts> shot(count);
+      parallelFor(count, 16, [&](size_t begin, size_t end) {
+        std::vector<Ray> block;
+        std::vector<size_t> place;
+        for (size_t p = begin; p < end; ++p) {
+          const VisiblePoint& x = points[first + p];
+          Rng rng(seed, Stream::Validation, uint32_t(first + p) * 2 + round, set.frame);
+          for (size_t k = 0; k < tries; ++k) {
+            const uint32_t slot = open[tries < open.size() ? rng.below(uint32_t(open.size())) : k];
+            const Vpl& v = set.slots[slot];
+            const vec3 d = offPosition(v) - x.position;
+            if (glm::dot(d, x.normal) <= 0 || glm::dot(d, v.geometricNormal) >= 0) continue;
+            block.push_back(segment(x.position, offPosition(v)));
+            place.push_back(p * tries + k);
+            found[place.back()] = slot;
+          }
+        }
+        std::vector<uint8_t> blocked(block.size());
+        rays.occluded(block, blocked);
+        shot[begin].occlusion = block.size();
+        for (size_t j = 0; j < block.size(); ++j)
+          if (blocked[j]) found[place[j]] = kNone;
+      });
+      for (const RayCounts& c : shot) counts += c;
+      for (size_t j = 0; j < found.size(); ++j)
+        if (found[j] != kNone && !set.slots[found[j]].valid) {
+          set.slots[found[j]].valid = true;
+          set.slots[found[j]].mailbox = points[first + j / tries].position;
+        }
+    }
+  }
+}
+
+} // namespace lambent

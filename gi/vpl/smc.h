@@ -1,0 +1,110 @@
+// Sequential Monte Carlo instant radiosity on the CPU (Hedman, Karras, Lehtinen 2017; "paper 1"): the contents page of
+// this folder in data-flow order, one .cpp per stage. All stages are deterministic functions of their arguments, for any
+// number of threads. World space, metres; radiance in W/(m² sr).
+//
+//   visible points → indirect visibility → candidates → resample → radiosity → density → replace   (update_vpls.cpp)
+#pragma once
+
+#include "engine/core/profile.h"
+#include "gi/settings.h"
+#include "gi/vpl/light_set.h"
+#include "gi/vpl/vpl_set.h"
+
+#include <functional>
+
+namespace lambent {
+
+/// A point X on a surface that the camera sees.
+struct VisiblePoint {
+  vec3 position; // off the surface (offsetPoint)
+  vec3 normal;   // geometric, towards the camera
+};
+
+/// Stage 1. One jittered camera ray per cell of a grid of about `count` cells; rays that leave the scene give no point.
+std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraView& camera, int count, uint32_t seed,
+                                            uint32_t frame, RayCounts& counts);
+
+/// Stage 2. Marks VPLs that some visible point still sees (paper 1, 3.2.2): first by their mailbox point (in the
+/// frustum, camera → point clear, and point → VPL clear where `geometryMoved`), then in two rounds of up to
+/// `raysPerPoint` rays from every visible point to random unverified VPLs. Points go in blocks, and a block skips what
+/// earlier blocks verified. Where the camera is unchanged and nothing moved, earlier marks stay and only unverified VPLs
+/// are tried.
+void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
+                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts);
+
+/// A point that a ray from a visible point met: a place where a VPL could stand.
+struct CandidateHit {
+  vec3 position, normal, geometricNormal, albedo;
+  vec3 from; // the visible point (off its surface): the first mailbox
+  uint32_t instance = 0;
+};
+
+/// Stage 3. `count` cosine-distributed rays spread evenly over the visible points; misses give no hit.
+std::vector<CandidateHit> traceCandidates(const RayQuery& rays, std::span<const VisiblePoint> points, int count,
+                                          uint32_t seed, uint32_t frame, RayCounts& counts);
+
+/// Stage 4. Picks up to `count` different hits with probability ∝ area that a hit stands for (1/density of hits, nearest
+/// neighbour), so that picks are uniform over the indirectly visible surface (paper 1, 3.2.1). At most 8 retries per
+/// pick.
+struct Resampled {
+  std::vector<uint32_t> picks; // indices of hits in pick order
+  double area = 0;             // m², estimate of the surface that all hits lie on
+};
+Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, uint32_t seed,
+                                            uint32_t frame);
+
+/// Stage 5. Reflected radiance of each VPL by `paths` light paths with next-event estimation and multiple importance
+/// sampling for emitters (paper 1, 3.2.3). Random numbers depend on the VPL's id alone. `bounces` B ≥ 1: direct light at
+/// the VPL plus B − 1 further bounces.
+void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
+                      uint32_t seed, RayCounts& counts);
+
+/// Stage 6. Area that each point stands for, π r_k² / k, with r_k the distance to the k-th nearest of `among` (paper 1,
+/// eq. 7 solved for area). A query point that is itself in `among` is passed over when `self` says so. With KnnSide
+/// only neighbours whose normals agree (n·n' > 0) count, so the two sides of a thin wall are told apart. Points with
+/// fewer than k neighbours get the area of the neighbours they have, scaled, and never more than `areaLimit`, m².
+struct DensityPoint {
+  vec3 position, normal;
+};
+std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among, bool self,
+                                    int k, DensityEstimator estimator, float areaLimit);
+/// k for rendering: paper 1, eq. 8.
+int neighboursForRendering(const SmcSettings& settings);
+
+/// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates
+/// stronger than 95 % of the set (paper 1, 3.2.5). Each pick lowers the area of candidates near it, so winners of one
+/// frame do not sit side by side. Empty slots are filled beyond the bound. Slots never change place.
+VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
+
+/// What one update needs besides the set.
+struct VplUpdate {
+  const SceneView& view;
+  const RayQuery& rays;
+  const LightSet& lights;
+  const SmcSettings& settings;
+  uint32_t seed = 1;
+};
+
+/// Times and rays of one update, for the frame log.
+struct VplUpdateLog {
+  std::vector<StageTime> stages;
+  RayCounts points, validation, candidates, radiosity;
+  uint32_t relit = 0; // VPLs whose radiance was estimated again
+};
+
+/// All stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on replacements
+/// is lifted and the stages run several times. The first call fills the set and runs `settings.warmup` iterations;
+/// `progress` (may be empty) hears of each.
+VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
+                      const std::function<void(int, int)>& progress = {});
+
+/// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs - ray
+/// tracing"). Row 0 at the top; zero where the camera sees nothing.
+std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
+                               const GatherSettings& settings, RayCounts& counts);
+
+/// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
+/// squared distance, the distance widened by the VPL's own disk and the result clamped as the settings say, 1/m².
+float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);
+
+} // namespace lambent

@@ -1,0 +1,38 @@
+#version 450
+// Surface attributes seen by the camera.
+#include "lib/material.glsl"
+#include "shared/camera_block.h"
+
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+layout(location = 0) in vec3 normalWorld;
+layout(location = 1) in vec3 positionEye;
+layout(location = 2) in vec4 uv;
+layout(location = 3) in vec4 color;
+layout(location = 4) flat in float handedness;
+layout(location = 0) out vec4 outNormal;
+layout(location = 1) out vec4 outAlbedo;
+layout(location = 2) out vec4 outEmission;
+
+void main() {
+  vec4 base = baseColorAt(uv, color);
+#ifdef ALPHA_MASK
+  if (base.a < material.emission.a) discard;
+#endif
+  vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : -normalize(positionEye);
+  vec3 geometric = cross(dFdx(positionEye), dFdy(positionEye));
+  float size = length(geometric);
+  geometric = size > 0.0 ? geometric / size : towardsViewer;
+  if (dot(geometric, towardsViewer) < 0.0) geometric = -geometric;
+
+  // The shading normal on the geometric normal's side; where it still faces away (silhouettes of coarse meshes) the
+  // geometric one is the only answer that agrees with what is seen.
+  vec3 normal = normalize(normalWorld);
+  if (dot(normal, geometric) < 0.0) normal = -normal;
+  if (!(dot(normal, towardsViewer) > 0.0)) normal = geometric;
+
+  bool front = gl_FrontFacing == (handedness > 0.0);
+  bool emits = front || material.baseUvV.w > 0.5;
+  outNormal = vec4(normal, 1.0);
+  outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+  outEmission = vec4(emits ? emissionAt(uv) : vec3(0.0), 1.0);
+}

@@ -1,0 +1,11 @@
+// Reading the G-buffer. Units 0 and 1 and uniform binding 0 belong to it.
+#include "shared/camera_block.h"
+
+layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
+layout(binding = 0) uniform sampler2D gbufferDepth;
+layout(binding = 1) uniform sampler2D gbufferNormal;
+
+/// World position of a pixel's surface; depth must not be 0.
+vec3 positionFromDepth(ivec2 pixel, float depth) {
+  return (camera.worldFromView * vec4(positionViewFromDepth(camera, vec2(pixel) + 0.5, depth), 1.0)).xyz;
+}

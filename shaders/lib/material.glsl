@@ -1,0 +1,28 @@
+// A material's textures at mesh coordinates. Units 2 and 3 and uniform binding 1 belong to it.
+#include "shared/material_block.h"
+
+layout(std140, binding = 1) uniform MaterialUniforms { MaterialBlock material; };
+layout(binding = 2) uniform sampler2D baseTexture;
+layout(binding = 3) uniform sampler2D emissiveTexture;
+
+vec2 transformUv(vec4 rowU, vec4 rowV, vec4 uv01) {
+  vec3 uv = vec3(rowU.w > 0.5 ? uv01.zw : uv01.xy, 1.0);
+  return vec2(dot(rowU.xyz, uv), dot(rowV.xyz, uv));
+}
+
+/// Albedo and alpha.
+vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
+  vec4 base = material.baseColor * vertexColor;
+#ifdef BASE_TEXTURE
+  base *= texture(baseTexture, transformUv(material.baseUvU, material.baseUvV, uv01));
+#endif
+  return base;
+}
+
+vec3 emissionAt(vec4 uv01) {
+#ifdef EMISSIVE_TEXTURE
+  return material.emission.rgb * texture(emissiveTexture, transformUv(material.emissiveUvU, material.emissiveUvV, uv01)).rgb;
+#else
+  return material.emission.rgb;
+#endif
+}

@@ -1,0 +1,26 @@
+#version 450
+// Three cube faces around a light's normal, seen from it, to one paraboloid map: distance over farDistance.
+#include "shared/paraboloid.h"
+
+layout(binding = 0) uniform sampler2DArray faces; // reversed depth, near / distance along the face's axis; 0 = nothing
+uniform float resolution;   // of the paraboloid map, texels
+uniform float nearDistance; // of the faces, metres
+uniform float farDistance;  // metres at map value 1
+uniform vec3 axisX;         // the cube's axes in the light's frame (tangent, bitangent, normal)
+uniform vec3 axisY;
+uniform vec3 axisZ;
+
+void main() {
+  gl_FragDepth = 1.0;
+  vec3 d = directionFromParaboloid(gl_FragCoord.xy / resolution);
+  if (d.z < -2.0 / resolution) return; // outside the disc by more than a lookup can reach
+  vec3 cube = vec3(dot(axisX, d), dot(axisY, d), dot(axisZ, d));
+  // Directions of the hemisphere around (1,1,1) have a positive largest component m and none below -2m: each face's
+  // frustum reaches over [-2,1] on both of its axes.
+  int face = cube.x >= cube.y && cube.x >= cube.z ? 0 : (cube.y >= cube.z ? 1 : 2);
+  vec3 local = face == 0 ? cube.yzx : (face == 1 ? cube.zxy : cube); // right, up, forward of the face
+  vec2 uv = (local.xy / local.z + 2.0) / 3.0;
+  ivec2 size = textureSize(faces, 0).xy;
+  float depth = texelFetch(faces, ivec3(clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1), face), 0).r;
+  if (depth > 0.0) gl_FragDepth = min(nearDistance / depth / local.z / farDistance, 1.0);
+}

@@ -1,0 +1,38 @@
+#version 450
+// Triangles of an instance, for every pass that draws the scene. DEPTH_ONLY leaves out what depth does not need.
+layout(location = 0) in vec3 positionObject;
+layout(location = 4) in vec4 worldRow0; // rows of worldFromObject, one per instance
+layout(location = 5) in vec4 worldRow1;
+layout(location = 6) in vec4 worldRow2;
+#if !defined(DEPTH_ONLY)
+layout(location = 1) in vec3 normalObject;
+layout(location = 0) out vec3 normalWorld;
+layout(location = 1) out vec3 positionEye; // world axes, origin at the eye: keeps the derivatives precise
+layout(location = 4) flat out float handedness;
+uniform vec3 eye;
+#endif
+#if !defined(DEPTH_ONLY) || defined(ALPHA_MASK)
+layout(location = 2) in vec4 uv01;
+layout(location = 3) in vec4 colorVertex;
+layout(location = 2) out vec4 uv;
+layout(location = 3) out vec4 color;
+#endif
+uniform mat4 clipFromWorld;
+
+void main() {
+  vec4 p = vec4(positionObject, 1.0);
+  vec3 positionWorld = vec3(dot(worldRow0, p), dot(worldRow1, p), dot(worldRow2, p));
+  gl_Position = clipFromWorld * vec4(positionWorld, 1.0);
+#if !defined(DEPTH_ONLY)
+  // Inverse transpose up to a positive factor: rows of the cofactor matrix times the sign of the determinant.
+  vec3 c0 = cross(worldRow1.xyz, worldRow2.xyz), c1 = cross(worldRow2.xyz, worldRow0.xyz),
+       c2 = cross(worldRow0.xyz, worldRow1.xyz);
+  handedness = dot(worldRow0.xyz, c0) < 0.0 ? -1.0 : 1.0;
+  normalWorld = handedness * normalize(vec3(dot(c0, normalObject), dot(c1, normalObject), dot(c2, normalObject)));
+  positionEye = positionWorld - eye;
+#endif
+#if !defined(DEPTH_ONLY) || defined(ALPHA_MASK)
+  uv = uv01;
+  color = colorVertex;
+#endif
+}

@@ -1,0 +1,33 @@
+// The camera as the passes read it: uniform block, std140.
+#ifndef LAMBENT_SHARED_CAMERA_BLOCK_H
+#define LAMBENT_SHARED_CAMERA_BLOCK_H
+#include "interop.h"
+SHARED_BEGIN
+
+struct CameraBlock {
+  mat4 clipFromWorld;
+  mat4 worldFromView;
+  // Perspective: x, y = tangent of half the field of view; z = near plane, metres; w = 0.
+  // Orthographic: x, y = half width and height, metres; z = near plane; w = far plane, metres.
+  vec4 lens;
+  vec4 size; // x, y = width and height, pixels; z, w = their inverses
+};
+
+/// Distance along the view direction, metres, of reversed depth in (0, 1].
+SHARED_INLINE float viewDistanceFromDepth(CameraBlock c, float depth) {
+  return c.lens.w > 0.0f ? c.lens.w - depth * (c.lens.w - c.lens.z) : c.lens.z / depth;
+}
+
+/// View-space position of the point at `pixel` (GL window coordinates, centres at .5).
+SHARED_INLINE vec3 positionViewFromDepth(CameraBlock c, vec2 pixel, float depth) {
+  float distance = viewDistanceFromDepth(c, depth);
+  vec2 ndc = pixel * vec2(c.size.z, c.size.w) * 2.0f - vec2(1.0f, 1.0f);
+  vec2 xy = ndc * vec2(c.lens.x, c.lens.y) * (c.lens.w > 0.0f ? 1.0f : distance);
+  return vec3(xy.x, xy.y, -distance);
+}
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(lambent::CameraBlock) == 160);
+#endif
+#endif

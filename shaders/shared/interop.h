@@ -1,0 +1,22 @@
+// Makes the files of this folder valid C++ and GLSL: each struct and mapping that both sides use is written once.
+#ifndef LAMBENT_SHARED_INTEROP_H
+#define LAMBENT_SHARED_INTEROP_H
+#ifdef __cplusplus
+#include "engine/core/math.h"
+#define SHARED_INLINE inline
+#define SHARED_OUT(T) T&
+namespace lambent {
+using glm::ivec2;
+using glm::uint;
+using glm::uvec2;
+using glm::uvec4;
+} // namespace lambent
+#define SHARED_BEGIN namespace lambent {
+#define SHARED_END }
+#else
+#define SHARED_INLINE
+#define SHARED_OUT(T) out T
+#define SHARED_BEGIN
+#define SHARED_END
+#endif
+#endif

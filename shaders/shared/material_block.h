@@ -1,0 +1,20 @@
+// A material as the scene shaders read it: uniform block, std140.
+#ifndef LAMBENT_SHARED_MATERIAL_BLOCK_H
+#define LAMBENT_SHARED_MATERIAL_BLOCK_H
+#include "interop.h"
+SHARED_BEGIN
+
+struct MaterialBlock {
+  vec4 baseColor;      // rgb: albedo factor; a: alpha factor
+  vec4 emission;       // rgb: radiance factor, W/(m² sr); a: alpha cutoff
+  vec4 baseUvU;        // xyz: first row of uvTransform; w: UV set
+  vec4 baseUvV;        // xyz: second row; w: 1 when double-sided
+  vec4 emissiveUvU;
+  vec4 emissiveUvV;
+};
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(lambent::MaterialBlock) == 96);
+#endif
+#endif

@@ -1,0 +1,22 @@
+// A punctual light, or a direction of the sky, as the direct pass reads it: element of a uniform block, std140.
+#ifndef LAMBENT_SHARED_PUNCTUAL_LIGHT_H
+#define LAMBENT_SHARED_PUNCTUAL_LIGHT_H
+#include "interop.h"
+SHARED_BEGIN
+
+struct PunctualLight {
+  vec4 positionRange;  // xyz: world position; w: 1/range⁴, 0 when the range is infinite
+  vec4 directionTexel; // xyz: the way the light travels; w: a map texel's size: metres (directional), else metres per
+                       // metre of distance along the map's axis
+  vec4 intensityLayer; // rgb: W/sr, or W/m² (directional); w: layer of its kind's map array
+  vec4 coneNear;       // x, y: scale and offset of glTF's angular attenuation; z: near plane of the map, metres
+  mat4 mapFromWorld;   // spot and directional: map coordinates and reversed depth, all in [0,1] after division by w
+};
+
+const int kLightsPerBlock = 128; // 16 KiB, what every OpenGL offers
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(lambent::PunctualLight) == 128);
+#endif
+#endif

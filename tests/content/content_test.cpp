@@ -1,0 +1,162 @@
+// The generated scenes: same bytes on every run, and geometry that light cannot leak through. Reads the written files
+// back as raw glTF, so that a mistake in the importer cannot hide one in the writer.
+#include "tools/content/content.h"
+
+#include "engine/core/math.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace lambent {
+namespace {
+
+using nlohmann::json;
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+/// A written scene and what its accessors hold.
+struct Written {
+  std::filesystem::path folder;
+  GeneratedScene scene;
+  json gltf;
+  std::string buffer;
+
+  explicit Written(const ContentRecipe& recipe, const std::string& tag = "") {
+    folder = std::filesystem::path(testing::TempDir()) / ("lambent-" + recipe.name + tag);
+    scene = recipe.write(folder);
+    gltf = json::parse(contents(scene.file));
+    buffer = contents(folder / gltf["buffers"][0]["uri"].get<std::string>());
+  }
+  ~Written() { std::filesystem::remove_all(folder); }
+
+  template <class T> std::vector<T> values(const json& accessorIndex) const {
+    const json& accessor = gltf["accessors"][accessorIndex.get<size_t>()];
+    const json& view = gltf["bufferViews"][accessor["bufferView"].get<size_t>()];
+    std::vector<T> out(accessor["count"].get<size_t>());
+    EXPECT_GE(view["byteLength"].get<size_t>(), out.size() * sizeof(T));
+    std::memcpy(out.data(), buffer.data() + view["byteOffset"].get<size_t>(), out.size() * sizeof(T));
+    return out;
+  }
+};
+
+struct Surface {
+  std::string name;
+  std::vector<vec3> positions, normals;
+  std::vector<uint16_t> indices;
+  bool sheet = false; // cloth, lattice and emitters are allowed to be open
+};
+
+std::vector<Surface> surfaces(const Written& w) {
+  std::vector<Surface> out;
+  for (const json& mesh : w.gltf["meshes"]) {
+    const json& primitive = mesh["primitives"][0];
+    const json& material = w.gltf["materials"][primitive["material"].get<size_t>()];
+    out.push_back({mesh["name"], w.values<vec3>(primitive["attributes"]["POSITION"]),
+                   w.values<vec3>(primitive["attributes"]["NORMAL"]), w.values<uint16_t>(primitive["indices"]),
+                   material.value("doubleSided", false) || material.contains("emissiveFactor")});
+  }
+  return out;
+}
+
+class Content : public testing::TestWithParam<ContentRecipe> {};
+
+TEST_P(Content, SameBytesOnEveryRun) {
+  const Written first(GetParam(), "-1"), second(GetParam(), "-2");
+  ASSERT_EQ(first.scene.written, second.scene.written);
+  for (const std::string& name : first.scene.written)
+    EXPECT_EQ(contents(first.folder / name), contents(second.folder / name)) << name;
+}
+
+TEST_P(Content, TheRepositoryHoldsWhatTheRecipeWrites) {
+  const Written w(GetParam());
+  for (const std::string& name : w.scene.written) {
+    if (std::filesystem::path(name).extension() == ".png") continue; // the encoder's version decides its bytes
+    EXPECT_EQ(contents(w.folder / name),
+              contents(std::filesystem::path(LAMBENT_SOURCE_DIR) / "content" / GetParam().name / name))
+        << name << " (repeat `lambent content " << GetParam().name << "`)";
+  }
+}
+
+TEST_P(Content, IsSmall) { EXPECT_LT(Written(GetParam()).scene.bytes, 2u << 20); }
+
+TEST_P(Content, TrianglesAreFiniteWoundOutwardsAndNotDegenerate) {
+  const Written w(GetParam());
+  for (const Surface& s : surfaces(w)) {
+    SCOPED_TRACE(s.name);
+    for (const vec3& n : s.normals)
+      EXPECT_NEAR(glm::length(n), 1.0f, 1e-4f);
+    for (size_t i = 0; i < s.indices.size(); i += 3) {
+      const auto corner = [&](size_t k) { return s.positions.at(s.indices[i + k]); };
+      ASSERT_TRUE(isFinite(corner(0)) && isFinite(corner(1)) && isFinite(corner(2)));
+      const vec3 area = 0.5f * glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+      ASSERT_GT(glm::length(area), 1e-7f) << "triangle " << i / 3;
+      for (size_t k = 0; k < 3; ++k)
+        ASSERT_GT(glm::dot(glm::normalize(area), s.normals.at(s.indices[i + k])), 0.2f) << "triangle " << i / 3;
+    }
+  }
+}
+
+TEST_P(Content, SolidsAreClosedAndFaceOutwards) {
+  using Point = std::array<long, 3>;
+  const Written w(GetParam());
+  for (const Surface& s : surfaces(w)) {
+    if (s.sheet) continue;
+    SCOPED_TRACE(s.name);
+    std::map<std::pair<Point, Point>, int> edges; // how often walked one way, minus the other way
+    double volume = 0;
+    for (size_t i = 0; i < s.indices.size(); i += 3) {
+      std::array<Point, 3> corners;
+      std::array<glm::dvec3, 3> p;
+      for (size_t k = 0; k < 3; ++k) {
+        p[k] = s.positions[s.indices[i + k]];
+        corners[k] = {std::lround(p[k].x * 1e5), std::lround(p[k].y * 1e5), std::lround(p[k].z * 1e5)};
+      }
+      volume += glm::dot(p[0], glm::cross(p[1], p[2])) / 6;
+      for (size_t k = 0; k < 3; ++k) {
+        const Point &a = corners[k], &b = corners[(k + 1) % 3];
+        a < b ? ++edges[{a, b}] : --edges[{b, a}];
+      }
+    }
+    EXPECT_GT(volume, 0);
+    size_t open = 0;
+    for (const auto& [edge, balance] : edges)
+      open += balance != 0;
+    EXPECT_EQ(open, 0u) << "open edges";
+  }
+}
+
+TEST_P(Content, AlbedosArePlausible) {
+  const Written w(GetParam());
+  for (const json& m : w.gltf["materials"]) {
+    if (m["pbrMetallicRoughness"].contains("baseColorTexture")) continue; // the factor scales the texture
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_GT(m["pbrMetallicRoughness"]["baseColorFactor"][i].get<float>(), 0.0f) << m["name"];
+      EXPECT_LE(m["pbrMetallicRoughness"]["baseColorFactor"][i].get<float>(), 0.8f) << m["name"];
+    }
+  }
+}
+
+TEST_P(Content, NodeNamesAreUnique) { // shots address nodes by name
+  const Written w(GetParam());
+  std::map<std::string, int> count;
+  for (const json& node : w.gltf["nodes"])
+    EXPECT_EQ(++count[node["name"]], 1) << node["name"];
+}
+
+INSTANTIATE_TEST_SUITE_P(Recipes, Content, testing::ValuesIn(contentRecipes()),
+                         [](const auto& info) { return info.param.name; });
+
+} // namespace
+} // namespace lambent

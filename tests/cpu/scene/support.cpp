@@ -1,0 +1,105 @@
+#include "tests/cpu/scene/support.h"
+
+#include <fstream>
+#include <sstream>
+
+namespace lambent::testing {
+
+namespace fs = std::filesystem;
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "lambent-test-XXXXXX").string();
+  if (!mkdtemp(name.data())) throw RunError("cannot make a folder for the test");
+  path_ = name;
+}
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+namespace {
+
+std::string base64(const std::vector<uint8_t>& bytes) {
+  static const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t n = std::min<size_t>(3, bytes.size() - i);
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < n ? bytes[i + k] : 0);
+    for (size_t k = 0; k < 4; ++k)
+      out += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+void append32(std::string& out, uint32_t v) {
+  for (int i = 0; i < 4; ++i)
+    out += char(v >> (8 * i) & 255);
+}
+
+} // namespace
+
+std::string GltfBuilder::text() const {
+  nlohmann::json out = json;
+  if (!bytes.empty())
+    out["buffers"] = {
+        {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+  return out.dump();
+}
+
+void GltfBuilder::writeGltf(const fs::path& file) const { writeBytes(file, text()); }
+
+void GltfBuilder::writeGlb(const fs::path& file) const {
+  nlohmann::json doc = json;
+  doc["buffers"] = {{{"byteLength", bytes.size()}}};
+  std::string text = doc.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string binary(bytes.begin(), bytes.end());
+  binary.resize((binary.size() + 3) / 4 * 4, '\0');
+  std::string out = "glTF";
+  append32(out, 2);
+  append32(out, uint32_t(12 + 8 + text.size() + 8 + binary.size()));
+  append32(out, uint32_t(text.size()));
+  out += "JSON" + text;
+  append32(out, uint32_t(binary.size()));
+  out += std::string("BIN\0", 4) + binary;
+  writeBytes(file, out);
+}
+
+Scene GltfBuilder::load(const TemporaryFolder& folder) const {
+  const fs::path file = folder / "scene.gltf";
+  writeGltf(file);
+  return loadScene(file);
+}
+
+GltfBuilder oneTriangle() {
+  GltfBuilder b;
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})}}}});
+  return b;
+}
+
+void writeBytes(const fs::path& file, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out << bytes;
+}
+
+std::string readBytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+bool hasWarning(const Scene& scene, const std::string& text) {
+  for (const std::string& w : scene.warnings)
+    if (w.find(text) != std::string::npos) return true;
+  return false;
+}
+
+void expectNear(const vec3& a, const vec3& b, float tolerance) {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
+}
+
+} // namespace lambent::testing

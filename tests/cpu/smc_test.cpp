@@ -1,0 +1,276 @@
+// The sequential sampler as a whole, on rooms with closed-form rays.
+#include "engine/core/parallel.h"
+#include "engine/trace/analytic_query.h"
+#include "engine/core/rng.h"
+#include "gi/vpl/smc.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace lambent {
+namespace {
+
+CameraView cameraAt(const vec3& eye, const vec3& forward) {
+  CameraView c;
+  const vec3 z = -glm::normalize(forward), x = glm::normalize(glm::cross(vec3(0, 1, 0), z)), y = glm::cross(z, x);
+  c.worldFromView = mat4(vec4(x, 0), vec4(y, 0), vec4(z, 0), vec4(eye, 1));
+  return c;
+}
+
+/// A room 6×3×6 m with a block in it, a lamp, and a set to update.
+struct Room {
+  AnalyticQuery rays;
+  LightSet lights;
+  std::vector<InstanceView> instances{2};
+  SceneView view;
+  SmcSettings settings;
+  VplSet set;
+  VplUpdateLog log;
+
+  Room() {
+    rays.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.7f, 0.6f, 0.5f)});
+    rays.addBox({-0.5f, 0, -0.5f}, {0.5f, 1.5f, 0.5f}, {vec3(0.4f)});
+    lights.punctual.resize(1);
+    lights.punctual[0].position = {2, 2.5f, 1};
+    lights.punctual[0].intensity = vec3(5);
+    view.instances = instances;
+    view.camera = cameraAt({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1});
+    settings.vpls = 256;
+    settings.points = 512;
+    settings.warmup = 10;
+  }
+  VplChanges update(uint32_t seed = 1) {
+    log = {};
+    const VplChanges c = updateVpls(set, {view, rays, lights, settings, seed}, log);
+    view.changes = {false, false, false, false, false};
+    return c;
+  }
+};
+
+TEST(Smc, FillsTheSetOnSurfaces) {
+  Room room;
+  const VplChanges c = room.update();
+  EXPECT_EQ(c.alive, 256u);
+  for (const Vpl& v : room.set.slots) {
+    ASSERT_TRUE(v.alive);
+    const vec3 a = glm::abs(v.position - vec3(0, 1.5f, 0));
+    const vec3 b = glm::abs(v.position - vec3(0, 0.75f, 0)) - vec3(0.5f, 0.75f, 0.5f);
+    const bool onRoom = std::abs(a.x - 3) < 1e-4f || std::abs(a.y - 1.5f) < 1e-4f || std::abs(a.z - 3) < 1e-4f;
+    const bool onBlock = std::abs(maxComponent(b)) < 1e-4f;
+    EXPECT_TRUE(onRoom || onBlock);
+    EXPECT_TRUE(isFinite(v.radiance));
+    EXPECT_GT(v.area, 0);
+  }
+}
+
+TEST(Smc, IsByteIdenticalForAnyThreadCount) {
+  std::vector<Vpl> first;
+  for (int threads : {1, 2, 2}) {
+    setThreadCount(threads);
+    Room room;
+    room.update();
+    for (int i = 0; i < 5; ++i) {
+      room.view.camera = cameraAt({-2.5f + 0.1f * float(i), 1.5f, 2.5f}, {1, -0.2f, -1});
+      room.view.changes.camera = true;
+      room.update();
+    }
+    if (first.empty()) first = room.set.slots;
+    for (size_t i = 0; i < first.size(); ++i) {
+      const Vpl &a = first[i], &b = room.set.slots[i];
+      EXPECT_EQ(a.id, b.id);
+      EXPECT_EQ(a.position, b.position);
+      EXPECT_EQ(a.radiance, b.radiance);
+      EXPECT_EQ(a.area, b.area);
+    }
+  }
+  setThreadCount(0);
+}
+
+TEST(Smc, MovesAtMostTheBound) {
+  Room room;
+  room.settings.moves = 5;
+  room.update();
+  for (int i = 0; i < 20; ++i) {
+    room.view.camera = cameraAt({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1 + 0.05f * float(i)});
+    room.view.changes.camera = true;
+    const VplSet before = room.set;
+    const VplChanges c = room.update();
+    EXPECT_LE(c.movedSlots.size(), 5u);
+    for (uint32_t s = 0; s < 256; ++s) {
+      const bool listed = std::binary_search(c.movedSlots.begin(), c.movedSlots.end(), s);
+      EXPECT_EQ(before.slots[s].id != room.set.slots[s].id, listed) << "slot " << s;
+    }
+  }
+}
+
+TEST(Smc, SurvivesFacingTheSky) {
+  Room room;
+  room.update();
+  const VplSet before = room.set;
+  room.view.camera = cameraAt({0, 100, 0}, {0, 1, 0.1f});
+  room.view.changes.camera = true;
+  const VplChanges c = room.update();
+  EXPECT_TRUE(c.movedSlots.empty());
+  EXPECT_EQ(c.alive, 256u);
+  for (size_t i = 0; i < before.slots.size(); ++i) EXPECT_EQ(before.slots[i].id, room.set.slots[i].id);
+}
+
+TEST(Smc, CameraCutLiftsTheBound) {
+  // Two closed rooms: a jump from one to the other loses every VPL at once.
+  Room room;
+  room.rays.addBox({20, 0, -3}, {26, 3, 3}, {vec3(0.6f)});
+  room.instances.resize(3);
+  room.view.instances = room.instances;
+  LightView lamp;
+  lamp.position = {23, 2.5f, 0};
+  lamp.intensity = vec3(5);
+  room.lights.punctual.push_back(lamp);
+  room.update();
+  room.view.camera = cameraAt({21, 1.5f, 2}, {1, 0, -1});
+  room.view.changes.camera = true;
+  const VplChanges c = room.update();
+  EXPECT_TRUE(c.burst);
+  size_t there = 0;
+  for (const Vpl& v : room.set.slots) there += v.alive && v.position.x > 10;
+  EXPECT_GT(there, 240u);
+  const VplChanges next = room.update();
+  EXPECT_FALSE(next.burst);
+}
+
+TEST(Smc, LostVplsAreReplacedWithinTheBoundWhenTheCameraTurns) {
+  Room room;
+  room.update();
+  for (Vpl& v : room.set.slots) { // hide a quarter of the set where nobody sees it
+    if (&v - room.set.slots.data() < 64) v.position = vec3(50, 0, 0), v.mailbox = vec3(50, 0.1f, 0);
+  }
+  room.view.changes.camera = true;
+  const VplChanges c = room.update();
+  EXPECT_FALSE(c.burst);
+  EXPECT_EQ(c.invalid, 64u);
+  EXPECT_EQ(c.movedSlots.size(), 16u);
+}
+
+TEST(Smc, OneVpl) {
+  Room room;
+  room.settings.vpls = 1;
+  for (int i = 0; i < 5; ++i) {
+    const VplChanges c = room.update();
+    EXPECT_EQ(c.alive, 1u);
+    EXPECT_TRUE(std::isfinite(room.set.slots[0].area) && room.set.slots[0].area > 0);
+  }
+}
+
+TEST(Smc, NoLightAndLightInsideAClosedBox) {
+  Room dark;
+  dark.lights.punctual.clear();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(dark.update().alive, 0u); // nothing brings light: no VPL
+  Room boxed;
+  boxed.lights.punctual[0].position = {0, 0.7f, 0}; // inside the block
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(boxed.update().alive, 0u);
+}
+
+TEST(Smc, LightSwitchedOffTakesEffectAtOnceAndBackOn) {
+  Room room;
+  room.update();
+  room.lights.punctual.clear();
+  room.view.changes.lights = true;
+  room.update();
+  for (const Vpl& v : room.set.slots) EXPECT_EQ(v.radiance, vec3(0));
+  room.lights.punctual.resize(1);
+  room.lights.punctual[0].position = {-2, 2, -2};
+  room.view.changes.lights = true;
+  room.update();
+  float sum = 0;
+  for (const Vpl& v : room.set.slots) sum += luminance(v.radiance);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(Smc, UnchangedWorldReestimatesOnlyCandidates) {
+  Room room;
+  room.update();
+  room.update();
+  EXPECT_EQ(room.log.relit, 0u);
+  room.view.changes.lights = true;
+  room.update();
+  EXPECT_EQ(room.log.relit, 256u);
+}
+
+TEST(Smc, KeptValuesEqualEstimatingAgain) {
+  Room room;
+  room.update();
+  for (int i = 0; i < 3; ++i) room.update();
+  std::vector<Vpl> again = room.set.slots;
+  std::vector<Vpl*> all;
+  for (Vpl& v : again) all.push_back(&v);
+  RayCounts counts;
+  estimateRadiance(all, room.rays, room.lights, room.settings.paths, room.settings.bounces, 1, counts);
+  for (size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].radiance, room.set.slots[i].radiance);
+}
+
+TEST(Smc, VplsRideOnMovingObjects) {
+  Room room;
+  room.update();
+  const VplSet before = room.set;
+  const mat4 step = mat4(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(0.25f, 0, 0, 1));
+  room.instances[1].worldFromObjectBefore = mat4(1);
+  room.instances[1].worldFromObject = step;
+  room.instances[1].moved = true;
+  room.view.changes.geometry = true;
+  room.settings.moves = 0; // keep everyone
+  const VplChanges c = room.update();
+  size_t carried = 0;
+  for (size_t i = 0; i < before.slots.size(); ++i) {
+    const vec3 d = room.set.slots[i].position - before.slots[i].position;
+    if (before.slots[i].instance == 1) {
+      EXPECT_NEAR(d.x, 0.25f, 1e-5);
+      EXPECT_TRUE(std::binary_search(c.movedSlots.begin(), c.movedSlots.end(), uint32_t(i)));
+      ++carried;
+    } else {
+      EXPECT_EQ(d, vec3(0));
+    }
+  }
+  EXPECT_GT(carried, 0u);
+}
+
+TEST(Smc, NumberOfVplsMayChangeBetweenFrames) {
+  Room room;
+  room.update();
+  for (int n : {64, 300, 1, 128}) {
+    room.settings.vpls = n;
+    room.update();
+    room.update();
+    EXPECT_EQ(room.set.slots.size(), size_t(n));
+    EXPECT_GE(room.update().alive, uint32_t(n) * 9 / 10) << n;
+  }
+}
+
+TEST(Smc, WhiteFurnaceOfTheVplEstimate) {
+  // Inside a closed sphere whose walls all leave radiance L, the irradiance at any point of any plane is πL. Independent
+  // VPLs uniform in area: the sum over VPLs with k-nearest areas must give it without bias.
+  std::vector<double> shares;
+  for (uint32_t seed = 0; seed < 60; ++seed) {
+    std::vector<DensityPoint> points(1024);
+    for (size_t i = 0; i < points.size(); ++i) {
+      Rng rng(seed, Stream::Test, uint32_t(i), 77);
+      const vec3 p = sampleSphere(rng.next2());
+      points[i] = {p, -p};
+    }
+    const auto areas = representedAreas(points, points, true, 1, DensityEstimator::KnnSide, 1e9f);
+    double e = 0;
+    GatherSettings exact;
+    exact.disk = false;
+    for (size_t i = 0; i < points.size(); ++i) {
+      const vec3 d = points[i].position; // receiver at the centre, facing up
+      e += geometryTerm(d.y, 1, 1, areas[i], exact) * areas[i];
+    }
+    shares.push_back(e / kPi);
+  }
+  const test::Mean m = test::meanOf(shares);
+  EXPECT_LT(std::abs(m.mean - 1024.0 / 1023.0), test::kDeviateLimit * m.error);
+  EXPECT_LT(m.error, 0.01);
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,140 @@
+#include "engine/core/rng.h"
+#include "engine/core/sampling.h"
+#include "engine/trace/analytic_query.h"
+#include "engine/trace/embree_query.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent {
+namespace {
+
+TEST(Trace, EmbreeAgreesWithClosedForms) {
+  // A room of quads with a rotated, scaled and mirrored instance of a box against the same analytic shapes.
+  test::HandScene scene;
+  const uint32_t wall = scene.material(vec3(0.5f)), red = scene.material({0.8f, 0.1f, 0.1f});
+  scene.box({-2, -1, -3}, {2, 1, 3}, wall, true);
+  scene.box({-0.5f, -1, -0.5f}, {0.5f, 0, 0.5f}, red, false);
+  EmbreeQuery embree(scene.assets);
+  embree.update(scene.view());
+  AnalyticQuery analytic;
+  analytic.addBox({-2, -1, -3}, {2, 1, 3}, {vec3(0.5f)});
+  analytic.addBox({-0.5f, -1, -0.5f}, {0.5f, 0, 0.5f}, {vec3(0.8f, 0.1f, 0.1f)});
+  std::vector<Ray> rays;
+  for (uint32_t i = 0; i < 2000; ++i) {
+    Rng rng(1, Stream::Test, i);
+    rays.push_back({{1.5f, 0.4f, rng.next() * 4 - 2}, sampleSphere(rng.next2()), i % 3 ? kInfinity : 1.2f});
+  }
+  std::vector<SurfaceHit> a(rays.size()), b(rays.size());
+  std::vector<float> t(rays.size());
+  std::vector<uint8_t> blocked(rays.size());
+  embree.closest(rays, a);
+  analytic.closest(rays, b);
+  embree.distances(rays, t);
+  embree.occluded(rays, blocked);
+  int hits = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(a[i].valid(), b[i].valid());
+    EXPECT_EQ(blocked[i] != 0, a[i].valid());
+    EXPECT_EQ(t[i] < kInfinity, a[i].valid());
+    if (!a[i].valid()) continue;
+    ++hits;
+    EXPECT_NEAR(a[i].t, b[i].t, 1e-4f);
+    EXPECT_NEAR(t[i], b[i].t, 1e-4f);
+    EXPECT_GT(glm::dot(a[i].normal, b[i].normal), 0.999f);
+    EXPECT_NEAR(a[i].albedo.x, b[i].albedo.x, 1e-6f);
+  }
+  EXPECT_GT(hits, 1000);
+}
+
+TEST(Trace, InstancesWithRotationScaleAndMirror) {
+  test::HandScene scene;
+  const uint32_t lamp = scene.material(vec3(0.5f), vec3(3));
+  scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, lamp); // front +y
+  scene.instances[0].worldFromObject = mat4(vec4(2, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, -3, 0), vec4(0, 5, 0, 1));
+  EmbreeQuery rays(scene.assets);
+  rays.update(scene.view());
+  const SurfaceHit above = rays.closest(Ray{{1.9f, 7, -2.9f}, {0, -1, 0}});
+  ASSERT_TRUE(above.valid());
+  EXPECT_NEAR(above.t, 2, 1e-5);
+  EXPECT_NEAR(above.normal.y, 1, 1e-5);
+  EXPECT_EQ(above.emission, vec3(3)); // glTF: the front stays the front under mirroring
+  const SurfaceHit below = rays.closest(Ray{{1.9f, 3, -2.9f}, {0, 1, 0}});
+  ASSERT_TRUE(below.valid());
+  EXPECT_NEAR(below.normal.y, -1, 1e-5);
+  EXPECT_EQ(below.emission, vec3(0));
+  EXPECT_FALSE(rays.closest(Ray{{2.1f, 7, 0}, {0, -1, 0}}).valid());
+}
+
+TEST(Trace, MovedInstancesAreFound) {
+  test::HandScene scene;
+  scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, scene.material(vec3(0.5f)));
+  EmbreeQuery rays(scene.assets);
+  SceneView view = scene.view();
+  rays.update(view);
+  EXPECT_TRUE(rays.occluded(Ray{{0, 1, 0}, {0, -1, 0}}));
+  scene.instances[0].worldFromObject[3] = vec4(10, 0, 0, 1);
+  scene.instances[0].moved = true;
+  view = scene.view();
+  view.changes = {false, false, false, true, false};
+  rays.update(view);
+  EXPECT_FALSE(rays.occluded(Ray{{0, 1, 0}, {0, -1, 0}}));
+  EXPECT_TRUE(rays.occluded(Ray{{10, 1, 0}, {0, -1, 0}}));
+}
+
+TEST(Trace, AlphaMaskLetsRaysThrough) {
+  test::HandScene scene;
+  const uint32_t lattice = scene.material(vec3(1));
+  TextureImage image;
+  image.width = 2, image.height = 1;
+  image.texels = {u8vec4(255, 0, 0, 0), u8vec4(0, 255, 0, 255)}; // left half cut out
+  scene.assets.images.push_back(image);
+  Material& m = scene.assets.materials[lattice];
+  m.alphaMode = AlphaMode::Mask;
+  m.baseColorTexture.image = 0;
+  m.baseColorTexture.nearest = true;
+  scene.quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, lattice);
+  EmbreeQuery rays(scene.assets);
+  rays.update(scene.view());
+  const Ray left{{0.5f, 1, 1}, {0, 0, -1}}, right{{1.5f, 1, 1}, {0, 0, -1}};
+  EXPECT_FALSE(rays.closest(left).valid());
+  EXPECT_FALSE(rays.occluded(left));
+  EXPECT_TRUE(rays.occluded(right));
+  EXPECT_NEAR(rays.closest(right).albedo.y, 1, 1e-3);
+  std::vector<float> t(2);
+  rays.distances(std::vector{left, right}, t);
+  EXPECT_EQ(t[0], kInfinity);
+  EXPECT_NEAR(t[1], 1, 1e-5);
+}
+
+TEST(Trace, NotANumberIsAMissAndDoesNotAbort) {
+  test::HandScene scene;
+  scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, scene.material(vec3(0.5f)));
+  EmbreeQuery rays(scene.assets);
+  rays.update(scene.view());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Ray> bad{{{nan, 1, 0}, {0, -1, 0}},        {{0, 1, 0}, {0, nan, 0}}, {{0, 1, 0}, {0, -kInfinity, 0}},
+                             {{0, 1, 0}, {0, -1, 0}, nan},     {{0, 1, 0}, {0, 0, 0}},   {{0, 1, 0}, {0, -1, 0}, -1},
+                             {{kInfinity, 1, 0}, {0, -1, 0}}};
+  std::vector<SurfaceHit> hits(bad.size());
+  std::vector<uint8_t> blocked(bad.size());
+  std::vector<float> t(bad.size());
+  rays.closest(bad, hits);
+  rays.occluded(bad, blocked);
+  rays.distances(bad, t);
+  for (size_t i = 0; i < bad.size(); ++i) {
+    EXPECT_FALSE(hits[i].valid()) << i;
+    EXPECT_FALSE(blocked[i]) << i;
+    EXPECT_EQ(t[i], kInfinity) << i;
+  }
+}
+
+TEST(Trace, EmptyScene) {
+  SceneAssets none;
+  EmbreeQuery rays(none);
+  rays.update(SceneView{});
+  EXPECT_FALSE(rays.closest(Ray{{0, 1, 0}, {0, -1, 0}}).valid());
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,65 @@
+// The Cornell box, with the measurements that Cornell University publishes (millimetres, x to the left of the camera,
+// z away from it), at five times the size: a room of 2.76 × 2.74 × 2.80 m. Walls are 0.2 m thick.
+#include "tools/content/gltf_writer.h"
+#include "tools/content/recipes.h"
+
+#include <array>
+
+namespace lambent::content {
+
+namespace {
+
+constexpr double kScale = 1.0 / 200.0; // metres per published millimetre
+constexpr double kWidth = 552.8, kHeight = 548.8, kDepth = 559.2;
+constexpr double kWall = 0.2; // metres
+
+/// Published coordinates to ours: half a turn around the vertical axis, centred, so that the camera looks along -Z.
+dvec3 placed(double x, double y, double z) {
+  return {(0.5 * kWidth - x) * kScale, y * kScale, (0.5 * kDepth - z) * kScale};
+}
+
+/// Upright block over four corners (published x and z), counter-clockwise from above.
+Geometry block(const std::array<dvec2, 4>& corners, double height) {
+  Geometry g;
+  const auto at = [&](size_t i, double y) { return placed(corners[i % 4].x, y, corners[i % 4].y); };
+  g.addQuad(at(0, height), at(1, height), at(2, height), at(3, height));
+  g.addQuad(at(3, 0), at(2, 0), at(1, 0), at(0, 0));
+  for (size_t i = 0; i < 4; ++i)
+    g.addQuad(at(i, 0), at(i + 1, 0), at(i + 1, height), at(i, height));
+  return g;
+}
+
+} // namespace
+
+GeneratedScene writeCornell(const std::filesystem::path& folder) {
+  GltfWriter gltf;
+  const Index white = gltf.addMaterial({.name = "white", .albedo = {0.73, 0.73, 0.73}});
+  const Index red = gltf.addMaterial({.name = "red", .albedo = {0.63, 0.065, 0.05}});
+  const Index green = gltf.addMaterial({.name = "green", .albedo = {0.14, 0.45, 0.091}});
+  const Index lamp = gltf.addMaterial(
+      {.name = "emitter", .albedo = {0.78, 0.78, 0.78}, .emissionColor = {1, 0.706, 0.235}, .emissionRadiance = 17});
+  const auto place = [&](const char* name, const Geometry& g, Index material) {
+    gltf.addNode({.name = name, .mesh = gltf.addMesh(name, g, material)});
+  };
+
+  const dvec3 lo = placed(kWidth, 0, kDepth), hi = placed(0, kHeight, 0); // inside of the room
+  place("floor", box({lo.x - kWall, lo.y - kWall, lo.z - kWall}, {hi.x + kWall, lo.y, hi.z}), white);
+  place("ceiling", box({lo.x - kWall, hi.y, lo.z - kWall}, {hi.x + kWall, hi.y + kWall, hi.z}), white);
+  place("back wall", box({lo.x - kWall, lo.y, lo.z - kWall}, {hi.x + kWall, hi.y, lo.z}), white);
+  place("left wall", box({lo.x - kWall, lo.y, lo.z}, {lo.x, hi.y, hi.z}), red);
+  place("right wall", box({hi.x, lo.y, lo.z}, {hi.x + kWall, hi.y, hi.z}), green);
+  place("short block", block({dvec2(130, 65), dvec2(82, 225), dvec2(240, 272), dvec2(290, 114)}, 165), white);
+  place("tall block", block({dvec2(423, 247), dvec2(265, 296), dvec2(314, 456), dvec2(472, 406)}, 330), white);
+
+  // Hangs 5 mm below the ceiling; it lights the side that it faces, so the gap stays dark.
+  Geometry emitter;
+  const double below = kHeight - 1.0;
+  emitter.addQuad(placed(343, below, 227), placed(343, below, 332), placed(213, below, 332), placed(213, below, 227));
+  place("emitter", emitter, lamp);
+
+  const Index camera = gltf.addPerspectiveCamera("front", 39.3);
+  gltf.addNode({.name = "front", .translation = placed(278, 273, -800), .camera = camera});
+  return gltf.write(folder, "cornell");
+}
+
+} // namespace lambent::content

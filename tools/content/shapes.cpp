@@ -1,0 +1,180 @@
+#include "tools/content/shapes.h"
+
+#include "engine/core/error.h"
+
+#include <array>
+#include <cmath>
+
+namespace lambent::content {
+
+namespace {
+constexpr double kTau = 6.283185307179586;
+} // namespace
+
+uint32_t Geometry::addVertex(const dvec3& position, const dvec3& normal) {
+  positions.push_back(position);
+  normals.push_back(normal);
+  return uint32_t(positions.size() - 1);
+}
+
+void Geometry::addQuad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
+  const dvec3 normal = glm::normalize(glm::cross(c - a, d - b));
+  const uint32_t first = addVertex(a, normal);
+  addVertex(b, normal);
+  addVertex(c, normal);
+  addVertex(d, normal);
+  for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
+    indices.push_back(first + corner);
+}
+
+void Geometry::add(const Geometry& part, const dvec3& offset) {
+  if (!positions.empty()) CHECK_EQ(uvs.empty(), part.uvs.empty());
+  const uint32_t first = uint32_t(positions.size());
+  for (const dvec3& p : part.positions)
+    positions.push_back(p + offset);
+  normals.insert(normals.end(), part.normals.begin(), part.normals.end());
+  uvs.insert(uvs.end(), part.uvs.begin(), part.uvs.end());
+  for (const uint32_t i : part.indices)
+    indices.push_back(first + i);
+}
+
+Geometry box(const dvec3& lo, const dvec3& hi) {
+  Geometry g;
+  const auto corner = [&](int x, int y, int z) { return dvec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z); };
+  g.addQuad(corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)); // +Z
+  g.addQuad(corner(1, 0, 0), corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0)); // -Z
+  g.addQuad(corner(1, 0, 1), corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1)); // +X
+  g.addQuad(corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0)); // -X
+  g.addQuad(corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), corner(0, 1, 0)); // +Y
+  g.addQuad(corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)); // -Y
+  return g;
+}
+
+void mapFromAbove(Geometry& geometry, double tileMetres) {
+  geometry.uvs.clear();
+  for (const dvec3& p : geometry.positions)
+    geometry.uvs.emplace_back(p.x / tileMetres, p.z / tileMetres);
+}
+
+Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments) {
+  Geometry g;
+  for (const ProfilePiece& piece : profile) {
+    const uint32_t first = uint32_t(g.positions.size());
+    const uint32_t points = uint32_t(piece.size());
+    for (uint32_t i = 0; i < points; ++i) {
+      const dvec2 along = piece[std::min(i + 1, points - 1)] - piece[i ? i - 1 : 0];
+      const dvec2 outward = glm::normalize(dvec2(along.y, -along.x)); // right of the way up
+      for (uint32_t s = 0; s < segments; ++s) {
+        const double angle = kTau * s / segments, c = std::cos(angle), sn = std::sin(angle);
+        g.addVertex({piece[i].x * c, piece[i].y, -piece[i].x * sn}, {outward.x * c, outward.y, -outward.x * sn});
+      }
+    }
+    for (uint32_t i = 0; i + 1 < points; ++i)
+      for (uint32_t s = 0; s < segments; ++s) {
+        const uint32_t next = (s + 1) % segments, low = first + i * segments, high = low + segments;
+        // On the axis all vertices of a ring coincide: only one of the two triangles has an area.
+        if (piece[i].x > 0) g.indices.insert(g.indices.end(), {low + s, low + next, high + next});
+        if (piece[i + 1].x > 0) g.indices.insert(g.indices.end(), {low + s, high + next, high + s});
+      }
+  }
+  return g;
+}
+
+Geometry sphere(double radius, uint32_t segments) {
+  ProfilePiece meridian;
+  const uint32_t rings = segments / 2;
+  for (uint32_t i = 0; i <= rings; ++i) {
+    const double angle = 0.5 * kTau * i / rings;
+    const bool pole = i == 0 || i == rings;
+    meridian.emplace_back(pole ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle));
+  }
+  Geometry g = lathe({meridian}, segments);
+  for (size_t i = 0; i < g.positions.size(); ++i)
+    g.normals[i] = g.positions[i] / radius;
+  return g;
+}
+
+namespace {
+
+/// Half ring around the origin between two radii and two depths, closed, from the left springing to the right one.
+void addHalfRing(Geometry& g, double inner, double outer, double back, double front, uint32_t segments) {
+  const auto point = [&](uint32_t i, double radius, double z) {
+    const double angle = 0.5 * kTau * (1.0 - double(i) / segments);
+    const bool springing = i == 0 || i == segments;
+    return dvec3(radius * std::cos(angle), springing ? 0.0 : radius * std::sin(angle), z);
+  };
+  for (uint32_t i = 0; i < segments; ++i) {
+    const auto ring = [&](uint32_t k) {
+      return std::array{point(k, inner, back), point(k, inner, front), point(k, outer, front), point(k, outer, back)};
+    };
+    const auto a = ring(i), b = ring(i + 1);
+    g.addQuad(a[1], b[1], b[2], a[2]); // front
+    g.addQuad(b[0], a[0], a[3], b[3]); // back
+    g.addQuad(a[3], a[2], b[2], b[3]); // outside
+    g.addQuad(a[1], a[0], b[0], b[1]); // inside
+    if (i == 0) g.addQuad(a[0], a[1], a[2], a[3]);
+    if (i + 1 == segments) g.addQuad(b[3], b[2], b[1], b[0]);
+  }
+}
+
+} // namespace
+
+Geometry arch(const ArchShape& shape) {
+  Geometry g;
+  const double half = 0.5 * shape.bay, z = 0.5 * shape.thickness, top = shape.height, r = shape.radius;
+  // x and y of the cut from left to right, with the wall's outer ends as first and last column.
+  std::vector<dvec2> cut{{-half, 0}};
+  for (uint32_t i = 0; i <= shape.segments; ++i) {
+    const double angle = 0.5 * kTau * (1.0 - double(i) / shape.segments);
+    const bool springing = i == 0 || i == shape.segments;
+    cut.emplace_back(r * std::cos(angle), springing ? 0.0 : r * std::sin(angle));
+  }
+  cut.emplace_back(half, 0);
+
+  const auto soffitNormal = [](const dvec2& p) { return -glm::normalize(dvec3(p, 0)); };
+  for (size_t i = 0; i + 1 < cut.size(); ++i) {
+    const dvec2 a = cut[i], b = cut[i + 1];
+    g.addQuad({a, z}, {b, z}, {b.x, top, z}, {a.x, top, z});
+    g.addQuad({b, -z}, {a, -z}, {a.x, top, -z}, {b.x, top, -z});
+    g.addQuad({a.x, top, z}, {b.x, top, z}, {b.x, top, -z}, {a.x, top, -z});
+    g.addQuad({a, -z}, {b, -z}, {b, z}, {a, z});
+    if (i > 0 && i + 2 < cut.size()) { // the soffit is shaded as a cylinder
+      const size_t last = g.normals.size();
+      g.normals[last - 4] = g.normals[last - 1] = soffitNormal(a);
+      g.normals[last - 3] = g.normals[last - 2] = soffitNormal(b);
+    }
+  }
+  g.addQuad({-half, 0, -z}, {-half, 0, z}, {-half, top, z}, {-half, top, -z});
+  g.addQuad({half, 0, z}, {half, 0, -z}, {half, top, -z}, {half, top, z});
+  // The moulding is sunk into the wall so that its back is hidden.
+  addHalfRing(g, r + 0.02, r + 0.02 + shape.mouldingWidth, z - 0.05, z + shape.mouldingDepth, shape.segments);
+  return g;
+}
+
+Geometry cloth(const ClothShape& shape) {
+  const auto at = [&](double u, double v) {
+    const double width = shape.width * (1.0 - shape.gather * v * v);
+    const double depth = glm::mix(shape.foldDepthTop, shape.foldDepthBottom, v);
+    // A second, slower wave that drifts with the height keeps the folds from being parallel.
+    const double wave = std::sin(kTau * shape.folds * u) + 0.45 * std::sin(kTau * (1.3 * u + 0.35 * v));
+    const double sag = 0.02 * v * std::cos(kTau * shape.folds * 0.5 * u);
+    return dvec3(width * (u - 0.5), -shape.drop * v + sag, depth * wave);
+  };
+  Geometry g;
+  constexpr double kStep = 1e-4; // of the parameter, for the tangents
+  for (uint32_t row = 0; row <= shape.rows; ++row)
+    for (uint32_t column = 0; column <= shape.columns; ++column) {
+      const double u = double(column) / shape.columns, v = double(row) / shape.rows;
+      const dvec3 along = at(u + kStep, v) - at(u - kStep, v), down = at(u, v + kStep) - at(u, v - kStep);
+      g.addVertex(at(u, v), glm::normalize(glm::cross(down, along)));
+    }
+  const uint32_t stride = shape.columns + 1;
+  for (uint32_t row = 0; row < shape.rows; ++row)
+    for (uint32_t column = 0; column < shape.columns; ++column) {
+      const uint32_t upper = row * stride + column, lower = upper + stride;
+      g.indices.insert(g.indices.end(), {lower, lower + 1, upper + 1, lower, upper + 1, upper});
+    }
+  return g;
+}
+
+} // namespace lambent::content

@@ -1,0 +1,61 @@
+// Solid and sheet geometry for the generated scenes. Double precision, metres, counter-clockwise from outside.
+// Every solid is closed: each edge belongs to two triangles, so nothing that is built of them leaks light.
+#pragma once
+
+#include "engine/core/math.h"
+
+#include <vector>
+
+namespace lambent::content {
+
+using glm::dmat4;
+using glm::dvec2;
+using glm::dvec3;
+
+struct Geometry {
+  std::vector<dvec3> positions, normals;
+  std::vector<dvec2> uvs; // empty, or one per vertex
+  std::vector<uint32_t> indices;
+
+  uint32_t addVertex(const dvec3& position, const dvec3& normal);
+  /// Flat quad a, b, c, d, counter-clockwise seen from its front.
+  void addQuad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
+  /// Adds a copy of `part`, moved by `offset`. Both have texture coordinates or neither has.
+  void add(const Geometry& part, const dvec3& offset = dvec3(0));
+};
+
+/// Box between two corners.
+Geometry box(const dvec3& lo, const dvec3& hi);
+
+/// Gives every vertex texture coordinates from its horizontal position: (x, z) / tileMetres.
+void mapFromAbove(Geometry& geometry, double tileMetres);
+
+/// Piece of a profile that is shaded smoothly along its length; x is the radius and y the height.
+using ProfilePiece = std::vector<dvec2>;
+
+/// Body of revolution around +Y. The pieces join end to end, from the axis at the bottom to the axis at the top, which
+/// makes the body closed.
+Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments);
+
+Geometry sphere(double radius, uint32_t segments);
+
+/// Opening of a round arch in a wall: wall from y = 0 (the springing) to `height`, `bay` wide, `thickness` deep, centred
+/// on x and z, with a half circle of `radius` around the origin cut out, and a moulding around it on the +Z face.
+struct ArchShape {
+  double bay = 3.4, height = 1.8, thickness = 0.5, radius = 1.4;
+  double mouldingWidth = 0.16, mouldingDepth = 0.05;
+  uint32_t segments = 20;
+};
+Geometry arch(const ArchShape& shape);
+
+/// Hanging cloth with vertical folds: a single sheet in the plane z = 0, hung along the line y = 0, centred on x.
+struct ClothShape {
+  double width = 1.6, drop = 2.4;
+  double folds = 4.5;                        // full waves across the width
+  double foldDepthTop = 0.02, foldDepthBottom = 0.08;
+  double gather = 0;                         // share of the width that is lost towards the bottom
+  uint32_t columns = 40, rows = 10;
+};
+Geometry cloth(const ClothShape& shape);
+
+} // namespace lambent::content
