@@ -7,9 +7,9 @@ namespace lambent {
 
 /// What the keys and the mouse asked for in one frame.
 struct MoveInput {
-  vec3 direction{0};   // in view space: x right, y up, z backwards; length up to √3
-  vec2 look{0};        // turn to the right and up, radians
-  bool fast = false;   // four times the speed
+  vec3 direction{0}; // in view space: x right, y up, z backwards; length up to √3
+  vec2 look{0};      // turn to the right and up, radians
+  bool fast = false; // four times the speed
 
   bool any() const { return direction != vec3(0) || look != vec2(0); }
 };

@@ -67,7 +67,6 @@ struct GiFrame::State {
   float exposure = 0;
 
   FrameResults results;
-  CameraView camera;
   FrameStats stats;
 
   State(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
@@ -113,7 +112,6 @@ const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(i
   s.results.vpls = &s.vpls;
   s.results.skyRadiance = view.skyRadiance;
   s.results.sceneDiameter = s.farDistance;
-  s.camera = view.camera;
   s.stats.vplsKept = changes.kept;
   s.stats.vplsMoved = uint32_t(changes.movedSlots.size());
   s.stats.vplsInvalid = changes.invalid;
@@ -258,7 +256,7 @@ Buffer bufferByName(const std::string& name) {
   throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
 }
 
-Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results, state_->camera); }
+Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results); }
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
@@ -268,6 +266,15 @@ Image8 GiFrame::readDisplay(Buffer buffer) const {
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
   state_->displayPass.present(framebuffer, width, height);
+}
+
+ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
+                                           const std::function<void(int, int)>& progress) {
+  State& s = *state_;
+  const std::vector<MapPose> poses = mapPoses(s.vpls);
+  const ParaboloidMapInputs maps{*s.gpuScene, s.rays.get(), poses, {}, view.boundsWorld.diameter(),
+                                 s.settings.shadow.resolution, s.settings.shadow.maker};
+  return measureShadowAgreement(s.vplMapPass, maps, *s.rays, view.camera, s.vpls, s.settings, slots, points, progress);
 }
 
 Settings& GiFrame::settings() { return state_->settings; }

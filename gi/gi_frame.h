@@ -7,6 +7,7 @@
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
 #include "gi/effects.h"
+#include "gi/measure/shadow_agreement.h"
 #include "gi/settings.h"
 #include "gi/vpl/vpl_set.h"
 
@@ -61,6 +62,10 @@ class GiFrame {
   Image8 readDisplay(Buffer buffer) const;
   /// Draws the last frame as shown on a display into the framebuffer bound as `framebuffer`, scaled to its size.
   void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
+
+  /// Shadow maps of the present VPLs held against each other and against rays, as `view` (the last one run) sees them.
+  ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
+                                    const std::function<void(int, int)>& progress = {});
 
   const VplSet& vpls() const;
   const RayQuery& rays() const;

@@ -1,22 +1,44 @@
 #version 450
-// One buffer as a display shows it. MODE: 0 radiance (exposure, Reinhard on luminance, sRGB), 1 colour in [0,1] (sRGB),
-// 2 unit vector, 3 depth. The texture of mode 1 and 3 in background pixels is black.
+// One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1] (sRGB);
+// 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
+// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY.
 layout(binding = 0) uniform sampler2D gbufferDepth;
 layout(binding = 2) uniform sampler2D source;
-uniform float factor;   // exposure (mode 0); metres shown as mid grey (mode 3)
-uniform vec2 lens;      // near, far (0: perspective), metres
+layout(binding = 3) uniform sampler2D albedo;
+layout(binding = 4) uniform sampler2D emission;
+uniform float factor;     // exposure (mode 0); metres shown as mid grey (mode 3)
+uniform vec2 lens;        // near, far (0: perspective), metres (mode 3)
+uniform vec3 skyRadiance; // EMITTED
+uniform ivec2 tileSize;   // DEINTERLEAVED
 uniform int markNan;
 layout(location = 0) out vec4 outColor;
+
+const float kInversePi = 0.318309886;
 
 vec3 srgbFromLinear(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 
+vec3 sourceAt(ivec2 pixel) {
+#ifdef DEINTERLEAVED
+  return texelFetch(source, (pixel & 3) * tileSize + (pixel >> 2), 0).rgb;
+#else
+  return texelFetch(source, min(pixel, textureSize(source, 0) - 1), 0).rgb; // one texel stands for a constant
+#endif
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec3 value = texelFetch(source, min(pixel, textureSize(source, 0) - 1), 0).rgb;
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  vec3 value = sourceAt(pixel);
 #if MODE == 0
+#ifdef REFLECTED
+  value *= texelFetch(albedo, pixel, 0).rgb * kInversePi;
+#endif
+#ifdef EMITTED
+  value = depth == 0.0 ? skyRadiance : value + texelFetch(emission, pixel, 0).rgb;
+#endif
   if (markNan != 0 && any(isnan(value))) {
     outColor = vec4(1.0, 0.0, 1.0, 1.0);
     return;
@@ -32,7 +54,6 @@ void main() {
 #endif
   outColor = vec4(srgbFromLinear(value), 1.0);
 #else
-  float depth = texelFetch(gbufferDepth, pixel, 0).r;
   outColor = vec4(0.0, 0.0, 0.0, 1.0);
   if (depth == 0.0) return;
 #if MODE == 1

@@ -4,14 +4,13 @@
 #include "lib/gbuffer.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance;
-uniform ivec2 tileSize;        // of a sub-image; 0 when the pixels are in their places already
+uniform ivec2 tileSize;        // of a sub-image
 uniform float normalPower;
 uniform float distanceSigma;   // share of the view distance
 layout(location = 0) out vec4 outIrradiance;
 
 vec3 irradianceAt(ivec2 pixel) {
-  ivec2 texel = tileSize.x > 0 ? (pixel & 3) * tileSize + (pixel >> 2) : pixel;
-  return texelFetch(irradiance, texel, 0).rgb;
+  return texelFetch(irradiance, (pixel & 3) * tileSize + (pixel >> 2), 0).rgb;
 }
 
 void main() {

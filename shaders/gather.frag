@@ -4,7 +4,7 @@
 // Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison).
 #include "lib/gbuffer.glsl"
 #include "shared/octahedral.h"
-#include "shared/paraboloid.h"
+#include "shared/shadow_lookup.h"
 #include "shared/vpl_light.h"
 
 const int kClasses = 16, kLightsPerClass = 128; // a chunk of 2048 lights: see VplLights in gi/render/passes.h
@@ -28,22 +28,14 @@ uniform float biasTexels;
 layout(location = 0) out vec4 outIrradiance;
 
 #ifdef SHADOWS
-/// 1 where the light's map shows nothing nearer than the receiver. The bias is what the receiver's plane can rise
-/// within `biasTexels` map texels, plus the map's own rounding (16 bits) and its origin's offset from the surface.
+/// 1 where the light's map shows nothing nearer than the receiver.
 float visibility(int layer, vec3 normalLight, vec3 towardsReceiver, float distance, float cosineReceiver) {
-  vec3 tangent, bitangent;
-  basisAround(normalLight, tangent, bitangent);
-  vec3 d = vec3(dot(tangent, towardsReceiver), dot(bitangent, towardsReceiver), dot(normalLight, towardsReceiver));
   float resolution = float(textureSize(maps, 0).x);
-  float texelAngle = 2.0 / resolution * (1.0 + d.z); // stereographic scale of the paraboloid map, radians
-  float tangentReceiver = min(sqrt(max(0.0, 1.0 - cosineReceiver * cosineReceiver)) / cosineReceiver, 16.0);
-  float bias = distance * texelAngle * biasTexels * (tangentReceiver + 0.1) + farDistance * 4e-5;
-  float reference = (distance - bias) / farDistance;
-  vec2 uv = paraboloidFromDirection(d);
+  vec3 lookup = paraboloidLookup(normalLight, towardsReceiver, distance, cosineReceiver, resolution, biasTexels, farDistance);
 #ifdef SMOOTH_SHADOWS
-  return texture(maps, vec4(uv, layer, reference));
+  return texture(maps, vec4(lookup.xy, layer, lookup.z / farDistance));
 #else
-  return texelFetch(maps, ivec3(ivec2(uv * resolution), layer), 0).r >= reference ? 1.0 : 0.0;
+  return texelFetch(maps, ivec3(ivec2(lookup.xy * resolution), layer), 0).r >= lookup.z / farDistance ? 1.0 : 0.0;
 #endif
 }
 #endif

@@ -127,6 +127,8 @@ Texture::Texture(const std::string& label, const TextureDesc& desc)
 
 void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
 
+void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
+
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
     : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
 

@@ -67,6 +67,8 @@ class Texture : public detail::Object {
   int width() const { return desc_.width; }
   int height() const { return desc_.height; }
   void bind(int unit) const;
+  /// All texels of level 0 to zero. Colour formats only.
+  void clear() const;
 
  private:
   TextureDesc desc_;

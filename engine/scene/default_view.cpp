@@ -4,10 +4,11 @@
 //    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these looks
 //    meet the front of a surface: seen from within a closed object they meet the backs, and over open ground
 //    the upper half meets nothing.
-// 2. No place inside: an object or a stage. View it from outside: from the front, a little to the right and above,
-//    so far away that its bounding sphere fits a vertical angle of 50 degrees.
-// 3. Else stand at the place that sees farthest along the plan's axes, step back almost to the wall behind, and look
-//    level along that line. Ties go to the longer axis of the plan.
+// 2. No place inside: an object. View it from outside: from the front, a little to the right and above, so far away
+//    that its bounding sphere fits a vertical angle of 50 degrees.
+// 3. Inside, but exactly one of the four sides is open (a stage, a Cornell box): view it straight through that side.
+// 4. Else stand at the inside place that sees farthest in the (geometric) mean, take the longer of its two lines
+//    along the plan's axes, step back almost to the wall behind, and look level along that line.
 //
 // Rays are tried against all triangles: a second's work is not worth a tree that nothing else here needs, and the
 // tracer belongs to a later layer.
@@ -95,6 +96,7 @@ std::array<vec3, 26> lookDirections() {
 struct Place {
   vec3 eye{0};
   bool inside = false;
+  float openness = 0;  // geometric mean of the looks' distances, metres
   float reach[4] = {}; // level along +X, -X, +Z, -Z
 };
 
@@ -126,12 +128,33 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
   meetAll(looks, triangles);
   for (size_t i = 0; i < places.size(); ++i) {
     const Look* own = &looks[i * directions.size()];
-    const auto fronts = std::count_if(own, own + directions.size(), [](const Look& l) { return l.front; });
+    size_t fronts = 0;
+    float sumOfLogs = 0;
+    for (size_t k = 0; k < directions.size(); ++k) {
+      fronts += own[k].front;
+      sumOfLogs += std::log(std::clamp(own[k].distance, 1e-3f * bounds.diameter(), bounds.diameter()));
+    }
     places[i].inside = float(fronts) >= kInsideShare * float(directions.size());
+    places[i].openness = std::exp(sumOfLogs / float(directions.size()));
     for (int k = 0; k < 4; ++k)
       places[i].reach[k] = own[k].distance;
   }
   return places;
+}
+
+/// The outward normal of the only side of the plan where more than half of the inside places see out, if it is one.
+std::optional<vec3> onlyOpenSide(const std::vector<Place>& places) {
+  const vec3 sides[4] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+  const auto inside = std::count_if(places.begin(), places.end(), [](const Place& p) { return p.inside; });
+  std::optional<vec3> open;
+  for (int s = 0; s < 4; ++s) {
+    const auto seeOut = std::count_if(places.begin(), places.end(),
+                                      [&](const Place& p) { return p.inside && p.reach[s] == kInfinity; });
+    if (2 * seeOut <= inside) continue;
+    if (open) return {};
+    open = sides[s];
+  }
+  return open;
 }
 
 CameraView viewFromOutside(const Aabb& bounds) {
@@ -142,26 +165,36 @@ CameraView viewFromOutside(const Aabb& bounds) {
   return view;
 }
 
+CameraView viewThroughSide(const Aabb& bounds, const vec3& side) {
+  const float depth = std::abs(glm::dot(bounds.size(), side));
+  const float width = std::abs(glm::dot(bounds.size(), vec3(side.z, 0, side.x)));
+  // The opening fills nine tenths of the picture's height, or of a 16:9 picture's width.
+  const float height = std::max(bounds.size().y, width * 9 / 16) / 0.9f;
+  const float distance = 0.5f * depth + 0.5f * height / std::tan(0.5f * kFovY);
+  CameraView view = lookAt(bounds.centre() + distance * side, bounds.centre(), kFovY);
+  view.near = 0.01f * distance;
+  return view;
+}
+
 CameraView viewFromInside(const std::vector<Place>& places, const Aabb& bounds) {
-  const int longAxis = bounds.size().x >= bounds.size().z ? 0 : 1; // X or Z
-  CameraView best;
-  float bestLength = -1;
-  for (const Place& place : places) {
-    if (!place.inside) continue;
-    for (const int axis : {longAxis, 1 - longAxis}) {
-      const vec3 along = axis == 0 ? vec3(1, 0, 0) : vec3(0, 0, 1);
-      const int component = axis == 0 ? 0 : 2;
-      // An opening counts up to the scene's own end.
-      const float ahead = std::min(place.reach[2 * axis], bounds.hi[component] - place.eye[component]);
-      const float behind = std::min(place.reach[2 * axis + 1], place.eye[component] - bounds.lo[component]);
-      if (ahead + behind <= bestLength * 1.001f) continue;
-      bestLength = ahead + behind;
-      const vec3 eye = place.eye - along * std::max(behind - std::max(kOwnRadius, 0.08f * bestLength), 0.0f);
-      best = lookAt(eye, eye + along, kFovY);
-      best.near = std::clamp(0.002f * bestLength, 0.005f, 0.1f);
-    }
-  }
-  return best;
+  const Place* best = nullptr;
+  for (const Place& place : places)
+    if (place.inside && (!best || place.openness > best->openness)) best = &place;
+  CHECK(best != nullptr);
+
+  struct Line {
+    vec3 along;
+    float ahead, behind; // an opening counts up to the scene's own end
+  };
+  const vec3 toHigh = bounds.hi - best->eye, toLow = best->eye - bounds.lo;
+  const Line x{vec3(1, 0, 0), std::min(best->reach[0], toHigh.x), std::min(best->reach[1], toLow.x)};
+  const Line z{vec3(0, 0, 1), std::min(best->reach[2], toHigh.z), std::min(best->reach[3], toLow.z)};
+  const Line& line = x.ahead + x.behind > z.ahead + z.behind ? x : z;
+  const float length = line.ahead + line.behind;
+  const vec3 eye = best->eye - line.along * std::max(line.behind - std::max(kOwnRadius, 0.08f * length), 0.0f);
+  CameraView view = lookAt(eye, eye + line.along, kFovY);
+  view.near = std::clamp(0.002f * length, 0.005f, 0.1f);
+  return view;
 }
 
 } // namespace
@@ -170,8 +203,9 @@ CameraView defaultView(const Scene& scene) {
   const Aabb bounds = worldBounds(scene);
   if (bounds.empty()) return lookAt(vec3(0, 0, 2), vec3(0), kFovY);
   const std::vector<Place> places = tryPlaces(worldTriangles(scene), bounds);
-  const bool inside = std::any_of(places.begin(), places.end(), [](const Place& p) { return p.inside; });
-  return inside ? viewFromInside(places, bounds) : viewFromOutside(bounds);
+  if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; })) return viewFromOutside(bounds);
+  if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);
+  return viewFromInside(places, bounds);
 }
 
 } // namespace lambent

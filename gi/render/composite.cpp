@@ -8,7 +8,10 @@ namespace lambent {
 Picture CompositePass::run(const CompositeInputs& in) {
   const gl::PassScope scope(context_.profiler, "composite");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
-  if (!black_) black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
+  if (!black_) {
+    black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
+    black_.clear();
+  }
   if (!radiance_ || radiance_.width() != width || radiance_.height() != height) {
     radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});

@@ -2,42 +2,34 @@
 // positions. Our kernel is a tent of 7×7 (theirs a box), so that all 16 subsets weigh the same at every pixel.
 #include "gi/render/gather.h"
 
+#include <algorithm>
+
 namespace lambent {
 
-void FilterPass::resolve(const FilterInputs& in, bool filtered, gl::Texture& target, gl::Framebuffer& framebuffer) {
+IndirectLight FilterPass::run(const FilterInputs& in) {
+  // A full gather has nothing to mix: every pixel has seen every light.
+  if (!in.raw.deinterleaved) return {in.raw.irradiance};
+  const gl::PassScope scope(context_.profiler, "filter");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
-  if (!target || target.width() != width || target.height() != height) {
-    target = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
-    framebuffer = gl::Framebuffer("filter", {&target});
+  if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
+    irradiance_ = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
+    framebuffer_ = gl::Framebuffer("filter", {&irradiance_});
   }
   gl::ProgramDesc desc{.fragment = "filter.frag"};
-  if (filtered) desc.defines.push_back("FILTER");
+  if (in.filter.on) desc.defines.push_back("FILTER");
   const gl::Program& program = context_.programs.get(desc);
   program.use();
-  program.set("tileSize", in.raw.deinterleaved ? tileSize(in.gbuffer) : glm::ivec2(0));
+  program.set("tileSize", tileSize(in.gbuffer));
   program.set("normalPower", in.filter.normalPower);
   program.set("distanceSigma", in.filter.distance);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
   in.raw.irradiance->bind(2);
-  framebuffer.bind();
+  framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();
-}
-
-IndirectLight FilterPass::run(const FilterInputs& in) {
-  const gl::PassScope scope(context_.profiler, "filter");
-  // A full gather has nothing to mix: every pixel has seen every light.
-  if (!in.raw.deinterleaved) return {in.raw.irradiance};
-  resolve(in, in.filter.on, irradiance_, framebuffer_);
   return {&irradiance_};
-}
-
-const gl::Texture& FilterPass::interleave(const GBuffer& gbuffer, const RawIndirect& raw) {
-  const gl::PassScope scope(context_.profiler, "unfiltered view");
-  resolve({gbuffer, raw, FilterSettings{}}, false, unfiltered_, unfilteredFramebuffer_);
-  return unfiltered_;
 }
 
 IndirectLight IndirectUpload::run(const Image& image) {

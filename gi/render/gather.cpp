@@ -34,6 +34,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
   target.bind();
+  glBindSampler(2, in.smoothShadows ? in.smoothShadows->name() : 0);
 
   const glm::ivec2 tile = tileSize(in.gbuffer);
   const uint32_t chunks = std::max(1u, (in.lights.count + kChunk - 1) / kChunk);
@@ -59,6 +60,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
       gl::drawFullscreen();
     }
   }
+  glBindSampler(2, 0);
 }
 
 RawIndirect GatherPass::run(const GatherInputs& in) {
@@ -74,7 +76,7 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
              {.gbuffer = in.gbuffer,
               .lights = in.lights,
               .maps = in.maps,
-              .smoothShadows = false,
+              .smoothShadows = nullptr,
               .deinterleaved = deinterleaved,
               .addToTarget = false,
               .biasTexels = in.bias,

@@ -8,13 +8,13 @@ namespace lambent {
 struct GatherDraw {
   const GBuffer& gbuffer;
   const VplLights& lights;
-  const ParaboloidMaps* maps;
-  bool smoothShadows;   // the maps compare bilinearly
-  bool deinterleaved;   // 16 draws, one per class, into their tiles
-  bool addToTarget;     // instead of overwriting it
+  const ParaboloidMaps* maps;       // null: no visibility
+  const gl::Sampler* smoothShadows; // bilinear depth comparison; null: nearest texel
+  bool deinterleaved; // 16 draws, one per class, into their tiles
+  bool addToTarget;   // instead of overwriting it
   float biasTexels;
-  float diskFactor;     // 1/π or 0
-  float largestG;       // 1/m², kInfinity for none
+  float diskFactor; // 1/π or 0
+  float largestG;   // 1/m², kInfinity for none
 };
 
 /// Size of one of the 16 sub-images of a de-interleaved picture.

@@ -69,9 +69,7 @@ bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
                                          .format = GL_DEPTH_COMPONENT16,
                                          .width = in.resolution,
                                          .height = in.resolution,
-                                         .layers = i + 1 < needed ? kLayersPerArray : lastLayers,
-                                         .linear = smooth_,
-                                         .depthCompare = smooth_});
+                                         .layers = i + 1 < needed ? kLayersPerArray : lastLayers});
   resolution_ = in.resolution;
   farDistance_ = in.farDistance;
   return true;

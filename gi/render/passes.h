@@ -103,11 +103,8 @@ struct MakerComparison {
 
 class ParaboloidMapPass {
  public:
-  /// How the maps are looked up: nearest texel (gather of VPLs), or bilinear comparison (direct light's few samples).
-  enum class Lookup { Nearest, Smooth };
   /// `name` labels its profiler rows and memory ("vpl maps", "emitter maps").
-  ParaboloidMapPass(PassContext context, std::string name, Lookup lookup)
-      : context_(context), name_(std::move(name)), smooth_(lookup == Lookup::Smooth) {}
+  ParaboloidMapPass(PassContext context, std::string name) : context_(context), name_(std::move(name)) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
 
@@ -128,7 +125,6 @@ class ParaboloidMapPass {
 
   PassContext context_;
   std::string name_, makerReport_;
-  bool smooth_;
   std::vector<gl::Texture> arrays_;
   gl::Texture faces_;
   gl::Framebuffer facesFramebuffer_, layerFramebuffer_;
@@ -219,11 +215,12 @@ struct DirectLight {
 
 class DirectPass {
  public:
-  explicit DirectPass(PassContext context) : context_(context) {}
+  explicit DirectPass(PassContext context);
   DirectLight run(const DirectInputs& in);
 
  private:
   PassContext context_;
+  gl::Sampler compareSampler_; // bilinear depth comparison for the emitters' maps
   gl::Texture irradiance_;
   gl::Framebuffer framebuffer_;
 };
@@ -267,20 +264,16 @@ struct FilterInputs {
   const FilterSettings& filter;
 };
 
-/// Cross-bilateral 7×7; with the filter off, or for a full gather, only puts the pixels back in their places.
+/// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. A full gather passes through.
 class FilterPass {
  public:
   explicit FilterPass(PassContext context) : context_(context) {}
   IndirectLight run(const FilterInputs& in);
-  /// Puts the 4×4 subsets back in their places without filtering, into a texture of its own (debug view `unfiltered`).
-  const gl::Texture& interleave(const GBuffer& gbuffer, const RawIndirect& raw);
 
  private:
-  void resolve(const FilterInputs& in, bool filtered, gl::Texture& target, gl::Framebuffer& framebuffer);
-
   PassContext context_;
-  gl::Texture irradiance_, unfiltered_;
-  gl::Framebuffer framebuffer_, unfilteredFramebuffer_;
+  gl::Texture irradiance_;
+  gl::Framebuffer framebuffer_;
 };
 
 /// Irradiance that was computed on the CPU (smc.visibility = rays), in place of gather and filter.

@@ -6,7 +6,11 @@
 #define SHARED_INLINE inline
 #define SHARED_OUT(T) T&
 namespace lambent {
+using glm::dot;
 using glm::ivec2;
+using glm::max;
+using glm::min;
+using glm::sqrt;
 using glm::uint;
 using glm::uvec2;
 using glm::uvec4;

@@ -89,7 +89,9 @@ TEST_P(Content, TheRepositoryHoldsWhatTheRecipeWrites) {
   }
 }
 
-TEST_P(Content, IsSmall) { EXPECT_LT(Written(GetParam()).scene.bytes, 2u << 20); }
+TEST_P(Content, IsSmall) {
+  EXPECT_LT(Written(GetParam()).scene.bytes, 2u << 20);
+}
 
 TEST_P(Content, TrianglesAreFiniteWoundOutwardsAndNotDegenerate) {
   const Written w(GetParam());

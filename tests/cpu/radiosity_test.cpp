@@ -112,8 +112,8 @@ TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
     const test::Mean m = test::meanOf(values);
     const double expected = 0.5 * 2 * factor;
     EXPECT_LT(std::abs(m.mean - expected), test::kDeviateLimit * m.error + 1e-4 * expected) << "height " << c;
-    // The stated noise of 16 paths: under a tenth at both heights, thanks to multiple importance sampling.
-    EXPECT_LT(m.error * std::sqrt(2000.0), 0.10 * expected) << "height " << c;
+    // The stated noise of one estimate with 16 paths (gi/vpl/radiosity.cpp).
+    EXPECT_LT(m.error * std::sqrt(2000.0), 0.20 * expected) << "height " << c;
   }
 }
 

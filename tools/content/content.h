@@ -13,9 +13,9 @@ namespace lambent {
 
 /// What a recipe wrote.
 struct GeneratedScene {
-  std::filesystem::path file;      // the .gltf to open
-  uint64_t triangles = 0;          // as placed in the scene: every instance of a mesh counts
-  uint64_t bytes = 0;              // of all files together
+  std::filesystem::path file;       // the .gltf to open
+  uint64_t triangles = 0;           // as placed in the scene: every instance of a mesh counts
+  uint64_t bytes = 0;               // of all files together
   std::vector<std::string> written; // file names inside the folder, in the order they were written
 };
 

@@ -26,8 +26,12 @@ double rounded(double v) {
   return r == 0 ? 0.0 : r; // no negative zero
 }
 
-json array(const dvec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
-json array(const glm::dquat& q) { return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)}; }
+json array(const dvec3& v) {
+  return {rounded(v.x), rounded(v.y), rounded(v.z)};
+}
+json array(const glm::dquat& q) {
+  return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
+}
 
 template <class Vector> std::vector<float> flattened(const std::vector<Vector>& values) {
   std::vector<float> out;
@@ -139,9 +143,8 @@ Index GltfWriter::addMesh(const std::string& name, const Geometry& geometry, Ind
                   {"NORMAL", addAccessor(flattened(geometry.normals), 3, Target::Vertices, false)}};
   if (!geometry.uvs.empty())
     attributes["TEXCOORD_0"] = addAccessor(flattened(geometry.uvs), 2, Target::Vertices, false);
-  json primitive{{"attributes", std::move(attributes)},
-                 {"indices", addIndexAccessor(geometry.indices)},
-                 {"material", material}};
+  json primitive{
+      {"attributes", std::move(attributes)}, {"indices", addIndexAccessor(geometry.indices)}, {"material", material}};
   meshes_.push_back({{"name", name}, {"primitives", json::array({std::move(primitive)})}});
   meshTriangles_.push_back(geometry.indices.size() / 3);
   return Index(meshes_.size() - 1);

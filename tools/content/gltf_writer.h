@@ -28,7 +28,7 @@ struct MaterialSpec {
   Index texture = kAbsent;
   bool alphaMask = false;
   bool doubleSided = false;
-  dvec3 emissionColor{0};     // each channel in [0, 1]
+  dvec3 emissionColor{0};      // each channel in [0, 1]
   double emissionRadiance = 0; // W/(m² sr) where the colour is 1
 };
 

@@ -19,23 +19,29 @@ namespace {
 // Plan, metres.
 constexpr double kBay = 3.4;
 constexpr int kBays = 7;
-constexpr double kEnd = 0.5 * kBay * kBays;                     // |x| of the end walls' inner faces
-constexpr double kArcade = 4.25, kArcadeHalf = 0.25;            // |z| of the arcade's middle, half its thickness
-constexpr double kGalleryBack = 7.7;                            // |z| of the gallery's back wall
-constexpr double kWall = 0.4;                                   // outer walls
-constexpr double kNave = kArcade - kArcadeHalf;                 // |z| of the arcade's face to the nave
-constexpr double kOpenBays = 3;                                 // without roof, in the middle
+constexpr double kEnd = 0.5 * kBay * kBays;          // |x| of the end walls' inner faces
+constexpr double kArcade = 4.25, kArcadeHalf = 0.25; // |z| of the arcade's middle, half its thickness
+constexpr double kGalleryBack = 7.7;                 // |z| of the gallery's back wall
+constexpr double kWall = 0.4;                        // outer walls
+constexpr double kNave = kArcade - kArcadeHalf;      // |z| of the arcade's face to the nave
+constexpr double kOpenBays = 3;                      // without roof, in the middle
 // Heights.
-constexpr double kLowerSpring = 2.6, kArchHeight = 1.8;         // the same arch on both storeys
+constexpr double kLowerSpring = 2.6, kArchHeight = 1.8; // the same arch on both storeys
 constexpr double kGalleryFloor = 4.8, kSlab = 0.4;
 constexpr double kUpperSpring = kGalleryFloor + 2.0;
 constexpr double kEaves = kUpperSpring + kArchHeight, kRoof = 0.4;
 constexpr double kRailHeight = 0.95;
 
-double columnX(int i) { return (i - 0.5 * kBays) * kBay; }
-double bayX(int i) { return (i + 0.5 - 0.5 * kBays) * kBay; }
+double columnX(int i) {
+  return (i - 0.5 * kBays) * kBay;
+}
+double bayX(int i) {
+  return (i + 0.5 - 0.5 * kBays) * kBay;
+}
 
-glm::dquat aroundY(double degrees) { return glm::angleAxis(glm::radians(degrees), dvec3(0, 1, 0)); }
+glm::dquat aroundY(double degrees) {
+  return glm::angleAxis(glm::radians(degrees), dvec3(0, 1, 0));
+}
 
 struct Materials {
   Index stone, plaster, floor, timber, red, blue, green, gold, ball, lattice, chamber, water;
@@ -136,8 +142,8 @@ class HallBuilder {
   void addArcades() {
     const Index lower = gltf_.addMesh("lower column", column(kLowerSpring), material_.stone);
     const Index upper = gltf_.addMesh("upper column", column(kUpperSpring - kGalleryFloor), material_.stone);
-    const Index wall = gltf_.addMesh(
-        "arch", arch({.bay = kBay, .height = kArchHeight, .thickness = 2 * kArcadeHalf}), material_.plaster);
+    const Index wall = gltf_.addMesh("arch", arch({.bay = kBay, .height = kArchHeight, .thickness = 2 * kArcadeHalf}),
+                                     material_.plaster);
     // Transverse beams carry the gallery floor and the gallery roof.
     const double from = kArcade + kArcadeHalf, to = kGalleryBack;
     const Index joist = gltf_.addMesh("joist", box({-0.13, -0.26, from}, {0.13, 0, to}), material_.timber);
@@ -155,8 +161,7 @@ class HallBuilder {
           if (i > 0 && i < kBays)
             gltf_.addNode({name + " joist " + number, {columnX(i), ceiling, 0}, aroundY(south ? 0 : 180), joist});
           if (i < kBays)
-            gltf_.addNode(
-                {name + " arch " + number, {bayX(i), storey ? kUpperSpring : kLowerSpring, z}, turn, wall});
+            gltf_.addNode({name + " arch " + number, {bayX(i), storey ? kUpperSpring : kLowerSpring, z}, turn, wall});
         }
       }
   }
@@ -185,12 +190,11 @@ class HallBuilder {
         "red banner", cloth({.width = 1.5, .drop = 2.9, .folds = 3.5, .foldDepthTop = 0.02, .foldDepthBottom = 0.07}),
         material_.red);
     const Index curtain = gltf_.addMesh(
-        "red curtain", cloth({.width = 1.5, .drop = 2.35, .folds = 5, .foldDepthTop = 0.05, .foldDepthBottom = 0.09,
-                              .gather = 0.25}),
+        "red curtain",
+        cloth({.width = 1.5, .drop = 2.35, .folds = 5, .foldDepthTop = 0.05, .foldDepthBottom = 0.09, .gather = 0.25}),
         material_.red);
-    const Index rod =
-        gltf_.addMesh("rod", box({-0.5 * kBay + 0.2, -0.025, -0.025}, {0.5 * kBay - 0.2, 0.025, 0.025}),
-                      material_.timber);
+    const Index rod = gltf_.addMesh("rod", box({-0.5 * kBay + 0.2, -0.025, -0.025}, {0.5 * kBay - 0.2, 0.025, 0.025}),
+                                    material_.timber);
     struct Kind {
       const char* color;
       Index banner, curtain;
@@ -221,9 +225,7 @@ class HallBuilder {
           const dvec3 at(bayX(bay), kLowerSpring - 0.16, south ? kArcade : -kArcade);
           gltf_.addNode({.name = side + " rod " + std::to_string(bay), .translation = at, .mesh = rod});
           gltf_.addNode({side + " curtain " + kind.color + " " + std::to_string(bay),
-                         at + dvec3(south ? 0.55 : -0.55, -0.03, 0),
-                         turn,
-                         kind.curtain});
+                         at + dvec3(south ? 0.55 : -0.55, -0.03, 0), turn, kind.curtain});
         }
       }
     }
@@ -248,8 +250,8 @@ class HallBuilder {
 
     const double from = kArcade + kArcadeHalf, cross = columnX(5);
     place("cabinet wall",
-          crossWallWithOpening({cross - 0.13, 0, from}, {cross + 0.13, kGalleryFloor - kSlab, kGalleryBack},
-                               {5.4, 0}, {6.7, 2.5}),
+          crossWallWithOpening({cross - 0.13, 0, from}, {cross + 0.13, kGalleryFloor - kSlab, kGalleryBack}, {5.4, 0},
+                               {6.7, 2.5}),
           material_.plaster);
   }
 
@@ -318,6 +320,8 @@ class HallBuilder {
 
 } // namespace
 
-GeneratedScene writeHall(const std::filesystem::path& folder) { return HallBuilder().write(folder); }
+GeneratedScene writeHall(const std::filesystem::path& folder) {
+  return HallBuilder().write(folder);
+}
 
 } // namespace lambent::content

@@ -28,10 +28,10 @@ Geometry column(double height) {
   const double foot = kPlinth, head = height - kAbacus;
   const std::vector<ProfilePiece> profile{
       {{0, foot}, {0.26, foot}},
-      curve({0.26, foot}, {0.26, foot + 0.10}, 0.35, 4),          // torus
+      curve({0.26, foot}, {0.26, foot + 0.10}, 0.35, 4), // torus
       {{0.26, foot + 0.10}, {0.235, foot + 0.10}},
       curve({0.235, foot + 0.10}, {0.225, foot + 0.16}, -0.25, 2), // hollow that leads to the shaft
-      curve({0.225, foot + 0.16}, {0.19, head - 0.34}, 0.004, 4), // shaft, slightly swollen
+      curve({0.225, foot + 0.16}, {0.19, head - 0.34}, 0.004, 4),  // shaft, slightly swollen
       {{0.19, head - 0.34}, {0.215, head - 0.34}},
       curve({0.215, head - 0.34}, {0.215, head - 0.29}, 0.4, 2), // neck ring
       {{0.215, head - 0.29}, {0.195, head - 0.29}},

@@ -39,8 +39,9 @@ Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments);
 
 Geometry sphere(double radius, uint32_t segments);
 
-/// Opening of a round arch in a wall: wall from y = 0 (the springing) to `height`, `bay` wide, `thickness` deep, centred
-/// on x and z, with a half circle of `radius` around the origin cut out, and a moulding around it on the +Z face.
+/// Opening of a round arch in a wall: wall from y = 0 (the springing) to `height`, `bay` wide, `thickness` deep,
+/// centred on x and z, with a half circle of `radius` around the origin cut out, and a moulding around it on the +Z
+/// face.
 struct ArchShape {
   double bay = 3.4, height = 1.8, thickness = 0.5, radius = 1.4;
   double mouldingWidth = 0.16, mouldingDepth = 0.05;
@@ -51,9 +52,9 @@ Geometry arch(const ArchShape& shape);
 /// Hanging cloth with vertical folds: a single sheet in the plane z = 0, hung along the line y = 0, centred on x.
 struct ClothShape {
   double width = 1.6, drop = 2.4;
-  double folds = 4.5;                        // full waves across the width
+  double folds = 4.5; // full waves across the width
   double foldDepthTop = 0.02, foldDepthBottom = 0.08;
-  double gather = 0;                         // share of the width that is lost towards the bottom
+  double gather = 0; // share of the width that is lost towards the bottom
   uint32_t columns = 40, rows = 10;
 };
 Geometry cloth(const ClothShape& shape);

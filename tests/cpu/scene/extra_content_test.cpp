@@ -36,7 +36,7 @@ void expectSound(const Scene& scene) {
   }
   for (const Material& m : scene.assets.materials)
     for (const TextureRef& ref : {m.baseColorTexture, m.emissiveTexture})
-      if (ref.image != kNone) ASSERT_LT(ref.image, scene.assets.images.size());
+      ASSERT_TRUE(ref.image == kNone || ref.image < scene.assets.images.size());
   for (const TextureImage& image : scene.assets.images)
     ASSERT_EQ(image.texels.size(), size_t(image.width) * size_t(image.height));
 }

@@ -1,0 +1,229 @@
+#include "game/hud.h"
+
+#include "engine/core/error.h"
+#include "game/interaction.h"
+
+#include <imgui/backends/imgui_impl_glfw.h>
+#include <imgui/backends/imgui_impl_opengl3.h>
+#include <imgui/imgui.h>
+#include <imgui/imgui_stdlib.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace lambent {
+
+namespace {
+
+constexpr double kMessageSeconds = 8;
+constexpr double kSmoothing = 0.1; // share of the newest frame in a shown time
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);)
+    parts.push_back(part);
+  return parts;
+}
+
+/// A list to choose from; true when another one was chosen.
+bool choose(const char* label, const std::vector<std::string>& names, std::string& chosen) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(label, chosen.c_str())) return false;
+  for (const std::string& name : names)
+    if (ImGui::Selectable(name.c_str(), name == chosen) && name != chosen) {
+      chosen = name;
+      changed = true;
+    }
+  ImGui::EndCombo();
+  return changed;
+}
+
+} // namespace
+
+Hud::Hud(GLFWwindow* window) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr; // leave no file behind
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().WindowRounding = 4;
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 450");
+}
+
+Hud::~Hud() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+bool Hud::keysTaken() const {
+  return ImGui::GetIO().WantTextInput;
+}
+bool Hud::mouseTaken() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+void Hud::say(std::string message) {
+  constexpr size_t kMost = 5;
+  messages_.push_back({std::move(message), ImGui::GetTime() + kMessageSeconds});
+  if (messages_.size() > kMost) messages_.pop_front();
+}
+
+void Hud::draw(HudModel& model, GiFrame& gi, const FrameStats& stats) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  if (model.panel) drawPanel(model, gi, stats);
+  if (model.help) drawHelp();
+  drawMessages();
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
+  ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+  const float height = ImGui::GetIO().DisplaySize.y - 16;
+  ImGui::SetNextWindowSize({340, std::min(620.0f, height)}, ImGuiCond_FirstUseEver);
+  if (!ImGui::Begin("Lambent")) {
+    ImGui::End();
+    return;
+  }
+  ImGui::PushItemWidth(-110);
+  std::string view = bufferNames()[size_t(model.buffer)];
+  if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
+  std::string technique = "smc";
+  choose("technique", {"smc"}, technique);
+  ImGui::TextWrapped("plan: %s", stats.plan.c_str());
+
+  ImGui::Separator();
+  ImGui::Checkbox("paused", &model.paused);
+  if (model.hasPath) {
+    ImGui::SameLine();
+    ImGui::Checkbox("follow the shot's camera", &model.followPath);
+  }
+  float time = float(model.time);
+  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f")) model.time = time;
+  ImGui::SliderFloat("speed, m/s", &model.speed, 0.01f, 100, "%.2f", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("picture scale", &model.scale, 0.1f, 1, "%.2f");
+  ImGui::Checkbox("carry a lamp", &model.lamp);
+  if (model.lamp)
+    ImGui::ColorEdit3("W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
+
+  float exposure = gi.exposure();
+  if (ImGui::SliderFloat("exposure", &exposure, 1e-3f, 1e3f, "%.4g", ImGuiSliderFlags_Logarithmic))
+    gi.settings().image.exposure = exposure;
+
+  if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) drawStages(stats);
+  if (ImGui::CollapsingHeader("Virtual point lights", ImGuiTreeNodeFlags_DefaultOpen)) {
+    ImGui::Text("alive %u   kept %u   moved %u", stats.vplsAlive, stats.vplsKept, stats.vplsMoved);
+    ImGui::Text("invalid %u   relit %u   maps drawn %u%s", stats.vplsInvalid, stats.vplsRelit, stats.mapsDrawn,
+                stats.burst ? "   (camera cut)" : "");
+    ImGui::TextWrapped("maps by %s", stats.shadowMaker.empty() ? "nobody yet" : stats.shadowMaker.c_str());
+  }
+  if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());
+  ImGui::TextDisabled("F1: keys   Tab: hide this panel");
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+void Hud::drawStages(const FrameStats& stats) {
+  // The first frame prepares everything: it would stand in the averages for a minute.
+  const bool settled = stats.frame > 1;
+  const auto smooth = [&](double& shown, double now) {
+    shown = settled && shown > 0 ? shown + kSmoothing * (now - shown) : now;
+  };
+  smooth(smoothedFrameMs_, stats.wallMs);
+  ImGui::Text("frame %u: %.1f ms, GPU timed by %s", stats.frame, smoothedFrameMs_, stats.timing.c_str());
+  if (!ImGui::BeginTable("stages", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return;
+  ImGui::TableSetupColumn("stage", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, 60);
+  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, 60);
+  ImGui::TableHeadersRow();
+  for (const StageTime& stage : stats.stages) {
+    auto& [cpu, gpu] = smoothedMs_[stage.name];
+    smooth(cpu, stage.cpuMs);
+    smooth(gpu, stage.gpuMs);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(stage.name.c_str());
+    ImGui::TableNextColumn();
+    ImGui::Text("%6.2f", cpu);
+    ImGui::TableNextColumn();
+    if (stage.gpuMs > 0) ImGui::Text("%6.2f", gpu);
+  }
+  ImGui::EndTable();
+}
+
+void Hud::drawSettings(Settings& settings) {
+  if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
+  const auto apply = [&](const std::string& name, const std::string& value) {
+    settingError_.clear();
+    try {
+      applySetting(settings, name, value);
+    } catch (const InputError& e) {
+      settingError_ = e.what();
+    }
+  };
+  std::string group;
+  bool open = false;
+  for (const SettingRow& row : settingsTable()) {
+    const size_t dot = row.name.find('.');
+    if (row.name.substr(0, dot) != group) {
+      if (open) ImGui::TreePop();
+      group = row.name.substr(0, dot);
+      open = ImGui::TreeNode(group.c_str());
+    }
+    if (!open) continue;
+    const std::string label = row.name.substr(dot + 1) + "##" + group;
+    std::string value = settingText(settings, row.name);
+    if (row.range.find('|') != std::string::npos) {
+      if (choose(label.c_str(), split(row.range, '|'), value)) apply(row.name, value);
+    } else {
+      // A value counts when Enter is pressed or the field is left, not while it is being typed.
+      const auto typed = edited_.find(row.name);
+      if (typed != edited_.end()) value = typed->second;
+      if (ImGui::InputText(label.c_str(), &value)) edited_[row.name] = value;
+      if (ImGui::IsItemDeactivatedAfterEdit()) apply(row.name, value);
+      if (!ImGui::IsItemActive()) edited_.erase(row.name);
+    }
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s\n%s\nrange %s, default %s", row.name.c_str(), row.help.c_str(), row.range.c_str(),
+                        row.defaultText.c_str());
+  }
+  if (open) ImGui::TreePop();
+}
+
+void Hud::drawHelp() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::Begin("Keys", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+  if (ImGui::BeginTable("keys", 2)) {
+    for (const auto& [key, meaning] : keyHelp()) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(key);
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(meaning);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+void Hud::drawMessages() {
+  std::erase_if(messages_, [](const Message& m) { return m.until < ImGui::GetTime(); });
+  if (messages_.empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 8, size.y - 8}, ImGuiCond_Always, {1, 1});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("messages", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  for (const Message& m : messages_)
+    ImGui::TextUnformatted(m.text.c_str());
+  ImGui::End();
+}
+
+} // namespace lambent

@@ -1,0 +1,62 @@
+// The panel over the picture: what is shown, where the time goes, and every setting.
+#pragma once
+
+#include "gi/gi_frame.h"
+
+#include <deque>
+#include <map>
+#include <string>
+
+struct GLFWwindow;
+
+namespace lambent {
+
+/// What panel and keys change and the main loop obeys.
+struct HudModel {
+  Buffer buffer = Buffer::Beauty;
+  bool panel = true, help = false;
+
+  double time = 0, duration = 1; // seconds of the scene; the slider's length
+  bool paused = false;
+  bool hasPath = false, followPath = false; // camera path of a shot
+
+  bool lamp = false;
+  vec3 lampIntensity{1}; // W/sr
+  float speed = 1;       // of the player, m/s
+  float scale = 1;       // picture size as a share of the window's
+};
+
+class Hud {
+ public:
+  explicit Hud(GLFWwindow* window);
+  ~Hud();
+  Hud(const Hud&) = delete;
+
+  /// Whether a text field or a slider uses the keys or the mouse at the moment.
+  bool keysTaken() const;
+  bool mouseTaken() const;
+
+  /// One line at the bottom, for some seconds.
+  void say(std::string message);
+  /// Draws into the framebuffer that is bound, over the picture of the last GiFrame::run.
+  void draw(HudModel& model, GiFrame& gi, const FrameStats& stats);
+
+ private:
+  void drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats);
+  void drawStages(const FrameStats& stats);
+  void drawSettings(Settings& settings);
+  void drawHelp() const;
+  void drawMessages();
+
+  struct Message {
+    std::string text;
+    double until = 0; // seconds of the ImGui clock
+  };
+  std::deque<Message> messages_;
+  std::map<std::string, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
+  double smoothedFrameMs_ = 0;
+  std::map<std::string, std::string> edited_; // settings in the middle of being typed
+  std::string settingError_;
+};
+
+} // namespace lambent

@@ -1,0 +1,294 @@
+// Files with defects: each gives an InputError that names the file and the place, or loads with a warning; none crashes.
+
+#include "tests/cpu/scene/support.h"
+
+#include <limits>
+
+namespace lambent {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::GltfBuilder;
+using testing::TemporaryFolder;
+using testing::hasWarning;
+using testing::inputErrorOf;
+using testing::oneTriangle;
+
+class BadInput : public ::testing::Test {
+ protected:
+  /// Loads the file and expects an error that names the file and contains `reason`.
+  void expectError(const GltfBuilder& b, const std::string& reason) {
+    b.writeGltf(folder / "bad.gltf");
+    expectError(folder / "bad.gltf", reason);
+  }
+  void expectError(const fs::path& file, const std::string& reason) {
+    SCOPED_TRACE(reason);
+    const std::string error = inputErrorOf([&] { loadScene(file); });
+    EXPECT_EQ(error.rfind(file.string() + ": ", 0), 0u) << error;
+    EXPECT_NE(error.find(reason), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(BadInput, MissingEmptyAndForeignFiles) {
+  expectError(folder / "none.gltf", "no such file");
+  expectError(folder.path(), "is not a file");
+  testing::writeBytes(folder / "empty.gltf", "");
+  expectError(folder / "empty.gltf", "is empty");
+  testing::writeBytes(folder / "words.gltf", "these are words");
+  expectError(folder / "words.gltf", "line 1");
+  testing::writeBytes(folder / "array.gltf", "[1, 2, 3]");
+  expectError(folder / "array.gltf", "not a JSON object");
+  testing::writeBytes(folder / "nested.gltf", std::string(100000, '['));
+  expectError(folder / "nested.gltf", "nested");
+  GltfBuilder old = oneTriangle();
+  old.json["asset"]["version"] = "1.0";
+  expectError(old, "2.0 expected");
+}
+
+TEST_F(BadInput, BinaryFilesCutOffAnywhereAreRefused) {
+  oneTriangle().writeGlb(folder / "whole.glb");
+  const std::string whole = testing::readBytes(folder / "whole.glb");
+  for (size_t size = 4; size < whole.size(); size += 3) {
+    testing::writeBytes(folder / "cut.glb", whole.substr(0, size));
+    expectError(folder / "cut.glb", "cut off");
+  }
+  std::string longChunk = whole;
+  longChunk[12] = char(0xff); // length of the JSON chunk
+  longChunk[14] = char(0xff);
+  testing::writeBytes(folder / "chunk.glb", longChunk);
+  expectError(folder / "chunk.glb", "chunk 0");
+  // One that claims a few bytes more than the file has after it.
+  std::string lastChunk = whole;
+  lastChunk[whole.size() - 36 - 8] = 40;
+  testing::writeBytes(folder / "last.glb", lastChunk);
+  expectError(folder / "last.glb", "chunk 1");
+}
+
+TEST_F(BadInput, IndicesOutOfRangeNameTheirPlace) {
+  GltfBuilder vertex;
+  const int positions = vertex.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  vertex.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", vertex.indices({0, 1, 7})}});
+  vertex.json["meshes"][0]["name"] = "Wall";
+  expectError(vertex, "mesh 0 'Wall', primitive 0, indices, accessor 1: index 7 at 2");
+
+  struct Case {
+    json::json_pointer at;
+    json value;
+    std::string reason;
+  };
+  const std::vector<Case> cases = {
+      {"/meshes/0/primitives/0/attributes/POSITION"_json_pointer, 9, "refers to accessor 9"},
+      {"/meshes/0/primitives/0/indices"_json_pointer, 99, "accessor"},
+      {"/meshes/0/primitives/0/material"_json_pointer, 4, "refers to material 4, but the file has none"},
+      {"/meshes/0/primitives/0/mode"_json_pointer, 12, "mode 12"},
+      {"/accessors/0/bufferView"_json_pointer, 5, "refers to buffer view 5"},
+      {"/accessors/0/count"_json_pointer, 4, "run past the end of buffer view 0"},
+      {"/accessors/0/count"_json_pointer, 4611686018427387904ull, "accessor 0"},
+      {"/accessors/0/byteOffset"_json_pointer, 18446744073709551604ull, "run past the end"},
+      {"/accessors/0/type"_json_pointer, "VEC2", "2 components (3 expected)"},
+      {"/accessors/0/componentType"_json_pointer, 5124, "component type 5124"},
+      {"/bufferViews/0/buffer"_json_pointer, 3, "refers to buffer 3"},
+      {"/bufferViews/0/byteLength"_json_pointer, 4096, "runs past the end of buffer 0"},
+      {"/bufferViews/0/byteOffset"_json_pointer, 18446744073709551615ull, "runs past the end of buffer 0"},
+      {"/nodes/0/mesh"_json_pointer, 2, "node 0: refers to mesh 2"},
+      {"/nodes/0/camera"_json_pointer, 0, "refers to camera 0"},
+      {"/nodes/0/skin"_json_pointer, 0, "refers to skin 0"},
+      {"/nodes/0/children"_json_pointer, json{8}, "refers to node 8"},
+      {"/nodes/0/extensions"_json_pointer, json{{"KHR_lights_punctual", {{"light", 3}}}}, "refers to light 3"},
+      {"/scenes/0/nodes"_json_pointer, json{5}, "refers to node 5"},
+      {"/scene"_json_pointer, 6, "refers to scene 6"},
+      {"/nodes/0/scale"_json_pointer, json{1, 2}, "2 numbers (3 expected)"},
+      {"/nodes/0/translation"_json_pointer, json{1, 2, 1e300}, "single precision"},
+      {"/extensionsRequired"_json_pointer, json{"KHR_draco_mesh_compression"}, "KHR_draco_mesh_compression"},
+  };
+  for (const Case& c : cases) {
+    GltfBuilder b = oneTriangle();
+    b.json[c.at] = c.value;
+    expectError(b, c.reason);
+  }
+}
+
+TEST_F(BadInput, TexturesAndPictures) {
+  GltfBuilder b = oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  expectError(b, "refers to texture 0, but the file has none");
+  b.json["textures"] = {{{"source", 0}, {"sampler", 2}}};
+  b.json["images"] = {{{"uri", "missing.png"}}};
+  expectError(b, "refers to sampler 2");
+  b.json["textures"][0].erase("sampler");
+  expectError(b, "image 0 'missing.png': cannot be read");
+  testing::writeBytes(folder / "missing.png", "no picture");
+  expectError(b, "image 0 'missing.png': cannot be decoded");
+  b.json["images"] = {{{"bufferView", 44}, {"mimeType", "image/png"}}};
+  expectError(b, "bufferView");
+  b.json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 100000}, {"byteLength", 8}});
+  b.json["images"] = {{{"bufferView", 1}, {"mimeType", "image/png"}}};
+  expectError(b, "runs past the end of buffer 0");
+}
+
+TEST_F(BadInput, ExternalBufferMissingOrShort) {
+  GltfBuilder b = oneTriangle();
+  json j = json::parse(b.text());
+  j["buffers"][0]["uri"] = "data.bin";
+  testing::writeBytes(folder / "bad.gltf", j.dump());
+  expectError(folder / "bad.gltf", "data.bin");
+  testing::writeBytes(folder / "data.bin", "short");
+  expectError(folder / "bad.gltf", "data.bin");
+}
+
+TEST_F(BadInput, PathsAreNotExpandedByAShell) {
+  GltfBuilder b = oneTriangle();
+  json j = json::parse(b.text());
+  const fs::path trap = folder / "trap";
+  j["buffers"][0]["uri"] = "$(touch " + trap.string() + ")";
+  testing::writeBytes(folder / "bad.gltf", j.dump());
+  expectError(folder / "bad.gltf", "not found");
+  EXPECT_FALSE(fs::exists(trap));
+}
+
+TEST_F(BadInput, CyclesAndTwoParents) {
+  GltfBuilder cycle = oneTriangle();
+  cycle.push("nodes", {{"children", {0}}});
+  cycle.json["nodes"][0]["children"] = {1};
+  expectError(cycle, "node 0: is reached twice");
+  GltfBuilder self = oneTriangle();
+  self.json["nodes"][0]["children"] = {0};
+  expectError(self, "is reached twice");
+  GltfBuilder twoParents = oneTriangle();
+  twoParents.push("nodes", json::object());
+  twoParents.json["nodes"][0]["children"] = {1};
+  twoParents.addRoot({{"children", {1}}});
+  expectError(twoParents, "two parents");
+}
+
+TEST_F(BadInput, DeepHierarchyLoads) {
+  GltfBuilder b = oneTriangle();
+  const int depth = 20000;
+  for (int i = 0; i < depth; ++i)
+    b.json["nodes"].push_back({{"children", {i + 2}}, {"translation", {0, 0, 0.001}}});
+  b.json["nodes"].push_back({{"mesh", 0}});
+  b.json["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = b.load(folder);
+  EXPECT_EQ(scene.registry.size(), size_t(depth) + 2);
+  EXPECT_NEAR(worldBounds(scene).hi.z, 0.001f * depth, 0.05f);
+}
+
+TEST_F(BadInput, DefectiveTrianglesAreDroppedAndCounted) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  GltfBuilder b;
+  const int positions =
+      b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}, {inf, 0, 0}, {2, 0, 0}, {1e30f, 0, 0}, {0, 1e30f, 0}});
+  const int normals = b.floats({nan, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  b.addMeshNode({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}},
+                 {"indices", b.indices({0, 1, 2, 0, 1, 3, 4, 1, 2, 0, 1, 5, 1, 1, 2, 0, 6, 7})}});
+  const Scene scene = b.load(folder);
+  const Mesh& m = scene.assets.meshes.at(0);
+  EXPECT_EQ(m.triangles.size(), 1u);
+  EXPECT_TRUE(hasWarning(scene, "2 triangle(s) without area"));
+  EXPECT_TRUE(hasWarning(scene, "3 triangle(s) with a position that is not a finite number"));
+  for (const vec3& n : m.normals)
+    testing::expectNear(n, {0, 0, 1}); // the broken ones are made from the triangle
+  for (const vec3& p : m.positions)
+    EXPECT_TRUE(isFinite(p));
+  testing::expectNear(m.boundsObject.hi, {1, 1, 0});
+}
+
+TEST_F(BadInput, NothingToShowLoadsWithAWarning) {
+  GltfBuilder nothing;
+  const Scene empty = nothing.load(folder);
+  EXPECT_TRUE(hasWarning(empty, "no triangles"));
+  EXPECT_TRUE(worldBounds(empty).empty());
+  EXPECT_TRUE(sceneCameras(empty).empty());
+  SceneExtractor extractor;
+  const SceneView view = extractor.extract(empty, defaultView(empty), 0);
+  EXPECT_TRUE(view.instances.empty() && view.lights.empty());
+  EXPECT_FALSE(empty.assets.materials.empty());
+
+  GltfBuilder allFlat;
+  allFlat.addMeshNode({{"attributes", {{"POSITION", allFlat.positions({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}})}}}});
+  const Scene flat = allFlat.load(folder);
+  EXPECT_EQ(flat.registry.count<MeshInstance>(), 0u);
+  EXPECT_TRUE(flat.assets.meshes.empty());
+  EXPECT_TRUE(hasWarning(flat, "no triangles"));
+}
+
+TEST_F(BadInput, SceneWithoutLightOrCameraHasADefaultView) {
+  const Scene scene = oneTriangle().load(folder);
+  EXPECT_TRUE(sceneCameras(scene).empty());
+  EXPECT_EQ(scene.registry.count<PunctualLight>(), 0u);
+  const CameraView view = defaultView(scene);
+  EXPECT_GT(view.position().z, 0.5f); // from the front
+}
+
+TEST_F(BadInput, ZeroElementsWithoutDataAreBounded) {
+  GltfBuilder b;
+  b.addMeshNode({{"attributes", {{"POSITION", b.accessor(-1, 5126, "VEC3", size_t(1) << 40)}}}});
+  expectError(b, "more than this program reads");
+}
+
+TEST_F(BadInput, SparseAccessors) {
+  const auto sparse = [](int count, std::vector<uint16_t> indices) {
+    GltfBuilder b;
+    const int indexView = b.view(indices), valueView = b.view(std::vector<vec3>(indices.size(), vec3(1)));
+    const int positions = b.accessor(-1, 5126, "VEC3", 3);
+    b.json["accessors"][positions]["sparse"] = {{"count", count},
+                                                {"indices", {{"bufferView", indexView}, {"componentType", 5123}}},
+                                                {"values", {{"bufferView", valueView}}}};
+    b.addMeshNode({{"attributes", {{"POSITION", positions}}}});
+    return b;
+  };
+  expectError(sparse(2, {0, 3}), "sparse index 3 is beyond the last of 3");
+  expectError(sparse(3, {0, 1}), "run past the end");
+  expectError(sparse(9, {0, 1}), "more sparse values than elements");
+  expectError(sparse(-1, {0, 1}), "negative");
+}
+
+TEST_F(BadInput, Animations) {
+  const auto animated = [](std::vector<float> times, std::vector<float> values, const char* interpolation) {
+    GltfBuilder b = oneTriangle();
+    const int input = b.floats(times), output = b.floats(values, "VEC3");
+    b.json["animations"] = {{{"name", "move"},
+                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+                             {"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}}}};
+    return b;
+  };
+  expectError(animated({0, 1}, {0, 0, 0}, "LINEAR"), "animation 0 'move', channel 0: has 1 values for 2 keys");
+  expectError(animated({0, 1}, {0, 0, 0, 1, 1, 1}, "CUBICSPLINE"), "6 expected");
+  expectError(animated({1, 0}, {0, 0, 0, 1, 1, 1}, "LINEAR"), "the time of key 1");
+  GltfBuilder node = animated({0}, {0, 0, 0}, "LINEAR");
+  node.json["animations"][0]["channels"][0]["target"]["node"] = 5;
+  expectError(node, "refers to node 5");
+  GltfBuilder sampler = animated({0}, {0, 0, 0}, "LINEAR");
+  sampler.json["animations"][0]["channels"][0]["sampler"] = 1;
+  expectError(sampler, "refers to sampler 1");
+}
+
+/// Every byte of a small file damaged in turn: whatever comes out, it is a scene or an InputError.
+TEST_F(BadInput, SingleDamagedBytesNeverCrash) {
+  GltfBuilder b = oneTriangle();
+  b.json["materials"] = {{{"name", "m"}, {"emissiveFactor", {1, 1, 1}}}};
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.writeGlb(folder / "whole.glb");
+  const std::string whole = testing::readBytes(folder / "whole.glb");
+  size_t refused = 0;
+  for (size_t i = 0; i < whole.size(); ++i)
+    for (const char replacement : {'\0', '9', '-', char(0xff)}) {
+      std::string damaged = whole;
+      damaged[i] = replacement;
+      testing::writeBytes(folder / "damaged.glb", damaged);
+      try {
+        loadScene(folder / "damaged.glb");
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, whole.size() / 2);
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,149 @@
+// Camera conventions: rays, projection and placement must tell the same story.
+
+#include "tests/cpu/scene/support.h"
+
+namespace lambent {
+namespace {
+
+using testing::expectNear;
+using testing::GltfBuilder;
+using testing::TemporaryFolder;
+
+CameraView tiltedCamera() {
+  CameraView camera = lookAt({1, 2, 3}, {-4, 0.5f, 2}, 0.9f);
+  camera.width = 400;
+  camera.height = 300;
+  return camera;
+}
+
+TEST(Camera, CentreRayLooksAtTheTargetAndCornersAreWhereTheyShould) {
+  CameraView camera; // at the origin, along -Z
+  camera.width = 200;
+  camera.height = 100;
+  camera.fovY = kPi / 2;
+  expectNear(cameraRay(camera, 0.5f, 0.5f).direction, {0, 0, -1});
+  expectNear(cameraRay(camera, 0, 0).direction, glm::normalize(vec3(-2, 1, -1))); // left, top
+  expectNear(cameraRay(camera, 1, 1).direction, glm::normalize(vec3(2, -1, -1))); // right, bottom
+  const CameraRay ray = cameraRay(tiltedCamera(), 0.5f, 0.5f);
+  expectNear(ray.origin, {1, 2, 3});
+  expectNear(ray.direction, glm::normalize(vec3(-5, -1.5f, -1)));
+}
+
+TEST(Camera, ProjectionPutsPointsOfARayAtItsPicturePoint) {
+  CameraView perspective = tiltedCamera(), ortho = tiltedCamera();
+  perspective.near = 0.1f;
+  ortho.orthoHalfHeight = 1.5f;
+  for (const CameraView& camera : {perspective, ortho})
+    for (const vec2 uv : {vec2(0.5f, 0.5f), vec2(0, 0), vec2(1, 0), vec2(0.2f, 0.9f)}) {
+      const CameraRay ray = cameraRay(camera, uv.x, uv.y);
+      EXPECT_NEAR(glm::length(ray.direction), 1, 1e-5f);
+      const vec4 view = glm::inverse(camera.worldFromView) * vec4(ray.origin + 7.0f * ray.direction, 1);
+      const vec4 clip = clipFromView(camera) * view;
+      EXPECT_NEAR(clip.x / clip.w, 2 * uv.x - 1, 1e-4f);
+      EXPECT_NEAR(clip.y / clip.w, 1 - 2 * uv.y, 1e-4f);
+    }
+}
+
+TEST(Camera, DepthIsReversedFromOneToZero) {
+  CameraView camera;
+  camera.near = 0.25f;
+  const auto depth = [&](float distance) {
+    const vec4 clip = clipFromView(camera, 100) * vec4(0, 0, -distance, 1);
+    return clip.z / clip.w;
+  };
+  EXPECT_FLOAT_EQ(depth(0.25f), 1);
+  EXPECT_FLOAT_EQ(depth(0.5f), 0.5f); // near / distance
+  EXPECT_NEAR(depth(1e7f), 0, 1e-6f);
+  camera.orthoHalfHeight = 2;
+  EXPECT_NEAR(depth(0.25f), 1, 1e-6f);
+  EXPECT_NEAR(depth(100), 0, 1e-6f);
+  EXPECT_NEAR(depth(50.125f), 0.5f, 1e-6f);
+}
+
+TEST(Camera, LookAtIsRigidAndUprightAlsoStraightDown) {
+  for (const vec3 target : {vec3(3, 1, 2), vec3(0, -5, 0), vec3(0, 5, 0), vec3(0, 0, 0)}) {
+    const mat3 r(lookAt({0, 0, 0}, target, 1).worldFromView);
+    EXPECT_NEAR(glm::determinant(r), 1, 1e-5f);
+    EXPECT_NEAR(glm::length(r[0]), 1, 1e-5f);
+    if (glm::length(target) > 0) expectNear(-r[2], glm::normalize(target));
+    EXPECT_NEAR(r[0].y, 0, 1e-6f); // right is level
+    EXPECT_GE(r[1].y, -1e-6f);
+  }
+}
+
+TEST(Camera, FileCamerasLoseScaleAndMirroring) {
+  TemporaryFolder folder;
+  GltfBuilder b = testing::oneTriangle();
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.2}}}},
+                       {{"type", "orthographic"},
+                        {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0.01}, {"zfar", 50}}}}};
+  b.addRoot({{"name", "main"}, {"camera", 0}, {"translation", {1, 2, 3}}, {"scale", {-2, 2, 2}}});
+  b.addRoot({{"camera", 1}});
+  const Scene scene = b.load(folder);
+  const auto cameras = sceneCameras(scene);
+  ASSERT_EQ(cameras.size(), 2u);
+  EXPECT_EQ(cameras[0].name, "main");
+  EXPECT_EQ(cameras[1].name, "camera 1");
+  EXPECT_FLOAT_EQ(cameras[0].view.fovY, 0.7f);
+  EXPECT_FLOAT_EQ(cameras[0].view.near, 0.2f);
+  EXPECT_FLOAT_EQ(cameras[1].view.orthoHalfHeight, 2);
+  expectNear(cameras[0].view.position(), {1, 2, 3});
+  EXPECT_NEAR(glm::determinant(mat3(cameras[0].view.worldFromView)), 1, 1e-5f);
+  expectNear(-vec3(cameras[0].view.worldFromView[2]), {0, 0, -1});
+  expectNear(vec3(cameras[0].view.worldFromView[1]), {0, 1, 0});
+}
+
+/// A box of 10 x 4 x 6 m whose faces' fronts are inside (a room) or outside (an object); without the side at +Z when
+/// `open`.
+GltfBuilder box(bool inward, bool open) {
+  GltfBuilder b;
+  std::vector<vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(vec3(i & 1 ? 5 : -5, i & 2 ? 4 : 0, i & 4 ? 3 : -3));
+  std::vector<uint16_t> indices = {0, 2, 3, 0, 3, 1, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3};
+  if (!open) indices.insert(indices.end(), {4, 5, 7, 4, 7, 6});
+  if (inward)
+    for (size_t i = 0; i < indices.size(); i += 3)
+      std::swap(indices[i + 1], indices[i + 2]);
+  const int positions = b.positions(corners);
+  b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", b.indices(indices)}});
+  return b;
+}
+
+TEST(DefaultView, ObjectsAreSeenFromOutside) {
+  TemporaryFolder folder;
+  const Scene scene = box(false, false).load(folder);
+  const CameraView view = defaultView(scene);
+  const Aabb bounds = worldBounds(scene);
+  EXPECT_GT(glm::distance(view.position(), bounds.centre()), 0.5f * bounds.diameter());
+  EXPECT_GT(view.position().z, bounds.hi.z); // from the front, to the right and above
+  EXPECT_GT(view.position().x, bounds.centre().x);
+  EXPECT_GT(view.position().y, bounds.centre().y);
+  for (int i = 0; i < 8; ++i) { // all of it is in the picture
+    const vec3 corner(i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y, i & 4 ? bounds.hi.z : bounds.lo.z);
+    const vec4 clip = clipFromView(view) * glm::inverse(view.worldFromView) * vec4(corner, 1);
+    EXPECT_LT(std::abs(clip.y), clip.w);
+    EXPECT_LT(std::abs(clip.x), clip.w);
+  }
+}
+
+TEST(DefaultView, RoomsAreSeenFromInsideAtEyeHeightAlongTheLongerAxis) {
+  TemporaryFolder folder;
+  const Scene scene = box(true, false).load(folder);
+  const CameraView view = defaultView(scene);
+  EXPECT_NEAR(view.position().y, 1.6f, 1e-3f);
+  EXPECT_LT(view.position().x, -3);
+  EXPECT_GT(view.position().x, -5);
+  expectNear(-vec3(view.worldFromView[2]), {1, 0, 0});
+}
+
+TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {
+  TemporaryFolder folder;
+  const CameraView view = defaultView(box(true, true).load(folder));
+  expectNear(-vec3(view.worldFromView[2]), {0, 0, -1});
+  EXPECT_GT(view.position().z, 3);
+  EXPECT_NEAR(view.position().y, 2, 1e-4f);
+}
+
+} // namespace
+} // namespace lambent

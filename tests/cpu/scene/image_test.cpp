@@ -1,0 +1,199 @@
+// Pictures on disk, texture lookup, nearest names.
+
+#include "engine/core/image.h"
+#include "engine/core/text.h"
+#include "tests/cpu/scene/support.h"
+
+#include <bit>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <stb/stb_image.h>
+
+namespace lambent {
+namespace {
+
+using testing::inputErrorOf;
+using testing::TemporaryFolder;
+
+Image gradient(int width, int height) {
+  Image image(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      image.at(x, y) = vec3(x * 0.1f, y * 1e5f, -1.0f / float(1 + x + y));
+  return image;
+}
+
+TEST(Exr, RoundTripIsExact) {
+  TemporaryFolder folder;
+  Image image = gradient(37, 21);
+  image.at(3, 4) = vec3(kInfinity, 1e-42f, 0);
+  writeExr(folder / "a.exr", image);
+  const Image back = readExr(folder / "a.exr");
+  EXPECT_EQ(back.width, 37);
+  EXPECT_EQ(back.height, 21);
+  EXPECT_EQ(back.pixels, image.pixels);
+}
+
+TEST(Exr, LayersAndShiftedWindowsAreRead) {
+  TemporaryFolder folder;
+  const Image image = gradient(4, 3);
+  const Imath::Box2i window({-2, 5}, {1, 7});
+  Imf::Header header(window, window);
+  Imf::FrameBuffer frame;
+  const char* base = reinterpret_cast<const char*>(image.pixels.data()) - (5 * 4 - 2) * int(sizeof(vec3));
+  for (int c = 0; c < 3; ++c) {
+    const std::string name = std::string("direct.") + "RGB"[c];
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    frame.insert(name, Imf::Slice(Imf::FLOAT, const_cast<char*>(base) + c * sizeof(float), sizeof(vec3), 4 * sizeof(vec3)));
+  }
+  {
+    Imf::OutputFile out((folder / "layers.exr").c_str(), header);
+    out.setFrameBuffer(frame);
+    out.writePixels(3);
+  }
+  EXPECT_EQ(readExr(folder / "layers.exr", "direct").pixels, image.pixels);
+  const std::string error = inputErrorOf([&] { readExr(folder / "layers.exr"); });
+  EXPECT_NE(error.find("has no channel R (it has: direct.B, direct.G, direct.R)"), std::string::npos) << error;
+}
+
+TEST(Exr, BadFilesAreInputErrors) {
+  TemporaryFolder folder;
+  EXPECT_NE(inputErrorOf([&] { readExr(folder / "no.exr"); }).find("no such file"), std::string::npos);
+  testing::writeBytes(folder / "words.exr", "words");
+  EXPECT_NE(inputErrorOf([&] { readExr(folder / "words.exr"); }).find("words.exr: "), std::string::npos);
+  writeExr(folder / "whole.exr", gradient(16, 16));
+  const std::string whole = testing::readBytes(folder / "whole.exr");
+  for (size_t size = 5; size < whole.size(); size += 97) {
+    testing::writeBytes(folder / "cut.exr", whole.substr(0, size));
+    inputErrorOf([&] { readExr(folder / "cut.exr"); });
+  }
+}
+
+TEST(Png, RoundTripIsExact) {
+  TemporaryFolder folder;
+  Image8 image{3, 2, {0, 1, 2, 3, 4, 5, 250, 251, 252, 9, 9, 9, 8, 8, 8, 7, 0, 7}};
+  writePng(folder / "a.png", image);
+  int width = 0, height = 0, channels = 0;
+  stbi_uc* back = stbi_load((folder / "a.png").c_str(), &width, &height, &channels, 3);
+  ASSERT_NE(back, nullptr);
+  EXPECT_EQ(width, 3);
+  EXPECT_EQ(height, 2);
+  EXPECT_EQ(std::vector<uint8_t>(back, back + 18), image.rgb);
+  stbi_image_free(back);
+}
+
+TEST(Pfm, BothByteOrdersAndGreyAreRead) {
+  TemporaryFolder folder;
+  const auto floats = [](std::vector<float> values, bool big) {
+    std::string bytes;
+    for (const float v : values)
+      for (int i = 0; i < 4; ++i)
+        bytes += char(std::bit_cast<uint32_t>(v) >> (8 * (big ? 3 - i : i)) & 255);
+    return bytes;
+  };
+  // Two rows of one pixel; the file begins with the bottom one.
+  for (const bool big : {false, true}) {
+    testing::writeBytes(folder / "a.pfm", std::string("PF\n1 2\n") + (big ? "1.0" : "-1.0") + "\n" +
+                                              floats({4, 5, 6, 1, 2, 3}, big));
+    const Image image = readPfm(folder / "a.pfm");
+    EXPECT_EQ(image.at(0, 0), vec3(1, 2, 3));
+    EXPECT_EQ(image.at(0, 1), vec3(4, 5, 6));
+  }
+  testing::writeBytes(folder / "grey.pfm", "Pf\n2 1\n-1\n" + floats({7, 8}, false));
+  EXPECT_EQ(readPfm(folder / "grey.pfm").at(1, 0), vec3(8));
+  testing::writeBytes(folder / "short.pfm", "PF\n2 2\n-1\n" + floats({1, 2, 3}, false));
+  EXPECT_NE(inputErrorOf([&] { readPfm(folder / "short.pfm"); }).find("ends before"), std::string::npos);
+  testing::writeBytes(folder / "huge.pfm", "PF\n999999 999999\n-1\n");
+  EXPECT_NE(inputErrorOf([&] { readPfm(folder / "huge.pfm"); }).find("size"), std::string::npos);
+}
+
+TEST(WriteAtomically, LeavesNothingBehindOnFailureAndKeepsTheOldFile) {
+  TemporaryFolder folder;
+  testing::writeBytes(folder / "old.txt", "old");
+  EXPECT_THROW(writeAtomically(folder / "old.txt",
+                               [](const std::filesystem::path& temporary) {
+                                 testing::writeBytes(temporary, "half");
+                                 throw RunError("no more paper");
+                               }),
+               RunError);
+  EXPECT_EQ(testing::readBytes(folder / "old.txt"), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  EXPECT_THROW(writeExr(folder / "no/such/folder.exr", Image(1, 1)), RunError);
+  EXPECT_THROW(writePng(folder / "no/such/folder.png", Image8{1, 1, {1, 2, 3}}), RunError);
+}
+
+TEST(Srgb, CodesAndLinearValuesAreInverse) {
+  EXPECT_FLOAT_EQ(linearFromSrgb(1), 1);
+  EXPECT_NEAR(linearFromSrgb(0.5f), 0.21404f, 1e-5f);
+  for (int i = 0; i <= 100; ++i)
+    EXPECT_NEAR(srgbFromLinear(linearFromSrgb(float(i) / 100)), float(i) / 100, 1e-5f);
+}
+
+class TextureLookup : public ::testing::Test {
+ protected:
+  TextureLookup() { // black, white / red, transparent green; linear codes for easy numbers
+    TextureImage image;
+    image.width = image.height = 2;
+    image.srgb = false;
+    image.texels = {{0, 0, 0, 255}, {255, 255, 255, 255}, {255, 0, 0, 255}, {0, 255, 0, 0}};
+    assets.images.push_back(image);
+    ref.image = 0;
+  }
+  void expectColor(vec2 uv, vec4 expected) {
+    const vec4 c = sampleTexture(assets, ref, uv);
+    for (int i = 0; i < 4; ++i)
+      EXPECT_NEAR(c[i], expected[i], 1e-5f) << "uv " << uv.x << ", " << uv.y << ", component " << i;
+  }
+  SceneAssets assets;
+  TextureRef ref;
+};
+
+TEST_F(TextureLookup, TexelCentresAreExactAndBetweenIsMixed) {
+  expectColor({0.25f, 0.25f}, {0, 0, 0, 1}); // row 0 is at v = 0
+  expectColor({0.75f, 0.25f}, {1, 1, 1, 1});
+  expectColor({0.25f, 0.75f}, {1, 0, 0, 1});
+  expectColor({0.5f, 0.25f}, {0.5f, 0.5f, 0.5f, 1});
+  expectColor({0.5f, 0.5f}, {0.5f, 0.5f, 0.25f, 0.75f});
+  ref.nearest = true;
+  expectColor({0.45f, 0.45f}, {0, 0, 0, 1});
+}
+
+TEST_F(TextureLookup, WrapModes) {
+  expectColor({0, 0.25f}, {0.5f, 0.5f, 0.5f, 1}); // the border mixes with the other end
+  expectColor({-3.25f, 5.25f}, {1, 1, 1, 1});
+  ref.wrapU = ref.wrapV = Wrap::ClampToEdge;
+  expectColor({0, 0.25f}, {0, 0, 0, 1});
+  expectColor({1e30f, -1e30f}, {1, 1, 1, 1});
+  ref.wrapU = ref.wrapV = Wrap::MirroredRepeat;
+  expectColor({0, 0.25f}, {0, 0, 0, 1});
+  expectColor({1.25f, 0.25f}, {1, 1, 1, 1});
+  expectColor({1.75f, 0.25f}, {0, 0, 0, 1});
+  expectColor({-0.75f, 0.25f}, {1, 1, 1, 1});
+}
+
+TEST_F(TextureLookup, TransformSrgbAndStrangeCoordinates) {
+  ref.uvTransform = mat3(2, 0, 0, 0, 2, 0, 0.25f, 0, 1); // scale 2, then offset (0.25, 0)
+  expectColor({0.25f, 0.125f}, {1, 1, 1, 1});
+  ref.uvTransform = mat3(1);
+  assets.images[0].srgb = true;
+  assets.images[0].texels[0] = {188, 188, 188, 128};
+  expectColor({0.25f, 0.25f}, vec4(vec3(linearFromSrgb(188 / 255.0f)), 128 / 255.0f));
+  for (const float strange : {std::nanf(""), kInfinity, -kInfinity, 3e38f}) // any answer, but an answer
+    EXPECT_TRUE(isFinite(vec3(sampleTexture(assets, ref, {strange, 0.5f}))));
+  ref.image = kNone;
+  expectColor({0.3f, 0.3f}, vec4(1));
+}
+
+TEST(NearestName, FindsTyposAndRefusesToGuess) {
+  const std::vector<std::string> names = {"smc.vpls", "smc.seed", "gather.tile"};
+  EXPECT_EQ(nearestName("smc.vpl", names), "smc.vpls");
+  EXPECT_EQ(nearestName("SMC.SEED", names), "smc.seed");
+  EXPECT_EQ(nearestName("xyzzy", names), "");
+  EXPECT_EQ(nearestName("anything", std::vector<std::string>{}), "");
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,321 @@
+// What glTF can say about geometry, materials and nodes, each in the smallest file that says it.
+
+#include "tests/cpu/scene/support.h"
+
+#include <algorithm>
+
+#include <stb/stb_image_write.h>
+
+namespace lambent {
+namespace {
+
+using testing::GltfBuilder;
+using testing::TemporaryFolder;
+using testing::expectNear;
+using testing::hasWarning;
+
+const std::vector<vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+
+class Import : public ::testing::Test {
+ protected:
+  const Mesh& onlyMesh(const GltfBuilder& b) {
+    scene = b.load(folder);
+    EXPECT_EQ(scene.assets.meshes.size(), 1u);
+    return scene.assets.meshes.at(0);
+  }
+  /// A picture of one colour as PNG bytes.
+  static std::vector<uint8_t> png(u8vec4 color) {
+    std::vector<uint8_t> out;
+    const std::vector<u8vec4> texels(4, color);
+    stbi_write_png_to_func(
+        [](void* to, void* data, int size) {
+          const auto* p = static_cast<uint8_t*>(data);
+          static_cast<std::vector<uint8_t>*>(to)->insert(static_cast<std::vector<uint8_t>*>(to)->end(), p, p + size);
+        },
+        &out, 2, 2, 4, texels.data(), 8);
+    return out;
+  }
+
+  TemporaryFolder folder;
+  Scene scene;
+};
+
+/// Sum of the triangles' area vectors: area and facing at once.
+vec3 areaVector(const Mesh& m) {
+  vec3 sum(0);
+  for (const uvec3& t : m.triangles)
+    sum += 0.5f * glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]);
+  return sum;
+}
+
+TEST_F(Import, TriangleWithoutNormalsOrIndicesGetsFlatNormals) {
+  const Mesh& m = onlyMesh(testing::oneTriangle());
+  ASSERT_EQ(m.triangles.size(), 1u);
+  ASSERT_EQ(m.normals.size(), 3u);
+  for (const vec3& n : m.normals)
+    expectNear(n, {0, 0, 1});
+  expectNear(m.boundsObject.hi, {1, 1, 0});
+  EXPECT_EQ(scene.assets.materials.size(), 1u); // the default one
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST_F(Import, IndexedStripAndFanMakeTheSameSquare) {
+  struct Case {
+    int mode;
+    std::vector<uint16_t> indices;
+  };
+  for (const Case& c : {Case{4, {0, 1, 2, 0, 2, 3}}, Case{5, {0, 1, 3, 2}}, Case{6, {0, 1, 2, 3}}}) {
+    SCOPED_TRACE(c.mode);
+    GltfBuilder b;
+    const int positions = b.positions(kSquare);
+    b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", b.indices(c.indices)}, {"mode", c.mode}});
+    const Mesh& m = onlyMesh(b);
+    EXPECT_EQ(m.triangles.size(), 2u);
+    expectNear(areaVector(m), {0, 0, 1});
+    EXPECT_EQ(m.positions.size(), 6u); // flat normals: no vertex is shared
+  }
+}
+
+TEST_F(Import, PointsAndLinesAreLeftOutWithAWarning) {
+  GltfBuilder b = testing::oneTriangle();
+  for (int mode = 0; mode < 4; ++mode)
+    b.addMeshNode({{"attributes", {{"POSITION", b.positions(kSquare)}}}, {"mode", mode}});
+  scene = b.load(folder);
+  EXPECT_EQ(scene.registry.count<MeshInstance>(), 1u);
+  EXPECT_TRUE(hasWarning(scene, "4 primitive(s) of points or lines"));
+}
+
+TEST_F(Import, InterleavedVerticesAreReadWithTheirStride) {
+  GltfBuilder b;
+  std::vector<float> data; // position, normal, uv
+  for (const vec3& p : kSquare)
+    data.insert(data.end(), {p.x, p.y, p.z, 0, 0, 2, p.x + 5, p.y});
+  const int view = b.view(data, 32);
+  b.addMeshNode({{"attributes",
+                  {{"POSITION", b.accessor(view, 5126, "VEC3", 4)},
+                   {"NORMAL", b.accessor(view, 5126, "VEC3", 4, 12)},
+                   {"TEXCOORD_0", b.accessor(view, 5126, "VEC2", 4, 24)}}},
+                 {"indices", b.indices({0, 1, 2, 0, 2, 3})}});
+  const Mesh& m = onlyMesh(b);
+  ASSERT_EQ(m.positions.size(), 4u);
+  for (size_t i = 0; i < 4; ++i) {
+    expectNear(m.positions[i], kSquare[i]);
+    expectNear(m.normals[i], {0, 0, 1}); // made unit
+    EXPECT_FLOAT_EQ(m.uv0[i].x, kSquare[i].x + 5);
+  }
+}
+
+TEST_F(Import, SparseAccessorOverZerosMovesSomeVertices) {
+  GltfBuilder b;
+  const int indexView = b.view(std::vector<uint16_t>{1, 2});
+  const int valueView = b.view(std::vector<vec3>{{2, 0, 0}, {0, 3, 0}});
+  const int positions = b.accessor(-1, 5126, "VEC3", 3);
+  b.json["accessors"][positions]["sparse"] = {{"count", 2},
+                                              {"indices", {{"bufferView", indexView}, {"componentType", 5123}}},
+                                              {"values", {{"bufferView", valueView}}}};
+  b.addMeshNode({{"attributes", {{"POSITION", positions}}}});
+  const Mesh& m = onlyMesh(b);
+  expectNear(m.positions[0], {0, 0, 0});
+  expectNear(m.positions[1], {2, 0, 0});
+  expectNear(m.positions[2], {0, 3, 0});
+}
+
+TEST_F(Import, NormalisedAndPlainIntegersAreConverted) {
+  GltfBuilder b;
+  // Positions as plain signed bytes and normals as normalised ones (KHR_mesh_quantization), padded to four bytes.
+  const int positions = b.view(std::vector<int8_t>{0, 0, 0, 0, 100, 0, 0, 0, 0, -50, 0, 0}, 4);
+  const int normals = b.view(std::vector<int8_t>{0, 0, -127, 0, 0, 0, -128, 0, 0, 0, -127, 0}, 4);
+  const int uvs = b.view(std::vector<uint16_t>{0, 0, 65535, 0, 0, 32768});
+  const int colors = b.view(std::vector<uint8_t>{255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0}, 4);
+  b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  b.addMeshNode({{"attributes",
+                  {{"POSITION", b.accessor(positions, 5120, "VEC3", 3)},
+                   {"NORMAL", b.accessor(normals, 5120, "VEC3", 3, 0, true)},
+                   {"TEXCOORD_0", b.accessor(uvs, 5123, "VEC2", 3, 0, true)},
+                   {"COLOR_0", b.accessor(colors, 5121, "VEC3", 3, 0, true)}}}});
+  const Mesh& m = onlyMesh(b);
+  expectNear(m.positions[1], {100, 0, 0});
+  expectNear(m.positions[2], {0, -50, 0});
+  expectNear(m.normals[1], {0, 0, -1}); // -128 is clamped to -1
+  EXPECT_FLOAT_EQ(m.uv0[1].x, 1);
+  EXPECT_NEAR(m.uv0[2].y, 0.5f, 1e-4f);
+  expectNear(vec3(m.colors[0]), {1, 0, 0.2f});
+  EXPECT_FLOAT_EQ(m.colors[0].w, 1);
+}
+
+TEST_F(Import, PrimitivesShareVerticesAndFillUpMissingAttributes) {
+  GltfBuilder b;
+  const int positions = b.positions(kSquare), normals = b.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  const int uvs = b.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2");
+  const nlohmann::json plain = {{"POSITION", positions}, {"NORMAL", normals}};
+  nlohmann::json withUv = plain;
+  withUv["TEXCOORD_0"] = uvs;
+  b.json["materials"] = {{{"name", "a"}}, {{"name", "b"}}};
+  b.addRoot({{"mesh", 0}});
+  b.json["meshes"] = {{{"primitives",
+                        {{{"attributes", plain}, {"indices", b.indices({0, 1, 2})}, {"material", 1}},
+                         {{"attributes", plain}, {"indices", b.indices({0, 2, 3})}, {"material", 0}},
+                         {{"attributes", withUv}, {"indices", b.indices({0, 2, 3})}, {"material", 1}}}}}};
+  const Mesh& m = onlyMesh(b);
+  EXPECT_EQ(m.positions.size(), 8u); // four shared by the first two primitives, four of the third
+  ASSERT_EQ(m.uv0.size(), 8u);
+  EXPECT_EQ(m.uv0[2], vec2(0));
+  EXPECT_EQ(m.uv0[6], vec2(1));
+  ASSERT_EQ(m.primitives.size(), 3u);
+  EXPECT_EQ(m.primitives[0].material, m.primitives[2].material);
+  EXPECT_EQ(scene.assets.materials[m.primitives[1].material].name, "a");
+  EXPECT_EQ(m.primitives[2].firstTriangle, 2u);
+}
+
+TEST_F(Import, NegativeScaleKeepsTheObjectAndMirrorsTheWorld) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["nodes"][0]["scale"] = {-2, 1, 1};
+  const Mesh& m = onlyMesh(b);
+  expectNear(areaVector(m), {0, 0, 0.5f}); // object space is as in the file
+  SceneExtractor extractor;
+  const SceneView view = extractor.extract(scene, {}, 0);
+  EXPECT_LT(glm::determinant(mat3(view.instances[0].worldFromObject)), 0);
+  expectNear(view.boundsWorld.lo, {-2, 0, 0});
+}
+
+TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const int picture = b.view(png({255, 0, 188, 255}));
+  b.json["images"] = {{{"bufferView", picture}, {"mimeType", "image/png"}, {"name", "pink"}}};
+  b.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  b.json["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.5, 0.25, 1, 0.75}},
+         {"baseColorTexture",
+          {{"index", 0},
+           {"texCoord", 0},
+           {"extensions",
+            {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"scale", {2, 3}}, {"texCoord", 1}}}}}}}}},
+       {"emissiveFactor", {1, 0.5, 0}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.3},
+       {"doubleSided", true}}};
+  scene = b.load(folder);
+  ASSERT_EQ(scene.assets.materials.size(), 1u);
+  const Material& m = scene.assets.materials[0];
+  expectNear(m.baseColor, {0.5f, 0.25f, 1});
+  EXPECT_FLOAT_EQ(m.alpha, 0.75f);
+  expectNear(m.emission, {8, 4, 0});
+  EXPECT_EQ(m.alphaMode, AlphaMode::Mask);
+  EXPECT_FLOAT_EQ(m.alphaCutoff, 0.3f);
+  EXPECT_TRUE(m.doubleSided);
+  const TextureRef& t = m.baseColorTexture;
+  EXPECT_EQ(t.uvSet, 1u); // the extension's texCoord wins
+  EXPECT_EQ(t.wrapU, Wrap::ClampToEdge);
+  EXPECT_EQ(t.wrapV, Wrap::MirroredRepeat);
+  EXPECT_TRUE(t.nearest);
+  expectNear(t.uvTransform * vec3(1, 1, 1), {2.5f, 3, 1});
+  const TextureImage& image = scene.assets.images.at(t.image);
+  EXPECT_EQ(image.name, "pink");
+  expectNear(vec3(image.averageLinear), {1, 0, 0.5029f}, 1e-3f); // 188 is half of linear light
+}
+
+TEST_F(Import, BlendedMaterialsBecomeMaskedWithAWarning) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["materials"] = {{{"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_transmission", {{"x", 1}}}}}}};
+  scene = b.load(folder);
+  EXPECT_EQ(scene.assets.materials[0].alphaMode, AlphaMode::Mask);
+  EXPECT_FLOAT_EQ(scene.assets.materials[0].alphaCutoff, 0.5f);
+  EXPECT_TRUE(hasWarning(scene, "alpha blending"));
+  EXPECT_TRUE(hasWarning(scene, "KHR_materials_transmission"));
+}
+
+TEST_F(Import, DanglingImageIsWhiteAndUnreadableImageThatNothingUsesIsIgnored) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["images"] = {{{"uri", "not-there.png"}}};
+  b.json["textures"] = {{{"source", 7}}};
+  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  scene = b.load(folder);
+  EXPECT_EQ(scene.assets.materials[0].baseColorTexture.image, kNone);
+  EXPECT_TRUE(hasWarning(scene, "white instead"));
+}
+
+TEST_F(Import, LightsHaveGltfUnitsAndCones) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 4}, 
+       {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}},
+      {{"type", "directional"}, {"intensity", 3}}};
+  b.addRoot({{"name", "lamp"},
+             {"translation", {1, 2, 3}},
+             {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}, // -Z turned to -Y
+             {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  b.addRoot({{"name", "sun"}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+  scene = b.load(folder);
+  SceneExtractor extractor;
+  const SceneView view = extractor.extract(scene, {}, 0);
+  ASSERT_EQ(view.lights.size(), 2u);
+  EXPECT_EQ(view.lights[0].type, LightType::Spot);
+  expectNear(view.lights[0].position, {1, 2, 3});
+  expectNear(view.lights[0].direction, {0, -1, 0});
+  expectNear(view.lights[0].intensity, {10, 5, 0});
+  EXPECT_FLOAT_EQ(view.lights[0].range, 4);
+  EXPECT_FLOAT_EQ(view.lights[0].innerConeCos, std::cos(0.2f));
+  EXPECT_FLOAT_EQ(view.lights[0].outerConeCos, std::cos(0.6f));
+  EXPECT_EQ(view.lights[1].type, LightType::Directional);
+  expectNear(view.lights[1].direction, {0, 0, -1});
+  EXPECT_EQ(view.lights[1].range, kInfinity);
+}
+
+TEST_F(Import, SceneIsChosenByNameIndexOrDefault) {
+  GltfBuilder b = testing::oneTriangle();
+  b.push("nodes", {{"name", "second root"}});
+  b.json["scenes"][0]["name"] = "first";
+  b.push("scenes", {{"name", "second"}, {"nodes", {1}}});
+  b.json["scene"] = 1;
+  const auto file = folder / "two.gltf";
+  b.writeGltf(file);
+  EXPECT_TRUE(findByName(loadScene(file), "second root"));
+  EXPECT_EQ(loadScene(file, "first").registry.count<MeshInstance>(), 1u);
+  EXPECT_EQ(loadScene(file, "0").registry.count<MeshInstance>(), 1u);
+  const std::string error = testing::inputErrorOf([&] { loadScene(file, "third"); });
+  EXPECT_NE(error.find("it has: first, second"), std::string::npos) << error;
+}
+
+TEST_F(Import, SkinnedMeshIsPosedAtRestInItsNodesSpace) {
+  GltfBuilder b;
+  const int positions = b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const int joints = b.accessor(b.view(std::vector<uint8_t>(12, 0)), 5121, "VEC4", 3);
+  const int weights = b.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  const int node = b.addMeshNode({{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
+  const int joint = b.addRoot({{"translation", {0, 0, 5}}});
+  b.json["skins"] = {{{"joints", {joint}}}};
+  b.json["nodes"][node]["skin"] = 0;
+  b.json["nodes"][node]["translation"] = {9, 9, 9}; // glTF: does not move a skinned mesh
+  scene = b.load(folder);
+  expectNear(worldBounds(scene).lo, {0, 0, 5});
+  EXPECT_TRUE(hasWarning(scene, "frozen"));
+}
+
+TEST_F(Import, BinaryFileIsTheSameScene) {
+  testing::oneTriangle().writeGlb(folder / "triangle.glb");
+  scene = loadScene(folder / "triangle.glb");
+  EXPECT_EQ(scene.assets.meshes.at(0).triangles.size(), 1u);
+}
+
+TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["nodes"][0]["matrix"] = {0, 0, -2, 0, 0, 3, 0, 0, 1, 0, 0, 0, 5, 6, 7, 1};
+  scene = b.load(folder);
+  const Transform& t = scene.registry.get<Transform>(Entity(0, 0));
+  EXPECT_FALSE(t.matrix);
+  expectNear(t.translation, {5, 6, 7});
+  expectNear(glm::abs(t.scale), {2, 3, 1});
+  expectNear(vec3(t.local() * vec4(1, 0, 0, 1)), {5, 6, 5});
+  b.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  scene = b.load(folder);
+  EXPECT_TRUE(scene.registry.get<Transform>(Entity(0, 0)).matrix);
+}
+
+} // namespace
+} // namespace lambent

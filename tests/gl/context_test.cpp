@@ -1,0 +1,181 @@
+// Context, objects, programs, profiler.
+#include "engine/core/error.h"
+#include "gl_fixture.h"
+#include "shaders/shared/punctual_light.h"
+
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace lambent::test {
+
+namespace fs = std::filesystem;
+
+using ContextTest = GlTest;
+
+TEST_F(ContextTest, TellsWhatItIs) {
+  const auto info = context().info();
+  ASSERT_GE(info.size(), 5u);
+  EXPECT_EQ(info[0].first, "route");
+  EXPECT_NE(info[0].second.find("EGL"), std::string::npos);
+  EXPECT_EQ(context().handle(), nullptr);
+}
+
+TEST_F(ContextTest, CountsMemoryByOwner) {
+  const auto bytesOf = [](const std::string& owner) {
+    for (const auto& [name, bytes] : gl::memoryByOwner())
+      if (name == owner) return bytes;
+    return uint64_t(0);
+  };
+  {
+    const gl::Texture cube("memory test/cube", {.kind = gl::TextureKind::CubeArray,
+                                                .format = GL_DEPTH_COMPONENT32F,
+                                                .width = 8,
+                                                .height = 8,
+                                                .layers = 2});
+    gl::Buffer buffer("memory test/buffer", 100, nullptr);
+    EXPECT_EQ(bytesOf("memory test"), 8u * 8 * 4 * 12 + 100);
+    const gl::Buffer moved = std::move(buffer);
+    EXPECT_EQ(bytesOf("memory test"), 8u * 8 * 4 * 12 + 100);
+  }
+  EXPECT_EQ(bytesOf("memory test"), 0u);
+}
+
+TEST_F(ContextTest, ProfilerTimesPassesInOrder) {
+  profiler.calibrate();
+  {
+    const gl::PassScope outer(profiler, "outer");
+    const gl::PassScope inner(profiler, "inner");
+  }
+  const std::vector<StageTime> rows = profiler.takeRows();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].name, "inner");
+  EXPECT_EQ(rows[1].name, "outer");
+  EXPECT_TRUE(profiler.takeRows().empty());
+}
+
+/// A folder of shaders of its own, removed at the end.
+class ShaderFolder {
+ public:
+  ShaderFolder() : path(fs::temp_directory_path() / ("lambent-shaders-" + std::to_string(getpid()))) {
+    fs::create_directories(path / "sub");
+    fs::copy_file(gl::findShaderFolder() / "fullscreen.vert", path / "fullscreen.vert",
+                  fs::copy_options::overwrite_existing);
+  }
+  ~ShaderFolder() { fs::remove_all(path); }
+
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(path / file) << text;
+    // File times may be coarser than the time between two writes of a test.
+    fs::last_write_time(path / file, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
+  }
+  fs::path path;
+
+ private:
+  mutable int writes_ = 0;
+};
+
+TEST_F(ContextTest, IncludesGoInOnceAndKeepTheirLines) {
+  const ShaderFolder folder;
+  folder.write("sub/a.glsl", "#include \"b.glsl\"\nfloat a;\n");
+  folder.write("sub/b.glsl", "#ifdef __cplusplus\n#include \"only/for/cpp.h\"\n#endif\nfloat b;\n");
+  folder.write("main.frag", "#version 450\n#include \"sub/a.glsl\"\n#include \"sub/b.glsl\"\nfloat c;\n");
+  const gl::ShaderText shader = gl::loadShader(folder.path, "main.frag", {"VARIANT 3"});
+  ASSERT_EQ(shader.files.size(), 3u);
+  EXPECT_NE(shader.text.find("#version 450\n#define VARIANT 3\n#line 2 0\n"), std::string::npos);
+  EXPECT_EQ(shader.text.find("float b;"), shader.text.rfind("float b;"));
+  EXPECT_NE(shader.text.find("#line 4 0\nfloat c;"), std::string::npos);
+  EXPECT_EQ(shader.text.find("only/for/cpp"), std::string::npos);
+
+  folder.write("broken.frag", "#version 450\n\n#include \"missing.glsl\"\n");
+  try {
+    gl::loadShader(folder.path, "broken.frag", {});
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.frag:3"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("missing.glsl"), std::string::npos);
+  }
+}
+
+TEST_F(ContextTest, ReloadKeepsTheLastGoodProgram) {
+  const ShaderFolder folder;
+  const auto color = [](const char* value) {
+    return std::string("#version 450\n#include \"value.glsl\"\nlayout(location = 0) out vec4 c;\nvoid main() { c = ") +
+           value + "; }\n";
+  };
+  folder.write("value.glsl", "const float kValue = 0.25;\n");
+  folder.write("color.frag", color("vec4(kValue)"));
+  gl::ProgramCache cache(folder.path);
+  const gl::Program& program = cache.get({.fragment = "color.frag"});
+  const gl::Texture target("test", {.format = GL_RGBA32F, .width = 2, .height = 2});
+  const gl::Framebuffer framebuffer("test", {&target});
+  const auto drawn = [&] {
+    framebuffer.bind();
+    gl::PipelineState{.width = 2, .height = 2}.apply();
+    program.use();
+    gl::drawFullscreen();
+    return readTexture(target)[0].x;
+  };
+  EXPECT_EQ(drawn(), 0.25f);
+  EXPECT_TRUE(cache.reloadChanged().empty());
+
+  folder.write("color.frag", color("vec4(nonsense)"));
+  std::vector<std::string> messages = cache.reloadChanged();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("color.frag"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("nonsense"), std::string::npos) << messages[0];
+  EXPECT_EQ(drawn(), 0.25f);
+  EXPECT_TRUE(cache.reloadChanged().empty()) << "a broken file is tried again only when it changes";
+
+  folder.write("color.frag", color("vec4(2.0 * kValue)"));
+  folder.write("value.glsl", "const float kValue = 0.5;\n");
+  messages = cache.reloadChanged();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(drawn(), 1.0f);
+}
+
+TEST_F(ContextTest, FirstCompileFailureIsARunErrorWithTheLog) {
+  const ShaderFolder folder;
+  folder.write("bad.frag", "#version 450\nvoid main() { undeclared = 1; }\n");
+  gl::ProgramCache cache(folder.path);
+  try {
+    cache.get({.fragment = "bad.frag"});
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("undeclared"), std::string::npos) << error.what();
+  }
+  folder.write("bad.frag", "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(1); }\n");
+  EXPECT_NO_THROW(cache.get({.fragment = "bad.frag"}));
+}
+
+/// Byte offset of a member of a uniform block, as the compiler laid it out.
+int offsetOf(const gl::Program& program, const char* member) {
+  const GLuint index = glGetProgramResourceIndex(program.name(), GL_UNIFORM, member);
+  EXPECT_NE(index, GL_INVALID_INDEX) << member;
+  const GLenum property = GL_OFFSET;
+  GLint offset = -1;
+  glGetProgramResourceiv(program.name(), GL_UNIFORM, index, 1, &property, 1, nullptr, &offset);
+  return offset;
+}
+
+TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
+  const gl::Program& gather = programs.get({.fragment = "gather.frag", .defines = {"SHADOWS"}});
+  EXPECT_EQ(offsetOf(gather, "lights[0].positionNormal"), int(offsetof(VplLight, positionNormal)));
+  EXPECT_EQ(offsetOf(gather, "lights[0].powerArea"), int(offsetof(VplLight, powerArea)));
+  EXPECT_EQ(offsetOf(gather, "camera.worldFromView"), int(offsetof(CameraBlock, worldFromView)));
+  EXPECT_EQ(offsetOf(gather, "camera.lens"), int(offsetof(CameraBlock, lens)));
+  EXPECT_EQ(offsetOf(gather, "camera.size"), int(offsetof(CameraBlock, size)));
+
+  const gl::Program& direct = programs.get({.fragment = "direct.frag", .defines = {"SPOT_MAPS"}});
+  EXPECT_EQ(offsetOf(direct, "lights[0].directionTexel"), int(offsetof(PunctualLight, directionTexel)));
+  EXPECT_EQ(offsetOf(direct, "lights[0].coneNear"), int(offsetof(PunctualLight, coneNear)));
+  EXPECT_EQ(offsetOf(direct, "lights[0].mapFromWorld"), int(offsetof(PunctualLight, mapFromWorld)));
+
+  const gl::Program& surface =
+      programs.get({.vertex = "scene.vert", .fragment = "gbuffer.frag", .defines = {"BASE_TEXTURE", "EMISSIVE_TEXTURE"}});
+  EXPECT_EQ(offsetOf(surface, "material.emission"), int(offsetof(MaterialBlock, emission)));
+  EXPECT_EQ(offsetOf(surface, "material.baseUvV"), int(offsetof(MaterialBlock, baseUvV)));
+  EXPECT_EQ(offsetOf(surface, "material.emissiveUvV"), int(offsetof(MaterialBlock, emissiveUvV)));
+}
+
+} // namespace lambent::test

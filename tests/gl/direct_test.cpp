@@ -1,0 +1,212 @@
+// Direct light against closed forms, and shadow maps that are drawn only when they must be.
+#include "gi/render/light_shadows.h"
+#include "gl_fixture.h"
+
+namespace lambent::test {
+
+class DirectTest : public GlTest {
+ protected:
+  /// Direct irradiance of the picture, row 0 at the top.
+  Image irradianceOf(const HandScene& scene, const std::vector<EmitterSample>& emitters = {}) {
+    const SceneView view = scene.view();
+    GpuScene gpu(programs, scene.assets);
+    gpu.place(view.instances);
+    GBufferPass gbufferPass(passes);
+    LightShadowPass shadowPass(passes);
+    DirectPass directPass(passes);
+    VplLightBuffer lightBuffer(passes, "emitters");
+    ParaboloidMapPass mapPass(passes, "emitter maps");
+    const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
+    const LightShadows& shadows =
+        shadowPass.run({gpu, view.lights, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, settings});
+    std::vector<VplLight> lights;
+    std::vector<MapPose> poses;
+    for (const EmitterSample& sample : emitters) {
+      lights.push_back(emitterLight(sample));
+      poses.push_back(emitterPose(sample));
+    }
+    const VplLights uploaded = lightBuffer.run(lights);
+    const ParaboloidMaps maps = mapPass.run({.scene = gpu,
+                                             .poses = poses,
+                                             .dirtySlots = {},
+                                             .farDistance = view.boundsWorld.diameter(),
+                                             .resolution = settings.emitterResolution});
+    DirectInputs in{gbuffer, shadows, nullptr, nullptr, settings};
+    if (!lights.empty()) {
+      in.emitters = &uploaded;
+      in.emitterMaps = &maps;
+    }
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.indirect = {directPass.run(in).irradiance}; // reads as irradiance, without albedo
+    return readBuffer(Buffer::Irradiance, results);
+  }
+
+  ShadowSettings settings;
+};
+
+constexpr float kShare = 1e-3f; // tolerance of the closed forms
+
+/// Every pixel of the floor within 0.1 % of expected(position), or a hundred-thousandth of the largest where it is dark.
+void expectFloor(const Floor& floor, const Image& image, const std::function<float(const vec3&)>& expected) {
+  float largest = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) largest = std::max(largest, expected(floor.at(x, y)));
+  ASSERT_GT(largest, 0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float wanted = expected(floor.at(x, y));
+      ASSERT_NEAR(image.at(x, y).y, wanted, kShare * wanted + 1e-5f * largest) << "pixel " << x << ' ' << y;
+    }
+}
+
+TEST_F(DirectTest, PointLightOnAPlane) {
+  Floor floor;
+  floor.scene.lights.push_back({.type = LightType::Point, .position = {0.5f, 1.5f, 0.3f}, .intensity = vec3(10)});
+  expectFloor(floor, irradianceOf(floor.scene), [](const vec3& p) {
+    const vec3 d = vec3(0.5f, 1.5f, 0.3f) - p;
+    return 10 * d.y / std::pow(glm::dot(d, d), 1.5f);
+  });
+}
+
+TEST_F(DirectTest, PointLightWithRange) {
+  Floor floor;
+  floor.scene.lights.push_back({.type = LightType::Point, .position = {0, 1, 0}, .intensity = vec3(10), .range = 2});
+  expectFloor(floor, irradianceOf(floor.scene), [](const vec3& p) {
+    const vec3 d = vec3(0, 1, 0) - p;
+    const float r2 = glm::dot(d, d);
+    return 10 * d.y / std::pow(r2, 1.5f) * glm::clamp(1 - r2 * r2 / 16, 0.0f, 1.0f);
+  });
+}
+
+TEST_F(DirectTest, SpotLightOnAPlane) {
+  for (const float outer : {0.6f, 1.4f}) { // a 2D map, and one too wide for it, which gets a cube
+    Floor floor;
+    const vec3 position(0.4f, 2, -0.2f), direction = glm::normalize(vec3(0.2f, -1, 0.1f));
+    floor.scene.lights.push_back({.type = LightType::Spot,
+                                  .position = position,
+                                  .direction = direction,
+                                  .intensity = vec3(7),
+                                  .innerConeCos = std::cos(0.3f),
+                                  .outerConeCos = std::cos(outer)});
+    expectFloor(floor, irradianceOf(floor.scene), [&](const vec3& p) {
+      const vec3 d = position - p;
+      const float scale = 1 / std::max(0.001f, std::cos(0.3f) - std::cos(outer));
+      const float cone = glm::clamp((glm::dot(direction, -glm::normalize(d)) - std::cos(outer)) * scale, 0.0f, 1.0f);
+      return 7 * d.y / std::pow(glm::dot(d, d), 1.5f) * cone * cone;
+    });
+  }
+}
+
+TEST_F(DirectTest, DirectionalLightAndSkyOnAPlane) {
+  Floor floor;
+  const vec3 direction = glm::normalize(vec3(0.5f, -1, 0.2f));
+  floor.scene.lights.push_back({.type = LightType::Directional, .direction = direction, .intensity = vec3(3)});
+  expectFloor(floor, irradianceOf(floor.scene), [&](const vec3&) { return 3 * -direction.y; });
+
+  Floor open;
+  open.scene.sky = vec3(2);
+  expectFloor(open, irradianceOf(open.scene), [](const vec3&) { return 2 * kPi; });
+}
+
+TEST_F(DirectTest, MoreLightsThanABlockHolds) {
+  Floor floor;
+  settings.pointResolution = 16;
+  for (int i = 0; i < 150; ++i)
+    floor.scene.lights.push_back({.type = LightType::Point, .position = {0, 2, 0}, .intensity = vec3(0.1f)});
+  const Image image = irradianceOf(floor.scene);
+  const vec3 d = vec3(0, 2, 0) - floor.at(32, 24);
+  const float wanted = 15 * d.y / std::pow(glm::dot(d, d), 1.5f);
+  EXPECT_NEAR(image.at(32, 24).x, wanted, kShare * wanted);
+}
+
+TEST_F(DirectTest, EmissiveSampleOnAPlane) {
+  Floor floor;
+  const EmitterSample sample{.position = {0, 1.2f, 0}, .normal = {0, -1, 0}, .radiance = vec3(5), .area = 0.3f};
+  expectFloor(floor, irradianceOf(floor.scene, {sample}), [](const vec3& p) {
+    const vec3 d = vec3(0, 1.2f, 0) - p;
+    const float r2 = glm::dot(d, d), cosine = d.y / std::sqrt(r2);
+    return 5 * 0.3f * cosine * cosine / (r2 + 0.3f / kPi);
+  });
+}
+
+TEST_F(DirectTest, BlockersCastShadowsOfEveryKind) {
+  const vec3 above(0, 2, 0), down(0, -1, 0);
+  std::vector<LightView> lights = {
+      {.type = LightType::Point, .position = above, .intensity = vec3(10)},
+      {.type = LightType::Spot, .position = above, .direction = down, .intensity = vec3(10), .outerConeCos = 0.6f},
+      {.type = LightType::Directional, .direction = down, .intensity = vec3(1)},
+  };
+  for (const LightView& light : lights) {
+    Floor floor;
+    floor.scene.lights.push_back(light);
+    const Image open = irradianceOf(floor.scene);
+    floor.scene.quad(vec3(-0.3f, 1, 0.3f), vec3(0.6f, 0, 0), vec3(0, 0, -0.6f), 0);
+    floor.scene.camera = cameraAt(vec3(0, 0.9f, 0), vec3(0), 1.0f); // below the blocker
+    const Image shadowed = irradianceOf(floor.scene);
+    EXPECT_EQ(shadowed.at(32, 24).x, 0) << "kind " << int(light.type);
+    // A blocker halfway throws a shadow twice its size, a directional light one of its own size.
+    const float edge = light.type == LightType::Directional ? 0.3f : 0.6f;
+    int lit = 0, dark = 0, wrong = 0;
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const vec3 p = floor.at(x, y);
+        const float outside = std::max(std::abs(p.x), std::abs(p.z)) - edge;
+        const bool isLit = shadowed.at(x, y).x > 0;
+        (isLit ? lit : dark)++;
+        // 2048² over 20 m: two centimetres of filter width at most.
+        if (std::abs(outside) > 0.03f && isLit != (outside > 0)) ++wrong;
+      }
+    EXPECT_EQ(wrong, 0) << "kind " << int(light.type);
+    EXPECT_GT(dark, 100);
+    EXPECT_GT(open.at(32, 24).x, 0);
+  }
+}
+
+TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
+  Room room;
+  room.scene.lights.push_back({.type = LightType::Directional, .direction = {0, -1, 0}});
+  room.scene.lights.push_back({.type = LightType::Point, .position = {0, 0.5f, 0.5f}});
+  SceneView view = room.scene.view();
+  GpuScene gpu(programs, room.scene.assets);
+  gpu.place(view.instances);
+  LightShadowPass pass(passes);
+  Aabb receivers{vec3(-0.2f), vec3(0.2f)};
+  const auto draws = [&](bool geometryChanged) {
+    pass.run({gpu, room.scene.lights, vec3(0), receivers, view.boundsWorld, geometryChanged, settings});
+    return pass.mapsDrawn();
+  };
+  EXPECT_EQ(draws(true), 2u) << "first frame";
+  EXPECT_EQ(draws(false), 0u) << "nothing changed";
+  receivers = {vec3(-0.21f), vec3(0.19f)};
+  EXPECT_EQ(draws(false), 0u) << "receivers still inside the fit";
+  receivers = {vec3(-0.8f), vec3(0.8f)};
+  EXPECT_EQ(draws(false), 1u) << "receivers outgrew the sun's map";
+  receivers = {vec3(-0.1f), vec3(0.1f)};
+  EXPECT_EQ(draws(false), 1u) << "the sun's map is far too large";
+  room.scene.lights[1].intensity = vec3(5);
+  EXPECT_EQ(draws(false), 0u) << "brightness is not in the map";
+  room.scene.lights[1].position.x = 0.1f;
+  EXPECT_EQ(draws(false), 1u) << "the point light moved";
+  EXPECT_EQ(draws(true), 2u) << "geometry changed";
+  receivers = {};
+  EXPECT_EQ(draws(false), 0u) << "the camera sees nothing: keep what there is";
+}
+
+TEST(SkyDirections, CoverTheSphereEvenly) {
+  const std::vector<vec3> directions = skyDirections(32);
+  vec3 sum(0);
+  for (const vec3& d : directions) {
+    EXPECT_NEAR(glm::length(d), 1, 1e-5f);
+    sum += d;
+  }
+  EXPECT_LT(glm::length(sum) / 32, 0.01f);
+  // Irradiance of a plane at any tilt: Σ cos · 4π/32 ≈ π.
+  for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1), glm::normalize(vec3(1, 1, 1))}) {
+    float e = 0;
+    for (const vec3& d : directions) e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
+    EXPECT_NEAR(e, kPi, 0.03f * kPi);
+  }
+}
+
+} // namespace lambent::test

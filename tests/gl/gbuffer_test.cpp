@@ -1,0 +1,123 @@
+// The G-buffer against rays: what a pixel holds is what the ray through its centre meets.
+#include "gl_fixture.h"
+
+namespace lambent::test {
+
+using GBufferTest = GlTest;
+
+/// Draws `scene` and gives the frame results that readBuffer needs.
+FrameResults drawn(GBufferPass& pass, GpuScene& gpu, const HandScene& scene) {
+  gpu.place(scene.instances);
+  FrameResults results;
+  results.gbuffer = pass.run({gpu, scene.camera});
+  return results;
+}
+
+void expectAgreesWithRays(GBufferPass& pass, gl::ProgramCache& programs, const Room& room) {
+  GpuScene gpu(programs, room.scene.assets);
+  const FrameResults frame = drawn(pass, gpu, room.scene);
+  const Image depth = readBuffer(Buffer::Depth, frame), normal = readBuffer(Buffer::Normal, frame);
+  const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
+  int differing = 0;
+  for (int y = 0; y < depth.height; ++y) {
+    for (int x = 0; x < depth.width; ++x) {
+      const CameraRay ray =
+          cameraRay(room.scene.camera, (float(x) + 0.5f) / float(depth.width), (float(y) + 0.5f) / float(depth.height));
+      const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+      const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
+      if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
+    }
+  }
+  EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
+}
+
+TEST_F(GBufferTest, PerspectiveAgreesWithRays) {
+  GBufferPass pass(passes);
+  expectAgreesWithRays(pass, programs, Room());
+}
+
+TEST_F(GBufferTest, OrthographicAgreesWithRays) {
+  GBufferPass pass(passes);
+  Room room;
+  room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.85f), vec3(0, -0.1f, -1), 1);
+  room.scene.camera.orthoHalfHeight = 0.6f; // all rays start inside the room
+  expectAgreesWithRays(pass, programs, room);
+}
+
+TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
+  GBufferPass pass(passes);
+  const Room room;
+  GpuScene gpu(programs, room.scene.assets);
+  const FrameResults frame = drawn(pass, gpu, room.scene);
+  const Image albedo = readBuffer(Buffer::Albedo, frame), normal = readBuffer(Buffer::Normal, frame);
+  EXPECT_GT(albedo.at(0, 24).x, albedo.at(0, 24).y) << "the red wall is on the left";
+  EXPECT_GT(albedo.at(63, 24).y, albedo.at(63, 24).x);
+  EXPECT_NEAR(normal.at(32, 0).y, -1, 1e-3f) << "the ceiling is at the top";
+  EXPECT_NEAR(normal.at(32, 47).y, 1, 1e-3f);
+}
+
+TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
+  HandScene scene;
+  const uint32_t single = scene.material(vec3(0.5f), vec3(2)), twofold = scene.material(vec3(0.5f), vec3(3), true);
+  // Four quads side by side, seen from +z: front, back, mirrored front, double-sided back.
+  scene.quad(vec3(-4, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0), single);
+  scene.quad(vec3(-2, -1, 0), vec3(0, 2, 0), vec3(2, 0, 0), single);
+  scene.quad(vec3(0, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0), single);
+  scene.quad(vec3(2, -1, 0), vec3(0, 2, 0), vec3(2, 0, 0), twofold);
+  mat4 mirror(1);
+  mirror[0][0] = -1;
+  mirror[3][0] = 2; // x → 2 - x keeps the quad in its place
+  scene.instances[2].worldFromObject = mirror;
+  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.6f);
+  GBufferPass pass(passes);
+  GpuScene gpu(programs, scene.assets);
+  const FrameResults frame = drawn(pass, gpu, scene);
+  const Image emission = readBuffer(Buffer::Emission, frame), normal = readBuffer(Buffer::Normal, frame);
+  // The picture is 64 pixels for 2·4·tan(0.8)·4/3 ≈ 10.98 m.
+  const auto pixelAt = [](float x) { return int(32 + x * 64 / 10.98f); };
+  EXPECT_EQ(emission.at(pixelAt(-3), 24).x, 2);
+  EXPECT_EQ(emission.at(pixelAt(-1), 24).x, 0);
+  EXPECT_EQ(emission.at(pixelAt(1), 24).x, 2);
+  EXPECT_EQ(emission.at(pixelAt(3), 24).x, 3);
+  for (float x : {-3.0f, -1.0f, 1.0f, 3.0f}) EXPECT_NEAR(normal.at(pixelAt(x), 24).z, 1, 1e-3f) << x;
+  EXPECT_EQ(readBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
+}
+
+TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
+  HandScene scene;
+  TextureImage image;
+  image.width = 2;
+  image.height = 1;
+  image.srgb = true;
+  image.texels = {{188, 0, 0, 255}, {0, 188, 0, 0}}; // left: red, opaque; right: green, transparent
+  scene.assets.images.push_back(image);
+  const uint32_t textured = scene.material(vec3(0.5f)), masked = scene.material(vec3(1)), plain = scene.material(vec3(1));
+  for (uint32_t m : {textured, masked}) {
+    TextureRef& ref = scene.assets.materials[m].baseColorTexture;
+    ref.image = 0;
+    ref.nearest = true;
+  }
+  scene.assets.materials[masked].alphaMode = AlphaMode::Mask;
+  // uv' = 1 - u: the masked quad shows the picture mirrored.
+  scene.assets.materials[masked].baseColorTexture.uvTransform = mat3(-1, 0, 0, 0, 1, 0, 1, 0, 1);
+  scene.quad(vec3(-2, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0), textured);
+  scene.quad(vec3(0, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0), masked);
+  scene.quad(vec3(-2, -3, 0), vec3(4, 0, 0), vec3(0, 2, 0), plain);
+  scene.assets.meshes[2].colors.assign(4, vec4(0.25f, 0.5f, 0.75f, 1));
+  scene.camera = cameraAt(vec3(0, 0, 5), vec3(0), 1.0f);
+  GBufferPass pass(passes);
+  GpuScene gpu(programs, scene.assets);
+  const FrameResults frame = drawn(pass, gpu, scene);
+  const Image albedo = readBuffer(Buffer::Albedo, frame), depth = readBuffer(Buffer::Depth, frame);
+  const float pixelsPerMetre = 24 / (5 * std::tan(0.5f));
+  const auto at = [&](const Image& i, float x, float y) {
+    return i.at(int(32 + x * pixelsPerMetre), int(24 - y * pixelsPerMetre));
+  };
+  EXPECT_NEAR(at(albedo, -1.5f, 0).x, 0.5f * linearFromSrgb(188 / 255.0f), 1e-3f);
+  EXPECT_NEAR(at(albedo, -0.5f, 0).y, 0.5f * linearFromSrgb(188 / 255.0f), 1e-3f);
+  EXPECT_EQ(at(depth, 0.5f, 0).x, 0) << "masked away";
+  EXPECT_NEAR(at(albedo, 1.5f, 0).x, linearFromSrgb(188 / 255.0f), 1e-3f);
+  EXPECT_LT(glm::length(at(albedo, 0, -2) - vec3(0.25f, 0.5f, 0.75f)), 2e-3f);
+}
+
+} // namespace lambent::test

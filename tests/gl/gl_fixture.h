@@ -1,0 +1,99 @@
+// One headless context for all GL tests of the process, and what they share. Every test fails on a high-severity
+// message of the driver.
+#pragma once
+
+#include "engine/gl/profiler.h"
+#include "engine/gl/program.h"
+#include "engine/platform/gl_context.h"
+#include "engine/trace/analytic_query.h"
+#include "gi/gi_frame.h"
+#include "gi/render/passes.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent::test {
+
+class GlTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    context();
+    errorsBefore_ = glDebugErrors();
+  }
+  void TearDown() override {
+    glFinish();
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+    EXPECT_EQ(glDebugErrors(), errorsBefore_) << "the driver reported errors (logged above)";
+  }
+  static GlContext& context() {
+    static GlContext shared = GlContext::headless();
+    return shared;
+  }
+
+  gl::ProgramCache programs;
+  gl::GpuProfiler profiler;
+  PassContext passes{programs, profiler};
+
+ private:
+  uint64_t errorsBefore_ = 0;
+};
+
+/// RGBA values of a float texture, row 0 at the bottom.
+inline std::vector<vec4> readTexture(const gl::Texture& texture) {
+  std::vector<vec4> texels(size_t(texture.width()) * texture.height());
+  glGetTextureImage(texture.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
+  return texels;
+}
+
+/// Camera at `eye` looking at `target`, +Y up.
+inline CameraView cameraAt(const vec3& eye, const vec3& target, float fovY, int width = 64, int height = 48) {
+  CameraView camera;
+  const vec3 back = glm::normalize(eye - target);
+  const vec3 right = glm::normalize(glm::cross(std::abs(back.y) > 0.999f ? vec3(0, 0, -1) : vec3(0, 1, 0), back));
+  camera.worldFromView = mat4(vec4(right, 0), vec4(glm::cross(back, right), 0), vec4(back, 0), vec4(eye, 1));
+  camera.fovY = fovY;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+/// A room [-1,1]³ with a red left and a green right wall and a block in it, as triangles and in closed form.
+struct Room {
+  HandScene scene;
+  AnalyticQuery rays;
+  vec3 blockLo{-0.5f, -1, -0.6f}, blockHi{0, 0.2f, -0.1f};
+
+  Room() {
+    const vec3 white(0.7f), red(0.6f, 0.1f, 0.1f), green(0.1f, 0.6f, 0.1f);
+    const vec3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 2), lo(-1);
+    const uint32_t whiteMaterial = scene.material(white);
+    scene.quad(lo, y, z, scene.material(red));
+    scene.quad(lo + x, z, y, scene.material(green));
+    scene.quad(lo, z, x, whiteMaterial);
+    scene.quad(lo + y, x, z, whiteMaterial);
+    scene.quad(lo, x, y, whiteMaterial);
+    scene.quad(lo + z, y, x, whiteMaterial);
+    scene.box(blockLo, blockHi, whiteMaterial, false);
+    rays.addBox(vec3(-1), vec3(1), {.albedo = white});
+    rays.addBox(blockLo, blockHi, {.albedo = white});
+    scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f);
+  }
+};
+
+/// A horizontal plane y = 0 of 20 m × 20 m seen from straight above at 4 m.
+struct Floor {
+  HandScene scene;
+
+  Floor() {
+    scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
+    scene.camera = cameraAt(vec3(0, 4, 0), vec3(0), 1.0f);
+  }
+  /// World position of the plane at the centre of pixel (x, y), y from the top.
+  vec3 at(int x, int y) const {
+    const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / float(scene.camera.width),
+                                    (float(y) + 0.5f) / float(scene.camera.height));
+    return ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
+  }
+};
+
+} // namespace lambent::test

@@ -1,0 +1,216 @@
+// Gather, filter and composite against closed forms and constants.
+#include "gl_fixture.h"
+
+#include <random>
+
+namespace lambent::test {
+
+class IndirectTest : public GlTest {
+ protected:
+  RawIndirect gathered(const GBuffer& gbuffer, const std::vector<VplLight>& lights, const GatherSettings& settings,
+                       const ParaboloidMaps* maps = nullptr) {
+    const VplLights uploaded = lightBuffer.run(lights);
+    return gatherPass.run({gbuffer, uploaded, maps, 1, settings});
+  }
+  GBuffer surfaces(const HandScene& scene) {
+    gpu = std::make_unique<GpuScene>(programs, scene.assets);
+    gpu->place(scene.instances);
+    return gbufferPass.run({*gpu, scene.camera});
+  }
+  Image read(Buffer buffer, const GBuffer& gbuffer, const RawIndirect& raw, const IndirectLight& indirect = {}) {
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.raw = raw;
+    results.indirect = indirect;
+    return readBuffer(buffer, results);
+  }
+
+  std::unique_ptr<GpuScene> gpu;
+  GBufferPass gbufferPass{passes};
+  VplLightBuffer lightBuffer{passes, "vpls"};
+  GatherPass gatherPass{passes};
+  FilterPass filterPass{passes};
+};
+
+Vpl lamp(const vec3& position, const vec3& normal, float radiance, float area) {
+  Vpl vpl;
+  vpl.position = position;
+  vpl.normal = vpl.geometricNormal = normal;
+  vpl.radiance = vec3(radiance);
+  vpl.area = area;
+  vpl.alive = true;
+  return vpl;
+}
+
+TEST_F(IndirectTest, OneVplOnAPlane) {
+  const Floor floor;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  const vec3 position(0.3f, 1, -0.2f), normal = glm::normalize(vec3(0.3f, -1, 0));
+  for (const bool disk : {true, false})
+    for (const float clamp : {0.0f, 0.3f}) {
+      const RawIndirect raw = gathered(gbuffer, {vplLight(lamp(position, normal, 4, 0.2f))},
+                                       {.mode = GatherMode::Full, .disk = disk, .clamp = clamp});
+      const Image image = read(Buffer::Unfiltered, gbuffer, raw);
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+          const vec3 d = position - floor.at(x, y);
+          const float r2 = glm::dot(d, d), r = std::sqrt(r2);
+          float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + (disk ? 0.2f / kPi : 0));
+          if (clamp > 0) g = std::min(g, clamp);
+          ASSERT_NEAR(image.at(x, y).x, 4 * 0.2f * g, 1e-3f * 0.8f * g + 1e-5f) << x << ' ' << y;
+        }
+    }
+}
+
+/// 40 VPLs that make every class of 16 different, over several sizes that 4 does not divide.
+TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
+  Floor floor;
+  floor.scene.camera.width = 37;
+  floor.scene.camera.height = 27;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  std::vector<VplLight> lights;
+  std::vector<Vpl> vpls;
+  for (int i = 0; i < 40; ++i) {
+    vpls.push_back(lamp(vec3(0.1f * float(i) - 2, 1 + 0.05f * float(i), 0.3f), vec3(0, -1, 0), 1 + float(i), 0.1f));
+    lights.push_back(vplLight(vpls.back()));
+  }
+  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {}));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const int fromBottom = image.height - 1 - y;
+      const size_t c = size_t(x % 4 + 4 * (fromBottom % 4));
+      float wanted = 0;
+      for (size_t i = c; i < vpls.size(); i += 16) {
+        const vec3 d = vpls[i].position - floor.at(x, y);
+        const float r2 = glm::dot(d, d);
+        wanted += 16 * vpls[i].radiance.x * 0.1f * d.y * d.y / r2 / (r2 + 0.1f / kPi);
+      }
+      ASSERT_NEAR(image.at(x, y).x, wanted, 2e-3f * wanted) << x << ' ' << y;
+    }
+}
+
+TEST_F(IndirectTest, InterleavedMeansTheSameAsFull) {
+  const Floor floor;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  // The same light in all of 2100 slots (two chunks): every subset of 16 sees as much as all of them together.
+  const size_t count = 4096;
+  const std::vector<VplLight> lights(count, vplLight(lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.01f)));
+  const Image full = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
+  const Image interleaved = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {}));
+  for (size_t i = 0; i < full.pixels.size(); ++i)
+    ASSERT_NEAR(interleaved.pixels[i].x, full.pixels[i].x, 1e-4f * full.pixels[i].x);
+}
+
+TEST_F(IndirectTest, EmptyBlackAndBrokenLightsBringNothing) {
+  const Floor floor;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  std::vector<Vpl> vpls(5, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
+  vpls[0].alive = false;
+  vpls[1].area = 0;
+  vpls[2].radiance = vec3(std::nanf(""));
+  vpls[3].normal = vec3(std::nanf(""));
+  vpls[4].area = kInfinity;
+  std::vector<VplLight> lights;
+  for (const Vpl& v : vpls) lights.push_back(vplLight(v));
+  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
+  for (const vec3& e : image.pixels) ASSERT_EQ(e.x, 0);
+}
+
+TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
+  std::vector<VplLight> lights(100, vplLight(lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f)));
+  lightBuffer.run(lights);
+  EXPECT_EQ(lightBuffer.uploaded(), 100u);
+  lightBuffer.run(lights);
+  EXPECT_EQ(lightBuffer.uploaded(), 0u);
+  lights[7] = vplLight(lamp(vec3(0, 3, 0), vec3(0, -1, 0), 1, 0.1f));
+  lightBuffer.run(lights);
+  EXPECT_EQ(lightBuffer.uploaded(), 1u);
+  lights.resize(50);
+  lightBuffer.run(lights);
+  EXPECT_EQ(lightBuffer.uploaded(), 50u) << "slots that are gone are emptied";
+}
+
+TEST_F(IndirectTest, FilterKeepsConstants) {
+  Room room;
+  room.scene.camera.width = 61; // tiles with a ragged edge
+  room.scene.camera.height = 43;
+  const GBuffer gbuffer = surfaces(room.scene);
+  const gl::Texture constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 44});
+  const float value[4] = {0.3f, 1.7f, 4000, 1};
+  glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
+  const RawIndirect raw{&constant, true};
+  for (const bool on : {true, false}) {
+    const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {.on = on}}));
+    for (const vec3& e : image.pixels) {
+      ASSERT_NEAR(e.x, 0.3f, 1e-6f);
+      ASSERT_NEAR(e.z, 4000, 4e-3f);
+    }
+  }
+}
+
+TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
+  const Floor floor;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  // Each subset holds another constant; their mean must appear wherever the kernel lies inside the picture.
+  const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
+  std::vector<vec4> texels(64 * 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
+  glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const RawIndirect raw{&tiles, true};
+  const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
+  for (int y = 3; y < 45; ++y)
+    for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
+}
+
+TEST_F(IndirectTest, FilterStopsAtEdges) {
+  const Room room;
+  const GBuffer gbuffer = surfaces(room.scene);
+  // Light only where the normal points up (the floor and the block's top), in place of a gather.
+  FrameResults results;
+  results.gbuffer = gbuffer;
+  const Image normal = readBuffer(Buffer::Normal, results);
+  std::vector<vec4> texels(64 * 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x)
+      texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
+  const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
+  glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const RawIndirect raw{&tiles, true};
+  const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
+}
+
+TEST_F(IndirectTest, CompositeAddsUp) {
+  HandScene scene;
+  scene.quad(vec3(-1, -10, 0), vec3(2, 0, 0), vec3(0, 20, 0), scene.material(vec3(0.5f, 0.25f, 1), vec3(0, 2, 0)));
+  scene.camera = cameraAt(vec3(0, 0, 3), vec3(0), 1.2f);
+  const GBuffer gbuffer = surfaces(scene);
+  Image irradiance(64, 48, vec3(0));
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) irradiance.at(x, y) = vec3(float(y + 1));
+  IndirectUpload upload(passes);
+  CompositePass composite(passes);
+  const IndirectLight indirect = upload.run(irradiance);
+  const DirectLight direct{indirect.irradiance};
+  FrameResults results;
+  results.gbuffer = gbuffer;
+  results.direct = direct;
+  results.indirect = indirect;
+  results.skyRadiance = vec3(0.1f, 0.2f, 0.3f);
+  results.picture = composite.run({gbuffer, direct, indirect, results.skyRadiance});
+  const Image beauty = readBuffer(Buffer::Beauty, results), parts[2] = {readBuffer(Buffer::Direct, results),
+                                                                        readBuffer(Buffer::Indirect, results)};
+  EXPECT_LT(glm::length(beauty.at(0, 10) - results.skyRadiance), 1e-6f);
+  for (int y : {0, 20, 47}) {
+    const float e = float(y + 1);
+    EXPECT_NEAR(beauty.at(32, y).x, 0.5f / kPi * 2 * e, 1e-3f * e);
+    EXPECT_NEAR(beauty.at(32, y).y, 2 + 0.25f / kPi * 2 * e, 1e-3f * e);
+    EXPECT_NEAR(parts[1].at(32, y).z, e / kPi, 1e-3f * e);
+  }
+  for (size_t i = 0; i < beauty.pixels.size(); ++i)
+    ASSERT_LT(glm::length(beauty.pixels[i] - parts[0].pixels[i] - parts[1].pixels[i]), 1e-3f);
+}
+
+} // namespace lambent::test

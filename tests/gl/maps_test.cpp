@@ -1,0 +1,148 @@
+// Paraboloid maps: the two makers agree, and both agree with closed forms.
+#include "gl_fixture.h"
+#include "shaders/shared/paraboloid.h"
+
+namespace lambent::test {
+
+class MapsTest : public GlTest {
+ protected:
+  ParaboloidMapInputs inputs(const Room& room) {
+    gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
+    gpu->place(room.scene.instances);
+    return {.scene = *gpu, .rays = &room.rays, .poses = poses, .dirtySlots = dirty, .farDistance = 3.5f, .resolution = 64};
+  }
+
+  std::unique_ptr<GpuScene> gpu;
+  std::vector<MapPose> poses;
+  std::vector<uint32_t> dirty;
+};
+
+TEST_F(MapsTest, MakersAgree) {
+  const Room room;
+  const ParaboloidMapInputs in = inputs(room);
+  ParaboloidMapPass pass(passes, "vpl maps");
+  const vec3 tilted = glm::normalize(vec3(0.2f, 1, -0.3f));
+  const MapPose all[] = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}},  {{-1, 0.2f, 0.1f}, {1, 0, 0}, {1, 0, 0}},
+                         {{1, 0, 0.5f}, {-1, 0, 0}, {-1, 0, 0}},    {{0.1f, 1, 0}, {0, -1, 0}, {0, -1, 0}},
+                         {{0.2f, 0.3f, -1}, {0, 0, 1}, {0, 0, 1}},  {{0.2f, 0.1f, 1}, {0, 0, -1}, {0, 0, -1}},
+                         {{0.5f, -1, 0.3f}, tilted, {0, 1, 0}}};
+  for (const MapPose& pose : all) {
+    const MakerComparison maps = pass.compareMakers(in, pose);
+    int inside = 0, close = 0;
+    for (int y = 0; y < maps.resolution; ++y)
+      for (int x = 0; x < maps.resolution; ++x) {
+        const vec2 uv = (vec2(x, y) + 0.5f) / float(maps.resolution);
+        if (directionFromParaboloid(uv).z < 0.1f) continue; // at the horizon a texel sees metres of the floor it is on
+        ++inside;
+        const size_t i = size_t(y) * maps.resolution + x;
+        // A face's texel stands for up to 0.7 texels around it; on a surface at 80° to the ray that is 3 % per texel.
+        // Below a tilted map's own surface, distances are millimetres, and only their size means anything.
+        if (std::abs(maps.raster[i] - maps.rays[i]) < 0.08f * maps.rays[i] + 0.005f) ++close;
+      }
+    EXPECT_GT(inside, 2000);
+    // The rest lies on silhouettes, where the nearest texel falls to the other side.
+    EXPECT_GT(double(close) / inside, 0.97) << "normal " << pose.normal.x << ' ' << pose.normal.y << ' ' << pose.normal.z;
+  }
+}
+
+TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
+  const Room room;
+  poses = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}};
+  dirty = {0};
+  for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
+    ParaboloidMapInputs in = inputs(room);
+    in.maker = maker;
+    ParaboloidMapPass pass(passes, "vpl maps");
+    const ParaboloidMaps maps = pass.run(in);
+    EXPECT_EQ(pass.mapsDrawn(), 1u);
+    ASSERT_EQ(maps.arrays.size(), 1u);
+    const std::vector<float> distances = pass.readLayer(0);
+    EXPECT_NEAR(distances[32 * 64 + 32], 2, 0.01f) << "straight up to the ceiling";
+  }
+}
+
+TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
+  const Room room;
+  poses.assign(20, {{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}});
+  const ParaboloidMapInputs in = inputs(room);
+  ParaboloidMapPass pass(passes, "vpl maps");
+  pass.run(in);
+  EXPECT_EQ(pass.mapsDrawn(), 20u) << "a new array starts with all of its maps";
+  const std::string report = pass.makerReport();
+  EXPECT_NE(report.find("rays"), std::string::npos);
+  EXPECT_NE(report.find("raster"), std::string::npos);
+  dirty = {3, 4};
+  ParaboloidMapInputs again = in;
+  again.dirtySlots = dirty;
+  pass.run(again);
+  EXPECT_EQ(pass.mapsDrawn(), 2u);
+  EXPECT_EQ(pass.makerReport(), report);
+}
+
+TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
+  const Room room;
+  poses.assign(2100, {{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}});
+  ParaboloidMapInputs in = inputs(room);
+  in.resolution = 8;
+  in.maker = ShadowMaker::Rays;
+  ParaboloidMapPass pass(passes, "vpl maps");
+  EXPECT_EQ(pass.run(in).arrays.size(), 2u);
+  EXPECT_EQ(pass.readLayer(0), pass.readLayer(2099));
+}
+
+/// A VPL on the floor lights the room through its map exactly where a ray from it is free.
+TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
+  Room room;
+  room.scene.camera.width = 96;
+  room.scene.camera.height = 72;
+  Vpl vpl;
+  vpl.position = {0.6f, -1, 0};
+  vpl.normal = vpl.geometricNormal = {0, 1, 0};
+  vpl.radiance = vec3(1);
+  vpl.area = 0.01f;
+  vpl.alive = true;
+  poses = {{vpl.position, vpl.normal, vpl.geometricNormal}};
+  for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
+    ParaboloidMapInputs in = inputs(room);
+    in.resolution = 128;
+    in.maker = maker;
+    ParaboloidMapPass mapPass(passes, "vpl maps");
+    GBufferPass gbufferPass(passes);
+    VplLightBuffer lightBuffer(passes, "vpls");
+    GatherPass gatherPass(passes);
+    const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+    const ParaboloidMaps maps = mapPass.run(in);
+    const VplLight light = vplLight(vpl);
+    const VplLights lights = lightBuffer.run({&light, 1});
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    const GatherSettings full{.mode = GatherMode::Full};
+    results.raw = gatherPass.run({gbuffer, lights, &maps, 1, full});
+    const Image lit = readBuffer(Buffer::Unfiltered, results);
+    results.raw = gatherPass.run({gbuffer, lights, nullptr, 1, full});
+    const Image open = readBuffer(Buffer::Unfiltered, results);
+    const Image depth = readBuffer(Buffer::Depth, results);
+
+    int acne = 0, leaks = 0, free = 0, blocked = 0;
+    const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
+    for (int y = 0; y < 72; ++y)
+      for (int x = 0; x < 96; ++x) {
+        if (!(open.at(x, y).x > 0)) continue;
+        const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 72);
+        const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+        const bool isBlocked = room.rays.occluded(
+            segment(offsetPoint(hit.position, hit.geometricNormal), offsetPoint(vpl.position, vpl.geometricNormal)));
+        (isBlocked ? blocked : free)++;
+        if (isBlocked && lit.at(x, y).x > 0) ++leaks;
+        if (!isBlocked && lit.at(x, y).x == 0) ++acne;
+        EXPECT_NEAR(depth.at(x, y).x, glm::dot(hit.position - ray.origin, forward), 0.3f);
+      }
+    EXPECT_GT(free, 1500);
+    EXPECT_GT(blocked, 200);
+    // What differs lies along the shadow's edge, where a texel of the map covers several pixels.
+    EXPECT_LT(acne, 0.03 * free) << "maker " << int(maker);
+    EXPECT_LT(leaks, 0.15 * blocked) << "maker " << int(maker);
+  }
+}
+
+} // namespace lambent::test

@@ -1,0 +1,45 @@
+// The commands of `lambent`, one file each. A declare… function adds the command to the app; its callback runs it and
+// throws InputError (exit 2) or RunError (exit 1).
+#pragma once
+
+#include "gi/gi_frame.h"
+#include "tools/launch/launch.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <string>
+
+namespace lambent {
+
+/// What every command has.
+struct OutputOptions {
+  std::string out, json;
+  bool quiet = false;
+};
+
+void declareDoctor(CLI::App& app);
+void declareInspect(CLI::App& app);
+void declareRender(CLI::App& app);
+void declareRecord(CLI::App& app);
+void declareAccuracy(CLI::App& app);
+void declareContent(CLI::App& app);
+void declareSettings(CLI::App& app);
+
+void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp);
+/// Notes and warnings of a stage on stderr, unless quiet.
+void say(const Stage& stage, bool quiet);
+/// Writes figures for programs; nothing when `file` is empty.
+void writeJson(const std::string& file, const nlohmann::json& figures);
+/// What to write for a buffer by the file's extension: .exr linear, .png as a display shows it. Throws InputError for
+/// others.
+void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer);
+/// Checks before long work that `file` has an extension that can be written.
+void checkPictureName(const std::string& file);
+nlohmann::json figuresOf(const FrameStats& stats);
+
+/// Set by Ctrl-C: long work ends after the present frame.
+extern std::atomic<bool> interrupted;
+
+} // namespace lambent

@@ -1,0 +1,90 @@
+// lambent inspect SCENE: contents, size, lights; the effects it calls for, each with its reason; warnings.
+#include "gi/effects.h"
+#include "gi/vpl/light_set.h"
+#include "tools/lambent/commands.h"
+
+#include <cstdio>
+
+namespace lambent {
+
+namespace {
+
+const char* typeName(LightType t) {
+  return t == LightType::Point ? "point" : t == LightType::Spot ? "spot" : "directional";
+}
+
+void inspect(const LaunchOptions& launch, const OutputOptions& output) {
+  const auto stage = openStage(launch);
+  const SceneView view = stage->at(0);
+  const SceneAssets& assets = stage->scene.assets;
+  uint64_t meshTriangles = 0, placedTriangles = 0;
+  for (const Mesh& m : assets.meshes) meshTriangles += m.triangles.size();
+  for (const InstanceView& i : view.instances) placedTriangles += assets.meshes[i.mesh].triangles.size();
+  uint64_t texels = 0;
+  for (const TextureImage& i : assets.images) texels += i.texels.size();
+  const LightSet lights = collectLights(view);
+  const EffectPlan plan = planEffects(view, stage->settings);
+  const vec3 size = view.boundsWorld.size();
+
+  nlohmann::json j;
+  j["file"] = stage->scene.file.string();
+  j["triangles"] = placedTriangles;
+  j["mesh_triangles"] = meshTriangles;
+  j["meshes"] = assets.meshes.size();
+  j["instances"] = view.instances.size();
+  j["materials"] = assets.materials.size();
+  j["images"] = assets.images.size();
+  j["image_mib"] = double(texels) * 4 / (1 << 20);
+  j["size_m"] = {size.x, size.y, size.z};
+  j["animations"] = stage->scene.animations.size();
+  j["lights"] = nlohmann::json::array();
+  for (const LightView& l : view.lights)
+    j["lights"].push_back({{"type", typeName(l.type)},
+                           {"position", {l.position.x, l.position.y, l.position.z}},
+                           {"direction", {l.direction.x, l.direction.y, l.direction.z}},
+                           {"intensity", {l.intensity.x, l.intensity.y, l.intensity.z}}});
+  j["emitters"] = nlohmann::json::array();
+  for (const Emitter& e : lights.emitters)
+    j["emitters"].push_back({{"triangles", e.triangleCount}, {"power_w_per_sr", e.power}, {"double_sided", e.doubleSided}});
+  j["cameras"] = nlohmann::json::array();
+  for (const NamedCamera& c : sceneCameras(stage->scene)) j["cameras"].push_back(c.name);
+  j["effects"] = nlohmann::json::array();
+  for (const Effect& e : plan.effects) j["effects"].push_back({{"name", e.name}, {"on", e.on}, {"reason", e.reason}});
+  j["warnings"] = stage->scene.warnings;
+  j["notes"] = stage->notes;
+  writeJson(output.json, j);
+  if (output.quiet) return;
+
+  std::printf("%s\n", stage->scene.file.c_str());
+  std::printf("  triangles  %llu placed, %llu in %zu meshes, %zu instances\n", (unsigned long long)placedTriangles,
+              (unsigned long long)meshTriangles, assets.meshes.size(), view.instances.size());
+  std::printf("  materials  %zu, %zu images (%.1f MiB)\n", assets.materials.size(), assets.images.size(),
+              double(texels) * 4 / (1 << 20));
+  std::printf("  size       %.3g x %.3g x %.3g m\n", double(size.x), double(size.y), double(size.z));
+  std::printf("  animations %zu, cameras %zu\n", stage->scene.animations.size(), j["cameras"].size());
+  for (const LightView& l : view.lights)
+    std::printf("  light      %s, %.3g %.3g %.3g %s\n", typeName(l.type), double(l.intensity.x), double(l.intensity.y),
+                double(l.intensity.z), l.type == LightType::Directional ? "W/m2" : "W/sr");
+  for (const Emitter& e : lights.emitters)
+    std::printf("  emitter    %u triangles, %.3g W/sr%s\n", e.triangleCount, double(e.power),
+                e.doubleSided ? " on each side" : "");
+  std::printf("effects\n");
+  for (const Effect& e : plan.effects)
+    std::printf("  %-10s %-3s  %s\n", e.name.c_str(), e.on ? "on" : "off", e.reason.c_str());
+  for (const std::string& w : stage->scene.warnings) std::printf("warning: %s\n", w.c_str());
+  for (const std::string& n : stage->notes) std::printf("note: %s\n", n.c_str());
+}
+
+} // namespace
+
+void declareInspect(CLI::App& app) {
+  auto launch = std::make_shared<LaunchOptions>();
+  auto output = std::make_shared<OutputOptions>();
+  CLI::App* command = app.add_subcommand("inspect", "what a scene holds and which effects it calls for");
+  command->add_option("SCENE", launch->scene, "glTF or shot file")->required();
+  addLaunchOptions(*command, *launch);
+  addOutputOptions(*command, *output, "");
+  command->callback([launch, output] { inspect(*launch, *output); });
+}
+
+} // namespace lambent

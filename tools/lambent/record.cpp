@@ -1,0 +1,196 @@
+// lambent record SHOT: every frame of a shot → images, frame log, video.
+#include "engine/core/error.h"
+#include "engine/core/progress.h"
+#include "engine/platform/gl_context.h"
+#include "tools/lambent/commands.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct RecordOptions {
+  LaunchOptions launch;
+  OutputOptions output;
+  std::string buffer = "beauty", format = "png";
+  int frames = 0; // 0 = the whole shot
+  bool video = false;
+};
+
+/// Keeps the log in memory and writes it whole, so that it is never half-written; times are its last columns.
+class FrameLog {
+ public:
+  void add(double time, const FrameStats& s, double writeMs) {
+    rows_.push_back({time, s, writeMs});
+    for (const StageTime& t : s.stages)
+      if (std::find(stages_.begin(), stages_.end(), t.name) == stages_.end()) stages_.push_back(t.name);
+  }
+
+  void write(const fs::path& file) const {
+    writeAtomically(file, [&](const fs::path& temporary) {
+      std::ofstream out(temporary);
+      out << "frame,time_s,rays_points,rays_validation,rays_candidates,rays_radiosity_closest,rays_radiosity_occlusion,"
+             "rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,maps_drawn,burst,shadow_maker,plan,"
+             "timing,wall_ms,write_ms";
+      for (const std::string& s : stages_) out << ',' << columnName(s);
+      out << '\n';
+      for (const Row& r : rows_) {
+        const FrameStats& s = r.stats;
+        const auto all = [](const RayCounts& c) { return c.closest + c.occlusion; };
+        char time[32];
+        std::snprintf(time, sizeof time, "%.6f", r.time);
+        out << s.frame << ',' << time << ',' << all(s.raysPoints) << ',' << all(s.raysValidation) << ','
+            << all(s.raysCandidates) << ',' << s.raysRadiosity.closest << ',' << s.raysRadiosity.occlusion << ','
+            << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ',' << s.vplsMoved << ',' << s.vplsInvalid
+            << ',' << s.vplsRelit << ',' << s.mapsDrawn << ',' << s.burst << ','
+            << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ',' << s.plan << ',' << s.timing << ','
+            << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
+        for (const std::string& name : stages_) {
+          double ms = 0;
+          for (const StageTime& t : s.stages)
+            if (t.name == name) ms += std::max(t.cpuMs, t.gpuMs);
+          out << ',' << milliseconds(ms);
+        }
+        out << '\n';
+      }
+      if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+    });
+  }
+
+  /// Frames per second over all frames but the first (which warms the set up), pictures on disk included.
+  double framesPerSecond() const {
+    double ms = 0;
+    for (size_t i = 1; i < rows_.size(); ++i) ms += rows_[i].stats.wallMs + rows_[i].writeMs;
+    return ms > 0 ? 1000 * double(rows_.size() - 1) / ms : 0;
+  }
+
+ private:
+  struct Row {
+    double time;
+    FrameStats stats;
+    double writeMs;
+  };
+  static std::string milliseconds(double ms) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3f", ms);
+    return text;
+  }
+  static std::string columnName(std::string stage) {
+    std::replace(stage.begin(), stage.end(), ' ', '_');
+    return stage + "_ms";
+  }
+
+  std::vector<Row> rows_;
+  std::vector<std::string> stages_;
+};
+
+/// Runs ffmpeg without a shell. Throws RunError when it is missing or fails.
+void encodeVideo(const fs::path& folder, double fps, const fs::path& video) {
+  const fs::path temporary = folder / ".video.mp4";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::ostringstream rate;
+    rate << fps;
+    execlp("ffmpeg", "ffmpeg", "-y", "-loglevel", "error", "-framerate", rate.str().c_str(), "-i",
+           (folder / "%06d.png").c_str(), "-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18",
+           temporary.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw RunError(video.string() + (WIFEXITED(status) && WEXITSTATUS(status) == 127
+                                         ? ": ffmpeg is not installed (the frames are written; install ffmpeg for a video)"
+                                         : ": ffmpeg failed (the frames are written)"));
+  }
+  fs::rename(temporary, video);
+}
+
+double peakMemoryMiB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024;
+}
+
+void record(const RecordOptions& options) {
+  const Buffer buffer = bufferByName(options.buffer);
+  if (options.format != "png" && options.format != "exr" && options.format != "none")
+    throw InputError("--format " + options.format, "no such format (png, exr or none)");
+  if (options.video && options.format != "png") throw InputError("--video", "needs --format png");
+  const auto stage = openStage(options.launch);
+  if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
+  say(*stage, options.output.quiet);
+  const fs::path folder = options.output.out.empty() ? fs::path("out") / fs::path(options.launch.scene).stem()
+                                                     : fs::path(options.output.out);
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+
+  const int total = options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
+  GlContext context = GlContext::headless();
+  GiFrame gi(stage->settings, stage->seed);
+  FrameLog log;
+  int done = 0;
+  {
+    Progress progress("recording", options.output.quiet);
+    for (; done < total && !interrupted; ++done) {
+      const double t = done / stage->shot->fps;
+      const FrameStats& stats = gi.run(stage->at(t));
+      const auto begin = std::chrono::steady_clock::now();
+      if (options.format != "none") {
+        char name[32];
+        std::snprintf(name, sizeof name, "%06d.%s", done, options.format.c_str());
+        writeBuffer((folder / name).string(), gi, buffer);
+      }
+      const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
+      log.add(t, stats, writing.count());
+      progress.update(done + 1, total);
+    }
+  }
+  log.write(folder / "frames.csv");
+  std::string video;
+  if (options.video && done > 0) {
+    video = (folder / "video.mp4").string();
+    encodeVideo(folder, stage->shot->fps, video);
+  }
+  writeJson(options.output.json, {{"folder", folder.string()},
+                                  {"frames", done},
+                                  {"frames_per_second", log.framesPerSecond()},
+                                  {"peak_memory_mib", peakMemoryMiB()},
+                                  {"exposure", gi.exposure()},
+                                  {"video", video}});
+  if (!options.output.quiet) {
+    std::printf("%s: %d of %d frames, %.2f frames per second after the first, peak memory %.0f MiB\n",
+                folder.c_str(), done, total, log.framesPerSecond(), peakMemoryMiB());
+    if (!video.empty()) std::printf("video: %s\n", video.c_str());
+  }
+  if (interrupted) throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole");
+}
+
+} // namespace
+
+void declareRecord(CLI::App& app) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand("record", "every frame of a shot: pictures, frames.csv, video");
+  command->add_option("SHOT", options->launch.scene, "shot file (.json)")->required();
+  addLaunchOptions(*command, options->launch);
+  addOutputOptions(*command, options->output, "folder (default out/NAME)");
+  command->add_option("--buffer", options->buffer, "what to record (default beauty)");
+  command->add_option("--format", options->format, "png, exr or none (default png)");
+  command->add_option("--frames", options->frames, "only the first so many")->check(CLI::Range(1, 1000000));
+  command->add_flag("--video", options->video, "also make video.mp4 with ffmpeg");
+  command->callback([options] { record(*options); });
+}
+
+} // namespace lambent

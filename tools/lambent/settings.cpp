@@ -1,0 +1,15 @@
+// lambent settings: every knob with default, range and cost.
+#include "tools/lambent/commands.h"
+
+#include <cstdio>
+
+namespace lambent {
+
+void declareSettings(CLI::App& app) {
+  app.add_subcommand("settings", "every setting with default, range and cost")->callback([] {
+    for (const SettingRow& r : settingsTable())
+      std::printf("%-26s %-12s %-16s %s\n", r.name.c_str(), r.defaultText.c_str(), r.range.c_str(), r.help.c_str());
+  });
+}
+
+} // namespace lambent

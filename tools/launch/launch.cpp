@@ -1,0 +1,240 @@
+#include "tools/launch/launch.h"
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/core/sampling.h"
+#include "engine/core/text.h"
+#include "engine/trace/embree_query.h"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cstdlib>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Comma-separated finite numbers, exactly `count` of them.
+std::vector<float> numbers(const std::string& option, const std::string& text, size_t count) {
+  std::vector<float> out;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at < end) {
+    float value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value) || (next != end && *next != ',')) break;
+    out.push_back(value);
+    at = next == end ? end : next + 1;
+    if (next != end && at == end) out.clear(); // a trailing comma
+  }
+  if (out.size() != count || at != end)
+    throw InputError(option + " " + text, "needs " + std::to_string(count) + " numbers separated by commas");
+  return out;
+}
+
+vec3 threeNumbers(const std::string& option, const std::string& text) {
+  const std::vector<float> n = numbers(option, text, 3);
+  return {n[0], n[1], n[2]};
+}
+
+/// Radiometric values are not negative.
+vec3 lightValue(const std::string& option, const std::string& text, const vec3& v) {
+  if (v.x < 0 || v.y < 0 || v.z < 0) throw InputError(option + " " + text, "light is negative (0 or more)");
+  return v;
+}
+
+LightView sunLight(const std::string& text) {
+  const std::vector<float> n = numbers("--sun", text, 6);
+  const vec3 direction(n[0], n[1], n[2]);
+  if (!(glm::length(direction) > 0)) throw InputError("--sun " + text, "the direction has no length");
+  LightView light;
+  light.type = LightType::Directional;
+  light.direction = glm::normalize(direction);
+  light.intensity = lightValue("--sun", text, {n[3], n[4], n[5]});
+  return light;
+}
+
+LightView pointLight(const std::string& text) {
+  const std::vector<float> n = numbers("--point", text, 6);
+  LightView light;
+  light.position = {n[0], n[1], n[2]};
+  light.intensity = lightValue("--point", text, {n[3], n[4], n[5]});
+  return light;
+}
+
+void readSize(const std::string& text, CameraView& camera) {
+  char cross = 0, rest = 0;
+  int width = 0, height = 0;
+  constexpr int kLargest = 16384; // texels per side that OpenGL 4.5 guarantees
+  const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &width, &cross, &height, &rest);
+  if (fields != 3 || cross != 'x' || width < 1 || height < 1 || width > kLargest || height > kLargest)
+    throw InputError("--size " + text, "not a size (WIDTHxHEIGHT, 1 to 16384 each, for example 1280x720)");
+  camera.width = width;
+  camera.height = height;
+}
+
+CameraView namedCamera(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const NamedCamera& c : sceneCameras(scene)) {
+    if (c.name == name) return c.view;
+    names.push_back(c.name);
+  }
+  const std::string near = nearestName(name, names);
+  throw InputError(scene.file.string(), "no camera '" + name + "' (" +
+                                            (names.empty()  ? "the file has none: use --eye and --target"
+                                             : near.empty() ? "it has " + names[0]
+                                                            : "did you mean " + near + "?") +
+                                            ")");
+}
+
+void chooseCamera(Stage& stage, const LaunchOptions& options) {
+  const bool eye = !options.eye.empty();
+  if (eye != !options.target.empty())
+    throw InputError(eye ? "--eye " + options.eye : "--target " + options.target, "--eye and --target go together");
+  if (options.fovDegrees && !(*options.fovDegrees > 1 && *options.fovDegrees < 179))
+    throw InputError("--fov", "out of range (1 to 179 degrees)");
+  const std::vector<NamedCamera> cameras = sceneCameras(stage.scene);
+  stage.cameraGiven = eye || !options.camera.empty();
+  if (eye) {
+    const vec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
+    if (from == to) throw InputError("--target " + options.target, "is where --eye is");
+    stage.camera = lookAt(from, to, glm::radians(60.0f));
+  } else if (!options.camera.empty()) {
+    stage.camera = namedCamera(stage.scene, options.camera);
+  } else if (!cameras.empty()) {
+    stage.camera = cameras[0].view;
+  } else {
+    stage.camera = defaultView(stage.scene);
+    if (!stage.shot || stage.shot->camera.empty())
+      stage.notes.push_back("the file has no camera: a default view was chosen (--eye, --target)");
+  }
+  if (options.fovDegrees) stage.camera.fovY = glm::radians(*options.fovDegrees);
+  stage.camera.width = 320;
+  stage.camera.height = 180;
+  if (!options.size.empty()) readSize(options.size, stage.camera);
+}
+
+bool hasEmitters(const Scene& scene) {
+  for (const Mesh& mesh : scene.assets.meshes)
+    for (const Primitive& p : mesh.primitives)
+      if (scene.assets.materials[p.material].emits()) return true;
+  return false;
+}
+
+void addDefaultLight(Stage& stage, const SceneView& view) {
+  if (!view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage.scene) || view.instances.empty())
+    return;
+  // Open to the sky? A sun in a closed room would leave it black.
+  EmbreeQuery rays(stage.scene.assets);
+  rays.update(view);
+  int open = 0;
+  constexpr int kRays = 512;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    vec3 d = sampleSphere({(float(i) + 0.5f) / kRays, additiveRecurrence3(i, vec3(0)).x});
+    d.y = std::abs(d.y);
+    open += !rays.occluded(Ray{view.camera.position(), d});
+  }
+  LightView light;
+  if (open * 50 > kRays) {
+    light.type = LightType::Directional;
+    light.direction = glm::normalize(vec3(-0.4f, -1, -0.3f));
+    light.intensity = vec3(kPi);
+    stage.notes.push_back("the scene has no light: added a sun (--sun -0.4,-1,-0.3,3.14,3.14,3.14)");
+  } else {
+    const float size = view.boundsWorld.diameter();
+    light.position = view.camera.position() + vec3(view.camera.worldFromView[1]) * 0.01f * size;
+    light.intensity = vec3(0.02f * size * size);
+    stage.notes.push_back("the scene has no light and is closed: added a lamp by the camera (--point)");
+  }
+  addLight(stage.scene, light, "default light");
+}
+
+void chooseSettings(Stage& stage, const LaunchOptions& options) {
+  if (options.technique != "smc") throw InputError("--technique " + options.technique, "no such technique (smc)");
+  if (stage.shot)
+    for (const auto& [name, value] : stage.shot->set) applySetting(stage.settings, name, value);
+  for (const std::string& text : options.set) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
+    applySetting(stage.settings, text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (options.bounces) applySetting(stage.settings, "smc.bounces", std::to_string(*options.bounces));
+}
+
+} // namespace
+
+void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
+  command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
+  command.add_option("--camera", options.camera, "camera of the file, by name");
+  command.add_option("--eye", options.eye, "view from x,y,z");
+  command.add_option("--target", options.target, "look at x,y,z");
+  command.add_option("--fov", options.fovDegrees, "vertical field of view, degrees");
+  command.add_option("--size", options.size, "WIDTHxHEIGHT");
+  command.add_option("--technique", options.technique, "how indirect light is found: smc");
+  command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")->take_all();
+  command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
+  command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")->take_all();
+  command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->take_all();
+  command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
+  command.add_option("--seed", options.seed, "of all random numbers");
+  command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
+}
+
+SceneView Stage::at(double t) {
+  CameraView view = camera;
+  if (shot) {
+    poseShot(scene, *shot, t);
+    if (!shot->camera.empty() && !cameraGiven) {
+      view = shotCamera(*shot, t);
+      view.width = camera.width;
+      view.height = camera.height;
+    }
+  } else {
+    animate(scene, t);
+  }
+  return extractor_.extract(scene, view, t);
+}
+
+std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
+  setThreadCount(options.threads);
+  if (options.threads > 0) setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
+  auto stage = std::make_unique<Stage>();
+  fs::path file = options.scene;
+  if (file.extension() == ".json") {
+    stage->shot = loadShot(file);
+    file = stage->shot->scene;
+  }
+  stage->seed = options.seed;
+  chooseSettings(*stage, options);
+  stage->scene = loadScene(file, options.sceneName);
+  for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
+  for (const std::string& text : options.points) addLight(stage->scene, pointLight(text), "lamp");
+  if (!options.sky.empty())
+    stage->scene.skyRadiance = lightValue("--sky", options.sky, threeNumbers("--sky", options.sky));
+  animate(stage->scene, 0);
+  chooseCamera(*stage, options);
+  SceneExtractor probe;
+  addDefaultLight(*stage, probe.extract(stage->scene, stage->camera, 0));
+  return stage;
+}
+
+fs::path findContentFolder() {
+  std::vector<fs::path> places;
+  if (const char* named = std::getenv("LAMBENT_CONTENT")) places.emplace_back(named);
+  std::error_code unknown;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", unknown);
+  if (!unknown) places.push_back(executable.parent_path().parent_path() / "share/lambent/content");
+  places.emplace_back(fs::path(LAMBENT_SOURCE_DIR) / "content");
+  std::string tried;
+  for (const fs::path& place : places) {
+    std::error_code failure;
+    if (fs::is_directory(place, failure)) return place;
+    tried += (tried.empty() ? "" : ", ") + place.string();
+  }
+  throw InputError("bundled scenes", "not found in " + tried + " (set LAMBENT_CONTENT, or name a scene)");
+}
+
+} // namespace lambent

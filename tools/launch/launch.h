@@ -1,0 +1,61 @@
+// Options that `lambent` and `walkthrough` share, and what they open with them: scene, shot, camera, lights, settings.
+#pragma once
+
+#include "engine/scene/scene.h"
+#include "engine/scene/shot.h"
+#include "gi/settings.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace lambent {
+
+/// As parsed; texts are checked by openStage.
+struct LaunchOptions {
+  std::string scene;     // glTF file or shot file (.json)
+  std::string sceneName; // of several in the file
+  std::string camera, eye, target, size, sky, technique = "smc";
+  std::optional<float> fovDegrees;
+  std::vector<std::string> set, suns, points;
+  std::optional<int> bounces;
+  uint32_t seed = 1;
+  int threads = 0; // 0 = all cores
+};
+
+/// Declares the common options on a command. `options` must outlive the parse.
+void addLaunchOptions(CLI::App& command, LaunchOptions& options);
+
+/// Everything that a frame is made from.
+class Stage {
+ public:
+  Scene scene;
+  std::optional<Shot> shot;
+  CameraView camera; // of the command line, the file or a default; the shot's camera comes first where it has one
+  bool cameraGiven = false; // from the command line: overrides the shot's
+  Settings settings;
+  uint32_t seed = 1;
+  std::vector<std::string> notes; // defaults that were chosen, one line each
+
+  /// Poses scene and camera at time t and extracts the view; valid until the next call.
+  SceneView at(double t);
+
+ private:
+  SceneExtractor extractor_;
+};
+
+/// Loads and checks everything. A scene without light gets a stated default: a sun, or in a closed room a lamp by the
+/// camera. Also applies `threads`, to OpenGL on software Mesa too, so call it before a context is made.
+/// Throws InputError.
+std::unique_ptr<Stage> openStage(const LaunchOptions& options);
+
+/// Folder of the bundled scenes: LAMBENT_CONTENT, else ../share/lambent/content beside the executable, else the source
+/// tree's. Throws InputError naming the places when none is there.
+std::filesystem::path findContentFolder();
+
+} // namespace lambent
