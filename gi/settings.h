@@ -23,10 +23,10 @@ struct SmcSettings {
   int candidateRays = 16;     // candidate rays per VPL slot (16:1 resampling)
   int paths = 16;             // light paths per VPL radiosity estimate
   int bounces = 3;            // B: B=1 is light → VPL → pixel
-  int points = 4096;          // directly visible points X
+  int points = 2048;          // directly visible points X
   int validationRays = 16;    // V, rays per point and round towards unverified VPLs
   int warmup = 100;           // iterations before the first picture
-  int neighbours = 0;         // k of the density for rendering; 0 = paper 1 eq. 8, max(1, ⌊√N/32⌋)
+  int neighbours = 8;         // k of the density for rendering; 0 = paper 1 eq. 8, max(1, ⌊√N/32⌋): too bright, see gi/README
   DensityEstimator density = DensityEstimator::KnnSide;
   VplVisibility visibility = VplVisibility::Maps;
 };

@@ -3,12 +3,11 @@
 // One draw covers one 4×4 subset of the pixels, which lie side by side, or all pixels (stride 1).
 // Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison).
 #include "lib/gbuffer.glsl"
-#include "shared/octahedral.h"
 #include "shared/shadow_lookup.h"
 #include "shared/vpl_light.h"
 
-const int kClasses = 16, kLightsPerClass = 128; // a chunk of 2048 lights: see VplLights in gi/render/passes.h
-layout(std140, binding = 1) uniform Lights { VplLight lights[kClasses * kLightsPerClass]; };
+// Half of the classes of a chunk of 2048 lights: see VplLights in gi/render/passes.h
+layout(std140, binding = 1) uniform Lights { VplLight lights[kClassesPerLightBlock * kLightsPerClass]; };
 #ifdef SMOOTH_SHADOWS
 layout(binding = 2) uniform sampler2DArrayShadow maps;
 #else
@@ -17,25 +16,33 @@ layout(binding = 2) uniform sampler2DArray maps;
 uniform ivec2 tileOrigin;   // of this draw's sub-image, pixels
 uniform ivec2 subset;       // (x mod 4, y mod 4) of its pixels
 uniform int stride;         // 4, or 1 for all pixels
-uniform int firstClass;
+uniform int firstClass;     // in the block
 uniform int classCount;
+uniform int blockClass;     // class that the block starts with
 uniform int perClass;       // lights in each class
 uniform float scale;        // 16 for one class of 16, 1 for all
 uniform float diskFactor;   // 1/π, or 0 for a bare 1/r²
 uniform float largestG;     // 1/m²
 uniform float farDistance;  // metres at map value 1
-uniform float biasTexels;
+uniform float mapResolution;  // texels
+uniform float mapTexelAngle;  // angle that the bias covers at the rim of a map, radians
 layout(location = 0) out vec4 outIrradiance;
 
 #ifdef SHADOWS
-/// 1 where the light's map shows nothing nearer than the receiver.
-float visibility(int layer, vec3 normalLight, vec3 towardsReceiver, float distance, float cosineReceiver) {
-  float resolution = float(textureSize(maps, 0).x);
-  vec3 lookup = paraboloidLookup(normalLight, towardsReceiver, distance, cosineReceiver, resolution, biasTexels, farDistance);
+/// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame). The bias is what the
+/// receiver's plane can rise within `biasTexels` map texels, distance · texelAngle · tanθ, plus the map's own rounding
+/// (16 bits) and its origin's offset from the surface. Both sides of the comparison carry cosθ, to spare a division.
+float visibility(int layer, vec3 d, float distance, float cosine) {
+  float texelAngle = mapTexelAngle * (1.0 + d.z); // stereographic scale of the paraboloid map, radians
+  float sine = sqrt(max(0.0, 1.0 - cosine * cosine));
+  float reference = distance * (cosine - texelAngle * (sine + 0.1 * cosine));
+  vec2 uv = paraboloidFromDirection(d);
 #ifdef SMOOTH_SHADOWS
-  return texture(maps, vec4(lookup.xy, layer, lookup.z / farDistance));
+  return texture(maps, vec4(uv, layer, reference / (max(cosine, 1e-4) * farDistance) - 4e-5));
 #else
-  return texelFetch(maps, ivec3(ivec2(lookup.xy * resolution), layer), 0).r >= lookup.z / farDistance ? 1.0 : 0.0;
+  // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
+  ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
+  return (texelFetch(maps, ivec3(texel, layer), 0).r + 4e-5) * farDistance * cosine >= reference ? 1.0 : 0.0;
 #endif
 }
 #endif
@@ -49,25 +56,25 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
 
+  // No branches inside: pixels of a group disagree nearly always, and software Mesa pays for every mask. An empty slot
+  // has no power.
   vec3 irradiance = vec3(0.0);
   for (int c = firstClass; c < firstClass + classCount; ++c) {
     for (int i = 0; i < perClass; ++i) {
       VplLight light = lights[c * kLightsPerClass + i];
-      float area = light.powerArea.w;
-      if (area == 0.0) continue; // empty slot
-      vec3 normalLight = unitFromOctahedral(unpackSnorm2x16(floatBitsToUint(light.positionNormal.w)));
-      vec3 toLight = light.positionNormal.xyz - position;
-      float distance2 = max(dot(toLight, toLight), 1e-12);
-      float distance = sqrt(distance2);
-      vec3 towardsLight = toLight / distance;
-      float cosineReceiver = dot(normal, towardsLight);
-      float cosineLight = -dot(normalLight, towardsLight);
-      if (!(cosineReceiver > 0.0 && cosineLight > 0.0)) continue;
-      float g = min(cosineReceiver * cosineLight / (distance2 + area * diskFactor), largestG);
+      vec3 fromLight = position - light.positionArea.xyz;
+      float distance2 = max(dot(fromLight, fromLight), 1e-12);
+      float inverseDistance = inversesqrt(distance2);
+      vec3 direction = fromLight * inverseDistance;
+      float cosineReceiver = -dot(normal, direction);
+      vec3 d = vec3(dot(light.tangentNormalY.xyz, direction), dot(light.bitangentNormalZ.xyz, direction),
+                    dot(vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w), direction));
+      float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
+      g = min(g, largestG);
 #ifdef SHADOWS
-      g *= visibility(i * kClasses + c, normalLight, -towardsLight, distance, cosineReceiver);
+      g *= visibility(i * kLightClasses + blockClass + c, d, distance2 * inverseDistance, cosineReceiver);
 #endif
-      irradiance += light.powerArea.rgb * g;
+      irradiance += light.powerNormalX.rgb * g;
     }
   }
   outIrradiance = vec4(irradiance * scale, 1.0);

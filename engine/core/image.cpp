@@ -63,7 +63,8 @@ Image readPfm(const fs::path& file) {
   if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
     throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
                                         " (1 to " + std::to_string(kMaxImageSide) + " each way)");
-  if (scale == 0 || !std::isfinite(scale)) throw InputError(file.string(), "the scale in the PFM header is not a number");
+  if (scale == 0 || !std::isfinite(scale))
+    throw InputError(file.string(), "the scale in the PFM header is not a number");
   in.get(); // exactly one white-space character ends the header
 
   const int channels = kind == "PF" ? 3 : 1;

@@ -64,9 +64,9 @@ Image readExr(const std::filesystem::path& file, const std::string& layer) {
                                           " (1 to " + std::to_string(kMaxImageSide) + " each way)");
     Image image{int(width), int(height)};
     // Arithmetic on addresses as integers: the origin of a shifted data window is not inside the array.
-    const auto origin = reinterpret_cast<const vec3*>(reinterpret_cast<intptr_t>(image.pixels.data()) -
-                                                      (window.min.y * intptr_t(width) + window.min.x) *
-                                                          intptr_t(sizeof(vec3)));
+    const auto origin =
+        reinterpret_cast<const vec3*>(reinterpret_cast<intptr_t>(image.pixels.data()) -
+                                      (window.min.y * intptr_t(width) + window.min.x) * intptr_t(sizeof(vec3)));
     Imf::FrameBuffer frame;
     for (int c = 0; c < 3; ++c) {
       const std::string name = layer.empty() ? kChannels[c] : layer + "." + kChannels[c];

@@ -1,9 +1,9 @@
 // The first picture of a file that has no camera. The rule:
 //
 // 1. Stand on each of 3x3 places spread over the plan, at eye height (1.6 m above the floor found there, or half of the
-//    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these looks
-//    meet the front of a surface: seen from within a closed object they meet the backs, and over open ground
-//    the upper half meets nothing.
+//    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these
+//    looks meet the front of a surface: seen from within a closed object they meet the backs, and over open ground the
+//    upper half meets nothing.
 // 2. No place inside: an object. View it from outside: from the front, a little to the right and above, so far away
 //    that its bounding sphere fits a vertical angle of 50 degrees.
 // 3. Inside, but exactly one of the four sides is open (a stage, a Cornell box): view it straight through that side.
@@ -25,10 +25,10 @@ namespace lambent {
 namespace {
 
 constexpr float kFovY = 50.0f / 180 * kPi;
-constexpr float kEyeHeight = 1.6f;      // metres
-constexpr float kInsideShare = 0.7f;    // of looks that must meet a front
-constexpr int kPlaces = 3;              // along each side of the plan
-constexpr float kOwnRadius = 0.3f;      // metres kept between the eye and the wall behind it
+constexpr float kEyeHeight = 1.6f;   // metres
+constexpr float kInsideShare = 0.7f; // of looks that must meet a front
+constexpr int kPlaces = 3;           // along each side of the plan
+constexpr float kOwnRadius = 0.3f;   // metres kept between the eye and the wall behind it
 
 struct Triangle {
   vec3 a, edge1, edge2;
@@ -203,7 +203,8 @@ CameraView defaultView(const Scene& scene) {
   const Aabb bounds = worldBounds(scene);
   if (bounds.empty()) return lookAt(vec3(0, 0, 2), vec3(0), kFovY);
   const std::vector<Place> places = tryPlaces(worldTriangles(scene), bounds);
-  if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; })) return viewFromOutside(bounds);
+  if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; }))
+    return viewFromOutside(bounds);
   if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);
   return viewFromInside(places, bounds);
 }

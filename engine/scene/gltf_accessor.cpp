@@ -105,13 +105,12 @@ template <class Put> void forElements(const Document& doc, const Accessor& a, co
   if (!a.sparse) return;
   if (a.sparseCount < 0 || size_t(a.sparseCount) > a.count || a.sparseIndicesOffset < 0 || a.sparseValuesOffset < 0)
     doc.fail(place, "has more sparse values than elements, or a negative offset");
-  if (!isIndexType(a.sparseIndicesType))
-    doc.fail(place, "the sparse indices are not unsigned integers");
+  if (!isIndexType(a.sparseIndicesType)) doc.fail(place, "the sparse indices are not unsigned integers");
   const size_t n = size_t(a.sparseCount);
   const Run indices = elementRun(doc, a.sparseIndicesView, size_t(a.sparseIndicesOffset), n,
                                  componentSize(doc, a.sparseIndicesType, place), place + ", sparse indices");
-  const Run values = elementRun(doc, a.sparseValuesView, size_t(a.sparseValuesOffset), n, elementSize,
-                                place + ", sparse values");
+  const Run values =
+      elementRun(doc, a.sparseValuesView, size_t(a.sparseValuesOffset), n, elementSize, place + ", sparse values");
   for (size_t i = 0; i < n; ++i) {
     const uint32_t element = componentAsIndex(ComponentType(a.sparseIndicesType), indices.data + i * indices.stride);
     if (element >= a.count)
@@ -141,8 +140,8 @@ template <class V> std::vector<V> readAccessor(const Document& doc, int accessor
   const std::string place = accessorPlace(outerPlace, accessor);
   constexpr int kComponents = int(sizeof(V) / sizeof(float));
   if (a.components != kComponents)
-    doc.fail(place, "has " + std::to_string(a.components) + " components (" + std::to_string(kComponents) +
-                        " expected)");
+    doc.fail(place,
+             "has " + std::to_string(a.components) + " components (" + std::to_string(kComponents) + " expected)");
   const auto type = ComponentType(a.componentType);
   const size_t step = componentSize(doc, a.componentType, place);
   std::vector<V> values;

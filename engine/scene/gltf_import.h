@@ -28,8 +28,8 @@ struct Import {
 /// Entities for one scene of the file, with cameras, lights and mesh instances.
 void importNodes(Import& import, const std::string& sceneName);
 
-/// A glTF mesh as a slot of SceneAssets::meshes, kNone when it holds no triangles. With a skinned node (else -1): in the
-/// rest pose of the node's skin, in the node's own space.
+/// A glTF mesh as a slot of SceneAssets::meshes, kNone when it holds no triangles. With a skinned node (else -1): in
+/// the rest pose of the node's skin, in the node's own space.
 uint32_t importMesh(Import& import, int mesh, int skinnedNode);
 
 /// Matrices that take each joint's vertices from the bind pose to the space of `node` with the joints at rest; empty

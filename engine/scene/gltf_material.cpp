@@ -12,8 +12,8 @@ namespace {
 
 /// Extensions that change nothing a Lambert surface shows, or that are applied.
 constexpr std::array<std::string_view, 8> kSilentExtensions = {
-    "KHR_materials_emissive_strength", "KHR_materials_ior",         "KHR_materials_specular",
-    "KHR_materials_clearcoat",         "KHR_materials_sheen",       "KHR_materials_iridescence",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",   "KHR_materials_specular",
+    "KHR_materials_clearcoat",         "KHR_materials_sheen", "KHR_materials_iridescence",
     "KHR_materials_anisotropy",        "KHR_materials_unlit"};
 
 TextureRef importTexture(Import& import, const TextureUse& use, const std::string& place) {
@@ -22,7 +22,8 @@ TextureRef importTexture(Import& import, const TextureUse& use, const std::strin
   if (use.texture < 0) return ref;
   const Texture& texture = doc.at(doc.textures, use.texture, "texture", place);
   if (texture.image < 0 || size_t(texture.image) >= doc.images.size()) {
-    doc.warn(place + ": texture " + std::to_string(use.texture) + " has no image that this program can use; white instead");
+    doc.warn(place + ": texture " + std::to_string(use.texture) +
+             " has no image that this program can use; white instead");
     return ref;
   }
   ref.image = import.images.emplace(texture.image, uint32_t(import.images.size())).first->second;

@@ -14,8 +14,8 @@ enum Mode { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, Triang
 
 /// The accessors a primitive's vertices come from; -1 where it has none.
 using VertexKey = std::array<int, 9>;
-constexpr std::array<const char*, 9> kAttributes = {"POSITION",  "NORMAL",   "TEXCOORD_0", "TEXCOORD_1", "COLOR_0",
-                                                    "JOINTS_0", "WEIGHTS_0", "JOINTS_1",  "WEIGHTS_1"};
+constexpr std::array<const char*, 9> kAttributes = {"POSITION", "NORMAL",    "TEXCOORD_0", "TEXCOORD_1", "COLOR_0",
+                                                    "JOINTS_0", "WEIGHTS_0", "JOINTS_1",   "WEIGHTS_1"};
 enum Attribute { Position, Normal, Uv0, Uv1, Color, Joints0, Weights0, Joints1, Weights1 };
 
 VertexKey vertexKey(const Primitive& primitive) {
@@ -34,8 +34,7 @@ struct Vertices {
   std::vector<vec4> colors;
 };
 
-template <class V>
-void replaceNonFinite(std::vector<V>& values, const V& replacement) {
+template <class V> void replaceNonFinite(std::vector<V>& values, const V& replacement) {
   for (V& v : values)
     for (int c = 0; c < V::length(); ++c)
       if (!std::isfinite(v[c])) v = replacement;
@@ -93,8 +92,8 @@ Vertices readVertices(const Document& doc, const VertexKey& key, const std::vect
   if (key[Color] >= 0) v.colors = readColors(doc, key[Color], at(Color));
   const auto checkCount = [&](Attribute a, size_t count) {
     if (key[a] >= 0 && count != v.positions.size())
-      doc.fail(at(a), "has " + std::to_string(count) + " elements, but there are " + std::to_string(v.positions.size()) +
-                          " positions");
+      doc.fail(at(a), "has " + std::to_string(count) + " elements, but there are " +
+                          std::to_string(v.positions.size()) + " positions");
   };
   checkCount(Normal, v.normals.size());
   checkCount(Uv0, v.uv0.size());
@@ -150,8 +149,8 @@ void dropDefects(Import& import, std::vector<uvec3>& triangles, const std::vecto
   std::erase_if(triangles, [&](const uvec3& t) {
     const vec3 cross = faceCross(positions, t);
     const float squared = glm::dot(cross, cross);
-    const bool bad = !isFinite(positions[t.x]) || !isFinite(positions[t.y]) || !isFinite(positions[t.z]) ||
-                     !std::isfinite(squared);
+    const bool bad =
+        !isFinite(positions[t.x]) || !isFinite(positions[t.y]) || !isFinite(positions[t.z]) || !std::isfinite(squared);
     const bool flat = !bad && squared < std::numeric_limits<float>::min();
     notFinite += bad;
     noArea += flat;

@@ -23,8 +23,8 @@ void decompose(Transform& t) {
     parts.scale[c] = glm::length(vec3(m[c]));
   if (!(glm::min(parts.scale.x, glm::min(parts.scale.y, parts.scale.z)) > 0)) return;
   if (glm::determinant(mat3(m)) < 0) parts.scale.x = -parts.scale.x;
-  parts.rotation = glm::normalize(glm::quat_cast(
-      mat3(vec3(m[0]) / parts.scale.x, vec3(m[1]) / parts.scale.y, vec3(m[2]) / parts.scale.z)));
+  parts.rotation = glm::normalize(
+      glm::quat_cast(mat3(vec3(m[0]) / parts.scale.x, vec3(m[1]) / parts.scale.y, vec3(m[2]) / parts.scale.z)));
   const mat4 again = parts.local();
   for (int c = 0; c < 3; ++c)
     if (glm::length(again[c] - m[c]) > 1e-5f * glm::length(m[c])) return;
@@ -41,8 +41,8 @@ std::vector<int> rootsOf(const Document& doc, const std::string& sceneName) {
     std::string known;
     for (const std::string& n : names)
       known += (known.empty() ? "" : ", ") + n;
-    throw InputError(doc.file.string(), "has no scene '" + sceneName + "' (it has: " +
-                                            (known.empty() ? "none" : known) + ")");
+    throw InputError(doc.file.string(),
+                     "has no scene '" + sceneName + "' (it has: " + (known.empty() ? "none" : known) + ")");
   }
   if (doc.defaultScene >= 0) return doc.at(doc.scenes, doc.defaultScene, "scene", "default scene").nodes;
   if (!doc.scenes.empty()) return doc.scenes[0].nodes;

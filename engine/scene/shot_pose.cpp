@@ -13,7 +13,8 @@ namespace {
 /// Catmull-Rom through keys at uneven times: cubic Hermite whose tangents are the slopes between the neighbours,
 /// one-sided at the ends, where it also holds.
 template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
-  const auto after = std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  const auto after =
+      std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
   if (after == keys.begin()) return value(keys.front());
   if (after == keys.end()) return value(keys.back());
   const size_t i = size_t(after - keys.begin()) - 1;
@@ -28,7 +29,8 @@ template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t,
 }
 
 float linearFov(const std::vector<CameraKey>& keys, double t) {
-  const auto after = std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  const auto after =
+      std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
   if (after == keys.begin()) return keys.front().fovY;
   if (after == keys.end()) return keys.back().fovY;
   const auto before = after - 1;

@@ -9,12 +9,6 @@
 
 namespace lambent {
 
-namespace {
-
-constexpr uint32_t kChunk = 2048, kClasses = 16;
-
-} // namespace
-
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
@@ -25,11 +19,15 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.use();
   program.set("diskFactor", in.diskFactor);
   program.set("largestG", in.largestG);
-  program.set("biasTexels", in.biasTexels);
-  program.set("farDistance", in.maps ? in.maps->farDistance : 1.0f);
+  if (in.maps) {
+    program.set("farDistance", in.maps->farDistance);
+    program.set("mapResolution", float(in.maps->resolution));
+    program.set("mapTexelAngle", in.biasTexels * 2 / float(in.maps->resolution));
+  }
   program.set("stride", in.deinterleaved ? 4 : 1);
-  program.set("classCount", in.deinterleaved ? 1 : int(kClasses));
-  program.set("scale", in.deinterleaved ? float(kClasses) : 1.0f);
+  const int classesPerDraw = in.deinterleaved ? 1 : kClassesPerLightBlock;
+  program.set("classCount", classesPerDraw);
+  program.set("scale", in.deinterleaved ? float(kLightClasses) : 1.0f);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
@@ -37,26 +35,28 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   glBindSampler(2, in.smoothShadows ? in.smoothShadows->name() : 0);
 
   const glm::ivec2 tile = tileSize(in.gbuffer);
+  constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
+  constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
   const uint32_t chunks = std::max(1u, (in.lights.count + kChunk - 1) / kChunk);
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
     const uint32_t lights = std::min(kChunk, in.lights.count - chunk * kChunk);
-    program.set("perClass", int((lights + kClasses - 1) / kClasses));
-    in.lights.buffer->bindUniform(1, chunk * kChunk * sizeof(VplLight), kChunk * sizeof(VplLight));
+    program.set("perClass", int((lights + kLightClasses - 1) / kLightClasses));
     if (in.maps && lights > 0) {
       CHECK_LT(chunk, in.maps->arrays.size());
       in.maps->arrays[chunk].bind(2);
     }
-    const bool add = in.addToTarget || chunk > 0;
-    for (int c = 0; c < (in.deinterleaved ? int(kClasses) : 1); ++c) {
-      const glm::ivec2 subset(c % 4, c / 4);
-      program.set("firstClass", c);
+    for (int c = 0; c < kLightClasses; c += classesPerDraw) {
+      const int block = c / kClassesPerLightBlock;
+      const bool add = in.addToTarget || chunk > 0 || (!in.deinterleaved && block > 0);
+      const glm::ivec2 subset = in.deinterleaved ? glm::ivec2(c % 4, c / 4) : glm::ivec2(0);
+      const glm::ivec2 size = in.deinterleaved ? tile : glm::ivec2(in.gbuffer.width, in.gbuffer.height);
+      const glm::ivec2 origin = subset * tile;
+      in.lights.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
+      program.set("blockClass", block * kClassesPerLightBlock);
+      program.set("firstClass", c % kClassesPerLightBlock);
       program.set("subset", subset);
-      program.set("tileOrigin", in.deinterleaved ? subset * tile : glm::ivec2(0));
-      if (in.deinterleaved)
-        gl::PipelineState{.add = add, .x = subset.x * tile.x, .y = subset.y * tile.y, .width = tile.x, .height = tile.y}
-            .apply();
-      else
-        gl::PipelineState{.add = add, .width = in.gbuffer.width, .height = in.gbuffer.height}.apply();
+      program.set("tileOrigin", origin);
+      gl::PipelineState{.add = add, .x = origin.x, .y = origin.y, .width = size.x, .height = size.y}.apply();
       gl::drawFullscreen();
     }
   }

@@ -1,7 +1,6 @@
 // The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/test_maps.cpp checks.
 #include "engine/core/parallel.h"
 #include "gi/render/paraboloid_maps.h"
-#include "shaders/shared/octahedral.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <cmath>
@@ -10,14 +9,11 @@ namespace lambent {
 
 namespace {
 
-/// The light's frame: columns tangent, bitangent, normal. The normal is rounded as VplLight stores it, since the gather
-/// builds its frame from that.
+/// The light's frame, as VplLight stores it: columns tangent, bitangent, normal.
 mat3 frameOf(const MapPose& pose) {
-  const vec3 normal = unitFromOctahedral(
-      glm::unpackSnorm2x16(glm::packSnorm2x16(octahedralFromUnit(pose.normal))));
   mat3 frame;
-  basisAround(normal, frame[0], frame[1]);
-  frame[2] = normal;
+  basisAround(pose.normal, frame[0], frame[1]);
+  frame[2] = pose.normal;
   return frame;
 }
 

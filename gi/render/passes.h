@@ -71,7 +71,7 @@ class GBufferPass {
 /// Where a paraboloid map stands and looks.
 struct MapPose {
   vec3 position{0};
-  vec3 normal{0, 1, 0}; // axis of the map; both makers first round it as VplLight stores it
+  vec3 normal{0, 1, 0}; // axis of the map, unit; the gather must be given the same
   vec3 geometricNormal{0, 1, 0};
 };
 /// Poses of all slots of a set (empty slots too).
@@ -139,8 +139,8 @@ class ParaboloidMapPass {
 /// The light of a slot; empty (a = 0) when it is not alive or brings nothing.
 VplLight vplLight(const Vpl& vpl);
 
-/// Lights in uniform-block chunks of 2048. Within chunk k, class c (slot mod 16) is contiguous: light
-/// k·2048 + c·128 + (slot mod 2048)/16, so that a class is one range and the whole chunk is one block.
+/// Lights in chunks of 2048, as many as a map array has layers. Within chunk k, class c (slot mod 16) is contiguous:
+/// light k·2048 + c·128 + (slot mod 2048)/16, so that 8 classes are one uniform block of 64 KiB.
 struct VplLights {
   const gl::Buffer* buffer = nullptr;
   uint32_t count = 0; // slots

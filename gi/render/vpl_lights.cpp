@@ -1,28 +1,29 @@
 // VPLs as the gather reads them: uniform-block chunks ordered by interleaving class.
 #include "engine/core/error.h"
 #include "gi/render/passes.h"
-#include "shaders/shared/octahedral.h"
+#include "shaders/shared/paraboloid.h"
 
-#include <bit>
 #include <cstring>
 
 namespace lambent {
 
 namespace {
 
-constexpr uint32_t kChunk = 2048, kClasses = 16, kPerClass = kChunk / kClasses;
+const VplLight kNoLight{vec4(0), vec4(0), vec4(0), vec4(0)};
+constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 
 uint32_t orderOf(uint32_t slot) {
-  return slot / kChunk * kChunk + slot % kClasses * kPerClass + slot % kChunk / kClasses;
+  return slot / kChunk * kChunk + slot % kLightClasses * kLightsPerClass + slot % kChunk / kLightClasses;
 }
 
 VplLight packLight(const vec3& position, const vec3& normal, const vec3& radiance, float area) {
   const vec3 power = radiance * area;
   // A light that is empty, black or not a number must not reach the loop: one NaN there blackens a whole subset.
   if (!(area > 0) || !(maxComponent(power) > 0) || !isFinite(power) || !isFinite(position) || !isFinite(normal))
-    return {vec4(0), vec4(0)};
-  const uint32_t bits = glm::packSnorm2x16(octahedralFromUnit(normal));
-  return {vec4(position, std::bit_cast<float>(bits)), vec4(power, area)};
+    return kNoLight;
+  vec3 tangent, bitangent;
+  basisAround(normal, tangent, bitangent);
+  return {vec4(position, area), vec4(power, normal.x), vec4(tangent, normal.y), vec4(bitangent, normal.z)};
 }
 
 } // namespace
@@ -41,10 +42,9 @@ VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
   const gl::PassScope scope(context_.profiler, name_);
   const size_t chunks = std::max<size_t>(1, (slots.size() + kChunk - 1) / kChunk);
   const bool fresh = mirror_.size() != chunks * kChunk;
-  if (fresh) mirror_.assign(chunks * kChunk, VplLight{vec4(0), vec4(0)});
+  if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
   uploaded_ = 0;
   std::vector<bool> dirtyChunks(chunks, fresh);
-  // Bits are compared, not values: the packed normal may look like a NaN.
   const auto put = [&](uint32_t slot, const VplLight& light) {
     VplLight& held = mirror_[orderOf(slot)];
     if (std::memcmp(&held, &light, sizeof light) == 0) return;
@@ -53,12 +53,12 @@ VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
     ++uploaded_;
   };
   for (uint32_t i = 0; i < slots.size(); ++i) put(i, slots[i]);
-  for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, {vec4(0), vec4(0)});
+  for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
   if (fresh)
     buffer_ = gl::Buffer(name_ + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
-  // Whole chunks of 64 KiB: one transfer costs less than many small ones.
+  // Whole chunks of 128 KiB: one transfer costs less than many small ones.
   for (size_t chunk = 0; chunk < chunks; ++chunk)
     if (dirtyChunks[chunk])
       buffer_.write(chunk * kChunk * sizeof(VplLight), kChunk * sizeof(VplLight), &mirror_[chunk * kChunk]);

@@ -45,7 +45,7 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
       float kth = 0;
       for (size_t j = 0; j < found && seen < k; ++j) {
         if (self && index[j] == i) continue;
-        if (estimator == DensityEstimator::KnnSide && glm::dot(queries[i].normal, among[index[j]].normal) <= 0) continue;
+        if (estimator == DensityEstimator::KnnSide && !sameSide(queries[i].normal, among[index[j]].normal)) continue;
         kth = distance2[j];
         ++seen;
       }

@@ -59,9 +59,14 @@ Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, u
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
                       uint32_t seed, RayCounts& counts);
 
+/// Whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts as the
+/// same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would make
+/// areas along every edge too large (measured: 15 % more light in an empty room).
+inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot(normalA, normalB) > -0.5f; }
+
 /// Stage 6. Area that each point stands for, π r_k² / k, with r_k the distance to the k-th nearest of `among` (paper 1,
 /// eq. 7 solved for area). A query point that is itself in `among` is passed over when `self` says so. With KnnSide
-/// only neighbours whose normals agree (n·n' > 0) count, so the two sides of a thin wall are told apart. Points with
+/// only neighbours on the same side count. Points with
 /// fewer than k neighbours get the area of the neighbours they have, scaled, and never more than `areaLimit`, m².
 struct DensityPoint {
   vec3 position, normal;

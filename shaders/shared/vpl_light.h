@@ -1,16 +1,23 @@
-// A VPL as the gather reads it: 32 bytes, two vec4 of a uniform block (64 KiB = 2048 lights).
+// A VPL as the gather reads it: four vec4 of a uniform block (64 KiB = 1024 lights). The light's frame is stored, not
+// derived: unpacking a normal and building its basis at every pixel costs software Mesa half of the loop again.
 #ifndef LAMBENT_SHARED_VPL_LIGHT_H
 #define LAMBENT_SHARED_VPL_LIGHT_H
 #include "interop.h"
 SHARED_BEGIN
 
 struct VplLight {
-  vec4 positionNormal; // xyz: world position; w: bits of the normal, packSnorm2x16 of its octahedral coordinates
-  vec4 powerArea;      // rgb: L·a, outgoing radiance times patch area, W/sr; w: area a, m² (0: empty slot)
+  vec4 positionArea;   // xyz: world position; w: area a, m² (0: empty slot)
+  vec4 powerNormalX;   // rgb: L·a, outgoing radiance times patch area, W/sr; w: the normal's x
+  vec4 tangentNormalY; // xyz: tangent of basisAround(normal); w: the normal's y
+  vec4 bitangentNormalZ;
 };
+
+const int kLightClasses = 16;       // interleaving: slot mod 16
+const int kLightsPerClass = 128;    // of a chunk of 2048 slots
+const int kClassesPerLightBlock = 8;
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(lambent::VplLight) == 32);
+static_assert(sizeof(lambent::VplLight) == 64);
 #endif
 #endif

@@ -160,8 +160,8 @@ int offsetOf(const gl::Program& program, const char* member) {
 
 TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
   const gl::Program& gather = programs.get({.fragment = "gather.frag", .defines = {"SHADOWS"}});
-  EXPECT_EQ(offsetOf(gather, "lights[0].positionNormal"), int(offsetof(VplLight, positionNormal)));
-  EXPECT_EQ(offsetOf(gather, "lights[0].powerArea"), int(offsetof(VplLight, powerArea)));
+  EXPECT_EQ(offsetOf(gather, "lights[0].powerNormalX"), int(offsetof(VplLight, powerNormalX)));
+  EXPECT_EQ(offsetOf(gather, "lights[0].bitangentNormalZ"), int(offsetof(VplLight, bitangentNormalZ)));
   EXPECT_EQ(offsetOf(gather, "camera.worldFromView"), int(offsetof(CameraBlock, worldFromView)));
   EXPECT_EQ(offsetOf(gather, "camera.lens"), int(offsetof(CameraBlock, lens)));
   EXPECT_EQ(offsetOf(gather, "camera.size"), int(offsetof(CameraBlock, size)));

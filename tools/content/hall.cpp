@@ -310,7 +310,7 @@ class HallBuilder {
     };
     camera("hall", 60, {-10.6, 1.8, 1.6}, {2.0, 3.0, -0.8});
     camera("gallery", 60, {-9.5, 1.7, 6.2}, {2.0, 1.7, 4.2});
-    camera("upstairs", 60, {-3.4, 6.5, 4.55}, {5.0, 2.4, -3.4});
+    camera("upstairs", 60, {-3.4, 6.6, 3.9}, {4.0, 2.6, -3.6});
     camera("chamber", 60, {kEnd + kWall + 0.7, 1.7, 1.9}, {kEnd + kWall + 3.6, 1.3, -1.0});
   }
 

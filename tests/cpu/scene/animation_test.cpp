@@ -31,8 +31,9 @@ TEST(SampleChannel, StepHoldsAndLinearMixes) {
 
 TEST(SampleChannel, CubicSplineFollowsHermite) {
   // In-tangent, value, out-tangent per key; tangents are per second, the span is two seconds.
-  const auto channel = translation(Interpolation::CubicSpline, {0, 2},
-                                   {{9, 9, 9, 0}, {0, 0, 0, 0}, {1, 0, 2, 0}, {1, 0, -2, 0}, {2, 4, 0, 0}, {9, 9, 9, 0}});
+  const auto channel =
+      translation(Interpolation::CubicSpline, {0, 2},
+                  {{9, 9, 9, 0}, {0, 0, 0, 0}, {1, 0, 2, 0}, {1, 0, -2, 0}, {2, 4, 0, 0}, {9, 9, 9, 0}});
   // x: tangent equal to the slope everywhere gives the straight line; y: zero tangents give the smooth step;
   // z: rises with 2, falls with 2: a parabola through 0 with height 1 in the middle.
   for (const float t : {0.0f, 0.5f, 1.0f, 1.5f, 2.0f}) {
@@ -95,7 +96,7 @@ TEST(Animate, ScriptedMotionSpinsAndSwingsFromWhereItStands) {
   for (int repeat = 0; repeat < 2; ++repeat) { // the same time gives the same pose
     animate(scene, 1);
     const mat4& world = scene.registry.get<WorldTransform>(e).worldFromNode;
-    expectNear(vec3(world[3]), {5, 3, 0}); // a quarter of the swing
+    expectNear(vec3(world[3]), {5, 3, 0});  // a quarter of the swing
     expectNear(vec3(world[0]), {0, 0, -1}); // a quarter turn about +Y takes +X to -Z
   }
 }

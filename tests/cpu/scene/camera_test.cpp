@@ -74,9 +74,9 @@ TEST(Camera, LookAtIsRigidAndUprightAlsoStraightDown) {
 TEST(Camera, FileCamerasLoseScaleAndMirroring) {
   TemporaryFolder folder;
   GltfBuilder b = testing::oneTriangle();
-  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.2}}}},
-                       {{"type", "orthographic"},
-                        {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0.01}, {"zfar", 50}}}}};
+  b.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.2}}}},
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0.01}, {"zfar", 50}}}}};
   b.addRoot({{"name", "main"}, {"camera", 0}, {"translation", {1, 2, 3}}, {"scale", {-2, 2, 2}}});
   b.addRoot({{"camera", 1}});
   const Scene scene = b.load(folder);
@@ -100,7 +100,8 @@ GltfBuilder box(bool inward, bool open) {
   std::vector<vec3> corners;
   for (int i = 0; i < 8; ++i)
     corners.push_back(vec3(i & 1 ? 5 : -5, i & 2 ? 4 : 0, i & 4 ? 3 : -3));
-  std::vector<uint16_t> indices = {0, 2, 3, 0, 3, 1, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3};
+  std::vector<uint16_t> indices = {0, 2, 3, 0, 3, 1, 0, 4, 6, 0, 6, 2, 1, 3, 7,
+                                   1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3};
   if (!open) indices.insert(indices.end(), {4, 5, 7, 4, 7, 6});
   if (inward)
     for (size_t i = 0; i < indices.size(); i += 3)
@@ -120,7 +121,8 @@ TEST(DefaultView, ObjectsAreSeenFromOutside) {
   EXPECT_GT(view.position().x, bounds.centre().x);
   EXPECT_GT(view.position().y, bounds.centre().y);
   for (int i = 0; i < 8; ++i) { // all of it is in the picture
-    const vec3 corner(i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y, i & 4 ? bounds.hi.z : bounds.lo.z);
+    const vec3 corner(i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y,
+                      i & 4 ? bounds.hi.z : bounds.lo.z);
     const vec4 clip = clipFromView(view) * glm::inverse(view.worldFromView) * vec4(corner, 1);
     EXPECT_LT(std::abs(clip.y), clip.w);
     EXPECT_LT(std::abs(clip.x), clip.w);

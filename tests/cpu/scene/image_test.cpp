@@ -47,7 +47,8 @@ TEST(Exr, LayersAndShiftedWindowsAreRead) {
   for (int c = 0; c < 3; ++c) {
     const std::string name = std::string("direct.") + "RGB"[c];
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    frame.insert(name, Imf::Slice(Imf::FLOAT, const_cast<char*>(base) + c * sizeof(float), sizeof(vec3), 4 * sizeof(vec3)));
+    frame.insert(name,
+                 Imf::Slice(Imf::FLOAT, const_cast<char*>(base) + c * sizeof(float), sizeof(vec3), 4 * sizeof(vec3)));
   }
   {
     Imf::OutputFile out((folder / "layers.exr").c_str(), header);
@@ -96,8 +97,8 @@ TEST(Pfm, BothByteOrdersAndGreyAreRead) {
   };
   // Two rows of one pixel; the file begins with the bottom one.
   for (const bool big : {false, true}) {
-    testing::writeBytes(folder / "a.pfm", std::string("PF\n1 2\n") + (big ? "1.0" : "-1.0") + "\n" +
-                                              floats({4, 5, 6, 1, 2, 3}, big));
+    testing::writeBytes(folder / "a.pfm",
+                        std::string("PF\n1 2\n") + (big ? "1.0" : "-1.0") + "\n" + floats({4, 5, 6, 1, 2, 3}, big));
     const Image image = readPfm(folder / "a.pfm");
     EXPECT_EQ(image.at(0, 0), vec3(1, 2, 3));
     EXPECT_EQ(image.at(0, 1), vec3(4, 5, 6));

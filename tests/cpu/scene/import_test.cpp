@@ -9,10 +9,10 @@
 namespace lambent {
 namespace {
 
-using testing::GltfBuilder;
-using testing::TemporaryFolder;
 using testing::expectNear;
+using testing::GltfBuilder;
 using testing::hasWarning;
+using testing::TemporaryFolder;
 
 const std::vector<vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
@@ -191,8 +191,7 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
          {"baseColorTexture",
           {{"index", 0},
            {"texCoord", 0},
-           {"extensions",
-            {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"scale", {2, 3}}, {"texCoord", 1}}}}}}}}},
+           {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"scale", {2, 3}}, {"texCoord", 1}}}}}}}}},
        {"emissiveFactor", {1, 0.5, 0}},
        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}},
        {"alphaMode", "MASK"},
@@ -243,7 +242,10 @@ TEST_F(Import, DanglingImageIsWhiteAndUnreadableImageThatNothingUsesIsIgnored) {
 TEST_F(Import, LightsHaveGltfUnitsAndCones) {
   GltfBuilder b = testing::oneTriangle();
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "spot"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 4}, 
+      {{"type", "spot"},
+       {"color", {1, 0.5, 0}},
+       {"intensity", 10},
+       {"range", 4},
        {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}},
       {{"type", "directional"}, {"intensity", 3}}};
   b.addRoot({{"name", "lamp"},
@@ -287,7 +289,8 @@ TEST_F(Import, SkinnedMeshIsPosedAtRestInItsNodesSpace) {
   const int positions = b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   const int joints = b.accessor(b.view(std::vector<uint8_t>(12, 0)), 5121, "VEC4", 3);
   const int weights = b.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
-  const int node = b.addMeshNode({{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
+  const int node =
+      b.addMeshNode({{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}});
   const int joint = b.addRoot({{"translation", {0, 0, 5}}});
   b.json["skins"] = {{{"joints", {joint}}}};
   b.json["nodes"][node]["skin"] = 0;

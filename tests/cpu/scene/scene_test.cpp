@@ -54,7 +54,7 @@ TEST(Transforms, ChildrenFollowParentsInAnyOrderOfCreation) {
   expectNear(origin(root), {0, 0, 4});
   expectNear(origin(parent), {0, 4, 4});
   expectNear(origin(child), {0, 6, 4}); // +X turned to +Y, scaled by 2
-  scene.registry.destroy(root); // its children become roots
+  scene.registry.destroy(root);         // its children become roots
   updateWorldTransforms(scene);
   expectNear(origin(child), {0, 3, 0});
 }

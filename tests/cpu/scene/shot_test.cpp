@@ -93,16 +93,20 @@ TEST_F(ShotFile, ErrorsNamePlaceAndReason) {
   const auto camera = [](const std::string& keys) {
     return R"({"shot": 1, "scene": "a", "seconds": 1, "camera": {"keys": [)" + keys + "]}}";
   };
-  expectError(camera(R"({"t": 0, "eye": [0, 0], "target": [0, 0, 1]})"), "camera.keys[0].eye: has 2 numbers (3 expected)");
+  expectError(camera(R"({"t": 0, "eye": [0, 0], "target": [0, 0, 1]})"),
+              "camera.keys[0].eye: has 2 numbers (3 expected)");
   expectError(camera(R"({"t": 0, "eye": [0, 0, "x"], "target": [0, 0, 1]})"), "camera.keys[0].eye[2]: is not a number");
   expectError(camera(R"({"t": 0, "eye": [0, 0, 1], "target": [0, 0, 1]})"), "same point");
   expectError(camera(R"({"t": 0, "eye": [0, 0, 1], "target": [0, 0, 0], "fov": 180})"), "fov: is out of range");
-  expectError(camera(R"({"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]}, {"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]})"),
-              "camera.keys[1].t: is not after");
-  expectError(R"({"shot": 1, "scene": "a", "seconds": 1, "objects": {"x": {"keys": [{"t": 0, "intensity": [1, 1, 1]}]}}})",
-              "objects.x.keys[0]: unknown key 'intensity'");
-  expectError(R"({"shot": 1, "scene": "a", "seconds": 1, "lights": {"x": {"keys": [{"t": 0, "intensity": [1, -1, 1]}]}}})",
-              "negative");
+  expectError(
+      camera(R"({"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]}, {"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]})"),
+      "camera.keys[1].t: is not after");
+  expectError(
+      R"({"shot": 1, "scene": "a", "seconds": 1, "objects": {"x": {"keys": [{"t": 0, "intensity": [1, 1, 1]}]}}})",
+      "objects.x.keys[0]: unknown key 'intensity'");
+  expectError(
+      R"({"shot": 1, "scene": "a", "seconds": 1, "lights": {"x": {"keys": [{"t": 0, "intensity": [1, -1, 1]}]}}})",
+      "negative");
 }
 
 TEST(ShotCamera, PassesThroughItsKeysAndHoldsOutside) {

@@ -43,8 +43,7 @@ void append32(std::string& out, uint32_t v) {
 std::string GltfBuilder::text() const {
   nlohmann::json out = json;
   if (!bytes.empty())
-    out["buffers"] = {
-        {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+    out["buffers"] = {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
   return out.dump();
 }
 

@@ -50,8 +50,11 @@ struct GltfBuilder {
     return push("accessors", a);
   }
   int floats(const std::vector<float>& data, const char* type = "SCALAR") {
-    const size_t n = std::strcmp(type, "VEC4") == 0 ? 4 : std::strcmp(type, "VEC3") == 0 ? 3 : 
-                     std::strcmp(type, "VEC2") == 0 ? 2 : std::strcmp(type, "MAT4") == 0 ? 16 : 1;
+    const size_t n = std::strcmp(type, "VEC4") == 0   ? 4
+                     : std::strcmp(type, "VEC3") == 0 ? 3
+                     : std::strcmp(type, "VEC2") == 0 ? 2
+                     : std::strcmp(type, "MAT4") == 0 ? 16
+                                                      : 1;
     return accessor(view(data), 5126, type, data.size() / n);
   }
   int positions(const std::vector<vec3>& p) { return accessor(view(p), 5126, "VEC3", p.size()); }
