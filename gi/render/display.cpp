@@ -28,7 +28,7 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
     return {{"MODE 0"}, frame.raw.irradiance ? frame.raw.irradiance : frame.indirect.irradiance, exposure / kPi};
   case Buffer::Albedo: return {{"MODE 1"}, frame.gbuffer.albedo, 1};
   case Buffer::Normal: return {{"MODE 2"}, frame.gbuffer.normal, 1};
-  case Buffer::Depth: return {{"MODE 3"}, frame.gbuffer.depth, 0.25f * frame.sceneDiameter};
+  case Buffer::Depth: return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
   case Buffer::Emission: return {{"MODE 0"}, frame.gbuffer.emission, exposure};
   case Buffer::Nan: return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
   case Buffer::Beauty:
@@ -82,12 +82,12 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   frame.gbuffer.depth->bind(0);
 
   if (buffer == Buffer::ShadowMaps && !frame.vplMaps.arrays.empty()) {
-    const int count = std::min(128, frame.vplMaps.arrays[0].desc().layers);
+    const int rows = 8, columns = std::max(1, rows * width / height); // square cells
     const gl::Program& program = context_.programs.get({.fragment = "map_sheet.frag"});
     program.use();
-    program.set("grid", glm::ivec2(16, 8));
-    program.set("size", glm::ivec2(width, height));
-    program.set("count", count);
+    program.set("grid", glm::ivec2(columns, rows));
+    program.set("cellPixels", float(height) / float(rows));
+    program.set("count", std::min(columns * rows, frame.vplMaps.arrays[0].desc().layers));
     frame.vplMaps.arrays[0].bind(0);
     gl::drawFullscreen();
     return display_;

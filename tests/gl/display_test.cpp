@@ -1,0 +1,106 @@
+// What is shown: exposure, tone mapping, markers, the views, and which way up they are.
+#include "gl_fixture.h"
+
+namespace lambent::test {
+
+class DisplayTest : public GlTest {
+ protected:
+  /// A frame of the room whose beauty is `radiance` (row 0 at the top), by way of an upload.
+  FrameResults frameWith(const Image& radiance) {
+    gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
+    gpu->place(room.scene.instances);
+    FrameResults frame;
+    frame.gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+    frame.indirect = upload.run(radiance);
+    frame.picture = {frame.indirect.irradiance};
+    frame.sceneDiameter = 3.5f;
+    return frame;
+  }
+  static vec3 pixel(const Image8& image, int x, int y) {
+    const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
+    return {p[0], p[1], p[2]};
+  }
+
+  Room room;
+  std::unique_ptr<GpuScene> gpu;
+  GBufferPass gbufferPass{passes};
+  IndirectUpload upload{passes};
+  DisplayPass displayPass{passes};
+};
+
+TEST_F(DisplayTest, ReinhardOnLuminanceThenSrgb) {
+  Image image(64, 48, vec3(0.5f));
+  image.at(0, 0) = vec3(4, 1, 0.2f);
+  const FrameResults frame = frameWith(image);
+  displayPass.run(Buffer::Beauty, frame, 2, true);
+  const Image8 shown = displayPass.read();
+  const auto encoded = [](const vec3& c) {
+    const vec3 mapped = c / (1 + luminance(c));
+    return vec3(srgbFromLinear(std::min(1.0f, mapped.x)), srgbFromLinear(mapped.y), srgbFromLinear(mapped.z)) * 255.0f;
+  };
+  EXPECT_LT(maxComponent(glm::abs(pixel(shown, 5, 5) - encoded(vec3(1)))), 1.01f);
+  EXPECT_LT(maxComponent(glm::abs(pixel(shown, 0, 0) - encoded(vec3(8, 2, 0.4f)))), 1.01f) << "top left is first";
+}
+
+TEST_F(DisplayTest, MarksWhatIsNoNumber) {
+  Image image(64, 48, vec3(0.5f));
+  image.at(3, 4).y = std::nanf("");
+  image.at(5, 6).z = kInfinity;
+  const FrameResults frame = frameWith(image);
+  for (const Buffer buffer : {Buffer::Beauty, Buffer::Nan}) {
+    displayPass.run(buffer, frame, 1, true);
+    const Image8 shown = displayPass.read();
+    EXPECT_EQ(pixel(shown, 3, 4), vec3(255, 0, 255));
+    EXPECT_EQ(pixel(shown, 5, 6), vec3(0, 255, 255));
+    EXPECT_EQ(pixel(shown, 7, 8).x, pixel(shown, 7, 8).y);
+  }
+}
+
+TEST_F(DisplayTest, ExposureBringsTheLogAverageToMidGrey) {
+  Image image(64, 48, vec3(2));
+  for (int x = 0; x < 64; ++x) image.at(x, 0) = vec3(0); // black says nothing about exposure
+  for (int y = 1; y < 48; y += 2)
+    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(8);
+  const int bright = 24, dim = 23;
+  const double logAverage = (bright * std::log(8.0) + dim * std::log(2.0)) / (bright + dim);
+  // The upload has no alpha of its own: 1, a surface.
+  EXPECT_NEAR(measureExposure(frameWith(image).picture), 0.18 / std::exp(logAverage), 1e-4);
+  EXPECT_EQ(measureExposure(frameWith(Image(64, 48)).picture), 1) << "no light at all";
+}
+
+TEST_F(DisplayTest, EveryViewDraws) {
+  FrameResults frame = frameWith(Image(64, 48, vec3(0.5f)));
+  VplSet set;
+  set.slots.resize(3);
+  set.slots[1].alive = true;
+  set.slots[1].position = {0, -0.4f, -0.99f}; // on the far wall, in sight
+  set.slots[1].normal = {0, 0, 1};
+  set.slots[1].radiance = vec3(1);
+  set.slots[1].area = 1;
+  frame.vpls = &set;
+  for (int i = 0; i <= int(Buffer::Nan); ++i) {
+    displayPass.run(Buffer(i), frame, 1, true);
+    EXPECT_EQ(displayPass.read().rgb.size(), 64u * 48 * 3) << i;
+  }
+  displayPass.run(Buffer::Beauty, frame, 1, true);
+  const Image8 without = displayPass.read();
+  displayPass.run(Buffer::Vpls, frame, 1, true);
+  const Image8 with = displayPass.read();
+  EXPECT_NE(without.rgb, with.rgb) << "the VPL's sprite";
+}
+
+TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
+  Image image(64, 48, vec3(0));
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(100); // upper half bright
+  const FrameResults frame = frameWith(image);
+  const gl::Texture target("window", {.format = GL_RGBA8, .width = 128, .height = 96});
+  const gl::Framebuffer framebuffer("window", {&target});
+  displayPass.run(Buffer::Beauty, frame, 1, true);
+  displayPass.present(framebuffer.name(), 128, 96);
+  const std::vector<vec4> shown = readTexture(target); // row 0 at the bottom
+  EXPECT_LT(shown[10 * 128 + 64].x, 0.01f);
+  EXPECT_GT(shown[80 * 128 + 64].x, 0.9f);
+}
+
+} // namespace lambent::test
