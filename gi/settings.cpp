@@ -66,8 +66,8 @@ class Table {
           "texels per side of their maps");
     choice("gather.mode", &Settings::gather, &GatherSettings::mode, {"interleaved", "full"},
            "4x4 subsets and filter, or every VPL at every pixel (16 times the time)");
-    flag("gather.disk", &Settings::gather, &GatherSettings::disk,
-         "a VPL is a disk of its area: bounds its light near by (paper 3's form factor)");
+    real("gather.disk", &Settings::gather, &GatherSettings::disk, 0, 1000,
+         "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");

@@ -47,7 +47,7 @@ struct ShadowSettings {
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
-  bool disk = true;           // r² + a/π instead of r² (disk form factor, paper 3): bounds every VPL by its own size
+  float disk = 4;             // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0;            // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
 };
 

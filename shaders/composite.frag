@@ -19,5 +19,6 @@ void main() {
   // Textures of one texel stand for a constant (black where a stage did not run).
   vec3 irradiance = texelFetch(direct, min(pixel, textureSize(direct, 0) - 1), 0).rgb +
                     texelFetch(indirect, min(pixel, textureSize(indirect, 0) - 1), 0).rgb;
-  outRadiance = vec4(texelFetch(emission, pixel, 0).rgb + texelFetch(albedo, pixel, 0).rgb * kInversePi * irradiance, 1.0);
+  vec3 reflected = texelFetch(albedo, pixel, 0).rgb * kInversePi * irradiance;
+  outRadiance = vec4(texelFetch(emission, pixel, 0).rgb + reflected, 1.0);
 }

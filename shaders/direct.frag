@@ -1,6 +1,6 @@
 #version 450
-// Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS (point
-// lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky).
+// Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS
+// (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky).
 #include "lib/gbuffer.glsl"
 #include "shared/punctual_light.h"
 

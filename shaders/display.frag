@@ -1,6 +1,6 @@
 #version 450
-// One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1] (sRGB);
-// 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
+// One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1]
+// (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
 // and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY.
 layout(binding = 0) uniform sampler2D gbufferDepth;
 layout(binding = 2) uniform sampler2D source;

@@ -21,7 +21,7 @@ uniform int classCount;
 uniform int blockClass;     // class that the block starts with
 uniform int perClass;       // lights in each class
 uniform float scale;        // 16 for one class of 16, 1 for all
-uniform float diskFactor;   // 1/π, or 0 for a bare 1/r²
+uniform float diskFactor;   // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;     // 1/m²
 uniform float farDistance;  // metres at map value 1
 uniform float mapResolution;  // texels

@@ -17,29 +17,29 @@ std::map<std::string, uint64_t>& memory() {
 
 GLenum glTarget(TextureKind kind) {
   switch (kind) {
-  case TextureKind::Flat: return GL_TEXTURE_2D;
-  case TextureKind::Array: return GL_TEXTURE_2D_ARRAY;
-  case TextureKind::Cube: return GL_TEXTURE_CUBE_MAP;
-  case TextureKind::CubeArray: return GL_TEXTURE_CUBE_MAP_ARRAY;
+  case TextureKind::Flat:
+    return GL_TEXTURE_2D;
+  case TextureKind::Array:
+    return GL_TEXTURE_2D_ARRAY;
+  case TextureKind::CubeArray:
+    return GL_TEXTURE_CUBE_MAP_ARRAY;
   }
   return GL_TEXTURE_2D;
 }
-
-bool isCube(TextureKind kind) { return kind == TextureKind::Cube || kind == TextureKind::CubeArray; }
 
 uint64_t bytesOf(const TextureDesc& desc) {
   uint64_t texels = 0;
   for (int level = 0; level < desc.levels; ++level)
     texels += uint64_t(std::max(1, desc.width >> level)) * std::max(1, desc.height >> level);
-  return texels * desc.layers * (isCube(desc.kind) ? 6 : 1) * texelBytes(desc.format);
+  return texels * desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1) * texelBytes(desc.format);
 }
 
 GLuint makeTexture(const TextureDesc& desc) {
   GLuint name = 0;
   glCreateTextures(glTarget(desc.kind), 1, &name);
-  if (desc.kind == TextureKind::Array || desc.kind == TextureKind::CubeArray)
+  if (desc.kind != TextureKind::Flat)
     glTextureStorage3D(name, desc.levels, desc.format, desc.width, desc.height,
-                       desc.layers * (isCube(desc.kind) ? 6 : 1));
+                       desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1));
   else
     glTextureStorage2D(name, desc.levels, desc.format, desc.width, desc.height);
   const GLint filter = desc.linear ? GL_LINEAR : GL_NEAREST;
@@ -71,13 +71,17 @@ template <class Create> GLuint make(Create create) {
 
 int texelBytes(GLenum format) {
   switch (format) {
-  case GL_DEPTH_COMPONENT16: return 2;
+  case GL_DEPTH_COMPONENT16:
+    return 2;
   case GL_RGBA8:
   case GL_SRGB8_ALPHA8:
   case GL_R32F:
-  case GL_DEPTH_COMPONENT32F: return 4;
-  case GL_RGBA16F: return 8;
-  case GL_RGBA32F: return 16;
+  case GL_DEPTH_COMPONENT32F:
+    return 4;
+  case GL_RGBA16F:
+    return 8;
+  case GL_RGBA32F:
+    return 16;
   }
   checkFailed("a texture format of this project", format, 0, __FILE__, __LINE__);
 }
@@ -91,26 +95,44 @@ namespace detail {
 
 Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t bytes)
     : kind_(kind), name_(name), bytes_(bytes), owner_(label.substr(0, label.find('/'))) {
-  if (!label.empty()) glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
-  if (bytes_ == 0) return;
+  if (!label.empty())
+    glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
+  if (bytes_ == 0)
+    return;
   const std::lock_guard lock(memoryMutex);
   memory()[owner_] += bytes_;
 }
 
 Object::~Object() {
-  if (name_ == 0) return;
+  if (name_ == 0)
+    return;
   switch (kind_) {
-  case GL_TEXTURE: glDeleteTextures(1, &name_); break;
-  case GL_BUFFER: glDeleteBuffers(1, &name_); break;
-  case GL_FRAMEBUFFER: glDeleteFramebuffers(1, &name_); break;
-  case GL_VERTEX_ARRAY: glDeleteVertexArrays(1, &name_); break;
-  case GL_SAMPLER: glDeleteSamplers(1, &name_); break;
-  case GL_QUERY: glDeleteQueries(1, &name_); break;
-  default: CHECK_EQ(kind_, 0u);
+  case GL_TEXTURE:
+    glDeleteTextures(1, &name_);
+    break;
+  case GL_BUFFER:
+    glDeleteBuffers(1, &name_);
+    break;
+  case GL_FRAMEBUFFER:
+    glDeleteFramebuffers(1, &name_);
+    break;
+  case GL_VERTEX_ARRAY:
+    glDeleteVertexArrays(1, &name_);
+    break;
+  case GL_SAMPLER:
+    glDeleteSamplers(1, &name_);
+    break;
+  case GL_QUERY:
+    glDeleteQueries(1, &name_);
+    break;
+  default:
+    CHECK_EQ(kind_, 0u);
   }
-  if (bytes_ == 0) return;
+  if (bytes_ == 0)
+    return;
   const std::lock_guard lock(memoryMutex);
-  if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
+  if ((memory()[owner_] -= bytes_) == 0)
+    memory().erase(owner_);
 }
 
 void Object::swap(Object& other) noexcept {
@@ -125,19 +147,26 @@ void Object::swap(Object& other) noexcept {
 Texture::Texture(const std::string& label, const TextureDesc& desc)
     : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
 
-void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
+void Texture::bind(int unit) const {
+  glBindTextureUnit(GLuint(unit), name());
+}
 
-void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
+void Texture::clear() const {
+  glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr);
+}
 
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
     : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
 
 void Buffer::write(uint64_t offset, uint64_t size, const void* data) const {
   CHECK_LE(offset + size, bytes());
-  if (size > 0) glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
+  if (size > 0)
+    glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
 }
 
-void Buffer::bindUniform(int binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name()); }
+void Buffer::bindUniform(int binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name());
+}
 
 void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
   CHECK_LE(offset + size, bytes());
@@ -154,7 +183,8 @@ Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const T
     targets.push_back(GLenum(GL_COLOR_ATTACHMENT0 + targets.size()));
     glNamedFramebufferTexture(name(), targets.back(), color->name(), 0);
   }
-  if (depth) glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  if (depth)
+    glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
   glNamedFramebufferDrawBuffers(name(), GLsizei(targets.size()), targets.data());
   CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
 }
@@ -163,7 +193,9 @@ void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {
   glNamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture.name(), 0, layer);
 }
 
-void Framebuffer::bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name()); }
+void Framebuffer::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, name());
+}
 
 VertexArray::VertexArray(const std::string& label)
     : Object(GL_VERTEX_ARRAY, make([](GLsizei n, GLuint* names) { glCreateVertexArrays(n, names); }), label, 0) {}

@@ -45,7 +45,7 @@ class Object {
 
 } // namespace detail
 
-enum class TextureKind { Flat, Array, Cube, CubeArray };
+enum class TextureKind { Flat, Array, CubeArray };
 
 struct TextureDesc {
   TextureKind kind = TextureKind::Flat;
@@ -126,9 +126,9 @@ struct PipelineState {
   bool depthTest = false;
   bool depthWrite = false;
   GLenum depthFunc = GL_GREATER;
-  bool add = false;         // destination + source
-  bool blendAlpha = false;  // source over
-  bool depthClamp = false;  // casters outside the depth range are kept at its ends
+  bool add = false;                        // destination + source
+  bool blendAlpha = false;                 // source over
+  bool depthClamp = false;                 // casters outside the depth range are kept at its ends
   int x = 0, y = 0, width = 0, height = 0; // viewport and scissor
   void apply() const;
 };

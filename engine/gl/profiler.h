@@ -17,9 +17,9 @@ class GpuProfiler {
  public:
   explicit GpuProfiler(Timing timing = Timing::Finish) : timing_(timing) {}
 
-  /// Finds out whether timestamps tell the truth here, by timing some drawing both ways (5 to 20 ms). llvmpipe's queries
-  /// cover about one tile of the work. Chooses Queries when they agree within a factor of two, else Finish; returns the
-  /// choice.
+  /// Finds out whether timestamps tell the truth here, by timing some drawing both ways (5 to 20 ms). llvmpipe's
+  /// queries cover about one tile of the work. Chooses Queries when they agree within a factor of two, else Finish;
+  /// returns the choice.
   Timing calibrate();
   void choose(Timing timing) { timing_ = timing; }
   Timing timing() const { return timing_; }

@@ -29,7 +29,9 @@ DirectLight DirectPass::run(const DirectInputs& in) {
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
   for (const LightBlock& block : in.shadows.blocks) {
-    const char* kind = block.kind == MapKind::Cube ? "CUBE_MAPS" : block.kind == MapKind::Spot ? "SPOT_MAPS" : "SUN_MAPS";
+    const char* kind = block.kind == MapKind::Cube   ? "CUBE_MAPS"
+                       : block.kind == MapKind::Spot ? "SPOT_MAPS"
+                                                     : "SUN_MAPS";
     const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = {kind}});
     program.use();
     program.set("lightCount", block.count);

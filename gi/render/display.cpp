@@ -19,21 +19,30 @@ struct View {
 
 View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   switch (buffer) {
-  case Buffer::Direct: return {{"MODE 0", "REFLECTED", "EMITTED"}, frame.direct.irradiance, exposure};
-  case Buffer::Indirect: return {{"MODE 0", "REFLECTED"}, frame.indirect.irradiance, exposure};
-  case Buffer::Irradiance: return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
+  case Buffer::Direct:
+    return {{"MODE 0", "REFLECTED", "EMITTED"}, frame.direct.irradiance, exposure};
+  case Buffer::Indirect:
+    return {{"MODE 0", "REFLECTED"}, frame.indirect.irradiance, exposure};
+  case Buffer::Irradiance:
+    return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Unfiltered:
     if (frame.raw.deinterleaved && frame.raw.irradiance)
       return {{"MODE 0", "DEINTERLEAVED"}, frame.raw.irradiance, exposure / kPi};
     return {{"MODE 0"}, frame.raw.irradiance ? frame.raw.irradiance : frame.indirect.irradiance, exposure / kPi};
-  case Buffer::Albedo: return {{"MODE 1"}, frame.gbuffer.albedo, 1};
-  case Buffer::Normal: return {{"MODE 2"}, frame.gbuffer.normal, 1};
-  case Buffer::Depth: return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
-  case Buffer::Emission: return {{"MODE 0"}, frame.gbuffer.emission, exposure};
-  case Buffer::Nan: return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
+  case Buffer::Albedo:
+    return {{"MODE 1"}, frame.gbuffer.albedo, 1};
+  case Buffer::Normal:
+    return {{"MODE 2"}, frame.gbuffer.normal, 1};
+  case Buffer::Depth:
+    return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
+  case Buffer::Emission:
+    return {{"MODE 0"}, frame.gbuffer.emission, exposure};
+  case Buffer::Nan:
+    return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
   case Buffer::Beauty:
   case Buffer::Vpls:
-  case Buffer::ShadowMaps: break;
+  case Buffer::ShadowMaps:
+    break;
   }
   return {{"MODE 0"}, frame.picture.radiance, exposure};
 }
@@ -47,7 +56,8 @@ struct Sprite {
 std::vector<Sprite> spritesOf(const VplSet& set) {
   std::vector<uint32_t> order;
   for (uint32_t i = 0; i < set.slots.size(); ++i)
-    if (set.slots[i].alive) order.push_back(i);
+    if (set.slots[i].alive)
+      order.push_back(i);
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     const float ia = set.slots[a].intensity(), ib = set.slots[b].intensity();
     return ia != ib ? ia < ib : a < b;
@@ -57,8 +67,8 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
     const Vpl& vpl = set.slots[order[rank]];
     const float frames = float(set.frame - std::min(vpl.bornFrame, set.frame));
     // Half way to old after a second at 60 frames per second.
-    sprites.push_back({vpl.position, float(rank) / float(std::max<size_t>(1, order.size() - 1)),
-                       1 - std::exp2(-frames / 60.0f)});
+    sprites.push_back(
+        {vpl.position, float(rank) / float(std::max<size_t>(1, order.size() - 1)), 1 - std::exp2(-frames / 60.0f)});
   }
   return sprites;
 }
@@ -73,8 +83,7 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
     black_.clear();
   }
   if (!display_ || display_.width() != width || display_.height() != height) {
-    display_ =
-        gl::Texture("display/picture", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+    display_ = gl::Texture("display/picture", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
     framebuffer_ = gl::Framebuffer("display", {&display_});
   }
   framebuffer_.bind();
@@ -105,13 +114,15 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   frame.gbuffer.albedo->bind(3);
   frame.gbuffer.emission->bind(4);
   gl::drawFullscreen();
-  if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
+  if (buffer == Buffer::Vpls && frame.vpls)
+    drawVpls(frame);
   return display_;
 }
 
 void DisplayPass::drawVpls(const FrameResults& frame) {
   const std::vector<Sprite> sprites = spritesOf(*frame.vpls);
-  if (sprites.empty()) return;
+  if (sprites.empty())
+    return;
   const uint64_t bytes = sprites.size() * sizeof(Sprite);
   if (!sprites_ || sprites_.bytes() < bytes) {
     sprites_ = gl::Buffer("display/vpls", bytes, nullptr);
@@ -155,7 +166,8 @@ Image8 DisplayPass::read() const {
   glGetTextureImage(display_.name(), 0, GL_RGB, GL_UNSIGNED_BYTE, GLsizei(bottomUp.size()), bottomUp.data());
   Image8 image{width, height, std::vector<uint8_t>(bottomUp.size())};
   const size_t row = size_t(width) * 3;
-  for (int y = 0; y < height; ++y) std::copy_n(&bottomUp[size_t(height - 1 - y) * row], row, &image.rgb[size_t(y) * row]);
+  for (int y = 0; y < height; ++y)
+    std::copy_n(&bottomUp[size_t(height - 1 - y) * row], row, &image.rgb[size_t(y) * row]);
   return image;
 }
 

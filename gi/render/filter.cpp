@@ -8,7 +8,8 @@ namespace lambent {
 
 IndirectLight FilterPass::run(const FilterInputs& in) {
   // A full gather has nothing to mix: every pixel has seen every light.
-  if (!in.raw.deinterleaved) return {in.raw.irradiance};
+  if (!in.raw.deinterleaved)
+    return {in.raw.irradiance};
   const gl::PassScope scope(context_.profiler, "filter");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
   if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
@@ -16,7 +17,8 @@ IndirectLight FilterPass::run(const FilterInputs& in) {
     framebuffer_ = gl::Framebuffer("filter", {&irradiance_});
   }
   gl::ProgramDesc desc{.fragment = "filter.frag"};
-  if (in.filter.on) desc.defines.push_back("FILTER");
+  if (in.filter.on)
+    desc.defines.push_back("FILTER");
   const gl::Program& program = context_.programs.get(desc);
   program.use();
   program.set("tileSize", tileSize(in.gbuffer));
@@ -35,8 +37,8 @@ IndirectLight FilterPass::run(const FilterInputs& in) {
 IndirectLight IndirectUpload::run(const Image& image) {
   const gl::PassScope scope(context_.profiler, "irradiance upload");
   if (!irradiance_ || irradiance_.width() != image.width || irradiance_.height() != image.height)
-    irradiance_ = gl::Texture("irradiance upload/image",
-                              {.format = GL_RGBA32F, .width = image.width, .height = image.height});
+    irradiance_ =
+        gl::Texture("irradiance upload/image", {.format = GL_RGBA32F, .width = image.width, .height = image.height});
   std::vector<vec3> bottomUp(image.pixels.size());
   for (int y = 0; y < image.height; ++y)
     std::copy_n(&image.pixels[size_t(y) * image.width], image.width,

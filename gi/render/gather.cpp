@@ -9,12 +9,16 @@
 
 namespace lambent {
 
-glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
+glm::ivec2 tileSize(const GBuffer& gbuffer) {
+  return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4};
+}
 
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
   gl::ProgramDesc desc{.fragment = "gather.frag"};
-  if (in.maps) desc.defines.push_back("SHADOWS");
-  if (in.maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
+  if (in.maps)
+    desc.defines.push_back("SHADOWS");
+  if (in.maps && in.smoothShadows)
+    desc.defines.push_back("SMOOTH_SHADOWS");
   const gl::Program& program = programs.get(desc);
   program.use();
   program.set("diskFactor", in.diskFactor);
@@ -80,7 +84,7 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .deinterleaved = deinterleaved,
               .addToTarget = false,
               .biasTexels = in.bias,
-              .diskFactor = in.gather.disk ? 1 / kPi : 0.0f,
+              .diskFactor = in.gather.disk / kPi,
               .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity});
   return {&irradiance_, deinterleaved};
 }

@@ -10,10 +10,10 @@ struct GatherDraw {
   const VplLights& lights;
   const ParaboloidMaps* maps;       // null: no visibility
   const gl::Sampler* smoothShadows; // bilinear depth comparison; null: nearest texel
-  bool deinterleaved; // 16 draws, one per class, into their tiles
-  bool addToTarget;   // instead of overwriting it
+  bool deinterleaved;               // 16 draws, one per class, into their tiles
+  bool addToTarget;                 // instead of overwriting it
   float biasTexels;
-  float diskFactor; // 1/π or 0
+  float diskFactor; // GatherSettings::disk / π
   float largestG;   // 1/m², kInfinity for none
 };
 

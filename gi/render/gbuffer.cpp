@@ -12,7 +12,8 @@ float orthoFarFor(const CameraView& camera, const Aabb& scene) {
   const vec3 forward = -vec3(camera.worldFromView[2]);
   float farthest = camera.near + 1;
   for (int i = 0; i < 8 && !scene.empty(); ++i) {
-    const vec3 corner(i & 1 ? scene.hi.x : scene.lo.x, i & 2 ? scene.hi.y : scene.lo.y, i & 4 ? scene.hi.z : scene.lo.z);
+    const vec3 corner(i & 1 ? scene.hi.x : scene.lo.x, i & 2 ? scene.hi.y : scene.lo.y,
+                      i & 4 ? scene.hi.z : scene.lo.z);
     farthest = std::max(farthest, glm::dot(corner - camera.position(), forward));
   }
   return farthest * 1.01f;
@@ -52,7 +53,8 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
   const float zero[4] = {0, 0, 0, 0};
-  for (int i = 0; i < 3; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
+  for (int i = 0; i < 3; ++i)
+    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.draw(DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
   return {&depth_, &normal_, &albedo_, &emission_, &camera_, block, width, height};

@@ -19,7 +19,7 @@ mat3 frameOf(const MapPose& pose) {
 
 } // namespace
 
-// Raster ---------------------------------------------------------------------------------------------------------------
+// Raster -------------------------------------------------------------------------------------------------------------
 // Paper 1: a cube whose corner (1,1,1) points along the normal, so that three faces cover the hemisphere, with off-axis
 // frusta that reach over [-2,1]² around each face's axis; then one pass brings the faces into the paraboloid map.
 
@@ -70,11 +70,8 @@ void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose&
   faces_.bind(0);
   layerFramebuffer_.attachDepthLayer(array, layer);
   layerFramebuffer_.bind();
-  gl::PipelineState{.depthTest = true,
-                    .depthWrite = true,
-                    .depthFunc = GL_ALWAYS,
-                    .width = in.resolution,
-                    .height = in.resolution}
+  gl::PipelineState{
+      .depthTest = true, .depthWrite = true, .depthFunc = GL_ALWAYS, .width = in.resolution, .height = in.resolution}
       .apply();
   gl::drawFullscreen();
 }
@@ -84,7 +81,7 @@ void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<cons
     rasterInto(in, in.poses[slot], arrays_[slot / kLayersPerArray], int(slot % kLayersPerArray));
 }
 
-// Rays -----------------------------------------------------------------------------------------------------------------
+// Rays ---------------------------------------------------------------------------------------------------------------
 
 std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose) {
   const int n = in.resolution;
@@ -100,7 +97,8 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
       for (int y = by; y < std::min(by + 8, n); ++y)
         for (int x = bx; x < std::min(bx + 8, n); ++x) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
-          if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
+          if (d.z < -2.0f / float(n))
+            continue; // as map_resample.frag
           rays.push_back({origin, worldFromLight * d, in.farDistance});
           texelOfRay.push_back(uint32_t(y * n + x));
         }
@@ -120,7 +118,8 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   for (size_t begin = 0; begin < slots.size(); begin += kBatch) {
     const size_t count = std::min(kBatch, slots.size() - begin);
     parallelFor(count, 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[slots[begin + i]]);
+      for (size_t i = from; i < to; ++i)
+        maps[i] = castMap(in, in.poses[slots[begin + i]]);
     });
     for (size_t i = 0; i < count; ++i) {
       const uint32_t slot = slots[begin + i];

@@ -1,7 +1,7 @@
 // Distance maps of VPLs and emissive samples: bookkeeping and the choice of the maker. Paper 1, section 4.4, draws them
 // on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
-#include "engine/core/error.h"
 #include "gi/render/paraboloid_maps.h"
+#include "engine/core/error.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -26,7 +26,8 @@ double secondsOf(const std::function<void()>& work) {
 std::vector<MapPose> mapPoses(const VplSet& set) {
   std::vector<MapPose> poses;
   poses.reserve(set.slots.size());
-  for (const Vpl& vpl : set.slots) poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
+  for (const Vpl& vpl : set.slots)
+    poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
   return poses;
 }
 
@@ -41,12 +42,16 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
     std::iota(all.begin(), all.end(), 0u);
     slots = all;
   }
-  for (uint32_t slot : slots) CHECK_LT(slot, in.poses.size());
+  for (uint32_t slot : slots)
+    CHECK_LT(slot, in.poses.size());
 
   ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
-  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty()) measureMakers(in, slots);
-  if (maker == ShadowMaker::Auto) maker = measuredMaker_.value_or(ShadowMaker::Rays);
-  else if (!slots.empty()) makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
+  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty())
+    measureMakers(in, slots);
+  if (maker == ShadowMaker::Auto)
+    maker = measuredMaker_.value_or(ShadowMaker::Rays);
+  else if (!slots.empty())
+    makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
 
   if (maker == ShadowMaker::Rays)
     drawRays(in, slots);
@@ -61,7 +66,8 @@ bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
   const bool fits = resolution_ == in.resolution && arrays_.size() == needed && farDistance_ == in.farDistance &&
                     (needed == 0 || arrays_.back().desc().layers == lastLayers);
-  if (fits) return false;
+  if (fits)
+    return false;
   arrays_.clear();
   for (size_t i = 0; i < needed; ++i)
     arrays_.emplace_back(name_ + "/array " + std::to_string(i),

@@ -177,9 +177,9 @@ struct LightShadows;
 struct LightShadowInputs {
   const GpuScene& scene;
   std::span<const LightView> lights;
-  vec3 skyRadiance{0};   // black: no sky maps
-  Aabb receivers;        // everything the camera sees; sun and sky maps are fitted to it
-  Aabb casters;          // box of the whole scene
+  vec3 skyRadiance{0}; // black: no sky maps
+  Aabb receivers;      // everything the camera sees; sun and sky maps are fitted to it
+  Aabb casters;        // box of the whole scene
   bool geometryChanged = false;
   const ShadowSettings& shadow;
 };

@@ -11,7 +11,8 @@ namespace {
 /// A texture's RGB, row 0 at the top; black of the wanted size when there is none.
 Image rgbOf(const gl::Texture* texture, int width, int height) {
   Image image(width, height);
-  if (!texture) return image;
+  if (!texture)
+    return image;
   std::vector<vec3> bottomUp(size_t(texture->width()) * texture->height());
   glGetTextureImage(texture->name(), 0, GL_RGB, GL_FLOAT, GLsizei(bottomUp.size() * sizeof(vec3)), bottomUp.data());
   for (int y = 0; y < height; ++y)
@@ -20,8 +21,10 @@ Image rgbOf(const gl::Texture* texture, int width, int height) {
 }
 
 Image rawOf(const FrameResults& frame, int width, int height) {
-  if (!frame.raw.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
-  if (!frame.raw.deinterleaved) return rgbOf(frame.raw.irradiance, width, height);
+  if (!frame.raw.irradiance)
+    return rgbOf(frame.indirect.irradiance, width, height);
+  if (!frame.raw.deinterleaved)
+    return rgbOf(frame.raw.irradiance, width, height);
   const glm::ivec2 tile = tileSize(frame.gbuffer);
   const Image tiles = rgbOf(frame.raw.irradiance, 4 * tile.x, 4 * tile.y);
   Image image(width, height);
@@ -51,7 +54,8 @@ Image depthOf(const FrameResults& frame) {
 Image reflected(const FrameResults& frame, const gl::Texture* irradiance) {
   Image image = rgbOf(irradiance, frame.gbuffer.width, frame.gbuffer.height);
   const Image albedo = rgbOf(frame.gbuffer.albedo, image.width, image.height);
-  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
+  for (size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] *= albedo.pixels[i] / kPi;
   return image;
 }
 
@@ -67,17 +71,25 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
       image.pixels[i] = depth.pixels[i].x > 0 ? image.pixels[i] + emission.pixels[i] : frame.skyRadiance;
     return image;
   }
-  case Buffer::Indirect: return reflected(frame, frame.indirect.irradiance);
-  case Buffer::Irradiance: return rgbOf(frame.indirect.irradiance, width, height);
-  case Buffer::Unfiltered: return rawOf(frame, width, height);
-  case Buffer::Albedo: return rgbOf(frame.gbuffer.albedo, width, height);
-  case Buffer::Normal: return rgbOf(frame.gbuffer.normal, width, height);
-  case Buffer::Depth: return depthOf(frame);
-  case Buffer::Emission: return rgbOf(frame.gbuffer.emission, width, height);
+  case Buffer::Indirect:
+    return reflected(frame, frame.indirect.irradiance);
+  case Buffer::Irradiance:
+    return rgbOf(frame.indirect.irradiance, width, height);
+  case Buffer::Unfiltered:
+    return rawOf(frame, width, height);
+  case Buffer::Albedo:
+    return rgbOf(frame.gbuffer.albedo, width, height);
+  case Buffer::Normal:
+    return rgbOf(frame.gbuffer.normal, width, height);
+  case Buffer::Depth:
+    return depthOf(frame);
+  case Buffer::Emission:
+    return rgbOf(frame.gbuffer.emission, width, height);
   case Buffer::Beauty:
   case Buffer::Vpls:
   case Buffer::ShadowMaps:
-  case Buffer::Nan: break;
+  case Buffer::Nan:
+    break;
   }
   return rgbOf(frame.picture.radiance, width, height);
 }

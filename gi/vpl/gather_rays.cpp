@@ -7,7 +7,7 @@ namespace lambent {
 
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings) {
   if (cosReceiver <= 0 || cosVpl <= 0) return 0;
-  const float g = cosReceiver * cosVpl / glm::max(distance2 + (settings.disk ? area / kPi : 0.0f), 1e-8f);
+  const float g = cosReceiver * cosVpl / glm::max(distance2 + settings.disk * area / kPi, 1e-8f);
   return settings.clamp > 0 ? glm::min(g, settings.clamp) : g;
 }
 

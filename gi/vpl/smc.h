@@ -109,7 +109,7 @@ std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, s
                                const GatherSettings& settings, RayCounts& counts);
 
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
-/// squared distance, the distance widened by the VPL's own disk and the result clamped as the settings say, 1/m².
+/// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);
 
 } // namespace lambent

@@ -21,7 +21,8 @@ vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
 
 vec3 emissionAt(vec4 uv01) {
 #ifdef EMISSIVE_TEXTURE
-  return material.emission.rgb * texture(emissiveTexture, transformUv(material.emissiveUvU, material.emissiveUvV, uv01)).rgb;
+  vec2 uv = transformUv(material.emissiveUvU, material.emissiveUvV, uv01);
+  return material.emission.rgb * texture(emissiveTexture, uv).rgb;
 #else
   return material.emission.rgb;
 #endif

@@ -5,10 +5,10 @@
 SHARED_BEGIN
 
 struct MaterialBlock {
-  vec4 baseColor;      // rgb: albedo factor; a: alpha factor
-  vec4 emission;       // rgb: radiance factor, W/(m² sr); a: alpha cutoff
-  vec4 baseUvU;        // xyz: first row of uvTransform; w: UV set
-  vec4 baseUvV;        // xyz: second row; w: 1 when double-sided
+  vec4 baseColor; // rgb: albedo factor; a: alpha factor
+  vec4 emission;  // rgb: radiance factor, W/(m² sr); a: alpha cutoff
+  vec4 baseUvU;   // xyz: first row of uvTransform; w: UV set
+  vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
 };

@@ -20,7 +20,8 @@ SHARED_INLINE vec2 octahedralFromUnit(vec3 n) {
 SHARED_INLINE vec3 unitFromOctahedral(vec2 p) {
   vec2 a = abs(p);
   float z = 1.0f - a.x - a.y;
-  if (z > -1e-5f && z < 1e-5f) z = 0.0f;
+  if (z > -1e-5f && z < 1e-5f)
+    z = 0.0f;
   vec2 xy = z < 0.0f ? octahedralFold(p) : p;
   return normalize(vec3(xy.x, xy.y, z));
 }

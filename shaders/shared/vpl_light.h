@@ -12,8 +12,8 @@ struct VplLight {
   vec4 bitangentNormalZ;
 };
 
-const int kLightClasses = 16;       // interleaving: slot mod 16
-const int kLightsPerClass = 128;    // of a chunk of 2048 slots
+const int kLightClasses = 16;    // interleaving: slot mod 16
+const int kLightsPerClass = 128; // of a chunk of 2048 slots
 const int kClassesPerLightBlock = 8;
 
 SHARED_END

@@ -299,7 +299,7 @@ TEST(Smc, WhiteFurnaceOfTheVplEstimate) {
     const auto areas = representedAreas(points, points, true, 1, DensityEstimator::KnnSide, 1e9f);
     double e = 0;
     GatherSettings exact;
-    exact.disk = false;
+    exact.disk = 0;
     for (size_t i = 0; i < points.size(); ++i) {
       const vec3 d = points[i].position; // receiver at the centre, facing up
       e += geometryTerm(d.y, 1, 1, areas[i], exact) * areas[i];

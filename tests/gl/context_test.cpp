@@ -24,15 +24,14 @@ TEST_F(ContextTest, TellsWhatItIs) {
 TEST_F(ContextTest, CountsMemoryByOwner) {
   const auto bytesOf = [](const std::string& owner) {
     for (const auto& [name, bytes] : gl::memoryByOwner())
-      if (name == owner) return bytes;
+      if (name == owner)
+        return bytes;
     return uint64_t(0);
   };
   {
-    const gl::Texture cube("memory test/cube", {.kind = gl::TextureKind::CubeArray,
-                                                .format = GL_DEPTH_COMPONENT32F,
-                                                .width = 8,
-                                                .height = 8,
-                                                .layers = 2});
+    const gl::Texture cube(
+        "memory test/cube",
+        {.kind = gl::TextureKind::CubeArray, .format = GL_DEPTH_COMPONENT32F, .width = 8, .height = 8, .layers = 2});
     gl::Buffer buffer("memory test/buffer", 100, nullptr);
     EXPECT_EQ(bytesOf("memory test"), 8u * 8 * 4 * 12 + 100);
     const gl::Buffer moved = std::move(buffer);
@@ -171,8 +170,8 @@ TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
   EXPECT_EQ(offsetOf(direct, "lights[0].coneNear"), int(offsetof(PunctualLight, coneNear)));
   EXPECT_EQ(offsetOf(direct, "lights[0].mapFromWorld"), int(offsetof(PunctualLight, mapFromWorld)));
 
-  const gl::Program& surface =
-      programs.get({.vertex = "scene.vert", .fragment = "gbuffer.frag", .defines = {"BASE_TEXTURE", "EMISSIVE_TEXTURE"}});
+  const gl::Program& surface = programs.get(
+      {.vertex = "scene.vert", .fragment = "gbuffer.frag", .defines = {"BASE_TEXTURE", "EMISSIVE_TEXTURE"}});
   EXPECT_EQ(offsetOf(surface, "material.emission"), int(offsetof(MaterialBlock, emission)));
   EXPECT_EQ(offsetOf(surface, "material.baseUvV"), int(offsetof(MaterialBlock, baseUvV)));
   EXPECT_EQ(offsetOf(surface, "material.emissiveUvV"), int(offsetof(MaterialBlock, emissiveUvV)));

@@ -47,11 +47,13 @@ class DirectTest : public GlTest {
 
 constexpr float kShare = 1e-3f; // tolerance of the closed forms
 
-/// Every pixel of the floor within 0.1 % of expected(position), or a hundred-thousandth of the largest where it is dark.
+/// Every pixel of the floor within 0.1 % of expected(position), or a hundred-thousandth of the largest where it is
+/// dark.
 void expectFloor(const Floor& floor, const Image& image, const std::function<float(const vec3&)>& expected) {
   float largest = 0;
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) largest = std::max(largest, expected(floor.at(x, y)));
+    for (int x = 0; x < image.width; ++x)
+      largest = std::max(largest, expected(floor.at(x, y)));
   ASSERT_GT(largest, 0);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -155,7 +157,8 @@ TEST_F(DirectTest, BlockersCastShadowsOfEveryKind) {
         const bool isLit = shadowed.at(x, y).x > 0;
         (isLit ? lit : dark)++;
         // 2048² over 20 m: two centimetres of filter width at most.
-        if (std::abs(outside) > 0.03f && isLit != (outside > 0)) ++wrong;
+        if (std::abs(outside) > 0.03f && isLit != (outside > 0))
+          ++wrong;
       }
     EXPECT_EQ(wrong, 0) << "kind " << int(light.type);
     EXPECT_GT(dark, 100);
@@ -204,7 +207,8 @@ TEST(SkyDirections, CoverTheSphereEvenly) {
   // Irradiance of a plane at any tilt: Σ cos · 4π/32 ≈ π.
   for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1), glm::normalize(vec3(1, 1, 1))}) {
     float e = 0;
-    for (const vec3& d : directions) e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
+    for (const vec3& d : directions)
+      e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
     EXPECT_NEAR(e, kPi, 0.03f * kPi);
   }
 }

@@ -46,7 +46,7 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
   const Floor floor;
   const GBuffer gbuffer = surfaces(floor.scene);
   const vec3 position(0.3f, 1, -0.2f), normal = glm::normalize(vec3(0.3f, -1, 0));
-  for (const bool disk : {true, false})
+  for (const float disk : {4.0f, 1.0f, 0.0f})
     for (const float clamp : {0.0f, 0.3f}) {
       const RawIndirect raw = gathered(gbuffer, {vplLight(lamp(position, normal, 4, 0.2f))},
                                        {.mode = GatherMode::Full, .disk = disk, .clamp = clamp});
@@ -55,8 +55,9 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
         for (int x = 0; x < image.width; ++x) {
           const vec3 d = position - floor.at(x, y);
           const float r2 = glm::dot(d, d), r = std::sqrt(r2);
-          float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + (disk ? 0.2f / kPi : 0));
-          if (clamp > 0) g = std::min(g, clamp);
+          float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + disk * 0.2f / kPi);
+          if (clamp > 0)
+            g = std::min(g, clamp);
           ASSERT_NEAR(image.at(x, y).x, 4 * 0.2f * g, 1e-3f * 0.8f * g + 1e-5f) << x << ' ' << y;
         }
     }
@@ -111,9 +112,11 @@ TEST_F(IndirectTest, EmptyBlackAndBrokenLightsBringNothing) {
   vpls[3].normal = vec3(std::nanf(""));
   vpls[4].area = kInfinity;
   std::vector<VplLight> lights;
-  for (const Vpl& v : vpls) lights.push_back(vplLight(v));
+  for (const Vpl& v : vpls)
+    lights.push_back(vplLight(v));
   const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
-  for (const vec3& e : image.pixels) ASSERT_EQ(e.x, 0);
+  for (const vec3& e : image.pixels)
+    ASSERT_EQ(e.x, 0);
 }
 
 TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
@@ -155,12 +158,14 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec4> texels(64 * 48);
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
+    for (int x = 0; x < 64; ++x)
+      texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const RawIndirect raw{&tiles, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 3; y < 45; ++y)
-    for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
+    for (int x = 3; x < 61; ++x)
+      ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
 }
 
 TEST_F(IndirectTest, FilterStopsAtEdges) {
@@ -179,7 +184,8 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
   const RawIndirect raw{&tiles, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
+    for (int x = 0; x < 64; ++x)
+      ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
 }
 
 TEST_F(IndirectTest, CompositeAddsUp) {
@@ -189,7 +195,8 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   const GBuffer gbuffer = surfaces(scene);
   Image irradiance(64, 48, vec3(0));
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) irradiance.at(x, y) = vec3(float(y + 1));
+    for (int x = 0; x < 64; ++x)
+      irradiance.at(x, y) = vec3(float(y + 1));
   IndirectUpload upload(passes);
   CompositePass composite(passes);
   const IndirectLight indirect = upload.run(irradiance);
@@ -200,8 +207,8 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   results.indirect = indirect;
   results.skyRadiance = vec3(0.1f, 0.2f, 0.3f);
   results.picture = composite.run({gbuffer, direct, indirect, results.skyRadiance});
-  const Image beauty = readBuffer(Buffer::Beauty, results), parts[2] = {readBuffer(Buffer::Direct, results),
-                                                                        readBuffer(Buffer::Indirect, results)};
+  const Image beauty = readBuffer(Buffer::Beauty, results),
+              parts[2] = {readBuffer(Buffer::Direct, results), readBuffer(Buffer::Indirect, results)};
   EXPECT_LT(glm::length(beauty.at(0, 10) - results.skyRadiance), 1e-6f);
   for (int y : {0, 20, 47}) {
     const float e = float(y + 1);

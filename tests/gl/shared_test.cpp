@@ -42,14 +42,16 @@ void main() {
 )";
   gl::ProgramCache cache(folder);
   std::vector<gl::Texture> targets;
-  for (int i = 0; i < 4; ++i) targets.emplace_back("probe", gl::TextureDesc{.format = GL_RGBA32F, .width = kSide, .height = kSide});
+  for (int i = 0; i < 4; ++i)
+    targets.emplace_back("probe", gl::TextureDesc{.format = GL_RGBA32F, .width = kSide, .height = kSide});
   const gl::Framebuffer framebuffer("probe", {&targets[0], &targets[1], &targets[2], &targets[3]});
   framebuffer.bind();
   gl::PipelineState{.width = kSide, .height = kSide}.apply();
   cache.get({.fragment = "probe.frag"}).use();
   gl::drawFullscreen();
   std::vector<std::vector<vec4>> got;
-  for (const gl::Texture& t : targets) got.push_back(readTexture(t));
+  for (const gl::Texture& t : targets)
+    got.push_back(readTexture(t));
   fs::remove_all(folder);
 
   for (int y = 0; y < kSide; ++y) {
