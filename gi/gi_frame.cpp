@@ -277,6 +277,8 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   return measureShadowAgreement(s.vplMapPass, maps, *s.rays, view.camera, s.vpls, s.settings, slots, points, progress);
 }
 
+std::vector<std::string> GiFrame::reloadShaders() { return state_->programs.reloadChanged(); }
+
 Settings& GiFrame::settings() { return state_->settings; }
 const VplSet& GiFrame::vpls() const { return state_->vpls; }
 const RayQuery& GiFrame::rays() const { return *state_->rays; }

@@ -67,6 +67,10 @@ class GiFrame {
   ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
                                     const std::function<void(int, int)>& progress = {});
 
+  /// Compiles shaders anew that changed on disk; one message per program touched. A failed one keeps its last good
+  /// version.
+  std::vector<std::string> reloadShaders();
+
   const VplSet& vpls() const;
   const RayQuery& rays() const;
   float exposure() const;

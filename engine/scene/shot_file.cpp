@@ -34,8 +34,8 @@ class Field {
     for (const auto& [key, value] : value_.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
       const std::string nearest = nearestName(key, known);
-      fail("unknown key '" + key + "' (" + (nearest.empty() ? "known: " + join(known) : "did you mean " + nearest) +
-           "?)");
+      fail("unknown key '" + key + "' (" +
+           (nearest.empty() ? "known: " + join(known) : "did you mean " + nearest + "?") + ")");
     }
   }
   void checkObject() const {
