@@ -21,8 +21,7 @@ constexpr double kSmoothing = 0.1; // share of the newest frame in a shown time
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);)
-    parts.push_back(part);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
   return parts;
 }
 
@@ -57,12 +56,8 @@ Hud::~Hud() {
   ImGui::DestroyContext();
 }
 
-bool Hud::keysTaken() const {
-  return ImGui::GetIO().WantTextInput;
-}
-bool Hud::mouseTaken() const {
-  return ImGui::GetIO().WantCaptureMouse;
-}
+bool Hud::keysTaken() const { return ImGui::GetIO().WantTextInput; }
+bool Hud::mouseTaken() const { return ImGui::GetIO().WantCaptureMouse; }
 
 void Hud::say(std::string message) {
   constexpr size_t kMost = 5;
@@ -221,8 +216,7 @@ void Hud::drawMessages() {
   ImGui::Begin("messages", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-  for (const Message& m : messages_)
-    ImGui::TextUnformatted(m.text.c_str());
+  for (const Message& m : messages_) ImGui::TextUnformatted(m.text.c_str());
   ImGui::End();
 }
 

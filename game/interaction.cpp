@@ -76,8 +76,7 @@ std::string ShotRecorder::addKey(const Player& player) {
     if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
     int number = 1;
     const auto name = [&] { return folder / ("walk-" + std::to_string(number) + ".json"); };
-    while (fs::exists(name()))
-      ++number;
+    while (fs::exists(name())) ++number;
     shot_.file = name();
     shot_.scene = fs::absolute(scene_);
   }

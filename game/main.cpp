@@ -129,8 +129,7 @@ class Walkthrough {
     if (wishes.recordKey) report([&] { return recorder_.addKey(player_); });
     if (wishes.reloadShaders) {
       const std::vector<std::string> messages = gi_.reloadShaders();
-      for (const std::string& message : messages)
-        hud_.say(message);
+      for (const std::string& message : messages) hud_.say(message);
       if (messages.empty()) hud_.say("no shader file has changed");
     }
   }
@@ -185,8 +184,7 @@ class Walkthrough {
     fs::create_directories("out", ignored);
     int number = 1;
     const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
-    while (fs::exists(name(), ignored))
-      ++number;
+    while (fs::exists(name(), ignored)) ++number;
     const fs::path file = name();
     writeScreenshot(file);
     return "screenshot in " + file.string();

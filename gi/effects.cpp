@@ -45,18 +45,18 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings) {
   const bool anyLight = plan.punctualLights || plan.emissiveSurfaces || plan.sky;
   const bool indirect = anyLight && settings.smc.bounces > 0 && !view.instances.empty();
   decide(plan.indirect, "indirect", indirect,
-         indirect                       ? "light and surfaces that reflect it"
-         : settings.smc.bounces == 0    ? "smc.bounces is 0"
-         : view.instances.empty()       ? "nothing to light"
-                                        : "no light");
+         indirect                    ? "light and surfaces that reflect it"
+         : settings.smc.bounces == 0 ? "smc.bounces is 0"
+         : view.instances.empty()    ? "nothing to light"
+                                     : "no light");
   decide(plan.moreBounces, "bounces", indirect && settings.smc.bounces > 1,
          "smc.bounces is " + std::to_string(settings.smc.bounces));
   decide(plan.alphaTest, "alpha", facts.masked > 0,
          facts.masked ? count(facts.masked, "alpha-masked surface") : "no alpha mask");
   decide(plan.textures, "textures", facts.textured > 0,
          facts.textured ? count(facts.textured, "textured surface") : "no base-colour texture");
-  const bool interleaved = indirect && settings.gather.mode == GatherMode::Interleaved &&
-                           settings.smc.visibility == VplVisibility::Maps;
+  const bool interleaved =
+      indirect && settings.gather.mode == GatherMode::Interleaved && settings.smc.visibility == VplVisibility::Maps;
   decide(plan.filter, "filter", interleaved && settings.filter.on,
          interleaved ? (settings.filter.on ? "interleaved gathering needs it" : "filter.on is off")
                      : "no interleaved gathering");

@@ -16,9 +16,9 @@ struct Effect {
 };
 
 struct EffectPlan {
-  bool indirect = false;        // VPLs, their maps and the gather
-  bool moreBounces = false;     // light paths beyond the first vertex
-  bool punctualLights = false;  // point, spot and directional lights
+  bool indirect = false;       // VPLs, their maps and the gather
+  bool moreBounces = false;    // light paths beyond the first vertex
+  bool punctualLights = false; // point, spot and directional lights
   bool emissiveSurfaces = false;
   bool sky = false;
   bool alphaTest = false;

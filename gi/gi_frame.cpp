@@ -7,6 +7,7 @@
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lambent {
 
@@ -165,10 +166,14 @@ VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& light
 
 DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lightSet,
                                        const GBuffer& gbuffer) {
-  const ShadowSettings& shadow = settings.shadow;
-  const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance,
-                                                     visibleBounds(*rays, view, stats.raysPoints), view.boundsWorld,
-                                                     view.changes.geometry || view.changes.instances, shadow});
+  ShadowSettings shadow = settings.shadow;
+  const int width = int(std::bit_ceil(unsigned(view.camera.width)));
+  if (shadow.sunResolution == 0) shadow.sunResolution = 2 * width;
+  if (shadow.pointResolution == 0) shadow.pointResolution = std::max(1, width / 2);
+  if (shadow.spotResolution == 0) shadow.spotResolution = width;
+  const LightShadows& shadows =
+      lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance, visibleBounds(*rays, view, stats.raysPoints),
+                           view.boundsWorld, view.changes.geometry || view.changes.instances, shadow});
   DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
   VplLights emitters;
   ParaboloidMaps maps;
@@ -184,8 +189,8 @@ DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& 
     if (view.changes.geometry || view.changes.instances || view.changes.first)
       for (uint32_t i = 0; i < poses.size(); ++i) dirty.push_back(i);
     emitters = emitterBuffer.run(samples);
-    maps = emitterMapPass.run({*gpuScene, rays.get(), poses, dirty, view.boundsWorld.diameter(),
-                               shadow.emitterResolution, shadow.maker});
+    maps = emitterMapPass.run(
+        {*gpuScene, rays.get(), poses, dirty, view.boundsWorld.diameter(), shadow.emitterResolution, shadow.maker});
     in.emitters = &emitters;
     in.emitterMaps = &maps;
     stats.mapsDrawn += emitterMapPass.mapsDrawn();
@@ -221,8 +226,8 @@ std::vector<uint32_t> GiFrame::State::mapsToDraw(const SceneView& view, const Vp
 IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer) {
   if (settings.smc.visibility == VplVisibility::Rays) {
     CpuScope scope(stats.stages, "gather by rays");
-    return indirectUpload.run(imageOf(
-        view.camera, gatherByRays(*rays, view.camera, vpls.slots, settings.gather, stats.raysGather)));
+    return indirectUpload.run(
+        imageOf(view.camera, gatherByRays(*rays, view.camera, vpls.slots, settings.gather, stats.raysGather)));
   }
   lights.clear();
   for (const Vpl& v : vpls.slots) lights.push_back(vplLight(v));
@@ -230,8 +235,8 @@ IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChang
   std::erase_if(staleMaps, [&](uint32_t slot) { return slot >= vpls.slots.size(); });
   const std::vector<uint32_t> dirty = mapsToDraw(view, changes);
   const std::vector<MapPose> poses = mapPoses(vpls);
-  const ParaboloidMaps maps = vplMapPass.run({*gpuScene, rays.get(), poses, dirty, farDistance,
-                                              settings.shadow.resolution, settings.shadow.maker});
+  const ParaboloidMaps maps = vplMapPass.run(
+      {*gpuScene, rays.get(), poses, dirty, farDistance, settings.shadow.resolution, settings.shadow.maker});
   stats.mapsDrawn += vplMapPass.mapsDrawn();
   stats.shadowMaker = vplMapPass.makerReport();
   const RawIndirect raw = gatherPass.run({gbuffer, vplLights, &maps, settings.shadow.bias, settings.gather});
@@ -240,11 +245,13 @@ IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChang
   return filterPass.run({gbuffer, raw, settings.filter});
 }
 
-// Looking at it ---------------------------------------------------------------------------------------------------------
+// Looking at it
+// ---------------------------------------------------------------------------------------------------------
 
 namespace {
-const std::vector<std::string> kBufferNames = {"beauty", "direct",     "indirect", "irradiance",  "albedo", "normal", "depth",
-                                               "emission", "unfiltered", "vpls",     "shadow-maps", "nan"};
+const std::vector<std::string> kBufferNames = {"beauty",     "direct", "indirect",    "irradiance",
+                                               "albedo",     "normal", "depth",       "emission",
+                                               "unfiltered", "vpls",   "shadow-maps", "nan"};
 }
 
 const std::vector<std::string>& bufferNames() { return kBufferNames; }
@@ -253,7 +260,8 @@ Buffer bufferByName(const std::string& name) {
   for (size_t i = 0; i < kBufferNames.size(); ++i)
     if (kBufferNames[i] == name) return Buffer(i);
   const std::string near = nearestName(name, kBufferNames);
-  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
+  throw InputError("--buffer " + name,
+                   "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
 }
 
 Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results); }
@@ -272,8 +280,13 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
                                            const std::function<void(int, int)>& progress) {
   State& s = *state_;
   const std::vector<MapPose> poses = mapPoses(s.vpls);
-  const ParaboloidMapInputs maps{*s.gpuScene, s.rays.get(), poses, {}, view.boundsWorld.diameter(),
-                                 s.settings.shadow.resolution, s.settings.shadow.maker};
+  const ParaboloidMapInputs maps{*s.gpuScene,
+                                 s.rays.get(),
+                                 poses,
+                                 {},
+                                 view.boundsWorld.diameter(),
+                                 s.settings.shadow.resolution,
+                                 s.settings.shadow.maker};
   return measureShadowAgreement(s.vplMapPass, maps, *s.rays, view.camera, s.vpls, s.settings, slots, points, progress);
 }
 

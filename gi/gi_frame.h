@@ -19,7 +19,13 @@ namespace lambent {
 
 /// What may be shown or read back. The first seven are `--buffer` names of INTERFACE; the others are debug views.
 enum class Buffer : int {
-  Beauty, Direct, Indirect, Irradiance, Albedo, Normal, Depth,
+  Beauty,
+  Direct,
+  Indirect,
+  Irradiance,
+  Albedo,
+  Normal,
+  Depth,
   Emission,   // radiance the visible surfaces emit
   Unfiltered, // irradiance before the cross-bilateral filter: shows the 4×4 subsets
   Vpls,       // beauty with the VPLs drawn in: colour = intensity, ring = age

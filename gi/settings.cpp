@@ -48,20 +48,22 @@ class Table {
           "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
     choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"},
            "who draws VPL maps; auto measures both once and keeps the faster");
-    real("shadow.bias", &Settings::shadow, &ShadowSettings::bias, 0, 100, "depth bias of VPL maps, texels at the receiver");
+    real("shadow.bias", &Settings::shadow, &ShadowSettings::bias, 0, 100,
+         "depth bias of VPL maps, texels at the receiver");
     whole("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, 0, 32768,
           "VPL maps drawn again per frame, in turn, while objects move");
-    whole("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, 16, 16384,
-          "texels per side of a directional light's map");
-    whole("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution, 16, 8192,
-          "texels per side of a point light's cube face");
-    whole("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution, 16, 8192,
-          "texels per side of a spot light's map");
+    whole("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, 0, 16384,
+          "texels per side of a directional light's map; 0 = 2w, w the picture's width rounded up to a power of two");
+    whole("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution, 0, 8192,
+          "texels per side of a point light's cube face; 0 = w/2");
+    whole("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution, 0, 8192,
+          "texels per side of a spot light's map; 0 = w");
     whole("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples, 1, 1024,
           "shadowed samples for all emissive surfaces in direct light");
     whole("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution, 16, 2048,
           "texels per side of their maps");
-    whole("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, 1, 512, "directions of the sky in direct light");
+    whole("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, 1, 512,
+          "directions of the sky in direct light");
     whole("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, 16, 2048,
           "texels per side of their maps");
     choice("gather.mode", &Settings::gather, &GatherSettings::mode, {"interleaved", "full"},
@@ -71,6 +73,8 @@ class Table {
     real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
+    choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"},
+           "7x7 filter along rows then columns, or all 49 taps at once");
     real("filter.normalPower", &Settings::filter, &FilterSettings::normalPower, 0, 1024, "weight max(0, n.n')^power");
     real("filter.distance", &Settings::filter, &FilterSettings::distance, 1e-6f, 10,
          "deviation from the pixel's plane, share of its view distance");
@@ -91,7 +95,8 @@ class Table {
   template <class Group>
   void whole(const char* name, Group Settings::*group, int Group::*value, int lo, int hi, const char* help) {
     const auto at = member(group, value);
-    add(name, help, std::to_string(lo) + ".." + std::to_string(hi),
+    add(
+        name, help, std::to_string(lo) + ".." + std::to_string(hi),
         [=](Settings& s, std::string_view text) {
           int v = 0;
           const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
@@ -105,7 +110,8 @@ class Table {
   template <class Group>
   void real(const char* name, Group Settings::*group, float Group::*value, float lo, float hi, const char* help) {
     const auto at = member(group, value);
-    add(name, help, hi >= 1e30f ? "at least " + numberText(lo) : numberText(lo) + ".." + numberText(hi),
+    add(
+        name, help, hi >= 1e30f ? "at least " + numberText(lo) : numberText(lo) + ".." + numberText(hi),
         [=](Settings& s, std::string_view text) {
           float v = 0;
           const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
@@ -118,7 +124,8 @@ class Table {
 
   template <class Group> void flag(const char* name, Group Settings::*group, bool Group::*value, const char* help) {
     const auto at = member(group, value);
-    add(name, help, "on|off",
+    add(
+        name, help, "on|off",
         [=](Settings& s, std::string_view text) {
           if (text != "on" && text != "off") return false;
           at(s) = text == "on";
@@ -133,7 +140,8 @@ class Table {
     const auto at = member(group, value);
     std::string range;
     for (const std::string& n : names) range += (range.empty() ? "" : "|") + n;
-    add(name, help, range,
+    add(
+        name, help, range,
         [=](Settings& s, std::string_view text) {
           for (size_t i = 0; i < names.size(); ++i)
             if (text == names[i]) {
@@ -145,8 +153,8 @@ class Table {
         [=](const Settings& s) { return names[size_t(at(s))]; });
   }
 
-  void add(const char* name, const char* help, std::string range,
-           std::function<bool(Settings&, std::string_view)> set, std::function<std::string(const Settings&)> get) {
+  void add(const char* name, const char* help, std::string range, std::function<bool(Settings&, std::string_view)> set,
+           std::function<std::string(const Settings&)> get) {
     const std::string defaultText = get(Settings{});
     entries.push_back({{name, help, defaultText, std::move(range)}, std::move(set), std::move(get)});
   }
@@ -165,7 +173,8 @@ const Entry& entryOf(std::string_view name) {
   for (const Entry& e : entries()) names.push_back(e.row.name);
   const std::string near = nearestName(name, names);
   throw InputError("setting " + std::string(name),
-                   "no such setting (" + (near.empty() ? "see `lambent settings`" : "did you mean " + near + "?") + ")");
+                   "no such setting (" + (near.empty() ? "see `lambent settings`" : "did you mean " + near + "?") +
+                       ")");
 }
 
 } // namespace

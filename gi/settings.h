@@ -11,58 +11,61 @@
 
 namespace lambent {
 
-enum class VplVisibility : int { Maps, Rays };      // paraboloid shadow maps | exhaustive ray casts (paper 1, fig. 8)
-enum class GatherMode : int { Interleaved, Full };  // 4×4 interleaved subsets + filter | every VPL at every pixel
+enum class VplVisibility : int { Maps, Rays };       // paraboloid shadow maps | exhaustive ray casts (paper 1, fig. 8)
+enum class GatherMode : int { Interleaved, Full };   // 4×4 interleaved subsets + filter | every VPL at every pixel
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
-enum class DensityEstimator : int { Knn, KnnSide }; // paper 1's | only neighbours on the same side count
+enum class DensityEstimator : int { Knn, KnnSide };  // paper 1's | only neighbours on the same side count
+enum class FilterKernel : int { Separable, Whole };  // rows then columns | all 49 taps at once
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
 
 struct SmcSettings {
-  int vpls = 2048;            // slots N
-  int moves = 16;             // M_max, replacements per frame
-  int candidateRays = 16;     // candidate rays per VPL slot (16:1 resampling)
-  int paths = 16;             // light paths per VPL radiosity estimate
-  int bounces = 3;            // B: B=1 is light → VPL → pixel
-  int points = 2048;          // directly visible points X
-  int validationRays = 16;    // V, rays per point and round towards unverified VPLs
-  int warmup = 100;           // iterations before the first picture
-  int neighbours = 8;         // k of the density for rendering; 0 = paper 1 eq. 8, max(1, ⌊√N/32⌋): too bright, see gi/README
+  int vpls = 2048;         // slots N
+  int moves = 16;          // M_max, replacements per frame
+  int candidateRays = 16;  // candidate rays per VPL slot (16:1 resampling)
+  int paths = 16;          // light paths per VPL radiosity estimate
+  int bounces = 3;         // B: B=1 is light → VPL → pixel
+  int points = 2048;       // directly visible points X
+  int validationRays = 16; // V, rays per point and round towards unverified VPLs
+  int warmup = 100;        // iterations before the first picture
+  int neighbours = 8; // k of the density for rendering; 0 = paper 1 eq. 8, max(1, ⌊√N/32⌋): too bright, see gi/README
   DensityEstimator density = DensityEstimator::KnnSide;
   VplVisibility visibility = VplVisibility::Maps;
 };
 
 struct ShadowSettings {
-  int resolution = 128;       // texels per side of a VPL's paraboloid map
+  int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
-  float bias = 1.0f;          // in texels of the map at the receiver
-  int refresh = 16;           // VPL maps drawn again per frame, in turn, while objects move
-  int sunResolution = 2048;   // texels per side of a directional light's map
-  int pointResolution = 512;  // per cube face
-  int spotResolution = 1024;
-  int emitterSamples = 16;    // shadowed samples that stand for all emissive surfaces in direct light
+  float bias = 1.0f; // in texels of the map at the receiver
+  int refresh = 16;  // VPL maps drawn again per frame, in turn, while objects move
+  // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
+  int sunResolution = 0;   // 2w
+  int pointResolution = 0; // w/2 per cube face
+  int spotResolution = 0;  // w
+  int emitterSamples = 16; // shadowed samples that stand for all emissive surfaces in direct light
   int emitterResolution = 256;
-  int skyMaps = 32;           // directions that stand for the sky in direct light
+  int skyMaps = 32; // directions that stand for the sky in direct light
   int skyResolution = 256;
 };
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
-  float disk = 4;             // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
-  float clamp = 0;            // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  float disk = 4;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
+  float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
 };
 
 struct FilterSettings {
   bool on = true;
-  float normalPower = 16;     // weight = max(0, n·n')^power
-  float distance = 0.02f;     // standard deviation of the plane distance, share of the pixel's view distance
+  FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
+  float normalPower = 16;                        // weight = max(0, n·n')^power
+  float distance = 0.02f; // standard deviation of the plane distance, share of the pixel's view distance
 };
 
 struct ImageSettings {
-  float exposure = 0;         // factor on radiance before Reinhard; 0 = measured once when the first picture is drawn
+  float exposure = 0; // factor on radiance before Reinhard; 0 = measured once when the first picture is drawn
 };
 
 struct DebugSettings {
-  bool nan = true;            // paint NaN magenta and infinity cyan
+  bool nan = true; // paint NaN magenta and infinity cyan
   TimingMode timing = TimingMode::Auto;
 };
 
@@ -77,10 +80,10 @@ struct Settings {
 
 /// One row: how a setting is named, what it may be, and what it costs.
 struct SettingRow {
-  std::string name;          // "smc.vpls"
-  std::string help;          // meaning, unit, cost, one line
+  std::string name; // "smc.vpls"
+  std::string help; // meaning, unit, cost, one line
   std::string defaultText;
-  std::string range;         // "1..32768" or "maps|rays"
+  std::string range; // "1..32768" or "maps|rays"
 };
 const std::vector<SettingRow>& settingsTable();
 

@@ -1,16 +1,22 @@
 #version 450
-// Puts the 4×4 subsets back in their places. With FILTER: cross-bilateral 7×7 with tent weights (1,2,3,4,3,2,1)², in
-// which every subset has the same total weight, so that a flat area shows the mean over all 16 subsets exactly.
+// Puts the 4×4 subsets back in their places (SUBSETS) and filters (FILTER): a cross-bilateral tent of 7×7, weights
+// (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
+// the mean over all 16 subsets exactly.
 #include "lib/gbuffer.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance;
 uniform ivec2 tileSize;        // of a sub-image
+uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
 uniform float normalPower;
 uniform float distanceSigma;   // share of the view distance
 layout(location = 0) out vec4 outIrradiance;
 
 vec3 irradianceAt(ivec2 pixel) {
+#ifdef SUBSETS
   return texelFetch(irradiance, (pixel & 3) * tileSize + (pixel >> 2), 0).rgb;
+#else
+  return texelFetch(irradiance, pixel, 0).rgb;
+#endif
 }
 
 void main() {
@@ -19,25 +25,32 @@ void main() {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
 #ifdef FILTER
-  vec3 positionView = positionViewFromDepth(camera, vec2(pixel) + 0.5, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 normalView = normal * mat3(camera.worldFromView); // transpose times: world to view
-  float inverseSigma = 1.0 / (distanceSigma * -positionView.z);
-  ivec2 size = ivec2(camera.size.xy);
+  // Height of a neighbour above this pixel's plane without rebuilding its position: the plane's equation is linear in
+  // the pixel, times the neighbour's view distance for a perspective camera.
+  bool orthographic = camera.lens.w > 0.0;
+  vec2 ray = ((vec2(pixel) + 0.5) * camera.size.zw * 2.0 - 1.0) * camera.lens.xy;
+  vec2 slope = 2.0 * camera.size.zw * camera.lens.xy * normalView.xy;
+  float viewDistance = viewDistanceFromDepth(camera, depth);
+  float base = dot(normalView.xy, ray) - (orthographic ? 0.0 : normalView.z);
+  float plane = orthographic ? base - normalView.z * viewDistance : base * viewDistance;
+  float inverseSigma = 1.0 / (distanceSigma * viewDistance);
+  ivec2 first = max(-reach, -pixel), last = min(reach, ivec2(camera.size.xy) - 1 - pixel);
   vec3 sum = vec3(0.0);
   float weights = 0.0;
-  for (int dy = -3; dy <= 3; ++dy) {
-    for (int dx = -3; dx <= 3; ++dx) {
+  for (int dy = first.y; dy <= last.y; ++dy) {
+    for (int dx = first.x; dx <= last.x; ++dx) {
       ivec2 neighbour = pixel + ivec2(dx, dy);
-      if (any(lessThan(neighbour, ivec2(0))) || any(greaterThanEqual(neighbour, size))) continue;
       float neighbourDepth = texelFetch(gbufferDepth, neighbour, 0).r;
       if (neighbourDepth == 0.0) continue;
-      vec3 neighbourView = positionViewFromDepth(camera, vec2(neighbour) + 0.5, neighbourDepth);
-      float planeDistance = dot(normalView, neighbourView - positionView) * inverseSigma;
+      float distance = viewDistanceFromDepth(camera, neighbourDepth);
+      float line = base + dot(slope, vec2(dx, dy));
+      float height = ((orthographic ? line - normalView.z * distance : line * distance) - plane) * inverseSigma;
       float alignment = max(dot(normal, texelFetch(gbufferNormal, neighbour, 0).xyz), 1e-4);
-      // alignment^power · exp(-d²/2), with one exponential
+      // alignment^power · exp(-h²/2), with one exponential
       float weight = float((4 - abs(dx)) * (4 - abs(dy))) *
-                     exp2(normalPower * log2(alignment) - 0.7213475 * planeDistance * planeDistance);
+                     exp2(normalPower * log2(alignment) - 0.7213475 * height * height);
       sum += weight * irradianceAt(neighbour);
       weights += weight;
     }

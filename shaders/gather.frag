@@ -25,24 +25,21 @@ uniform float diskFactor;   // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;     // 1/m²
 uniform float farDistance;  // metres at map value 1
 uniform float mapResolution;  // texels
-uniform float mapTexelAngle;  // angle that the bias covers at the rim of a map, radians
+uniform float biasTexels;     // ShadowSettings::bias
 layout(location = 0) out vec4 outIrradiance;
 
 #ifdef SHADOWS
-/// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame). The bias is what the
-/// receiver's plane can rise within `biasTexels` map texels, distance · texelAngle · tanθ, plus the map's own rounding
-/// (16 bits) and its origin's offset from the surface. Both sides of the comparison carry cosθ, to spare a division.
+/// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame).
 float visibility(int layer, vec3 d, float distance, float cosine) {
-  float texelAngle = mapTexelAngle * (1.0 + d.z); // stereographic scale of the paraboloid map, radians
-  float sine = sqrt(max(0.0, 1.0 - cosine * cosine));
-  float reference = distance * (cosine - texelAngle * (sine + 0.1 * cosine));
+  float reach = paraboloidReach(distance, cosine, d.z, biasTexels, mapResolution);
   vec2 uv = paraboloidFromDirection(d);
 #ifdef SMOOTH_SHADOWS
-  return texture(maps, vec4(uv, layer, reference / (max(cosine, 1e-4) * farDistance) - 4e-5));
+  return texture(maps, vec4(uv, layer, reach / (max(cosine, 1e-4) * farDistance) - paraboloidRounding()));
 #else
   // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
   ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
-  return (texelFetch(maps, ivec3(texel, layer), 0).r + 4e-5) * farDistance * cosine >= reference ? 1.0 : 0.0;
+  float met = texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding();
+  return met * farDistance * cosine >= reach ? 1.0 : 0.0;
 #endif
 }
 #endif

@@ -46,6 +46,7 @@ void writeAtomically(const fs::path& file, const std::function<void(const fs::pa
 void writePng(const fs::path& file, const Image8& image) {
   CHECK_EQ(image.rgb.size(), size_t(image.width) * image.height * 3);
   writeAtomically(file, [&](const fs::path& temporary) {
+    stbi_write_png_compression_level = 4; // a third of the default's time for pictures 5 % larger
     if (!stbi_write_png(temporary.c_str(), image.width, image.height, 3, image.rgb.data(), image.width * 3))
       throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });

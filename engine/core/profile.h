@@ -10,7 +10,8 @@ namespace lambent {
 struct StageTime {
   std::string name;
   double cpuMs = 0; // wall time between begin and end on the calling thread
-  double gpuMs = 0; // from timer queries, or the same as cpuMs where the pass was finished with glFinish; 0 for CPU stages
+  double gpuMs =
+      0; // from timer queries, or the same as cpuMs where the pass was finished with glFinish; 0 for CPU stages
 };
 
 /// Adds a row to `rows` when it goes out of scope.

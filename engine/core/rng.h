@@ -20,7 +20,8 @@ enum class Stream : uint32_t { VisiblePoints = 1, Validation, Candidates, Resamp
 class Rng {
  public:
   Rng(uint32_t seed, Stream stream, uint32_t id, uint32_t frame = 0)
-      : key_(mix64(mix64((uint64_t(seed) << 32 | uint32_t(stream)) + kStep) ^ mix64((uint64_t(frame) << 32 | id) + 1))) {}
+      : key_(mix64(mix64((uint64_t(seed) << 32 | uint32_t(stream)) + kStep) ^
+                   mix64((uint64_t(frame) << 32 | id) + 1))) {}
 
   uint32_t nextUint() { return uint32_t(mix64(key_ += kStep) >> 32); }
   /// Uniform in [0, 1).

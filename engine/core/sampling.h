@@ -20,7 +20,8 @@ vec2 sampleTriangle(vec2 u);
 /// Unit direction, uniform over the sphere: density 1/(4π).
 vec3 sampleSphere(vec2 u);
 
-/// Discrete choice with given weights, by inversion of the cumulative sum (kept in double: the last entry is the total).
+/// Discrete choice with given weights, by inversion of the cumulative sum (kept in double: the last entry is the
+/// total).
 class Distribution {
  public:
   Distribution() = default;
@@ -31,9 +32,7 @@ class Distribution {
   size_t size() const { return cdf_.size(); }
   /// Index with probability weight/total, never one of weight zero. Requires !empty().
   uint32_t sample(float u) const;
-  float probability(uint32_t i) const {
-    return empty() ? 0 : float((cdf_[i] - (i ? cdf_[i - 1] : 0)) / cdf_.back());
-  }
+  float probability(uint32_t i) const { return empty() ? 0 : float((cdf_[i] - (i ? cdf_[i - 1] : 0)) / cdf_.back()); }
 
  private:
   std::vector<double> cdf_;

@@ -22,8 +22,7 @@ uint32_t PoolBase::take(Entity e) {
   const uint32_t place = sparse_[e.index()];
   dense_.erase(dense_.begin() + place);
   sparse_[e.index()] = kAbsent;
-  for (uint32_t i = place; i < dense_.size(); ++i)
-    sparse_[dense_[i].index()] = i;
+  for (uint32_t i = place; i < dense_.size(); ++i) sparse_[dense_[i].index()] = i;
   return place;
 }
 

@@ -95,17 +95,14 @@ namespace detail {
 
 Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t bytes)
     : kind_(kind), name_(name), bytes_(bytes), owner_(label.substr(0, label.find('/'))) {
-  if (!label.empty())
-    glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
-  if (bytes_ == 0)
-    return;
+  if (!label.empty()) glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
+  if (bytes_ == 0) return;
   const std::lock_guard lock(memoryMutex);
   memory()[owner_] += bytes_;
 }
 
 Object::~Object() {
-  if (name_ == 0)
-    return;
+  if (name_ == 0) return;
   switch (kind_) {
   case GL_TEXTURE:
     glDeleteTextures(1, &name_);
@@ -128,11 +125,9 @@ Object::~Object() {
   default:
     CHECK_EQ(kind_, 0u);
   }
-  if (bytes_ == 0)
-    return;
+  if (bytes_ == 0) return;
   const std::lock_guard lock(memoryMutex);
-  if ((memory()[owner_] -= bytes_) == 0)
-    memory().erase(owner_);
+  if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
 }
 
 void Object::swap(Object& other) noexcept {
@@ -147,26 +142,19 @@ void Object::swap(Object& other) noexcept {
 Texture::Texture(const std::string& label, const TextureDesc& desc)
     : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
 
-void Texture::bind(int unit) const {
-  glBindTextureUnit(GLuint(unit), name());
-}
+void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
 
-void Texture::clear() const {
-  glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr);
-}
+void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
 
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
     : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
 
 void Buffer::write(uint64_t offset, uint64_t size, const void* data) const {
   CHECK_LE(offset + size, bytes());
-  if (size > 0)
-    glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
+  if (size > 0) glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
 }
 
-void Buffer::bindUniform(int binding) const {
-  glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name());
-}
+void Buffer::bindUniform(int binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name()); }
 
 void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
   CHECK_LE(offset + size, bytes());
@@ -183,8 +171,7 @@ Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const T
     targets.push_back(GLenum(GL_COLOR_ATTACHMENT0 + targets.size()));
     glNamedFramebufferTexture(name(), targets.back(), color->name(), 0);
   }
-  if (depth)
-    glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  if (depth) glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
   glNamedFramebufferDrawBuffers(name(), GLsizei(targets.size()), targets.data());
   CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
 }
@@ -193,9 +180,7 @@ void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {
   glNamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture.name(), 0, layer);
 }
 
-void Framebuffer::bind() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, name());
-}
+void Framebuffer::bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name()); }
 
 VertexArray::VertexArray(const std::string& label)
     : Object(GL_VERTEX_ARRAY, make([](GLsizei n, GLuint* names) { glCreateVertexArrays(n, names); }), label, 0) {}

@@ -42,14 +42,12 @@ Timing GpuProfiler::calibrate() {
   // As many as take 5 ms, so that the cost of waiting does not blur the answer; the first round pays for shaders.
   int blits = 4;
   time(blits);
-  while (time(blits).wallMs < 5 && blits < 4096)
-    blits *= 2;
+  while (time(blits).wallMs < 5 && blits < 4096) blits *= 2;
   // On a busy machine a lying query is sometimes right by chance: all of three must be.
   timing_ = Timing::Queries;
   for (int trial = 0; trial < 3; ++trial) {
     const Times t = time(blits);
-    if (t.queryMs < 0.5 * t.wallMs || t.queryMs > 2 * t.wallMs)
-      timing_ = Timing::Finish;
+    if (t.queryMs < 0.5 * t.wallMs || t.queryMs > 2 * t.wallMs) timing_ = Timing::Finish;
   }
   return timing_;
 }
@@ -58,8 +56,7 @@ std::vector<StageTime> GpuProfiler::takeRows() {
   collectFinishedQueries();
   if (timing_ == Timing::Queries)
     for (StageTime& row : rows_)
-      if (const auto found = latestGpuMs_.find(row.name); found != latestGpuMs_.end())
-        row.gpuMs = found->second;
+      if (const auto found = latestGpuMs_.find(row.name); found != latestGpuMs_.end()) row.gpuMs = found->second;
   return std::exchange(rows_, {});
 }
 
@@ -68,8 +65,7 @@ void GpuProfiler::collectFinishedQueries() {
     Pending& oldest = pending_.front();
     GLuint ready = 0;
     glGetQueryObjectuiv(oldest.end.name(), GL_QUERY_RESULT_AVAILABLE, &ready);
-    if (!ready)
-      return;
+    if (!ready) return;
     GLuint64 t0 = 0, t1 = 0;
     glGetQueryObjectui64v(oldest.begin.name(), GL_QUERY_RESULT, &t0);
     glGetQueryObjectui64v(oldest.end.name(), GL_QUERY_RESULT, &t1);

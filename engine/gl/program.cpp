@@ -25,8 +25,7 @@ GLuint compile(GLenum stage, const ShaderText& source) {
   glCompileShader(shader);
   GLint ok = 0, length = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-  if (ok)
-    return shader;
+  if (ok) return shader;
   glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
   std::string log(size_t(std::max(1, length)), ' ');
   glGetShaderInfoLog(shader, length, nullptr, log.data());
@@ -39,41 +38,25 @@ GLuint compile(GLenum stage, const ShaderText& source) {
 
 std::string ProgramDesc::key() const {
   std::string key = vertex + '|' + fragment;
-  for (const std::string& define : defines)
-    key += '|' + define;
+  for (const std::string& define : defines) key += '|' + define;
   return key;
 }
 
-Program::~Program() {
-  glDeleteProgram(name_);
-}
+Program::~Program() { glDeleteProgram(name_); }
 
-void Program::use() const {
-  glUseProgram(name_);
-}
+void Program::use() const { glUseProgram(name_); }
 
 int Program::location(const char* uniform) const {
   const auto [entry, isNew] = locations_.try_emplace(uniform, -1);
-  if (isNew)
-    entry->second = glGetUniformLocation(name_, uniform);
+  if (isNew) entry->second = glGetUniformLocation(name_, uniform);
   return entry->second;
 }
 
-void Program::set(const char* uniform, int value) const {
-  glProgramUniform1i(name_, location(uniform), value);
-}
-void Program::set(const char* uniform, float value) const {
-  glProgramUniform1f(name_, location(uniform), value);
-}
-void Program::set(const char* uniform, const vec2& v) const {
-  glProgramUniform2fv(name_, location(uniform), 1, &v.x);
-}
-void Program::set(const char* uniform, const vec3& v) const {
-  glProgramUniform3fv(name_, location(uniform), 1, &v.x);
-}
-void Program::set(const char* uniform, const vec4& v) const {
-  glProgramUniform4fv(name_, location(uniform), 1, &v.x);
-}
+void Program::set(const char* uniform, int value) const { glProgramUniform1i(name_, location(uniform), value); }
+void Program::set(const char* uniform, float value) const { glProgramUniform1f(name_, location(uniform), value); }
+void Program::set(const char* uniform, const vec2& v) const { glProgramUniform2fv(name_, location(uniform), 1, &v.x); }
+void Program::set(const char* uniform, const vec3& v) const { glProgramUniform3fv(name_, location(uniform), 1, &v.x); }
+void Program::set(const char* uniform, const vec4& v) const { glProgramUniform4fv(name_, location(uniform), 1, &v.x); }
 void Program::set(const char* uniform, const glm::ivec2& v) const {
   glProgramUniform2iv(name_, location(uniform), 1, &v.x);
 }
@@ -96,8 +79,7 @@ void ProgramCache::build(Program& program) const {
   const ShaderText fragment = loadShader(folder_, program.desc_.fragment, program.desc_.defines);
   program.files_.clear();
   for (const ShaderText* source : {&vertex, &fragment})
-    for (const fs::path& file : source->files)
-      program.files_.push_back({file, fs::last_write_time(file)});
+    for (const fs::path& file : source->files) program.files_.push_back({file, fs::last_write_time(file)});
 
   const GLuint vertexShader = compile(GL_VERTEX_SHADER, vertex);
   GLuint fragmentShader = 0;
@@ -136,13 +118,11 @@ std::vector<std::string> ProgramCache::reloadChanged() {
     for (Program::SourceFile& file : program->files_) {
       std::error_code error; // an editor may be replacing the file at this moment: look again next time
       const auto written = fs::last_write_time(file.path, error);
-      if (error || written == file.written)
-        continue;
+      if (error || written == file.written) continue;
       file.written = written; // so that a file that fails is tried again only when it changes again
       changed = true;
     }
-    if (!changed)
-      continue;
+    if (!changed) continue;
     try {
       build(*program);
       messages.push_back("reloaded " + program->desc_.fragment);
@@ -150,8 +130,7 @@ std::vector<std::string> ProgramCache::reloadChanged() {
       messages.push_back(error.what());
     }
   }
-  for (const std::string& message : messages)
-    spdlog::info("{}", message);
+  for (const std::string& message : messages) spdlog::info("{}", message);
   return messages;
 }
 

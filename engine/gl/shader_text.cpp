@@ -22,11 +22,9 @@ struct Expansion {
 /// Name in `#include "name"`, else empty.
 std::string includeName(const std::string& line) {
   const size_t hash = line.find_first_not_of(" \t");
-  if (hash == std::string::npos || line.compare(hash, 8, "#include") != 0)
-    return {};
+  if (hash == std::string::npos || line.compare(hash, 8, "#include") != 0) return {};
   const size_t open = line.find('"', hash), close = line.find('"', open + 1);
-  if (open == std::string::npos || close == std::string::npos)
-    return {};
+  if (open == std::string::npos || close == std::string::npos) return {};
   return line.substr(open + 1, close - open - 1);
 }
 
@@ -34,8 +32,7 @@ void expand(Expansion& expansion, const fs::path& file, const std::vector<std::s
   const size_t index = expansion.files.size();
   expansion.files.push_back(file);
   std::ifstream in(file);
-  if (!in)
-    throw RunError("shader " + file.string() + " cannot be read");
+  if (!in) throw RunError("shader " + file.string() + " cannot be read");
   std::string line;
   int cplusplusDepth = 0; // > 0 inside `#ifdef __cplusplus` of a shared header, whose includes are not for GLSL
   for (int number = 1; std::getline(in, line); ++number) {
@@ -46,8 +43,7 @@ void expand(Expansion& expansion, const fs::path& file, const std::vector<std::s
       --cplusplusDepth;
     if (line.rfind("#version", 0) == 0) {
       expansion.out << line << '\n';
-      for (const std::string& define : defines)
-        expansion.out << "#define " << define << '\n';
+      for (const std::string& define : defines) expansion.out << "#define " << define << '\n';
       expansion.out << "#line " << number + 1 << ' ' << index << '\n';
       continue;
     }
@@ -57,8 +53,7 @@ void expand(Expansion& expansion, const fs::path& file, const std::vector<std::s
       continue;
     }
     fs::path target = (file.parent_path() / name).lexically_normal();
-    if (!fs::exists(target))
-      target = (expansion.folder / name).lexically_normal();
+    if (!fs::exists(target)) target = (expansion.folder / name).lexically_normal();
     if (!fs::exists(target))
       throw RunError("shader " + file.string() + ":" + std::to_string(number) + ": no file \"" + name +
                      "\" beside it or in " + expansion.folder.string());
@@ -81,18 +76,15 @@ ShaderText loadShader(const fs::path& folder, const std::string& file, const std
 
 fs::path findShaderFolder() {
   if (const char* set = std::getenv("LAMBENT_SHADERS")) {
-    if (fs::is_directory(set))
-      return set;
+    if (fs::is_directory(set)) return set;
     throw InputError("LAMBENT_SHADERS", std::string("no folder ") + set + " (the folder that holds fullscreen.vert)");
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed = program.parent_path().parent_path() / "share/lambent/shaders";
-  if (!error && fs::is_directory(installed))
-    return installed;
+  if (!error && fs::is_directory(installed)) return installed;
   const fs::path source = fs::path(LAMBENT_SOURCE_DIR) / "shaders";
-  if (fs::is_directory(source))
-    return source;
+  if (fs::is_directory(source)) return source;
   throw RunError("no shaders in " + installed.string() + " or " + source.string() + " (set LAMBENT_SHADERS)");
 }
 

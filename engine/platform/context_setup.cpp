@@ -17,8 +17,7 @@ std::atomic<uint64_t> debugErrors{0};
 void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei, const GLchar* text,
                              const void*) {
   // Our own group markers come back as notifications; compilers' messages reach the user with the program's log.
-  if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_SHADER_COMPILER)
-    return;
+  if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   if (severity == GL_DEBUG_SEVERITY_HIGH || type == GL_DEBUG_TYPE_ERROR) {
     ++debugErrors;
     spdlog::error("OpenGL {:#x}: {}", id, text);
@@ -29,9 +28,7 @@ void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum sever
 
 } // namespace
 
-uint64_t glDebugErrors() {
-  return debugErrors;
-}
+uint64_t glDebugErrors() { return debugErrors; }
 
 void setUpContext() {
   const int version = epoxy_gl_version();

@@ -46,8 +46,7 @@ EGLContext contextOn(EGLDisplay display, std::string& why) {
     return context;
   else
     why = "context cannot be made current";
-  if (context != EGL_NO_CONTEXT)
-    eglDestroyContext(display, context);
+  if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
   eglTerminate(display);
   return EGL_NO_CONTEXT;
 }
@@ -117,8 +116,7 @@ GlContext GlContext::headless() {
 GlContext GlContext::window(const std::string& title, int width, int height) {
   static std::string lastError;
   glfwSetErrorCallback([](int, const char* text) { lastError = text; });
-  if (!glfwInit())
-    throw RunError("no window system (" + lastError + "); use the headless commands, or xvfb-run -a");
+  if (!glfwInit()) throw RunError("no window system (" + lastError + "); use the headless commands, or xvfb-run -a");
   auto state = std::make_unique<State>();
   state->route = "GLFW window";
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
@@ -144,27 +142,20 @@ void GlContext::makeCurrent() {
     throw RunError("the OpenGL context cannot be made current on this thread");
 }
 
-GLFWwindow* GlContext::handle() const {
-  return state_->window;
-}
-bool GlContext::shouldClose() const {
-  return state_->window && glfwWindowShouldClose(state_->window);
-}
+GLFWwindow* GlContext::handle() const { return state_->window; }
+bool GlContext::shouldClose() const { return state_->window && glfwWindowShouldClose(state_->window); }
 
 void GlContext::poll() {
-  if (state_->window)
-    glfwPollEvents();
+  if (state_->window) glfwPollEvents();
 }
 
 void GlContext::swap() {
-  if (state_->window)
-    glfwSwapBuffers(state_->window);
+  if (state_->window) glfwSwapBuffers(state_->window);
 }
 
 std::pair<int, int> GlContext::framebufferSize() const {
   int width = 0, height = 0;
-  if (state_->window)
-    glfwGetFramebufferSize(state_->window, &width, &height);
+  if (state_->window) glfwGetFramebufferSize(state_->window, &width, &height);
   return {width, height};
 }
 

@@ -93,8 +93,7 @@ void animate(Scene& scene, double time) {
   registry.each<Motion, Transform>([&](Entity e, const Motion&, const Transform&) {
     if (!registry.has<Animated>(e)) unrested.push_back(e);
   });
-  for (const Entity e : unrested)
-    registry.emplace<Animated>(e, registry.get<Transform>(e));
+  for (const Entity e : unrested) registry.emplace<Animated>(e, registry.get<Transform>(e));
 
   registry.each<Animated, Transform>([](Entity, const Animated& a, Transform& t) { t = a.rest; });
   for (const AnimationClip& clip : scene.animations)

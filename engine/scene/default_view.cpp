@@ -42,8 +42,7 @@ std::vector<Triangle> worldTriangles(const Scene& scene) {
     const bool mirrored = glm::determinant(mat3(w.worldFromNode)) < 0;
     for (const uvec3& t : mesh.triangles) {
       vec3 p[3];
-      for (int c = 0; c < 3; ++c)
-        p[c] = vec3(w.worldFromNode * vec4(mesh.positions[t[c]], 1));
+      for (int c = 0; c < 3; ++c) p[c] = vec3(w.worldFromNode * vec4(mesh.positions[t[c]], 1));
       if (mirrored) std::swap(p[1], p[2]);
       triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});
     }
@@ -77,8 +76,7 @@ void meet(Look& look, const Triangle& t) {
 void meetAll(std::vector<Look>& looks, const std::vector<Triangle>& triangles) {
   parallelFor(looks.size(), 4, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      for (const Triangle& t : triangles)
-        meet(looks[i], t);
+      for (const Triangle& t : triangles) meet(looks[i], t);
   });
 }
 
@@ -122,8 +120,7 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     place.eye = vertical[i].origin;
     place.eye.y = floor + std::min(kEyeHeight, 0.5f * (ceiling - floor));
     places.push_back(place);
-    for (const vec3& d : directions)
-      looks.push_back({place.eye, d});
+    for (const vec3& d : directions) looks.push_back({place.eye, d});
   }
   meetAll(looks, triangles);
   for (size_t i = 0; i < places.size(); ++i) {
@@ -136,8 +133,7 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     }
     places[i].inside = float(fronts) >= kInsideShare * float(directions.size());
     places[i].openness = std::exp(sumOfLogs / float(directions.size()));
-    for (int k = 0; k < 4; ++k)
-      places[i].reach[k] = own[k].distance;
+    for (int k = 0; k < 4; ++k) places[i].reach[k] = own[k].distance;
   }
   return places;
 }

@@ -46,8 +46,7 @@ bool sameCamera(const CameraView& a, const CameraView& b) {
 
 template <class View> std::unordered_map<uint32_t, const View*> byId(const std::vector<View>& views) {
   std::unordered_map<uint32_t, const View*> map;
-  for (const View& v : views)
-    map.emplace(v.id, &v);
+  for (const View& v : views) map.emplace(v.id, &v);
   return map;
 }
 

@@ -99,8 +99,7 @@ template <class Put> void forElements(const Document& doc, const Accessor& a, co
     doc.fail(place, "has " + std::to_string(a.count) + " elements, more than this program reads");
   if (a.bufferView >= 0) {
     const Run run = elementRun(doc, a.bufferView, a.byteOffset, a.count, elementSize, place);
-    for (size_t i = 0; i < a.count; ++i)
-      put(i, run.data + i * run.stride);
+    for (size_t i = 0; i < a.count; ++i) put(i, run.data + i * run.stride);
   }
   if (!a.sparse) return;
   if (a.sparseCount < 0 || size_t(a.sparseCount) > a.count || a.sparseIndicesOffset < 0 || a.sparseValuesOffset < 0)

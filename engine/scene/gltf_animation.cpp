@@ -11,8 +11,7 @@ namespace {
 std::vector<vec4> readValues(const Document& doc, int accessor, ChannelPath path, const std::string& place) {
   if (path == ChannelPath::Rotation) return readAccessor<vec4>(doc, accessor, place);
   std::vector<vec4> values;
-  for (const vec3& v : readAccessor<vec3>(doc, accessor, place))
-    values.emplace_back(v, 0);
+  for (const vec3& v : readAccessor<vec3>(doc, accessor, place)) values.emplace_back(v, 0);
   return values;
 }
 

@@ -100,8 +100,7 @@ Wrap wrapMode(int mode) {
 }
 
 void takeBuffers(Document& doc, tinygltf::Model& model) {
-  for (auto& b : model.buffers)
-    doc.buffers.push_back(std::move(b.data));
+  for (auto& b : model.buffers) doc.buffers.push_back(std::move(b.data));
   for (const auto& v : model.bufferViews)
     doc.bufferViews.push_back({v.buffer, v.byteOffset, v.byteLength, v.byteStride});
   for (const auto& a : model.accessors) {
@@ -123,8 +122,7 @@ void takeBuffers(Document& doc, tinygltf::Model& model) {
     }
     doc.accessors.push_back(out);
   }
-  for (auto& i : model.images)
-    doc.images.push_back({i.name, i.uri, i.bufferView, std::move(i.image)});
+  for (auto& i : model.images) doc.images.push_back({i.name, i.uri, i.bufferView, std::move(i.image)});
 }
 
 void takeMaterials(Document& doc, const tinygltf::Model& model) {
@@ -192,18 +190,15 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
 }
 
 void takeNodes(Document& doc, tinygltf::Model& model) {
-  for (const auto& n : model.nodes)
-    doc.nodes.push_back(takeNode(doc, n, doc.nodes.size()));
+  for (const auto& n : model.nodes) doc.nodes.push_back(takeNode(doc, n, doc.nodes.size()));
   for (auto& m : model.meshes) {
     Mesh out{m.name, {}};
     for (auto& p : m.primitives)
       out.primitives.push_back({std::move(p.attributes), p.indices, p.material, p.mode, !p.targets.empty()});
     doc.meshes.push_back(std::move(out));
   }
-  for (const auto& s : model.skins)
-    doc.skins.push_back({s.name, s.joints, s.inverseBindMatrices});
-  for (const auto& s : model.scenes)
-    doc.scenes.push_back({s.name, s.nodes});
+  for (const auto& s : model.skins) doc.skins.push_back({s.name, s.joints, s.inverseBindMatrices});
+  for (const auto& s : model.scenes) doc.scenes.push_back({s.name, s.nodes});
   doc.defaultScene = model.defaultScene;
 }
 
@@ -243,10 +238,8 @@ void takeCamerasAndLights(Document& doc, const tinygltf::Model& model) {
 void takeAnimations(Document& doc, const tinygltf::Model& model) {
   for (const auto& a : model.animations) {
     Animation out{a.name, {}, {}};
-    for (const auto& c : a.channels)
-      out.channels.push_back({c.sampler, c.target_node, c.target_path});
-    for (const auto& s : a.samplers)
-      out.samplers.push_back({s.input, s.output, s.interpolation});
+    for (const auto& c : a.channels) out.channels.push_back({c.sampler, c.target_node, c.target_path});
+    for (const auto& s : a.samplers) out.samplers.push_back({s.input, s.output, s.interpolation});
     doc.animations.push_back(std::move(out));
   }
 }

@@ -50,14 +50,12 @@ TextureImage decode(const Document& doc, int index) {
 
 void decodeImages(Import& import) {
   std::vector<int> order(import.images.size());
-  for (const auto& [index, slot] : import.images)
-    order[slot] = index;
+  for (const auto& [index, slot] : import.images) order[slot] = index;
   auto& images = import.scene.assets.images;
   images.resize(order.size());
   std::vector<std::string> errors(order.size()); // the first by index is thrown, whichever thread met one first
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      try {
+    for (size_t i = begin; i < end; ++i) try {
         images[i] = decode(import.doc, order[i]);
       } catch (const InputError& e) {
         errors[i] = e.what();

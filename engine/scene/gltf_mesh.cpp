@@ -44,8 +44,7 @@ std::vector<vec4> readColors(const Document& doc, int accessor, const std::strin
   const Accessor& a = doc.at(doc.accessors, accessor, "accessor", place);
   if (a.components == 4) return readAccessor<vec4>(doc, accessor, place);
   std::vector<vec4> colors;
-  for (const vec3& c : readAccessor<vec3>(doc, accessor, place))
-    colors.emplace_back(c, 1);
+  for (const vec3& c : readAccessor<vec3>(doc, accessor, place)) colors.emplace_back(c, 1);
   return colors;
 }
 
@@ -120,20 +119,17 @@ std::vector<uvec3> readTriangles(const Document& doc, const Primitive& primitive
                      std::to_string(vertexCount) + " vertices");
   } else {
     corners.resize(vertexCount);
-    for (size_t i = 0; i < vertexCount; ++i)
-      corners[i] = uint32_t(i);
+    for (size_t i = 0; i < vertexCount; ++i) corners[i] = uint32_t(i);
   }
   std::vector<uvec3> triangles;
   const size_t n = corners.size();
   if (primitive.mode == Triangles) {
-    for (size_t i = 0; i + 2 < n; i += 3)
-      triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
+    for (size_t i = 0; i + 2 < n; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
   } else if (primitive.mode == TriangleStrip) {
     for (size_t i = 0; i + 2 < n; ++i)
       triangles.emplace_back(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
   } else {
-    for (size_t i = 1; i + 1 < n; ++i)
-      triangles.emplace_back(corners[i], corners[i + 1], corners[0]);
+    for (size_t i = 1; i + 1 < n; ++i) triangles.emplace_back(corners[i], corners[i + 1], corners[0]);
   }
   return triangles;
 }
@@ -167,8 +163,7 @@ void makeFlat(Vertices& v, std::vector<uvec3>& triangles) {
     if (from.empty()) return;
     to.reserve(triangles.size() * 3);
     for (const uvec3& t : triangles)
-      for (int c = 0; c < 3; ++c)
-        to.push_back(from[t[c]]);
+      for (int c = 0; c < 3; ++c) to.push_back(from[t[c]]);
   };
   unweld(v.positions, flat.positions);
   unweld(v.uv0, flat.uv0);
@@ -196,8 +191,7 @@ void repairNormals(Vertices& v, const std::vector<uvec3>& triangles) {
   if (broken.empty()) return;
   std::vector<vec3> sums(v.normals.size(), vec3(0));
   for (const uvec3& t : triangles)
-    for (int c = 0; c < 3; ++c)
-      sums[t[c]] += faceCross(v.positions, t);
+    for (int c = 0; c < 3; ++c) sums[t[c]] += faceCross(v.positions, t);
   for (const uint32_t i : broken) {
     const float length = glm::length(sums[i]);
     v.normals[i] = length > 0 && std::isfinite(length) ? sums[i] / length : vec3(0, 1, 0);
@@ -233,8 +227,7 @@ void appendTriangles(lambent::Mesh& mesh, const std::vector<uvec3>& triangles, u
   primitive.material = material;
   for (const uvec3& t : triangles) {
     mesh.triangles.push_back(t + firstVertex);
-    for (int c = 0; c < 3; ++c)
-      primitive.boundsObject.add(mesh.positions[t[c] + firstVertex]);
+    for (int c = 0; c < 3; ++c) primitive.boundsObject.add(mesh.positions[t[c] + firstVertex]);
   }
   mesh.boundsObject.add(primitive.boundsObject);
   mesh.primitives.push_back(primitive);

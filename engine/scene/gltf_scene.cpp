@@ -19,8 +19,7 @@ void decompose(Transform& t) {
   if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return;
   Transform parts;
   parts.translation = vec3(m[3]);
-  for (int c = 0; c < 3; ++c)
-    parts.scale[c] = glm::length(vec3(m[c]));
+  for (int c = 0; c < 3; ++c) parts.scale[c] = glm::length(vec3(m[c]));
   if (!(glm::min(parts.scale.x, glm::min(parts.scale.y, parts.scale.z)) > 0)) return;
   if (glm::determinant(mat3(m)) < 0) parts.scale.x = -parts.scale.x;
   parts.rotation = glm::normalize(
@@ -39,8 +38,7 @@ std::vector<int> rootsOf(const Document& doc, const std::string& sceneName) {
       names.push_back(doc.scenes[i].name.empty() ? std::to_string(i) : doc.scenes[i].name);
     }
     std::string known;
-    for (const std::string& n : names)
-      known += (known.empty() ? "" : ", ") + n;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
     throw InputError(doc.file.string(),
                      "has no scene '" + sceneName + "' (it has: " + (known.empty() ? "none" : known) + ")");
   }
@@ -95,8 +93,7 @@ void importNodes(Import& import, const std::string& sceneName) {
   std::vector<Visit> stack;
   std::vector<int> order;
   const auto push = [&](const std::vector<int>& nodes, int parent) {
-    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it)
-      stack.push_back({*it, parent});
+    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) stack.push_back({*it, parent});
   };
   push(rootsOf(doc, sceneName), -1);
   while (!stack.empty()) {
@@ -153,8 +150,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName)
   scene.file = file;
   if (scene.assets.materials.empty()) scene.assets.materials.emplace_back().name = "default";
   scene.warnings = std::move(import.doc.warnings);
-  for (const auto& [text, count] : import.counted)
-    scene.warnings.push_back(std::to_string(count) + " " + text);
+  for (const auto& [text, count] : import.counted) scene.warnings.push_back(std::to_string(count) + " " + text);
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   return scene;

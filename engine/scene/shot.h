@@ -17,10 +17,10 @@ struct CameraKey {
 /// Any subset of a node's placement and a light's colour at time t; absent fields keep the node's own value.
 struct NodeKey {
   double t = 0;
-  std::optional<vec3> position;   // metres, in the parent's space
-  std::optional<vec3> rotation;   // degrees, Euler XYZ in the file; intrinsic Y·X·Z order
-  std::optional<vec3> direction;  // lights: the way the light travels, world space
-  std::optional<vec3> intensity;  // lights: per channel
+  std::optional<vec3> position;  // metres, in the parent's space
+  std::optional<vec3> rotation;  // degrees, Euler XYZ in the file; intrinsic Y·X·Z order
+  std::optional<vec3> direction; // lights: the way the light travels, world space
+  std::optional<vec3> intensity; // lights: per channel
 };
 
 struct Shot {

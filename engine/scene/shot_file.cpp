@@ -49,14 +49,12 @@ class Field {
   /// Calls fn(element) for each element of an array.
   template <class Fn> void elements(Fn&& fn) const {
     if (!value_.is_array()) fail("is not a list ([...] expected)");
-    for (size_t i = 0; i < value_.size(); ++i)
-      fn(Field(value_[i], file_, path_ + "[" + std::to_string(i) + "]"));
+    for (size_t i = 0; i < value_.size(); ++i) fn(Field(value_[i], file_, path_ + "[" + std::to_string(i) + "]"));
   }
   /// Calls fn(key, member) for each member of an object.
   template <class Fn> void members(Fn&& fn) const {
     checkObject();
-    for (const auto& [key, value] : value_.items())
-      fn(key, Field(value, file_, path_ + "." + key));
+    for (const auto& [key, value] : value_.items()) fn(key, Field(value, file_, path_ + "." + key));
   }
 
   double number() const {
@@ -92,8 +90,7 @@ class Field {
  private:
   static std::string join(const std::vector<std::string>& names) {
     std::string all;
-    for (const std::string& n : names)
-      all += (all.empty() ? "" : ", ") + n;
+    for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
     return all;
   }
 
@@ -174,8 +171,7 @@ json parse(const fs::path& file) {
 
 template <int N> json toJson(const glm::vec<N, float>& v) {
   json list = json::array();
-  for (int i = 0; i < N; ++i)
-    list.push_back(v[i]);
+  for (int i = 0; i < N; ++i) list.push_back(v[i]);
   return list;
 }
 
@@ -239,8 +235,7 @@ void saveShot(const Shot& shot, const fs::path& file) {
   if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
   if (!shot.pixels.empty()) {
     out["pixels"] = json::array();
-    for (const vec2& p : shot.pixels)
-      out["pixels"].push_back(toJson(p));
+    for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));
   }
   if (!shot.set.empty()) out["set"] = shot.set;
   writeAtomically(file, [&](const fs::path& temporary) {

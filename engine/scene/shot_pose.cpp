@@ -75,8 +75,7 @@ void place(Transform& t, std::optional<vec3> position, std::optional<quat> rotat
   }
   if (rotation) { // of a sheared matrix only the lengths of its axes can be kept
     const mat3 r = glm::mat3_cast(*rotation);
-    for (int c = 0; c < 3; ++c)
-      (*t.matrix)[c] = vec4(r[c] * glm::length(vec3((*t.matrix)[c])), 0);
+    for (int c = 0; c < 3; ++c) (*t.matrix)[c] = vec4(r[c] * glm::length(vec3((*t.matrix)[c])), 0);
   }
   if (position) (*t.matrix)[3] = vec4(*position, 1);
 }
@@ -145,8 +144,7 @@ void poseShot(Scene& scene, const Shot& shot, double t) {
   }
   updateWorldTransforms(scene);
   if (aims.empty()) return;
-  for (const auto& [e, direction] : aims)
-    aimLight(scene, e, direction);
+  for (const auto& [e, direction] : aims) aimLight(scene, e, direction);
   updateWorldTransforms(scene);
 }
 

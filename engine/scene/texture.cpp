@@ -10,8 +10,7 @@ namespace lambent {
 const std::array<float, 256>& srgbDecodeTable() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t;
-    for (int i = 0; i < 256; ++i)
-      t[i] = linearFromSrgb(float(i) / 255);
+    for (int i = 0; i < 256; ++i) t[i] = linearFromSrgb(float(i) / 255);
     return t;
   }();
   return table;

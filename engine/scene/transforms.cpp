@@ -12,8 +12,7 @@ void updateWorldTransforms(Scene& scene) {
     slots = glm::max(slots, e.index() + 1);
     if (!registry.has<WorldTransform>(e)) missing.push_back(e);
   });
-  for (const Entity e : missing)
-    registry.emplace<WorldTransform>(e);
+  for (const Entity e : missing) registry.emplace<WorldTransform>(e);
 
   // Parents may have been created after their children, so each entity climbs to its nearest finished ancestor first.
   std::vector<bool> done(slots, false);

@@ -228,8 +228,8 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     const Material& material = s.assets.materials[primitive.material];
     const Corner c = cornerOf(mesh, primitive, rh.hit.primID, rh.hit.u, rh.hit.v);
     const vec3 p0 = mesh.positions[c.vertices.x];
-    const vec3 front = instance.normalFromObject *
-                       glm::cross(mesh.positions[c.vertices.y] - p0, mesh.positions[c.vertices.z] - p0);
+    const vec3 front =
+        instance.normalFromObject * glm::cross(mesh.positions[c.vertices.y] - p0, mesh.positions[c.vertices.z] - p0);
     const float length = glm::length(front);
     if (!(length > 0)) continue; // squashed to nothing by the instance's scale
     const bool fromFront = glm::dot(front, rays[i].direction) < 0;
@@ -239,12 +239,12 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     const vec3 shading = instance.normalFromObject * c.interpolate(mesh.normals) * (fromFront ? 1.0f : -1.0f);
     const float shadingLength = glm::length(shading);
     // A shading normal that looks away from the ray would light the surface from behind.
-    hit.normal = shadingLength > 0 && glm::dot(shading, rays[i].direction) < 0 ? shading / shadingLength
-                                                                                 : hit.geometricNormal;
+    hit.normal =
+        shadingLength > 0 && glm::dot(shading, rays[i].direction) < 0 ? shading / shadingLength : hit.geometricNormal;
     hit.albedo = glm::clamp(vec3(baseColourAt(s.assets, mesh, material, c)), 0.0f, 1.0f);
     if (material.emits() && (fromFront || material.doubleSided))
-      hit.emission =
-          material.emission * vec3(sampleTexture(s.assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
+      hit.emission = material.emission *
+                     vec3(sampleTexture(s.assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
     hit.instance = rh.hit.instID[0];
     hit.primitive = rh.hit.geomID;
     hit.triangle = rh.hit.primID;

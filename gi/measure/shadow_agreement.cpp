@@ -22,10 +22,15 @@ std::vector<SurfaceHit> visibleSurfaces(const RayQuery& rays, const CameraView& 
   return out;
 }
 
-bool lit(const std::vector<float>& map, int resolution, const vec3& lookup) {
-  const int x = std::clamp(int(lookup.x * float(resolution)), 0, resolution - 1);
-  const int y = std::clamp(int(lookup.y * float(resolution)), 0, resolution - 1);
-  return map[size_t(y) * resolution + x] >= lookup.z;
+/// What the gather decides with this map (metres) for a receiver in direction d, a unit vector in the map's frame.
+bool lit(const std::vector<float>& map, const ParaboloidMapInputs& maps, const vec3& d, float distance,
+         float cosReceiver, float bias) {
+  const vec2 uv = paraboloidFromDirection(d);
+  const int x = std::clamp(int(uv.x * float(maps.resolution)), 0, maps.resolution - 1);
+  const int y = std::clamp(int(uv.y * float(maps.resolution)), 0, maps.resolution - 1);
+  const float met = std::min(map[size_t(y) * maps.resolution + x], maps.farDistance);
+  return (met + paraboloidRounding() * maps.farDistance) * cosReceiver >=
+         paraboloidReach(distance, cosReceiver, d.z, bias, float(maps.resolution));
 }
 
 } // namespace
@@ -45,6 +50,8 @@ ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const Paraboloid
     const uint32_t slot = alive[size_t(k) * alive.size() / count];
     const Vpl& v = set.slots[slot];
     const MakerComparison comparison = pass.compareMakers(maps, maps.poses[slot]);
+    vec3 tangent, bitangent;
+    basisAround(v.normal, tangent, bitangent);
     for (const SurfaceHit& h : receivers) {
       const vec3 d = h.position - v.position;
       const float r2 = glm::dot(d, d), r = std::sqrt(r2);
@@ -53,12 +60,11 @@ ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const Paraboloid
       const double weight =
           double(luminance(v.radiance)) * v.area * geometryTerm(cosReceiver, cosVpl, r2, v.area, settings.gather);
       if (!(weight > 0)) continue;
-      const vec3 lookup = paraboloidLookup(v.normal, d / r, r, cosReceiver, float(comparison.resolution),
-                                           settings.shadow.bias, maps.farDistance);
-      const bool byRaster = lit(comparison.raster, comparison.resolution, lookup);
-      const bool byCast = lit(comparison.rays, comparison.resolution, lookup);
-      const bool byRay = !rays.occluded(segment(offsetPoint(h.position, h.geometricNormal),
-                                                offsetPoint(v.position, v.geometricNormal)));
+      const vec3 direction(glm::dot(tangent, d) / r, glm::dot(bitangent, d) / r, cosVpl);
+      const bool byRaster = lit(comparison.raster, maps, direction, r, cosReceiver, settings.shadow.bias);
+      const bool byCast = lit(comparison.rays, maps, direction, r, cosReceiver, settings.shadow.bias);
+      const bool byRay = !rays.occluded(
+          segment(offsetPoint(h.position, h.geometricNormal), offsetPoint(v.position, v.geometricNormal)));
       ++result.pairs;
       total += weight;
       makers += byRaster != byCast ? weight : 0;

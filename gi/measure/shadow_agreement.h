@@ -8,8 +8,8 @@
 namespace lambent {
 
 struct ShadowAgreement {
-  uint64_t pairs = 0;         // (pixel, VPL) pairs that face each other
-  double makers = 0;          // share of the unshadowed contribution where raster and ray-cast maps disagree
+  uint64_t pairs = 0; // (pixel, VPL) pairs that face each other
+  double makers = 0;  // share of the unshadowed contribution where raster and ray-cast maps disagree
   double rasterAgainstRays = 0, castAgainstRays = 0; // the same of each maker's map against a ray per pair
 };
 

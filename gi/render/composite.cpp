@@ -39,8 +39,7 @@ float measureExposure(const Picture& picture) {
   size_t count = 0;
   for (const vec4& texel : texels) {
     const float y = luminance(vec3(texel));
-    if (texel.w == 0 || !(y > 0) || !std::isfinite(y))
-      continue;
+    if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
     logSum += std::log(double(y));
     ++count;
   }

@@ -56,8 +56,7 @@ struct Sprite {
 std::vector<Sprite> spritesOf(const VplSet& set) {
   std::vector<uint32_t> order;
   for (uint32_t i = 0; i < set.slots.size(); ++i)
-    if (set.slots[i].alive)
-      order.push_back(i);
+    if (set.slots[i].alive) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     const float ia = set.slots[a].intensity(), ib = set.slots[b].intensity();
     return ia != ib ? ia < ib : a < b;
@@ -114,15 +113,13 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   frame.gbuffer.albedo->bind(3);
   frame.gbuffer.emission->bind(4);
   gl::drawFullscreen();
-  if (buffer == Buffer::Vpls && frame.vpls)
-    drawVpls(frame);
+  if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
   return display_;
 }
 
 void DisplayPass::drawVpls(const FrameResults& frame) {
   const std::vector<Sprite> sprites = spritesOf(*frame.vpls);
-  if (sprites.empty())
-    return;
+  if (sprites.empty()) return;
   const uint64_t bytes = sprites.size() * sizeof(Sprite);
   if (!sprites_ || sprites_.bytes() < bytes) {
     sprites_ = gl::Buffer("display/vpls", bytes, nullptr);

@@ -1,5 +1,7 @@
 // From gathered subsets to irradiance at every pixel. Paper 1, section 4.5: cross-bilateral filter over normals and
-// positions. Our kernel is a tent of 7×7 (theirs a box), so that all 16 subsets weigh the same at every pixel.
+// positions. Our kernel is a tent of 7×7 (theirs a box), so that all 16 subsets weigh the same at every pixel. By
+// default it goes along rows, then columns: a bilateral kernel is not quite separable, so the whole one stays as a
+// setting (costs and errors of both: gi/README.md).
 #include "gi/render/gather.h"
 
 #include <algorithm>
@@ -8,29 +10,39 @@ namespace lambent {
 
 IndirectLight FilterPass::run(const FilterInputs& in) {
   // A full gather has nothing to mix: every pixel has seen every light.
-  if (!in.raw.deinterleaved)
-    return {in.raw.irradiance};
+  if (!in.raw.deinterleaved) return {in.raw.irradiance};
   const gl::PassScope scope(context_.profiler, "filter");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
   if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
     irradiance_ = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
     framebuffer_ = gl::Framebuffer("filter", {&irradiance_});
+    rows_ = gl::Texture("filter/rows", {.format = GL_RGBA32F, .width = width, .height = height});
+    rowsFramebuffer_ = gl::Framebuffer("filter rows", {&rows_});
   }
-  gl::ProgramDesc desc{.fragment = "filter.frag"};
-  if (in.filter.on)
-    desc.defines.push_back("FILTER");
-  const gl::Program& program = context_.programs.get(desc);
-  program.use();
-  program.set("tileSize", tileSize(in.gbuffer));
-  program.set("normalPower", in.filter.normalPower);
-  program.set("distanceSigma", in.filter.distance);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
-  in.raw.irradiance->bind(2);
-  framebuffer_.bind();
-  gl::PipelineState{.width = width, .height = height}.apply();
-  gl::drawFullscreen();
+  const auto draw = [&](const gl::Texture& source, std::vector<std::string> defines, const glm::ivec2& reach,
+                        const gl::Framebuffer& target) {
+    const gl::Program& program = context_.programs.get({.fragment = "filter.frag", .defines = std::move(defines)});
+    program.use();
+    program.set("tileSize", tileSize(in.gbuffer));
+    program.set("reach", reach);
+    program.set("normalPower", in.filter.normalPower);
+    program.set("distanceSigma", in.filter.distance);
+    source.bind(2);
+    target.bind();
+    gl::PipelineState{.width = width, .height = height}.apply();
+    gl::drawFullscreen();
+  };
+  if (!in.filter.on) {
+    draw(*in.raw.irradiance, {"SUBSETS"}, {0, 0}, framebuffer_);
+  } else if (in.filter.kernel == FilterKernel::Whole) {
+    draw(*in.raw.irradiance, {"SUBSETS", "FILTER"}, {3, 3}, framebuffer_);
+  } else {
+    draw(*in.raw.irradiance, {"SUBSETS", "FILTER"}, {3, 0}, rowsFramebuffer_);
+    draw(rows_, {"FILTER"}, {0, 3}, framebuffer_);
+  }
   return {&irradiance_};
 }
 

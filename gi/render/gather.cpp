@@ -9,16 +9,12 @@
 
 namespace lambent {
 
-glm::ivec2 tileSize(const GBuffer& gbuffer) {
-  return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4};
-}
+glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
   gl::ProgramDesc desc{.fragment = "gather.frag"};
-  if (in.maps)
-    desc.defines.push_back("SHADOWS");
-  if (in.maps && in.smoothShadows)
-    desc.defines.push_back("SMOOTH_SHADOWS");
+  if (in.maps) desc.defines.push_back("SHADOWS");
+  if (in.maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
   const gl::Program& program = programs.get(desc);
   program.use();
   program.set("diskFactor", in.diskFactor);
@@ -26,7 +22,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   if (in.maps) {
     program.set("farDistance", in.maps->farDistance);
     program.set("mapResolution", float(in.maps->resolution));
-    program.set("mapTexelAngle", in.biasTexels * 2 / float(in.maps->resolution));
+    program.set("biasTexels", in.biasTexels);
   }
   program.set("stride", in.deinterleaved ? 4 : 1);
   const int classesPerDraw = in.deinterleaved ? 1 : kClassesPerLightBlock;

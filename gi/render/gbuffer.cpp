@@ -53,8 +53,7 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
   const float zero[4] = {0, 0, 0, 0};
-  for (int i = 0; i < 3; ++i)
-    glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
+  for (int i = 0; i < 3; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.draw(DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
   return {&depth_, &normal_, &albedo_, &emission_, &camera_, block, width, height};

@@ -15,8 +15,7 @@ bool Frustum::mayShow(const Aabb& box) const {
   for (const vec4& plane : planes) {
     const vec3 n(plane);
     const vec3 farthest(n.x > 0 ? box.hi.x : box.lo.x, n.y > 0 ? box.hi.y : box.lo.y, n.z > 0 ? box.hi.z : box.lo.z);
-    if (glm::dot(n, farthest) + plane.w < 0)
-      return false;
+    if (glm::dot(n, farthest) + plane.w < 0) return false;
   }
   return true;
 }
@@ -25,8 +24,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   bool changed = instances.size() != instances_.size();
   for (size_t i = 0; i < instances.size() && !changed; ++i)
     changed = instances[i].mesh != instances_[i].mesh || instances[i].worldFromObject != instances_[i].worldFromObject;
-  if (!changed)
-    return;
+  if (!changed) return;
   instances_.assign(instances.begin(), instances.end());
 
   std::vector<vec4> rows;
@@ -57,14 +55,10 @@ void GpuScene::place(std::span<const InstanceView> instances) {
 
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
   gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth ? "depth.frag" : "gbuffer.frag"};
-  if (kind == DrawKind::Depth)
-    desc.defines.push_back("DEPTH_ONLY");
-  if (material.masked)
-    desc.defines.push_back("ALPHA_MASK");
-  if (material.baseTexture && (kind == DrawKind::GBuffer || material.masked))
-    desc.defines.push_back("BASE_TEXTURE");
-  if (material.emissiveTexture && kind == DrawKind::GBuffer)
-    desc.defines.push_back("EMISSIVE_TEXTURE");
+  if (kind == DrawKind::Depth) desc.defines.push_back("DEPTH_ONLY");
+  if (material.masked) desc.defines.push_back("ALPHA_MASK");
+  if (material.baseTexture && (kind == DrawKind::GBuffer || material.masked)) desc.defines.push_back("BASE_TEXTURE");
+  if (material.emissiveTexture && kind == DrawKind::GBuffer) desc.defines.push_back("EMISSIVE_TEXTURE");
   return programs_.get(desc);
 }
 
@@ -84,8 +78,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   const gl::Program* program = nullptr;
   uint32_t bound = kNone, draws = 0;
   for (const Item& item : items_) {
-    if (!frustum.mayShow(item.boundsWorld))
-      continue;
+    if (!frustum.mayShow(item.boundsWorld)) continue;
     const MaterialDraw& material = materialDraws_[item.range.material];
     if (item.range.material != bound) {
       const gl::Program& wanted = programFor(kind, material);
@@ -95,8 +88,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
         program->set("clipFromWorld", clipFromWorld);
         program->set("eye", eye);
       }
-      if (kind == DrawKind::GBuffer || material.masked)
-        bindMaterial(item.range.material);
+      if (kind == DrawKind::GBuffer || material.masked) bindMaterial(item.range.material);
       bound = item.range.material;
     }
     glDrawElementsInstancedBaseVertexBaseInstance(

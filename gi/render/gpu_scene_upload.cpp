@@ -54,8 +54,7 @@ gl::Texture uploadImage(const TextureImage& image) {
 /// Declares attribute `location` fed from `buffer`, or leaves it at its current (constant) value when that is empty.
 void attribute(const gl::VertexArray& array, GLuint location, const gl::Buffer& buffer, int components, GLenum type,
                bool normalized, int stride) {
-  if (!buffer)
-    return;
+  if (!buffer) return;
   glEnableVertexArrayAttrib(array.name(), location);
   glVertexArrayAttribFormat(array.name(), location, components, type, normalized, 0);
   glVertexArrayAttribBinding(array.name(), location, location);
@@ -88,10 +87,8 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
       normals.push_back(glm::packSnorm4x16(vec4(mesh.normals[i], 0)));
       const vec2 uv0 = mesh.uv0.empty() ? vec2(0) : mesh.uv0[i], uv1 = mesh.uv1.empty() ? vec2(0) : mesh.uv1[i];
-      if (anyUv)
-        uvs.push_back(vec4(uv0.x, uv0.y, uv1.x, uv1.y));
-      if (anyColor)
-        colors.push_back(glm::packUnorm4x16(mesh.colors.empty() ? vec4(1) : mesh.colors[i]));
+      if (anyUv) uvs.push_back(vec4(uv0.x, uv0.y, uv1.x, uv1.y));
+      if (anyColor) colors.push_back(glm::packUnorm4x16(mesh.colors.empty() ? vec4(1) : mesh.colors[i]));
     }
     std::vector<PrimitiveRange>& ranges = meshes_.emplace_back();
     for (const Primitive& p : mesh.primitives)
@@ -99,17 +96,13 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
         ranges.push_back(
             {(baseTriangle + p.firstTriangle) * 3, p.triangleCount * 3, baseVertex, p.material, p.boundsObject});
   }
-  if (positions.empty())
-    return;
+  if (positions.empty()) return;
 
   positions_ = gl::Buffer::of<vec3>("scene/positions", positions);
   normals_ = gl::Buffer::of<uint64_t>("scene/normals", normals);
-  if (anyUv)
-    uvs_ = gl::Buffer::of<vec4>("scene/uvs", uvs);
-  if (anyColor)
-    colors_ = gl::Buffer::of<uint64_t>("scene/colors", colors);
-  if (!triangles.empty())
-    indices_ = gl::Buffer::of<uvec3>("scene/indices", triangles);
+  if (anyUv) uvs_ = gl::Buffer::of<vec4>("scene/uvs", uvs);
+  if (anyColor) colors_ = gl::Buffer::of<uint64_t>("scene/colors", colors);
+  if (!triangles.empty()) indices_ = gl::Buffer::of<uvec3>("scene/indices", triangles);
 
   attribute(vertexArray_, 0, positions_, 3, GL_FLOAT, false, sizeof(vec3));
   attribute(vertexArray_, 1, normals_, 3, GL_SHORT, true, sizeof(uint64_t));
@@ -121,8 +114,7 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
     glVertexArrayAttribBinding(vertexArray_.name(), kInstanceBinding + row, kInstanceBinding);
   }
   glVertexArrayBindingDivisor(vertexArray_.name(), kInstanceBinding, 1);
-  if (indices_)
-    glVertexArrayElementBuffer(vertexArray_.name(), indices_.name());
+  if (indices_) glVertexArrayElementBuffer(vertexArray_.name(), indices_.name());
 }
 
 uint32_t GpuScene::samplerFor(const TextureRef& ref) {
@@ -139,8 +131,7 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 }
 
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
-  for (const TextureImage& image : assets.images)
-    textures_.push_back(uploadImage(image));
+  for (const TextureImage& image : assets.images) textures_.push_back(uploadImage(image));
   const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };
   const auto samplerOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : samplerFor(ref); };
 

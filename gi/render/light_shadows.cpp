@@ -99,8 +99,7 @@ LitMap sunMap(const SunFit& fit, const vec3& irradiance, int resolution) {
 
 int affordableResolution(int wanted, size_t maps) {
   int resolution = wanted;
-  while (resolution > 32 && uint64_t(resolution) * resolution * 4 * maps > kBudgetBytes)
-    resolution /= 2;
+  while (resolution > 32 && uint64_t(resolution) * resolution * 4 * maps > kBudgetBytes) resolution /= 2;
   return resolution;
 }
 
@@ -124,8 +123,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::ve
                             const LightShadowInputs& in) {
   for (size_t first = 0; first < maps.size(); first += kLightsPerBlock, ++block) {
     const int count = int(std::min<size_t>(kLightsPerBlock, maps.size() - first));
-    if (shadows.blocks.size() <= block)
-      shadows.blocks.emplace_back();
+    if (shadows.blocks.size() <= block) shadows.blocks.emplace_back();
     LightBlock& target = shadows.blocks[block];
     if (!target.maps || target.kind != kind || target.maps.desc().layers != count ||
         target.maps.width() != resolution) {
@@ -163,8 +161,7 @@ void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& ma
   const int resolution = block.maps.width();
   for (int layer = 0; layer < block.count; ++layer) {
     const LitMap& map = maps[first + layer];
-    if (!in.geometryChanged && block.drawn[layer] == map.clipFromWorld[0])
-      continue;
+    if (!in.geometryChanged && block.drawn[layer] == map.clipFromWorld[0]) continue;
     block.drawn[layer] = map.clipFromWorld[0];
     ++mapsDrawn;
     framebuffer.bind();
@@ -181,9 +178,7 @@ void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& ma
 
 LightShadowPass::LightShadowPass(PassContext context) : state_(std::make_unique<LightShadowState>(context)) {}
 LightShadowPass::~LightShadowPass() = default;
-uint32_t LightShadowPass::mapsDrawn() const {
-  return state_->mapsDrawn;
-}
+uint32_t LightShadowPass::mapsDrawn() const { return state_->mapsDrawn; }
 
 const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
@@ -195,8 +190,7 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
 
   std::vector<const LightView*> cubes, spots, suns;
   for (const LightView& light : in.lights) {
-    if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity))
-      continue;
+    if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity)) continue;
     if (light.type == LightType::Directional)
       suns.push_back(&light);
     else if (light.type == LightType::Spot && light.outerConeCos > kWidestSpotCos)
@@ -207,14 +201,12 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   std::vector<LitMap> maps;
   size_t block = 0;
   int resolution = affordableResolution(in.shadow.pointResolution, cubes.size() * 6);
-  for (const LightView* light : cubes)
-    maps.push_back(cubeMap(*light, resolution, near));
+  for (const LightView* light : cubes) maps.push_back(cubeMap(*light, resolution, near));
   s.fill(block, MapKind::Cube, resolution, maps, in);
 
   maps.clear();
   resolution = affordableResolution(in.shadow.spotResolution, spots.size());
-  for (const LightView* light : spots)
-    maps.push_back(spotMap(*light, resolution, near));
+  for (const LightView* light : spots) maps.push_back(spotMap(*light, resolution, near));
   s.fill(block, MapKind::Spot, resolution, maps, in);
 
   // Directions of suns and sky are fitted to the receivers; nothing to fit or light in an empty scene.

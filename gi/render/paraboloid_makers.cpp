@@ -97,8 +97,7 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
       for (int y = by; y < std::min(by + 8, n); ++y)
         for (int x = bx; x < std::min(bx + 8, n); ++x) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
-          if (d.z < -2.0f / float(n))
-            continue; // as map_resample.frag
+          if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
           rays.push_back({origin, worldFromLight * d, in.farDistance});
           texelOfRay.push_back(uint32_t(y * n + x));
         }
@@ -118,8 +117,7 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   for (size_t begin = 0; begin < slots.size(); begin += kBatch) {
     const size_t count = std::min(kBatch, slots.size() - begin);
     parallelFor(count, 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i)
-        maps[i] = castMap(in, in.poses[slots[begin + i]]);
+      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[slots[begin + i]]);
     });
     for (size_t i = 0; i < count; ++i) {
       const uint32_t slot = slots[begin + i];

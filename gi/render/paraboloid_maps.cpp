@@ -26,8 +26,7 @@ double secondsOf(const std::function<void()>& work) {
 std::vector<MapPose> mapPoses(const VplSet& set) {
   std::vector<MapPose> poses;
   poses.reserve(set.slots.size());
-  for (const Vpl& vpl : set.slots)
-    poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
+  for (const Vpl& vpl : set.slots) poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
   return poses;
 }
 
@@ -42,12 +41,10 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
     std::iota(all.begin(), all.end(), 0u);
     slots = all;
   }
-  for (uint32_t slot : slots)
-    CHECK_LT(slot, in.poses.size());
+  for (uint32_t slot : slots) CHECK_LT(slot, in.poses.size());
 
   ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
-  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty())
-    measureMakers(in, slots);
+  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty()) measureMakers(in, slots);
   if (maker == ShadowMaker::Auto)
     maker = measuredMaker_.value_or(ShadowMaker::Rays);
   else if (!slots.empty())
@@ -66,8 +63,7 @@ bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
   const bool fits = resolution_ == in.resolution && arrays_.size() == needed && farDistance_ == in.farDistance &&
                     (needed == 0 || arrays_.back().desc().layers == lastLayers);
-  if (fits)
-    return false;
+  if (fits) return false;
   arrays_.clear();
   for (size_t i = 0; i < needed; ++i)
     arrays_.emplace_back(name_ + "/array " + std::to_string(i),

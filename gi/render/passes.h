@@ -272,8 +272,8 @@ class FilterPass {
 
  private:
   PassContext context_;
-  gl::Texture irradiance_;
-  gl::Framebuffer framebuffer_;
+  gl::Texture irradiance_, rows_;
+  gl::Framebuffer framebuffer_, rowsFramebuffer_;
 };
 
 /// Irradiance that was computed on the CPU (smc.visibility = rays), in place of gather and filter.

@@ -11,8 +11,7 @@ namespace {
 /// A texture's RGB, row 0 at the top; black of the wanted size when there is none.
 Image rgbOf(const gl::Texture* texture, int width, int height) {
   Image image(width, height);
-  if (!texture)
-    return image;
+  if (!texture) return image;
   std::vector<vec3> bottomUp(size_t(texture->width()) * texture->height());
   glGetTextureImage(texture->name(), 0, GL_RGB, GL_FLOAT, GLsizei(bottomUp.size() * sizeof(vec3)), bottomUp.data());
   for (int y = 0; y < height; ++y)
@@ -21,10 +20,8 @@ Image rgbOf(const gl::Texture* texture, int width, int height) {
 }
 
 Image rawOf(const FrameResults& frame, int width, int height) {
-  if (!frame.raw.irradiance)
-    return rgbOf(frame.indirect.irradiance, width, height);
-  if (!frame.raw.deinterleaved)
-    return rgbOf(frame.raw.irradiance, width, height);
+  if (!frame.raw.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
+  if (!frame.raw.deinterleaved) return rgbOf(frame.raw.irradiance, width, height);
   const glm::ivec2 tile = tileSize(frame.gbuffer);
   const Image tiles = rgbOf(frame.raw.irradiance, 4 * tile.x, 4 * tile.y);
   Image image(width, height);
@@ -54,8 +51,7 @@ Image depthOf(const FrameResults& frame) {
 Image reflected(const FrameResults& frame, const gl::Texture* irradiance) {
   Image image = rgbOf(irradiance, frame.gbuffer.width, frame.gbuffer.height);
   const Image albedo = rgbOf(frame.gbuffer.albedo, image.width, image.height);
-  for (size_t i = 0; i < image.pixels.size(); ++i)
-    image.pixels[i] *= albedo.pixels[i] / kPi;
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
   return image;
 }
 

@@ -35,13 +35,11 @@ SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters,
   const Aabb across = inSunFrame(receivers.empty() ? casters : receivers, direction);
   const vec2 needed = glm::max(vec2(across.size().x, across.size().y), vec2(1e-3f));
   const bool same = previous.direction == direction && previous.zLo <= along.lo.z && previous.zHi >= along.hi.z;
-  if (same && receivers.empty())
-    return previous;
+  if (same && receivers.empty()) return previous;
   if (same && previous.lo.x <= across.lo.x && previous.lo.y <= across.lo.y && previous.hi.x >= across.hi.x &&
       previous.hi.y >= across.hi.y) {
     const vec2 ratio = previous.size() / needed;
-    if (ratio.x <= 2 && ratio.y <= 2)
-      return previous;
+    if (ratio.x <= 2 && ratio.y <= 2) return previous;
   }
   SunFit fit;
   fit.direction = direction;

@@ -36,34 +36,27 @@ VplLight emitterLight(const EmitterSample& sample) {
   return packLight(sample.position, sample.normal, sample.radiance, sample.area);
 }
 
-MapPose emitterPose(const EmitterSample& sample) {
-  return {sample.position, sample.normal, sample.normal};
-}
+MapPose emitterPose(const EmitterSample& sample) { return {sample.position, sample.normal, sample.normal}; }
 
 VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
   const gl::PassScope scope(context_.profiler, name_);
   const size_t chunks = std::max<size_t>(1, (slots.size() + kChunk - 1) / kChunk);
   const bool fresh = mirror_.size() != chunks * kChunk;
-  if (fresh)
-    mirror_.assign(chunks * kChunk, kNoLight);
+  if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
   uploaded_ = 0;
   std::vector<bool> dirtyChunks(chunks, fresh);
   const auto put = [&](uint32_t slot, const VplLight& light) {
     VplLight& held = mirror_[orderOf(slot)];
-    if (std::memcmp(&held, &light, sizeof light) == 0)
-      return;
+    if (std::memcmp(&held, &light, sizeof light) == 0) return;
     held = light;
     dirtyChunks[slot / kChunk] = true;
     ++uploaded_;
   };
-  for (uint32_t i = 0; i < slots.size(); ++i)
-    put(i, slots[i]);
-  for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i)
-    put(i, kNoLight);
+  for (uint32_t i = 0; i < slots.size(); ++i) put(i, slots[i]);
+  for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
-  if (fresh)
-    buffer_ = gl::Buffer(name_ + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
+  if (fresh) buffer_ = gl::Buffer(name_ + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
   // Whole chunks of 128 KiB: one transfer costs less than many small ones.
   for (size_t chunk = 0; chunk < chunks; ++chunk)
     if (dirtyChunks[chunk])

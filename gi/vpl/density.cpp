@@ -1,5 +1,5 @@
-// Paper 1, 3.2.4: density of VPLs on the surface by k nearest neighbours in 3D. In place of the density p = k/(N π r_k²)
-// we keep the area that the point stands for, a = 1/(N p) = π r_k²/k, because N cancels in the rendering sum.
+// Paper 1, 3.2.4: density of VPLs on the surface by k nearest neighbours in 3D. In place of the density p = k/(N π
+// r_k²) we keep the area that the point stands for, a = 1/(N p) = π r_k²/k, because N cancels in the rendering sum.
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
@@ -23,8 +23,8 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<fl
 
 } // namespace
 
-std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among, bool self,
-                                    int k, DensityEstimator estimator, float areaLimit) {
+std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among,
+                                    bool self, int k, DensityEstimator estimator, float areaLimit) {
   CHECK(k >= 1);
   std::vector<float> areas(queries.size(), areaLimit);
   if (among.empty()) return areas;
@@ -35,10 +35,14 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
 
   // Neighbours on the other side of a wall are passed over, so look at some more than k.
   const size_t wanted = size_t(k) + (self ? 1 : 0) + (estimator == DensityEstimator::KnnSide ? 8 : 0);
+  // Points of the tree query it in its own order, so that neighbours in time are neighbours in space (1.6 times as fast
+  // for 33 k points).
+  const bool treeOrder = self && tree.vAcc.size() == queries.size();
   parallelFor(queries.size(), 128, [&](size_t begin, size_t end) {
     std::vector<uint32_t> index(wanted);
     std::vector<float> distance2(wanted);
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t n = begin; n < end; ++n) {
+      const size_t i = treeOrder ? tree.vAcc[n] : n;
       if (!isFinite(queries[i].position)) continue;
       const size_t found = tree.knnSearch(&queries[i].position.x, wanted, index.data(), distance2.data());
       int seen = 0;

@@ -40,8 +40,8 @@ std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, s
           const float r2 = glm::dot(d, d);
           if (!(r2 > 0)) continue;
           const float inverse = 1 / std::sqrt(r2);
-          const float g = geometryTerm(glm::dot(d, h.normal) * inverse, -glm::dot(d, v.normal) * inverse, r2, v.area,
-                                       settings);
+          const float g =
+              geometryTerm(glm::dot(d, h.normal) * inverse, -glm::dot(d, v.normal) * inverse, r2, v.area, settings);
           if (g <= 0) continue;
           segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal)));
           values.push_back(v.radiance * (v.area * g));

@@ -1,6 +1,6 @@
-// Paper 1, 3.2.2: which VPLs can still bring light to the image. Two things differ from the paper: points shoot in blocks
-// and a block skips what earlier blocks verified, so a handful of unverified VPLs does not draw V rays from every point;
-// and only pairs that face each other count, since others exchange no light.
+// Paper 1, 3.2.2: which VPLs can still bring light to the image. Two things differ from the paper: points shoot in
+// blocks and a block skips what earlier blocks verified, so a handful of unverified VPLs does not draw V rays from
+// every point; and only pairs that face each other count, since others exchange no light.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "gi/vpl/smc.h"
@@ -34,7 +34,8 @@ vec3 offPosition(const Vpl& v) { return offsetPoint(v.position, v.geometricNorma
 } // namespace
 
 void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
-                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts) {
+                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed,
+                              RayCounts& counts) {
   const mat4 viewFromWorld = glm::inverse(camera.worldFromView);
   std::vector<RayCounts> perBlock((set.slots.size() + 63) / 64);
   parallelFor(set.slots.size(), 64, [&](size_t begin, size_t end) {

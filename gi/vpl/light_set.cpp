@@ -181,8 +181,7 @@ std::vector<EmitterPatch> emitterPatches(const LightSet& lights, int count) {
     const int share = std::max(1, int(std::lround(float(count) * e.power / total)));
     for (int i = 0; i < share; ++i) {
       const vec3 spread = additiveRecurrence3(uint32_t(i), vec3(0.5f));
-      const EmitterPoint p =
-          sampleEmitter(lights, e, {(float(i) + 0.5f) / float(share), spread.x, spread.y});
+      const EmitterPoint p = sampleEmitter(lights, e, {(float(i) + 0.5f) / float(share), spread.x, spread.y});
       const EmitterTriangle& t = lights.triangles[e.firstTriangle + e.byPower.sample((float(i) + 0.5f) / float(share))];
       // Radiance of the triangle rather than of the point: a texel that happens to be black must not darken the patch.
       const float area = e.power / float(share) / luminance(t.radiance);

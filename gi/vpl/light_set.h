@@ -1,4 +1,5 @@
-// All light of a scene in the form that light paths sample: punctual lights, emissive triangles grouped by surface, sky.
+// All light of a scene in the form that light paths sample: punctual lights, emissive triangles grouped by surface,
+// sky.
 #pragma once
 
 #include "engine/core/sampling.h"
@@ -9,10 +10,10 @@ namespace lambent {
 /// One emissive triangle, world space. `radiance` is the mean over the triangle; where a texture modulates it,
 /// `radianceAt` gives the exact value.
 struct EmitterTriangle {
-  vec3 p0, e1, e2;  // corner and edges
-  vec3 normal;      // unit, front side
+  vec3 p0, e1, e2; // corner and edges
+  vec3 normal;     // unit, front side
   vec3 radiance;
-  float area = 0;   // m²
+  float area = 0;            // m²
   uint32_t meshTriangle = 0; // within the primitive
 };
 
@@ -22,9 +23,9 @@ struct Emitter {
   uint32_t firstTriangle = 0, triangleCount = 0; // run of LightSet::triangles
   bool doubleSided = false;
   vec3 centre{0};
-  float radius = 0;        // of a sphere that holds all of it
-  float power = 0;         // Σ luminance(radiance) · area, W/sr
-  Distribution byPower;    // over its triangles
+  float radius = 0;     // of a sphere that holds all of it
+  float power = 0;      // Σ luminance(radiance) · area, W/sr
+  Distribution byPower; // over its triangles
 };
 
 struct LightSet {
@@ -53,13 +54,13 @@ EmitterTriangle makeEmitterTriangle(const vec3& p0, const vec3& p1, const vec3& 
 /// Zero behind the surface, outside cone or range. glTF KHR_lights_punctual falloffs.
 struct PunctualSample {
   vec3 irradiance{0};
-  vec3 towards{0};         // unit direction from x to the light
-  float distance = 0;      // metres; kInfinity for a directional light
+  vec3 towards{0};    // unit direction from x to the light
+  float distance = 0; // metres; kInfinity for a directional light
 };
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n);
 
-/// Chooses one light for a surface point with probability proportional to a bound of what it can bring there. The sum of
-/// weights costs one pass over all lights per vertex, fine for the some dozen lights of a game scene.
+/// Chooses one light for a surface point with probability proportional to a bound of what it can bring there. The sum
+/// of weights costs one pass over all lights per vertex, fine for the some dozen lights of a game scene.
 class LightChoice {
  public:
   LightChoice(const LightSet& lights, const vec3& x, const vec3& n, std::vector<float>& weightScratch);

@@ -1,11 +1,12 @@
-// Paper 1, 3.2.3: the radiance that a VPL reflects, by path tracing with next-event estimation. Numbers are seeded by the
-// VPL's own id, so a VPL that stays gives the same estimate until the light or the geometry that it sees changes.
+// Paper 1, 3.2.3: the radiance that a VPL reflects, by path tracing with next-event estimation. Numbers are seeded by
+// the VPL's own id, so a VPL that stays gives the same estimate until the light or the geometry that it sees changes.
 //
-// At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed ray.
-// The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance sampling
-// (power heuristic, Veach 1997) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
-// of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The paths of
-// one VPL share stratified numbers at the first vertex: 4×4 strata for directions, an additive recurrence for lights.
+// At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed
+// ray. The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance
+// sampling (power heuristic, Veach 1997) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
+// of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
+// paths of one VPL share stratified numbers at the first vertex: 4×4 strata for directions, an additive recurrence for
+// lights.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "gi/vpl/smc.h"
@@ -48,8 +49,8 @@ class VplEstimator {
     const vec3 shift(first.next(), first.next(), first.next());
     const float lightShift = first.next();
     for (int i = 0; i < paths_; ++i)
-      states_[i] = {vpl.position, vpl.normal, vpl.geometricNormal, vpl.albedo, true,
-                    Rng(seed_, Stream::LightPaths, id, uint32_t(i) + 1)};
+      states_[i] = {vpl.position, vpl.normal, vpl.geometricNormal,
+                    vpl.albedo,   true,       Rng(seed_, Stream::LightPaths, id, uint32_t(i) + 1)};
     for (int depth = 0; depth < bounces_; ++depth) {
       connectToLights(depth, shift, lightShift, counts);
       const bool last = depth + 1 == bounces_;

@@ -1,6 +1,6 @@
 // Paper 1, 3.2.5 and algorithm 1 lines 9–17: find undersampled regions and move a bounded number of VPLs there.
-// Intensities of VPLs and candidates are both taken with k = 1. Other than in the paper, each winner lowers the area of the
-// candidates around it before the next is picked.
+// Intensities of VPLs and candidates are both taken with k = 1. Other than in the paper, each winner lowers the area of
+// the candidates around it before the next is picked.
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -50,7 +50,8 @@ VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, 
   for (uint32_t slot : targets) {
     auto best = candidates.end();
     for (auto c = candidates.begin(); c != candidates.end(); ++c)
-      if (!c->alive && samplingIntensity(*c) > 0 && (best == candidates.end() || samplingIntensity(*c) > samplingIntensity(*best)))
+      if (!c->alive && samplingIntensity(*c) > 0 &&
+          (best == candidates.end() || samplingIntensity(*c) > samplingIntensity(*best)))
         best = c;
     if (best == candidates.end()) break; // no light to be had: everyone stays
     best->alive = true;                  // taken

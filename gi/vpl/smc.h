@@ -1,6 +1,6 @@
 // Sequential Monte Carlo instant radiosity on the CPU (Hedman, Karras, Lehtinen 2017; "paper 1"): the contents page of
-// this folder in data-flow order, one .cpp per stage. All stages are deterministic functions of their arguments, for any
-// number of threads. World space, metres; radiance in W/(m² sr).
+// this folder in data-flow order, one .cpp per stage. All stages are deterministic functions of their arguments, for
+// any number of threads. World space, metres; radiance in W/(m² sr).
 //
 //   visible points → indirect visibility → candidates → resample → radiosity → density → replace   (update_vpls.cpp)
 #pragma once
@@ -27,8 +27,8 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
 /// Stage 2. Marks VPLs that some visible point still sees (paper 1, 3.2.2): first by their mailbox point (in the
 /// frustum, camera → point clear, and point → VPL clear where `geometryMoved`), then in two rounds of up to
 /// `raysPerPoint` rays from every visible point to random unverified VPLs. Points go in blocks, and a block skips what
-/// earlier blocks verified. Where the camera is unchanged and nothing moved, earlier marks stay and only unverified VPLs
-/// are tried.
+/// earlier blocks verified. Where the camera is unchanged and nothing moved, earlier marks stay and only unverified
+/// VPLs are tried.
 void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
                               std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts);
 
@@ -43,24 +43,23 @@ struct CandidateHit {
 std::vector<CandidateHit> traceCandidates(const RayQuery& rays, std::span<const VisiblePoint> points, int count,
                                           uint32_t seed, uint32_t frame, RayCounts& counts);
 
-/// Stage 4. Picks up to `count` different hits with probability ∝ area that a hit stands for (1/density of hits, nearest
-/// neighbour), so that picks are uniform over the indirectly visible surface (paper 1, 3.2.1). At most 8 retries per
-/// pick.
+/// Stage 4. Picks up to `count` different hits with probability ∝ area that a hit stands for (1/density of hits,
+/// nearest neighbour), so that picks are uniform over the indirectly visible surface (paper 1, 3.2.1). At most 8
+/// retries per pick.
 struct Resampled {
   std::vector<uint32_t> picks; // indices of hits in pick order
   double area = 0;             // m², estimate of the surface that all hits lie on
 };
-Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, uint32_t seed,
-                                            uint32_t frame);
+Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, uint32_t seed, uint32_t frame);
 
 /// Stage 5. Reflected radiance of each VPL by `paths` light paths with next-event estimation and multiple importance
-/// sampling for emitters (paper 1, 3.2.3). Random numbers depend on the VPL's id alone. `bounces` B ≥ 1: direct light at
-/// the VPL plus B − 1 further bounces.
+/// sampling for emitters (paper 1, 3.2.3). Random numbers depend on the VPL's id alone. `bounces` B ≥ 1: direct light
+/// at the VPL plus B − 1 further bounces.
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
                       uint32_t seed, RayCounts& counts);
 
-/// Whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts as the
-/// same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would make
+/// Whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts as
+/// the same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would make
 /// areas along every edge too large (measured: 15 % more light in an empty room).
 inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot(normalA, normalB) > -0.5f; }
 
@@ -71,8 +70,8 @@ inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot
 struct DensityPoint {
   vec3 position, normal;
 };
-std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among, bool self,
-                                    int k, DensityEstimator estimator, float areaLimit);
+std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among,
+                                    bool self, int k, DensityEstimator estimator, float areaLimit);
 /// k for rendering: paper 1, eq. 8.
 int neighboursForRendering(const SmcSettings& settings);
 
@@ -103,8 +102,8 @@ struct VplUpdateLog {
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});
 
-/// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs - ray
-/// tracing"). Row 0 at the top; zero where the camera sees nothing.
+/// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
+/// ray tracing"). Row 0 at the top; zero where the camera sees nothing.
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
                                const GatherSettings& settings, RayCounts& counts);
 

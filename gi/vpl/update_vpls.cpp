@@ -1,6 +1,6 @@
-// Paper 1, algorithm 1: the stages in order. Two changes of order: VPLs are re-lit before they are compared with candidates
-// (the paper compares fresh candidates with last frame's values, so a switched light would misjudge both for a frame), and
-// a candidate that wins keeps the estimate it won with, because numbers follow its id.
+// Paper 1, algorithm 1: the stages in order. Two changes of order: VPLs are re-lit before they are compared with
+// candidates (the paper compares fresh candidates with last frame's values, so a switched light would misjudge both for
+// a frame), and a candidate that wins keeps the estimate it won with, because numbers follow its id.
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -25,7 +25,8 @@ void carryAlong(VplSet& set, const SceneView& view, std::vector<uint32_t>& moved
     v.position = vec3(nowFromBefore * vec4(v.position, 1));
     v.normal = glm::normalize(normalNow * v.normal);
     v.geometricNormal = glm::normalize(normalNow * v.geometricNormal);
-    if (!isFinite(v.position) || !isFinite(v.normal) || !isFinite(v.geometricNormal)) v.alive = false; // scaled to nothing
+    if (!isFinite(v.position) || !isFinite(v.normal) || !isFinite(v.geometricNormal))
+      v.alive = false; // scaled to nothing
     moved.push_back(i);
   }
 }
@@ -41,8 +42,8 @@ std::vector<DensityPoint> densityPoints(std::span<const Vpl> vpls, std::vector<u
   return points;
 }
 
-/// No VPL stands for more than this, m²: 16 times the mean share. An isolated VPL's disk would else reach far beyond the
-/// surface it is on (the paper's clothes line).
+/// No VPL stands for more than this, m²: 16 times the mean share. An isolated VPL's disk would else reach far beyond
+/// the surface it is on (the paper's clothes line).
 float areaLimit(const VplSet& set) { return 16 * set.visibleArea / float(std::max<size_t>(16, set.slots.size())); }
 
 void estimateDensities(VplSet& set, const SmcSettings& settings) {
@@ -169,8 +170,8 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   now.moves = settings.moves;
   now.geometryMoved = changed.geometry || changed.instances;
   now.mayBurst = changed.camera && !start;
-  now.relight = changed.lights || now.geometryMoved || set.litPaths != settings.paths ||
-                set.litBounces != settings.bounces;
+  now.relight =
+      changed.lights || now.geometryMoved || set.litPaths != settings.paths || set.litBounces != settings.bounces;
   set.litPaths = settings.paths;
   set.litBounces = settings.bounces;
 

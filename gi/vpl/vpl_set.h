@@ -11,8 +11,8 @@ namespace lambent {
 
 /// A small diffuse patch that stands for all light reflected around it. World space.
 struct Vpl {
-  vec3 position{0};        // on the surface
-  vec3 normal{0, 1, 0};    // shading normal, towards the lit side
+  vec3 position{0};     // on the surface
+  vec3 normal{0, 1, 0}; // shading normal, towards the lit side
   vec3 geometricNormal{0, 1, 0};
   vec3 albedo{0};
   vec3 radiance{0};        // reflected L = B/π, W/(m² sr); no emission of its own
@@ -20,10 +20,10 @@ struct Vpl {
   float candidateArea = 0; // the same with k = 1, used by the sampler only
   uint64_t id = 0;         // seeds its light paths; never reused
   uint32_t bornFrame = 0;
-  uint32_t instance = 0;   // index into SceneView::instances
-  vec3 mailbox{0};         // a point seen by both the camera and this VPL, already off its surface
-  bool alive = false;      // false: empty slot, brings no light
-  bool valid = false;      // indirectly visible in this frame as far as known
+  uint32_t instance = 0; // index into SceneView::instances
+  vec3 mailbox{0};       // a point seen by both the camera and this VPL, already off its surface
+  bool alive = false;    // false: empty slot, brings no light
+  bool valid = false;    // indirectly visible in this frame as far as known
 
   /// Intensity I = L/p up to the factor N (paper 1, eq. 6): radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
@@ -32,8 +32,8 @@ struct Vpl {
 struct VplSet {
   std::vector<Vpl> slots;
   uint64_t nextId = 1;
-  uint32_t frame = 0;      // iterations so far
-  float visibleArea = 0;   // m², running estimate of the indirectly visible surface
+  uint32_t frame = 0;               // iterations so far
+  float visibleArea = 0;            // m², running estimate of the indirectly visible surface
   int litPaths = 0, litBounces = 0; // settings that the present radiances were estimated with
 };
 

@@ -89,16 +89,13 @@ TEST_P(Content, TheRepositoryHoldsWhatTheRecipeWrites) {
   }
 }
 
-TEST_P(Content, IsSmall) {
-  EXPECT_LT(Written(GetParam()).scene.bytes, 2u << 20);
-}
+TEST_P(Content, IsSmall) { EXPECT_LT(Written(GetParam()).scene.bytes, 2u << 20); }
 
 TEST_P(Content, TrianglesAreFiniteWoundOutwardsAndNotDegenerate) {
   const Written w(GetParam());
   for (const Surface& s : surfaces(w)) {
     SCOPED_TRACE(s.name);
-    for (const vec3& n : s.normals)
-      EXPECT_NEAR(glm::length(n), 1.0f, 1e-4f);
+    for (const vec3& n : s.normals) EXPECT_NEAR(glm::length(n), 1.0f, 1e-4f);
     for (size_t i = 0; i < s.indices.size(); i += 3) {
       const auto corner = [&](size_t k) { return s.positions.at(s.indices[i + k]); };
       ASSERT_TRUE(isFinite(corner(0)) && isFinite(corner(1)) && isFinite(corner(2)));
@@ -133,8 +130,7 @@ TEST_P(Content, SolidsAreClosedAndFaceOutwards) {
     }
     EXPECT_GT(volume, 0);
     size_t open = 0;
-    for (const auto& [edge, balance] : edges)
-      open += balance != 0;
+    for (const auto& [edge, balance] : edges) open += balance != 0;
     EXPECT_EQ(open, 0u) << "open edges";
   }
 }
@@ -153,8 +149,7 @@ TEST_P(Content, AlbedosArePlausible) {
 TEST_P(Content, NodeNamesAreUnique) { // shots address nodes by name
   const Written w(GetParam());
   std::map<std::string, int> count;
-  for (const json& node : w.gltf["nodes"])
-    EXPECT_EQ(++count[node["name"]], 1) << node["name"];
+  for (const json& node : w.gltf["nodes"]) EXPECT_EQ(++count[node["name"]], 1) << node["name"];
 }
 
 INSTANTIATE_TEST_SUITE_P(Recipes, Content, testing::ValuesIn(contentRecipes()),

@@ -85,14 +85,16 @@ TEST(Radiosity, LightsAddUp) {
     sum += radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f), plane, one, 1);
     all.punctual.push_back(l);
   }
-  // One light is chosen per path: exact in luminance up to the strata's share, so many paths and a loose bound in colour.
+  // One light is chosen per path: exact in luminance up to the strata's share, so many paths and a loose bound in
+  // colour.
   const vec3 r = radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f), plane, all, 1, 4096);
   EXPECT_NEAR(luminance(r), luminance(sum), 1e-3f * luminance(sum));
   EXPECT_NEAR(r.x, sum.x, 0.02f * sum.x);
 }
 
 TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
-  // Quad of a×b at height c with a corner above the point: F = 1/2π (A/√(1+A²) atan(B/√(1+A²)) + B/√(1+B²) atan(A/√(1+B²))).
+  // Quad of a×b at height c with a corner above the point: F = 1/2π (A/√(1+A²) atan(B/√(1+A²)) + B/√(1+B²)
+  // atan(A/√(1+B²))).
   for (const float c : {1.0f, 0.2f}) {
     test::HandScene scene;
     const float a = 1.5f, b = 0.8f, A = a / c, B = b / c;
@@ -108,7 +110,8 @@ TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
                            B / std::sqrt(1 + B * B) * std::atan(A / std::sqrt(1 + B * B))) /
                           (2 * kPi);
     std::vector<double> values, single;
-    for (uint32_t id = 0; id < 2000; ++id) values.push_back(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f, id), rays, lights, 1).x);
+    for (uint32_t id = 0; id < 2000; ++id)
+      values.push_back(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f, id), rays, lights, 1).x);
     const test::Mean m = test::meanOf(values);
     const double expected = 0.5 * 2 * factor;
     EXPECT_LT(std::abs(m.mean - expected), test::kDeviateLimit * m.error + 1e-4 * expected) << "height " << c;
@@ -162,7 +165,9 @@ TEST(Radiosity, FollowsTheIdAlone) {
   room.addBox({-1, -1, -1}, {1, 1, 1}, {vec3(0.6f), vec3(0), true});
   LightSet lights;
   lights.punctual.resize(1);
-  const auto at = [&](uint64_t id, uint32_t seed) { return radianceOf(vplAt({0, -1, 0.2f}, {0, 1, 0}, 0.6f, id), room, lights, 3, 16, seed); };
+  const auto at = [&](uint64_t id, uint32_t seed) {
+    return radianceOf(vplAt({0, -1, 0.2f}, {0, 1, 0}, 0.6f, id), room, lights, 3, 16, seed);
+  };
   EXPECT_EQ(at(5, 1), at(5, 1));
   EXPECT_NE(at(5, 1), at(6, 1));
   EXPECT_NE(at(5, 1), at(5, 2));

@@ -24,11 +24,15 @@ TEST(Rng, IsUniformAndStreamsDiffer) {
   };
   const auto at = [](uint32_t seed, Stream s, uint32_t id, uint32_t frame) { return Rng(seed, s, id, frame).next(); };
   const Stream t = Stream::Test;
-  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(1, t, i + 1, 0); }), kDeviateLimit);
-  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(1, t, i, 1); }), kDeviateLimit);
-  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(2, t, i, 0); }), kDeviateLimit);
-  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, 0, i); }, [&](uint32_t i) { return at(1, Stream::Resample, 0, i); }),
+  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(1, t, i + 1, 0); }),
             kDeviateLimit);
+  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(1, t, i, 1); }),
+            kDeviateLimit);
+  EXPECT_LT(pairs([&](uint32_t i) { return at(1, t, i, 0); }, [&](uint32_t i) { return at(2, t, i, 0); }),
+            kDeviateLimit);
+  EXPECT_LT(
+      pairs([&](uint32_t i) { return at(1, t, 0, i); }, [&](uint32_t i) { return at(1, Stream::Resample, 0, i); }),
+      kDeviateLimit);
 }
 
 /// Counts directions in cells of equal cosθ and φ around n against the density's integral over each cell.

@@ -1,7 +1,7 @@
 // The sequential sampler as a whole, on rooms with closed-form rays.
 #include "engine/core/parallel.h"
-#include "engine/trace/analytic_query.h"
 #include "engine/core/rng.h"
+#include "engine/trace/analytic_query.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/statistics.h"
 
@@ -247,8 +247,9 @@ TEST(Smc, NumberOfVplsMayChangeBetweenFrames) {
 }
 
 TEST(Smc, TheSetCarriesTheRoomsLight) {
-  // Σ L·a over the set against ∫ L dA over the room's surface by stratified points. The set spreads VPLs apart, where the
-  // nearest neighbour alone (paper 1, eq. 8 at N = 2048) would find 35 % too much light; the default must be right to 4 %.
+  // Σ L·a over the set against ∫ L dA over the room's surface by stratified points. The set spreads VPLs apart, where
+  // the nearest neighbour alone (paper 1, eq. 8 at N = 2048) would find 35 % too much light; the default must be right
+  // to 4 %.
   Room room;
   room.rays = {};
   room.rays.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.6f)});
@@ -286,8 +287,8 @@ TEST(Smc, TheSetCarriesTheRoomsLight) {
 }
 
 TEST(Smc, WhiteFurnaceOfTheVplEstimate) {
-  // Inside a closed sphere whose walls all leave radiance L, the irradiance at any point of any plane is πL. Independent
-  // VPLs uniform in area: the sum over VPLs with k-nearest areas must give it without bias.
+  // Inside a closed sphere whose walls all leave radiance L, the irradiance at any point of any plane is πL.
+  // Independent VPLs uniform in area: the sum over VPLs with k-nearest areas must give it without bias.
   std::vector<double> shares;
   for (uint32_t seed = 0; seed < 60; ++seed) {
     std::vector<DensityPoint> points(1024);

@@ -113,8 +113,8 @@ TEST(Trace, NotANumberIsAMissAndDoesNotAbort) {
   EmbreeQuery rays(scene.assets);
   rays.update(scene.view());
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Ray> bad{{{nan, 1, 0}, {0, -1, 0}},        {{0, 1, 0}, {0, nan, 0}}, {{0, 1, 0}, {0, -kInfinity, 0}},
-                             {{0, 1, 0}, {0, -1, 0}, nan},     {{0, 1, 0}, {0, 0, 0}},   {{0, 1, 0}, {0, -1, 0}, -1},
+  const std::vector<Ray> bad{{{nan, 1, 0}, {0, -1, 0}},      {{0, 1, 0}, {0, nan, 0}}, {{0, 1, 0}, {0, -kInfinity, 0}},
+                             {{0, 1, 0}, {0, -1, 0}, nan},   {{0, 1, 0}, {0, 0, 0}},   {{0, 1, 0}, {0, -1, 0}, -1},
                              {{kInfinity, 1, 0}, {0, -1, 0}}};
   std::vector<SurfaceHit> hits(bad.size());
   std::vector<uint8_t> blocked(bad.size());

@@ -24,8 +24,7 @@ TEST_F(ContextTest, TellsWhatItIs) {
 TEST_F(ContextTest, CountsMemoryByOwner) {
   const auto bytesOf = [](const std::string& owner) {
     for (const auto& [name, bytes] : gl::memoryByOwner())
-      if (name == owner)
-        return bytes;
+      if (name == owner) return bytes;
     return uint64_t(0);
   };
   {

@@ -4,6 +4,15 @@
 
 namespace lambent::test {
 
+/// The passes need sizes; 0 (from the picture's width) is resolved by the frame.
+ShadowSettings fixedResolutions() {
+  ShadowSettings settings;
+  settings.sunResolution = 2048;
+  settings.pointResolution = 512;
+  settings.spotResolution = 1024;
+  return settings;
+}
+
 class DirectTest : public GlTest {
  protected:
   /// Direct irradiance of the picture, row 0 at the top.
@@ -42,7 +51,7 @@ class DirectTest : public GlTest {
     return readBuffer(Buffer::Irradiance, results);
   }
 
-  ShadowSettings settings;
+  ShadowSettings settings = fixedResolutions();
 };
 
 constexpr float kShare = 1e-3f; // tolerance of the closed forms
@@ -52,8 +61,7 @@ constexpr float kShare = 1e-3f; // tolerance of the closed forms
 void expectFloor(const Floor& floor, const Image& image, const std::function<float(const vec3&)>& expected) {
   float largest = 0;
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      largest = std::max(largest, expected(floor.at(x, y)));
+    for (int x = 0; x < image.width; ++x) largest = std::max(largest, expected(floor.at(x, y)));
   ASSERT_GT(largest, 0);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -157,8 +165,7 @@ TEST_F(DirectTest, BlockersCastShadowsOfEveryKind) {
         const bool isLit = shadowed.at(x, y).x > 0;
         (isLit ? lit : dark)++;
         // 2048² over 20 m: two centimetres of filter width at most.
-        if (std::abs(outside) > 0.03f && isLit != (outside > 0))
-          ++wrong;
+        if (std::abs(outside) > 0.03f && isLit != (outside > 0)) ++wrong;
       }
     EXPECT_EQ(wrong, 0) << "kind " << int(light.type);
     EXPECT_GT(dark, 100);
@@ -207,8 +214,7 @@ TEST(SkyDirections, CoverTheSphereEvenly) {
   // Irradiance of a plane at any tilt: Σ cos · 4π/32 ≈ π.
   for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1), glm::normalize(vec3(1, 1, 1))}) {
     float e = 0;
-    for (const vec3& d : directions)
-      e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
+    for (const vec3& d : directions) e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
     EXPECT_NEAR(e, kPi, 0.03f * kPi);
   }
 }

@@ -58,11 +58,9 @@ TEST_F(DisplayTest, MarksWhatIsNoNumber) {
 
 TEST_F(DisplayTest, ExposureBringsTheLogAverageToMidGrey) {
   Image image(64, 48, vec3(2));
-  for (int x = 0; x < 64; ++x)
-    image.at(x, 0) = vec3(0); // black says nothing about exposure
+  for (int x = 0; x < 64; ++x) image.at(x, 0) = vec3(0); // black says nothing about exposure
   for (int y = 1; y < 48; y += 2)
-    for (int x = 0; x < 64; ++x)
-      image.at(x, y) = vec3(8);
+    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(8);
   const int bright = 24, dim = 23;
   const double logAverage = (bright * std::log(8.0) + dim * std::log(2.0)) / (bright + dim);
   // The upload has no alpha of its own: 1, a surface.
@@ -94,8 +92,7 @@ TEST_F(DisplayTest, EveryViewDraws) {
 TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   Image image(64, 48, vec3(0));
   for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 64; ++x)
-      image.at(x, y) = vec3(100); // upper half bright
+    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(100); // upper half bright
   const FrameResults frame = frameWith(image);
   const gl::Texture target("window", {.format = GL_RGBA8, .width = 128, .height = 96});
   const gl::Framebuffer framebuffer("window", {&target});

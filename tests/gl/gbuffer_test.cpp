@@ -25,8 +25,7 @@ void expectAgreesWithRays(GBufferPass& pass, gl::ProgramCache& programs, const R
           cameraRay(room.scene.camera, (float(x) + 0.5f) / float(depth.width), (float(y) + 0.5f) / float(depth.height));
       const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
       const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
-      if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f)
-        ++differing;
+      if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
     }
   }
   EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
@@ -80,8 +79,7 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   EXPECT_EQ(emission.at(pixelAt(-1), 24).x, 0);
   EXPECT_EQ(emission.at(pixelAt(1), 24).x, 2);
   EXPECT_EQ(emission.at(pixelAt(3), 24).x, 3);
-  for (float x : {-3.0f, -1.0f, 1.0f, 3.0f})
-    EXPECT_NEAR(normal.at(pixelAt(x), 24).z, 1, 1e-3f) << x;
+  for (float x : {-3.0f, -1.0f, 1.0f, 3.0f}) EXPECT_NEAR(normal.at(pixelAt(x), 24).z, 1, 1e-3f) << x;
   EXPECT_EQ(readBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
 }
 

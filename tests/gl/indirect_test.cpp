@@ -56,8 +56,7 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
           const vec3 d = position - floor.at(x, y);
           const float r2 = glm::dot(d, d), r = std::sqrt(r2);
           float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + disk * 0.2f / kPi);
-          if (clamp > 0)
-            g = std::min(g, clamp);
+          if (clamp > 0) g = std::min(g, clamp);
           ASSERT_NEAR(image.at(x, y).x, 4 * 0.2f * g, 1e-3f * 0.8f * g + 1e-5f) << x << ' ' << y;
         }
     }
@@ -84,7 +83,7 @@ TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
       for (size_t i = c; i < vpls.size(); i += 16) {
         const vec3 d = vpls[i].position - floor.at(x, y);
         const float r2 = glm::dot(d, d);
-        wanted += 16 * vpls[i].radiance.x * 0.1f * d.y * d.y / r2 / (r2 + 0.1f / kPi);
+        wanted += 16 * vpls[i].radiance.x * 0.1f * d.y * d.y / r2 / (r2 + GatherSettings{}.disk * 0.1f / kPi);
       }
       ASSERT_NEAR(image.at(x, y).x, wanted, 2e-3f * wanted) << x << ' ' << y;
     }
@@ -112,11 +111,9 @@ TEST_F(IndirectTest, EmptyBlackAndBrokenLightsBringNothing) {
   vpls[3].normal = vec3(std::nanf(""));
   vpls[4].area = kInfinity;
   std::vector<VplLight> lights;
-  for (const Vpl& v : vpls)
-    lights.push_back(vplLight(v));
+  for (const Vpl& v : vpls) lights.push_back(vplLight(v));
   const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
-  for (const vec3& e : image.pixels)
-    ASSERT_EQ(e.x, 0);
+  for (const vec3& e : image.pixels) ASSERT_EQ(e.x, 0);
 }
 
 TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
@@ -158,14 +155,12 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec4> texels(64 * 48);
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x)
-      texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
+    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const RawIndirect raw{&tiles, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 3; y < 45; ++y)
-    for (int x = 3; x < 61; ++x)
-      ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
+    for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
 }
 
 TEST_F(IndirectTest, FilterStopsAtEdges) {
@@ -195,8 +190,7 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   const GBuffer gbuffer = surfaces(scene);
   Image irradiance(64, 48, vec3(0));
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x)
-      irradiance.at(x, y) = vec3(float(y + 1));
+    for (int x = 0; x < 64; ++x) irradiance.at(x, y) = vec3(float(y + 1));
   IndirectUpload upload(passes);
   CompositePass composite(passes);
   const IndirectLight indirect = upload.run(irradiance);

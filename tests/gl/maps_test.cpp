@@ -33,14 +33,12 @@ TEST_F(MapsTest, MakersAgree) {
     for (int y = 0; y < maps.resolution; ++y)
       for (int x = 0; x < maps.resolution; ++x) {
         const vec2 uv = (vec2(x, y) + 0.5f) / float(maps.resolution);
-        if (directionFromParaboloid(uv).z < 0.1f)
-          continue; // at the horizon a texel sees metres of the floor it is on
+        if (directionFromParaboloid(uv).z < 0.1f) continue; // at the horizon a texel sees metres of the floor it is on
         ++inside;
         const size_t i = size_t(y) * maps.resolution + x;
         // A face's texel stands for up to 0.7 texels around it; on a surface at 80° to the ray that is 3 % per texel.
         // Below a tilted map's own surface, distances are millimetres, and only their size means anything.
-        if (std::abs(maps.raster[i] - maps.rays[i]) < 0.08f * maps.rays[i] + 0.005f)
-          ++close;
+        if (std::abs(maps.raster[i] - maps.rays[i]) < 0.08f * maps.rays[i] + 0.005f) ++close;
       }
     EXPECT_GT(inside, 2000);
     // The rest lies on silhouettes, where the nearest texel falls to the other side.
@@ -131,17 +129,14 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
     const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
     for (int y = 0; y < 72; ++y)
       for (int x = 0; x < 96; ++x) {
-        if (!(open.at(x, y).x > 0))
-          continue;
+        if (!(open.at(x, y).x > 0)) continue;
         const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 72);
         const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
         const bool isBlocked = room.rays.occluded(
             segment(offsetPoint(hit.position, hit.geometricNormal), offsetPoint(vpl.position, vpl.geometricNormal)));
         (isBlocked ? blocked : free)++;
-        if (isBlocked && lit.at(x, y).x > 0)
-          ++leaks;
-        if (!isBlocked && lit.at(x, y).x == 0)
-          ++acne;
+        if (isBlocked && lit.at(x, y).x > 0) ++leaks;
+        if (!isBlocked && lit.at(x, y).x == 0) ++acne;
         EXPECT_NEAR(depth.at(x, y).x, glm::dot(hit.position - ray.origin, forward), 0.3f);
       }
     EXPECT_GT(free, 1500);

@@ -50,8 +50,7 @@ void main() {
   cache.get({.fragment = "probe.frag"}).use();
   gl::drawFullscreen();
   std::vector<std::vector<vec4>> got;
-  for (const gl::Texture& t : targets)
-    got.push_back(readTexture(t));
+  for (const gl::Texture& t : targets) got.push_back(readTexture(t));
   fs::remove_all(folder);
 
   for (int y = 0; y < kSide; ++y) {

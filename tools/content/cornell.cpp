@@ -24,8 +24,7 @@ Geometry block(const std::array<dvec2, 4>& corners, double height) {
   const auto at = [&](size_t i, double y) { return placed(corners[i % 4].x, y, corners[i % 4].y); };
   g.addQuad(at(0, height), at(1, height), at(2, height), at(3, height));
   g.addQuad(at(3, 0), at(2, 0), at(1, 0), at(0, 0));
-  for (size_t i = 0; i < 4; ++i)
-    g.addQuad(at(i, 0), at(i + 1, 0), at(i + 1, height), at(i, height));
+  for (size_t i = 0; i < 4; ++i) g.addQuad(at(i, 0), at(i + 1, 0), at(i + 1, height), at(i, height));
   return g;
 }
 

@@ -26,18 +26,13 @@ double rounded(double v) {
   return r == 0 ? 0.0 : r; // no negative zero
 }
 
-json array(const dvec3& v) {
-  return {rounded(v.x), rounded(v.y), rounded(v.z)};
-}
-json array(const glm::dquat& q) {
-  return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
-}
+json array(const dvec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
+json array(const glm::dquat& q) { return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)}; }
 
 template <class Vector> std::vector<float> flattened(const std::vector<Vector>& values) {
   std::vector<float> out;
   for (const Vector& v : values)
-    for (glm::length_t i = 0; i < Vector::length(); ++i)
-      out.push_back(float(rounded(v[i])));
+    for (glm::length_t i = 0; i < Vector::length(); ++i) out.push_back(float(rounded(v[i])));
   return out;
 }
 
@@ -197,8 +192,7 @@ void GltfWriter::animateTranslation(Index node, const std::vector<double>& times
                                     const std::vector<dvec3>& translations) {
   CHECK_EQ(times.size(), translations.size());
   std::vector<float> seconds;
-  for (const double t : times)
-    seconds.push_back(float(rounded(t)));
+  for (const double t : times) seconds.push_back(float(rounded(t)));
   samplers_.push_back({{"input", addAccessor(seconds, 1, Target::None, true)},
                        {"output", addAccessor(flattened(translations), 3, Target::None, false)},
                        {"interpolation", "LINEAR"}});
@@ -215,8 +209,7 @@ GeneratedScene GltfWriter::write(const std::filesystem::path& folder, const std:
             {"meshes", meshes_},
             {"nodes", nodes_}};
   std::vector<Index> roots(nodes_.size());
-  for (Index i = 0; i < roots.size(); ++i)
-    roots[i] = i;
+  for (Index i = 0; i < roots.size(); ++i) roots[i] = i;
   gltf["scenes"] = json::array({{{"name", stem}, {"nodes", roots}}});
 
   std::vector<std::string> extensions;

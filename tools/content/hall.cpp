@@ -32,16 +32,10 @@ constexpr double kUpperSpring = kGalleryFloor + 2.0;
 constexpr double kEaves = kUpperSpring + kArchHeight, kRoof = 0.4;
 constexpr double kRailHeight = 0.95;
 
-double columnX(int i) {
-  return (i - 0.5 * kBays) * kBay;
-}
-double bayX(int i) {
-  return (i + 0.5 - 0.5 * kBays) * kBay;
-}
+double columnX(int i) { return (i - 0.5 * kBays) * kBay; }
+double bayX(int i) { return (i + 0.5 - 0.5 * kBays) * kBay; }
 
-glm::dquat aroundY(double degrees) {
-  return glm::angleAxis(glm::radians(degrees), dvec3(0, 1, 0));
-}
+glm::dquat aroundY(double degrees) { return glm::angleAxis(glm::radians(degrees), dvec3(0, 1, 0)); }
 
 struct Materials {
   Index stone, plaster, floor, timber, red, blue, green, gold, ball, lattice, chamber, water;
@@ -243,8 +237,7 @@ class HallBuilder {
     place("chamber walls", walls, material_.chamber);
     place("chamber ceiling", box({x0, height, -z - wall}, {x1 + wall, height + wall, z + wall}), material_.plaster);
     Geometry statue = sphere(0.42, 28);
-    for (dvec3& p : statue.positions)
-      p.y += 1.42;
+    for (dvec3& p : statue.positions) p.y += 1.42;
     statue.add(box({-0.35, 0, -0.35}, {0.35, 1.0, 0.35}));
     place("chamber globe", statue, material_.stone, {x1 - 1.3, 0, -0.9});
 
@@ -260,8 +253,7 @@ class HallBuilder {
     place("basin water", lathe({{{0, 0.5}, {0.95, 0.5}}, {{0.95, 0.5}, {0.95, 0.56}}, {{0.95, 0.56}, {0, 0.56}}}, 32),
           material_.water, {kBay, 0, 0.4});
     Geometry bench = box({-0.9, 0.38, -0.22}, {0.9, 0.46, 0.22});
-    for (const double x : {-0.75, 0.63})
-      bench.add(box({x, 0, -0.2}, {x + 0.12, 0.38, 0.2}));
+    for (const double x : {-0.75, 0.63}) bench.add(box({x, 0, -0.2}, {x + 0.12, 0.38, 0.2}));
     const Index mesh = gltf_.addMesh("bench", bench, material_.timber);
     for (const bool south : {true, false})
       for (const int bay : {1, 3, 5}) {
@@ -320,8 +312,6 @@ class HallBuilder {
 
 } // namespace
 
-GeneratedScene writeHall(const std::filesystem::path& folder) {
-  return HallBuilder().write(folder);
-}
+GeneratedScene writeHall(const std::filesystem::path& folder) { return HallBuilder().write(folder); }
 
 } // namespace lambent::content

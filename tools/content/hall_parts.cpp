@@ -80,8 +80,7 @@ Geometry crossWallWithOpening(const dvec3& lo, const dvec3& hi, const dvec2& ope
   Geometry g = wallWithOpening({-hi.z, lo.y, lo.x}, {-lo.z, hi.y, hi.x}, {-openingHi.x, openingLo.y},
                                {-openingLo.x, openingHi.y});
   for (auto* vectors : {&g.positions, &g.normals})
-    for (dvec3& v : *vectors)
-      v = {v.z, v.y, -v.x};
+    for (dvec3& v : *vectors) v = {v.z, v.y, -v.x};
   return g;
 }
 

@@ -23,19 +23,16 @@ void Geometry::addQuad(const dvec3& a, const dvec3& b, const dvec3& c, const dve
   addVertex(b, normal);
   addVertex(c, normal);
   addVertex(d, normal);
-  for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
-    indices.push_back(first + corner);
+  for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + corner);
 }
 
 void Geometry::add(const Geometry& part, const dvec3& offset) {
   if (!positions.empty()) CHECK_EQ(uvs.empty(), part.uvs.empty());
   const uint32_t first = uint32_t(positions.size());
-  for (const dvec3& p : part.positions)
-    positions.push_back(p + offset);
+  for (const dvec3& p : part.positions) positions.push_back(p + offset);
   normals.insert(normals.end(), part.normals.begin(), part.normals.end());
   uvs.insert(uvs.end(), part.uvs.begin(), part.uvs.end());
-  for (const uint32_t i : part.indices)
-    indices.push_back(first + i);
+  for (const uint32_t i : part.indices) indices.push_back(first + i);
 }
 
 Geometry box(const dvec3& lo, const dvec3& hi) {
@@ -52,8 +49,7 @@ Geometry box(const dvec3& lo, const dvec3& hi) {
 
 void mapFromAbove(Geometry& geometry, double tileMetres) {
   geometry.uvs.clear();
-  for (const dvec3& p : geometry.positions)
-    geometry.uvs.emplace_back(p.x / tileMetres, p.z / tileMetres);
+  for (const dvec3& p : geometry.positions) geometry.uvs.emplace_back(p.x / tileMetres, p.z / tileMetres);
 }
 
 Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments) {
@@ -89,8 +85,7 @@ Geometry sphere(double radius, uint32_t segments) {
     meridian.emplace_back(pole ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle));
   }
   Geometry g = lathe({meridian}, segments);
-  for (size_t i = 0; i < g.positions.size(); ++i)
-    g.normals[i] = g.positions[i] / radius;
+  for (size_t i = 0; i < g.positions.size(); ++i) g.normals[i] = g.positions[i] / radius;
   return g;
 }
 

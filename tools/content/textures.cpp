@@ -10,9 +10,7 @@ namespace lambent::content {
 namespace {
 
 /// Uniform in [0, 1), a function of the lattice point alone.
-double hashed(uint32_t x, uint32_t y) {
-  return double(mix64((uint64_t(y) << 32 | x) + 1) >> 11) * 0x1p-53;
-}
+double hashed(uint32_t x, uint32_t y) { return double(mix64((uint64_t(y) << 32 | x) + 1) >> 11) * 0x1p-53; }
 
 uint8_t encoded(double linear) {
   return uint8_t(std::lround(255.0 * srgbFromLinear(float(glm::clamp(linear, 0.0, 1.0)))));
@@ -33,8 +31,7 @@ Texture stoneSlabs(const std::string& name) {
       const double grain = hashed(x, y + 1000) - 0.5;
       const double light = joint ? 0.24 : 0.46 + 0.12 * tint + 0.04 * grain;
       const dvec3 color = light * dvec3(1.04, 1.0, 0.92 - 0.05 * tint);
-      for (const double channel : {color.x, color.y, color.z})
-        t.rgba.push_back(encoded(channel));
+      for (const double channel : {color.x, color.y, color.z}) t.rgba.push_back(encoded(channel));
       t.rgba.push_back(255);
     }
   return t;

@@ -45,7 +45,8 @@ void accuracy(const AccuracyOptions& options) {
 
 void declareAccuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command = app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual lights");
+  CLI::App* command =
+      app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual lights");
   command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "");

@@ -40,11 +40,15 @@ void compare(const std::string& a, const std::string& b, const OutputOptions& ou
   }
   const double n = double(std::max<size_t>(count, 1));
   const double rmse = std::sqrt(squares / n), relMse = relative / n, bias = sum != 0 ? difference / sum : 0;
-  writeJson(output.json, {{"rmse", rmse}, {"rel_mse", relMse}, {"bias", bias}, {"max", largest}, {"mean_b", sum / n},
+  writeJson(output.json, {{"rmse", rmse},
+                          {"rel_mse", relMse},
+                          {"bias", bias},
+                          {"max", largest},
+                          {"mean_b", sum / n},
                           {"not_finite_pixels", notFinite}});
   if (output.quiet) return;
-  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", rmse, relMse,
-              100 * bias, largest, sum / n);
+  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", rmse,
+              relMse, 100 * bias, largest, sum / n);
   if (notFinite) std::printf("%zu pixels with NaN or infinity left out\n", notFinite);
 }
 

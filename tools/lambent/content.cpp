@@ -1,7 +1,7 @@
 // lambent content [NAME...]: generates the bundled scenes.
+#include "tools/content/content.h"
 #include "engine/core/error.h"
 #include "engine/core/text.h"
-#include "tools/content/content.h"
 #include "tools/lambent/commands.h"
 
 #include <cstdio>
@@ -19,7 +19,9 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
     const auto it = std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
     if (it == all.end()) {
       const std::string near = nearestName(name, known);
-      throw InputError("content " + name, "no such scene (" + (near.empty() ? "see lambent content --help" : "did you mean " + near + "?") + ")");
+      throw InputError("content " + name,
+                       "no such scene (" +
+                           (near.empty() ? "see lambent content --help" : "did you mean " + near + "?") + ")");
     }
     chosen.push_back(&*it);
   }
@@ -27,7 +29,8 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
   nlohmann::json j = nlohmann::json::array();
   for (const ContentRecipe* r : chosen) {
     const GeneratedScene made = r->write(base / r->name);
-    j.push_back({{"name", r->name}, {"file", made.file.string()}, {"triangles", made.triangles}, {"bytes", made.bytes}});
+    j.push_back(
+        {{"name", r->name}, {"file", made.file.string()}, {"triangles", made.triangles}, {"bytes", made.bytes}});
     if (!output.quiet)
       std::printf("%s: %llu triangles, %.1f KiB\n", made.file.c_str(), (unsigned long long)made.triangles,
                   double(made.bytes) / 1024);

@@ -18,7 +18,8 @@ void doctor(const OutputOptions& output) {
   nlohmann::json j;
   std::vector<std::pair<std::string, std::string>> rows = context.info();
   rows.emplace_back("embree", EmbreeQuery::version());
-  rows.emplace_back("cores", std::to_string(std::thread::hardware_concurrency()) + " (" + std::to_string(threadCount()) + " used)");
+  rows.emplace_back("cores", std::to_string(std::thread::hardware_concurrency()) + " (" +
+                                 std::to_string(threadCount()) + " used)");
   rows.emplace_back("bundled scenes", findContentFolder().string());
 
   LaunchOptions launch;
@@ -37,8 +38,9 @@ void doctor(const OutputOptions& output) {
     finite = finite && isFinite(p);
   }
   rows.emplace_back("shadow maps by", stats.shadowMaker);
-  rows.emplace_back("GPU times by", stats.timing == "finish" ? "finishing each pass (timer queries lie here, or were not chosen)"
-                                                             : "timer queries");
+  rows.emplace_back("GPU times by", stats.timing == "finish"
+                                        ? "finishing each pass (timer queries lie here, or were not chosen)"
+                                        : "timer queries");
   for (const auto& [name, value] : rows) j[name] = value;
   const bool healthy = finite && indirect > 0 && glDebugErrors() == 0;
   j["pipeline"] = healthy;
@@ -49,8 +51,8 @@ void doctor(const OutputOptions& output) {
                 healthy ? "runs" : "FAILS", indirect, stats.wallMs);
   }
   if (!healthy)
-    throw RunError("the pipeline gave " + std::string(finite ? "no indirect light" : "values that are not finite") + ", " +
-                   std::to_string(glDebugErrors()) + " OpenGL errors");
+    throw RunError("the pipeline gave " + std::string(finite ? "no indirect light" : "values that are not finite") +
+                   ", " + std::to_string(glDebugErrors()) + " OpenGL errors");
 }
 
 } // namespace

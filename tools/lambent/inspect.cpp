@@ -45,7 +45,8 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
                            {"intensity", {l.intensity.x, l.intensity.y, l.intensity.z}}});
   j["emitters"] = nlohmann::json::array();
   for (const Emitter& e : lights.emitters)
-    j["emitters"].push_back({{"triangles", e.triangleCount}, {"power_w_per_sr", e.power}, {"double_sided", e.doubleSided}});
+    j["emitters"].push_back(
+        {{"triangles", e.triangleCount}, {"power_w_per_sr", e.power}, {"double_sided", e.doubleSided}});
   j["cameras"] = nlohmann::json::array();
   for (const NamedCamera& c : sceneCameras(stage->scene)) j["cameras"].push_back(c.name);
   j["effects"] = nlohmann::json::array();

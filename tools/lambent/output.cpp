@@ -42,7 +42,9 @@ void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer) {
 }
 
 nlohmann::json figuresOf(const FrameStats& s) {
-  const auto rays = [](const RayCounts& c) { return nlohmann::json{{"closest", c.closest}, {"occlusion", c.occlusion}}; };
+  const auto rays = [](const RayCounts& c) {
+    return nlohmann::json{{"closest", c.closest}, {"occlusion", c.occlusion}};
+  };
   nlohmann::json stages = nlohmann::json::array();
   for (const StageTime& t : s.stages) stages.push_back({{"name", t.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
   return {{"frame", s.frame},

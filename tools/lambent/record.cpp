@@ -51,8 +51,8 @@ class FrameLog {
         std::snprintf(time, sizeof time, "%.6f", r.time);
         out << s.frame << ',' << time << ',' << all(s.raysPoints) << ',' << all(s.raysValidation) << ','
             << all(s.raysCandidates) << ',' << s.raysRadiosity.closest << ',' << s.raysRadiosity.occlusion << ','
-            << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ',' << s.vplsMoved << ',' << s.vplsInvalid
-            << ',' << s.vplsRelit << ',' << s.mapsDrawn << ',' << s.burst << ','
+            << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ',' << s.vplsMoved << ','
+            << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.mapsDrawn << ',' << s.burst << ','
             << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ',' << s.plan << ',' << s.timing << ','
             << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
         for (const std::string& name : stages_) {
@@ -110,9 +110,10 @@ void encodeVideo(const fs::path& folder, double fps, const fs::path& video) {
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw RunError(video.string() + (WIFEXITED(status) && WEXITSTATUS(status) == 127
-                                         ? ": ffmpeg is not installed (the frames are written; install ffmpeg for a video)"
-                                         : ": ffmpeg failed (the frames are written)"));
+    throw RunError(video.string() +
+                   (WIFEXITED(status) && WEXITSTATUS(status) == 127
+                        ? ": ffmpeg is not installed (the frames are written; install ffmpeg for a video)"
+                        : ": ffmpeg failed (the frames are written)"));
   }
   fs::rename(temporary, video);
 }
@@ -137,7 +138,8 @@ void record(const RecordOptions& options) {
   fs::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
 
-  const int total = options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
+  const int total =
+      options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
   FrameLog log;
@@ -171,8 +173,8 @@ void record(const RecordOptions& options) {
                                   {"exposure", gi.exposure()},
                                   {"video", video}});
   if (!options.output.quiet) {
-    std::printf("%s: %d of %d frames, %.2f frames per second after the first, peak memory %.0f MiB\n",
-                folder.c_str(), done, total, log.framesPerSecond(), peakMemoryMiB());
+    std::printf("%s: %d of %d frames, %.2f frames per second after the first, peak memory %.0f MiB\n", folder.c_str(),
+                done, total, log.framesPerSecond(), peakMemoryMiB());
     if (!video.empty()) std::printf("video: %s\n", video.c_str());
   }
   if (interrupted) throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole");

@@ -48,8 +48,10 @@ void declareRender(CLI::App& app) {
   command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "picture, .png or linear .exr (default lambent.png)");
-  command->add_option("--buffer", options->buffer, "beauty, direct, indirect, irradiance, albedo, normal, depth, or a debug view");
-  command->add_option("--frames", options->frames, "frames to converge before the picture")->check(CLI::Range(1, 1000000));
+  command->add_option("--buffer", options->buffer,
+                      "beauty, direct, indirect, irradiance, albedo, normal, depth, or a debug view");
+  command->add_option("--frames", options->frames, "frames to converge before the picture")
+      ->check(CLI::Range(1, 1000000));
   command->callback([options] { render(*options); });
 }
 

@@ -174,7 +174,8 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--fov", options.fovDegrees, "vertical field of view, degrees");
   command.add_option("--size", options.size, "WIDTHxHEIGHT");
   command.add_option("--technique", options.technique, "how indirect light is found: smc");
-  command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")->take_all();
+  command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
+      ->take_all();
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
   command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")->take_all();
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->take_all();

@@ -170,8 +170,7 @@ TEST_F(BadInput, CyclesAndTwoParents) {
 TEST_F(BadInput, DeepHierarchyLoads) {
   GltfBuilder b = oneTriangle();
   const int depth = 20000;
-  for (int i = 0; i < depth; ++i)
-    b.json["nodes"].push_back({{"children", {i + 2}}, {"translation", {0, 0, 0.001}}});
+  for (int i = 0; i < depth; ++i) b.json["nodes"].push_back({{"children", {i + 2}}, {"translation", {0, 0, 0.001}}});
   b.json["nodes"].push_back({{"mesh", 0}});
   b.json["scenes"][0]["nodes"] = {0, 1};
   const Scene scene = b.load(folder);
@@ -192,10 +191,8 @@ TEST_F(BadInput, DefectiveTrianglesAreDroppedAndCounted) {
   EXPECT_EQ(m.triangles.size(), 1u);
   EXPECT_TRUE(hasWarning(scene, "2 triangle(s) without area"));
   EXPECT_TRUE(hasWarning(scene, "3 triangle(s) with a position that is not a finite number"));
-  for (const vec3& n : m.normals)
-    testing::expectNear(n, {0, 0, 1}); // the broken ones are made from the triangle
-  for (const vec3& p : m.positions)
-    EXPECT_TRUE(isFinite(p));
+  for (const vec3& n : m.normals) testing::expectNear(n, {0, 0, 1}); // the broken ones are made from the triangle
+  for (const vec3& p : m.positions) EXPECT_TRUE(isFinite(p));
   testing::expectNear(m.boundsObject.hi, {1, 1, 0});
 }
 

@@ -98,14 +98,12 @@ TEST(Camera, FileCamerasLoseScaleAndMirroring) {
 GltfBuilder box(bool inward, bool open) {
   GltfBuilder b;
   std::vector<vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(vec3(i & 1 ? 5 : -5, i & 2 ? 4 : 0, i & 4 ? 3 : -3));
+  for (int i = 0; i < 8; ++i) corners.push_back(vec3(i & 1 ? 5 : -5, i & 2 ? 4 : 0, i & 4 ? 3 : -3));
   std::vector<uint16_t> indices = {0, 2, 3, 0, 3, 1, 0, 4, 6, 0, 6, 2, 1, 3, 7,
                                    1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3};
   if (!open) indices.insert(indices.end(), {4, 5, 7, 4, 7, 6});
   if (inward)
-    for (size_t i = 0; i < indices.size(); i += 3)
-      std::swap(indices[i + 1], indices[i + 2]);
+    for (size_t i = 0; i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
   const int positions = b.positions(corners);
   b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", b.indices(indices)}});
   return b;

@@ -27,8 +27,7 @@ void expectSound(const Scene& scene) {
       next += p.triangleCount;
     }
     ASSERT_EQ(next, mesh.triangles.size());
-    for (const uvec3& t : mesh.triangles)
-      ASSERT_TRUE(glm::max(t.x, glm::max(t.y, t.z)) < mesh.positions.size());
+    for (const uvec3& t : mesh.triangles) ASSERT_TRUE(glm::max(t.x, glm::max(t.y, t.z)) < mesh.positions.size());
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
       ASSERT_TRUE(isFinite(mesh.positions[i]));
       ASSERT_NEAR(glm::length(mesh.normals[i]), 1, 1e-4f);
@@ -61,15 +60,12 @@ TEST(ExtraContent, LoadsOrIsRefusedForARequiredExtension) {
       SceneExtractor extractor;
       const SceneView view = extractor.extract(scene, defaultView(scene), 0);
       size_t triangles = 0;
-      for (const InstanceView& i : view.instances)
-        triangles += scene.assets.meshes[i.mesh].triangles.size();
-      for (int frame = 1; frame < 4; ++frame)
-        animate(scene, frame * 0.37);
+      for (const InstanceView& i : view.instances) triangles += scene.assets.meshes[i.mesh].triangles.size();
+      for (int frame = 1; frame < 4; ++frame) animate(scene, frame * 0.37);
       std::cout << file.filename().string() << ": " << triangles << " triangles, " << scene.assets.images.size()
                 << " images, " << view.lights.size() << " lights, loaded in " << std::lround(loading.count())
                 << " ms\n";
-      for (const std::string& w : scene.warnings)
-        std::cout << "  warning: " << w << "\n";
+      for (const std::string& w : scene.warnings) std::cout << "  warning: " << w << "\n";
     } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find("KHR_draco_mesh_compression"), std::string::npos) << e.what();
     }

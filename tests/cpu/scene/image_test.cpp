@@ -21,8 +21,7 @@ using testing::TemporaryFolder;
 Image gradient(int width, int height) {
   Image image(width, height);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      image.at(x, y) = vec3(x * 0.1f, y * 1e5f, -1.0f / float(1 + x + y));
+    for (int x = 0; x < width; ++x) image.at(x, y) = vec3(x * 0.1f, y * 1e5f, -1.0f / float(1 + x + y));
   return image;
 }
 
@@ -91,8 +90,7 @@ TEST(Pfm, BothByteOrdersAndGreyAreRead) {
   const auto floats = [](std::vector<float> values, bool big) {
     std::string bytes;
     for (const float v : values)
-      for (int i = 0; i < 4; ++i)
-        bytes += char(std::bit_cast<uint32_t>(v) >> (8 * (big ? 3 - i : i)) & 255);
+      for (int i = 0; i < 4; ++i) bytes += char(std::bit_cast<uint32_t>(v) >> (8 * (big ? 3 - i : i)) & 255);
     return bytes;
   };
   // Two rows of one pixel; the file begins with the bottom one.
@@ -129,8 +127,7 @@ TEST(WriteAtomically, LeavesNothingBehindOnFailureAndKeepsTheOldFile) {
 TEST(Srgb, CodesAndLinearValuesAreInverse) {
   EXPECT_FLOAT_EQ(linearFromSrgb(1), 1);
   EXPECT_NEAR(linearFromSrgb(0.5f), 0.21404f, 1e-5f);
-  for (int i = 0; i <= 100; ++i)
-    EXPECT_NEAR(srgbFromLinear(linearFromSrgb(float(i) / 100)), float(i) / 100, 1e-5f);
+  for (int i = 0; i <= 100; ++i) EXPECT_NEAR(srgbFromLinear(linearFromSrgb(float(i) / 100)), float(i) / 100, 1e-5f);
 }
 
 class TextureLookup : public ::testing::Test {

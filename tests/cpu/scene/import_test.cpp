@@ -52,8 +52,7 @@ TEST_F(Import, TriangleWithoutNormalsOrIndicesGetsFlatNormals) {
   const Mesh& m = onlyMesh(testing::oneTriangle());
   ASSERT_EQ(m.triangles.size(), 1u);
   ASSERT_EQ(m.normals.size(), 3u);
-  for (const vec3& n : m.normals)
-    expectNear(n, {0, 0, 1});
+  for (const vec3& n : m.normals) expectNear(n, {0, 0, 1});
   expectNear(m.boundsObject.hi, {1, 1, 0});
   EXPECT_EQ(scene.assets.materials.size(), 1u); // the default one
   EXPECT_TRUE(scene.warnings.empty());
@@ -88,8 +87,7 @@ TEST_F(Import, PointsAndLinesAreLeftOutWithAWarning) {
 TEST_F(Import, InterleavedVerticesAreReadWithTheirStride) {
   GltfBuilder b;
   std::vector<float> data; // position, normal, uv
-  for (const vec3& p : kSquare)
-    data.insert(data.end(), {p.x, p.y, p.z, 0, 0, 2, p.x + 5, p.y});
+  for (const vec3& p : kSquare) data.insert(data.end(), {p.x, p.y, p.z, 0, 0, 2, p.x + 5, p.y});
   const int view = b.view(data, 32);
   b.addMeshNode({{"attributes",
                   {{"POSITION", b.accessor(view, 5126, "VEC3", 4)},

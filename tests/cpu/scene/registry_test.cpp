@@ -69,10 +69,8 @@ TEST(Registry, ComponentsAreAddedReplacedFoundAndRemoved) {
 TEST(Registry, EachVisitsInTheOrderOfGivingAlsoAfterRemovals) {
   Registry registry;
   std::vector<Entity> e;
-  for (int i = 0; i < 6; ++i)
-    e.push_back(registry.create());
-  for (const int i : {3, 0, 5, 1, 4})
-    registry.emplace<Position>(e[i], float(i));
+  for (int i = 0; i < 6; ++i) e.push_back(registry.create());
+  for (const int i : {3, 0, 5, 1, 4}) registry.emplace<Position>(e[i], float(i));
   registry.remove<Position>(e[0]);
   registry.destroy(e[1]);
   EXPECT_EQ(indicesWithPosition(registry), (std::vector<uint32_t>{3, 5, 4}));
@@ -83,8 +81,7 @@ TEST(Registry, EachVisitsInTheOrderOfGivingAlsoAfterRemovals) {
 TEST(Registry, EachOfSeveralVisitsOnlyEntitiesThatHaveAll) {
   Registry registry;
   const Entity a = registry.create(), b = registry.create(), c = registry.create();
-  for (const Entity e : {a, b, c})
-    registry.emplace<Position>(e, 1.0f);
+  for (const Entity e : {a, b, c}) registry.emplace<Position>(e, 1.0f);
   registry.emplace<Label>(c, "c");
   registry.emplace<Label>(a, "a");
   std::string seen;

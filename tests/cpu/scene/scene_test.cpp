@@ -22,8 +22,7 @@ struct SmallScene : ::testing::Test {
     mesh.normals.assign(3, vec3(0, 0, 1));
     mesh.triangles = {{0, 1, 2}};
     mesh.primitives = {{0, 1, 0, {}}};
-    for (const vec3& p : mesh.positions)
-      mesh.boundsObject.add(p);
+    for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
     scene.assets.meshes.push_back(mesh);
     a = addNode(scene, {0, 0, 0});
     b = addNode(scene, {5, 0, 0});

@@ -25,17 +25,14 @@ std::string base64(const std::vector<uint8_t>& bytes) {
   for (size_t i = 0; i < bytes.size(); i += 3) {
     const size_t n = std::min<size_t>(3, bytes.size() - i);
     uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < n ? bytes[i + k] : 0);
-    for (size_t k = 0; k < 4; ++k)
-      out += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
+    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? bytes[i + k] : 0);
+    for (size_t k = 0; k < 4; ++k) out += k <= n ? digits[group >> (18 - 6 * k) & 63] : '=';
   }
   return out;
 }
 
 void append32(std::string& out, uint32_t v) {
-  for (int i = 0; i < 4; ++i)
-    out += char(v >> (8 * i) & 255);
+  for (int i = 0; i < 4; ++i) out += char(v >> (8 * i) & 255);
 }
 
 } // namespace
@@ -97,8 +94,7 @@ bool hasWarning(const Scene& scene, const std::string& text) {
 }
 
 void expectNear(const vec3& a, const vec3& b, float tolerance) {
-  for (int c = 0; c < 3; ++c)
-    EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
 }
 
 } // namespace lambent::testing

@@ -33,8 +33,7 @@ struct GltfBuilder {
 
   /// Appends raw data, aligned to four bytes; returns the buffer view. `stride` 0: tightly packed.
   template <class T> int view(const std::vector<T>& data, int stride = 0) {
-    while (bytes.size() % 4)
-      bytes.push_back(0);
+    while (bytes.size() % 4) bytes.push_back(0);
     nlohmann::json v = {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", data.size() * sizeof(T)}};
     if (stride) v["byteStride"] = stride;
     const auto* p = reinterpret_cast<const uint8_t*>(data.data());
