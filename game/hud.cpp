@@ -89,6 +89,7 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
   std::string technique = "smc";
   choose("technique", {"smc"}, technique);
+  if (choose("preset", presetNames(), model.preset)) applyPreset(gi.settings(), model.preset);
   ImGui::TextWrapped("plan: %s", stats.plan.c_str());
 
   ImGui::Separator();

@@ -14,6 +14,7 @@ namespace lambent {
 /// What panel and keys change and the main loop obeys.
 struct HudModel {
   Buffer buffer = Buffer::Beauty;
+  std::string preset = "medium"; // the last one chosen; single settings may differ from it
   bool panel = true, help = false;
 
   double time = 0, duration = 1; // seconds of the scene; the slider's length

@@ -47,6 +47,7 @@ class Walkthrough {
     model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter * diameter, 1e-6f);
     model_.speed = player_.speed();
     model_.buffer = bufferByName(options.buffer);
+    if (!options.launch.preset.empty()) model_.preset = options.launch.preset;
     model_.hasPath = shot_ && !shot_->camera.empty();
     model_.followPath = model_.hasPath && !stage_->cameraGiven;
     double longest = 0;

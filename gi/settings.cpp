@@ -196,4 +196,30 @@ void applySetting(Settings& settings, std::string_view name, std::string_view va
 
 std::string settingText(const Settings& settings, std::string_view name) { return entryOf(name).get(settings); }
 
+const std::vector<std::string>& presetNames() {
+  static const std::vector<std::string> names{"low", "medium", "high", "ultra"};
+  return names;
+}
+
+void applyPreset(Settings& settings, const std::string& name) {
+  struct Preset {
+    int vpls, points, paths, resolution;
+    GatherMode mode;
+  };
+  static constexpr Preset presets[]{{512, 1024, 8, 64, GatherMode::Interleaved},
+                                    {2048, 2048, 16, 128, GatherMode::Interleaved},
+                                    {8192, 4096, 16, 128, GatherMode::Interleaved},
+                                    {8192, 4096, 32, 128, GatherMode::Full}};
+  for (size_t i = 0; i < presetNames().size(); ++i) {
+    if (presetNames()[i] != name) continue;
+    settings.smc.vpls = presets[i].vpls;
+    settings.smc.points = presets[i].points;
+    settings.smc.paths = presets[i].paths;
+    settings.shadow.resolution = presets[i].resolution;
+    settings.gather.mode = presets[i].mode;
+    return;
+  }
+  throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
+}
+
 } // namespace lambent

@@ -89,6 +89,12 @@ const std::vector<SettingRow>& settingsTable();
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);
+/// Names of the presets, cheapest first. Each is a point of the measured front of error against time (docs/measurements).
+const std::vector<std::string>& presetNames();
+/// Sets what the preset is about (numbers of VPLs, paths, map texels, gather) and leaves everything else. Throws
+/// InputError that names the presets.
+void applyPreset(Settings& settings, const std::string& name);
+
 /// Text of the present value.
 std::string settingText(const Settings& settings, std::string_view name);
 

@@ -3,12 +3,13 @@
 //
 // At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed
 // ray. The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance
-// sampling (power heuristic, Veach 1997) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
+// sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
 // of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
 // paths of one VPL share stratified numbers at the first vertex: 4×4 strata for directions, an additive recurrence for
 // lights.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
+#include "gi/vpl/light_paths.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -20,22 +21,11 @@ namespace {
 
 /// One path's present vertex. `weight` turns irradiance/π at this vertex into radiance leaving the VPL.
 struct PathState {
-  vec3 position, normal, geometricNormal;
+  PathVertex vertex;
   vec3 weight;
   bool alive = true;
   Rng rng{0, Stream::LightPaths, 0};
 };
-
-struct Pending {
-  uint32_t path;
-  vec3 value; // radiance added to the VPL if the segment is clear
-};
-
-/// Share of a sample drawn with density `own` when `other` could have drawn it too. Ratio first: squares overflow.
-float powerHeuristic(float own, float other) {
-  const float ratio = other / own;
-  return 1 / (1 + ratio * ratio);
-}
 
 class VplEstimator {
  public:
@@ -49,8 +39,10 @@ class VplEstimator {
     const vec3 shift(first.next(), first.next(), first.next());
     const float lightShift = first.next();
     for (int i = 0; i < paths_; ++i)
-      states_[i] = {vpl.position, vpl.normal, vpl.geometricNormal,
-                    vpl.albedo,   true,       Rng(seed_, Stream::LightPaths, id, uint32_t(i) + 1)};
+      states_[i] = {{vpl.position, vpl.normal, vpl.geometricNormal},
+                    vpl.albedo,
+                    true,
+                    Rng(seed_, Stream::LightPaths, id, uint32_t(i) + 1)};
     for (int depth = 0; depth < bounces_; ++depth) {
       connectToLights(depth, shift, lightShift, counts);
       const bool last = depth + 1 == bounces_;
@@ -76,40 +68,16 @@ class VplEstimator {
         uLight = std::min((float(i) + lightShift) / float(paths_), 0x1.fffffep-1f);
         u = additiveRecurrence3(uint32_t(i), shift);
       }
-      const LightChoice choice(lights_, s.position, s.normal, weights_);
-      if (choice.empty()) continue;
-      const uint32_t light = choice.sample(uLight);
-      const float probability = choice.probability(light);
-      const vec3 origin = offsetPoint(s.position, s.geometricNormal);
-      if (light < lights_.punctual.size()) {
-        const PunctualSample p = punctualIrradiance(lights_.punctual[light], s.position, s.normal);
-        if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, s.geometricNormal) <= 0) continue;
-        segments_.push_back(p.distance < kInfinity ? segment(origin, lights_.punctual[light].position)
-                                                   : Ray{origin, p.towards});
-        pending_.push_back({uint32_t(i), s.weight * p.irradiance / (kPi * probability)});
-        continue;
-      }
-      const Emitter& emitter = lights_.emitters[light - lights_.punctual.size()];
-      const EmitterPoint e = sampleEmitter(lights_, emitter, u);
-      const vec3 d = e.position - s.position;
-      const float r2 = glm::dot(d, d);
-      if (!(r2 > 0)) continue;
-      const vec3 towards = d / std::sqrt(r2);
-      const float cosReceiver = glm::dot(towards, s.normal);
-      float cosEmitter = -glm::dot(towards, e.normal);
-      if (emitter.doubleSided) cosEmitter = std::abs(cosEmitter);
-      if (cosReceiver <= 0 || cosEmitter <= 0 || glm::dot(towards, s.geometricNormal) <= 0) continue;
-      const float pdfLight = probability * e.pdfArea * r2 / cosEmitter; // per steradian
-      const float mis = powerHeuristic(pdfLight, pdfCosineHemisphere(cosReceiver));
-      const vec3 emitterSide = -glm::dot(towards, e.normal) > 0 ? e.normal : -e.normal;
-      segments_.push_back(segment(origin, offsetPoint(e.position, emitterSide)));
-      pending_.push_back({uint32_t(i), s.weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))});
+      const LightConnection c = connectToLight(lights_, s.vertex, s.weight, uLight, u, weights_);
+      if (maxComponent(c.value) <= 0) continue;
+      segments_.push_back(c.segment);
+      pending_.push_back(c.value);
     }
     blocked_.resize(segments_.size());
     rays_.occluded(segments_, blocked_);
     counts.occlusion += segments_.size();
     for (size_t j = 0; j < pending_.size(); ++j)
-      if (!blocked_[j]) sum_ += pending_[j].value;
+      if (!blocked_[j]) sum_ += pending_[j];
   }
 
   void extend(int depth, bool last, RayCounts& counts) {
@@ -121,12 +89,12 @@ class VplEstimator {
       if (!s.alive) continue;
       vec2 u = s.rng.next2();
       if (depth == 0 && i < side * side) u = (vec2(i % side, i / side) + u) / float(side);
-      const vec3 direction = sampleCosineHemisphere(s.normal, u);
-      if (glm::dot(direction, s.geometricNormal) <= 0) { // under the real surface of a smooth-shaded one
+      const vec3 direction = sampleCosineHemisphere(s.vertex.normal, u);
+      if (glm::dot(direction, s.vertex.geometricNormal) <= 0) { // under the real surface of a smooth-shaded one
         s.alive = false;
         continue;
       }
-      segments_.push_back({offsetPoint(s.position, s.geometricNormal), direction});
+      segments_.push_back({offsetPoint(s.vertex.position, s.vertex.geometricNormal), direction});
       owners_.push_back(uint32_t(i));
     }
     hits_.resize(segments_.size());
@@ -140,29 +108,12 @@ class VplEstimator {
         s.alive = false;
         continue;
       }
-      if (luminance(h.emission) > 0) addEmission(s, segments_[j].direction, h);
+      if (luminance(h.emission) > 0)
+        sum_ += s.weight * h.emission * emitterShare(lights_, s.vertex, segments_[j].direction, h, weights_);
       s.weight *= h.albedo;
       s.alive = !last && maxComponent(s.weight) > 0;
-      s.position = h.position;
-      s.normal = h.normal;
-      s.geometricNormal = h.geometricNormal;
+      s.vertex = {h.position, h.normal, h.geometricNormal};
     }
-  }
-
-  /// A cosine ray met an emitter: the share that next-event estimation does not cover.
-  void addEmission(const PathState& s, const vec3& direction, const SurfaceHit& h) {
-    float mis = 1;
-    const uint32_t e = lights_.emitterOf(h);
-    if (e != kNone) {
-      const LightChoice choice(lights_, s.position, s.normal, weights_);
-      const float cosEmitter = std::abs(glm::dot(direction, h.geometricNormal));
-      const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, s.normal));
-      const float pdfLight = choice.probability(uint32_t(lights_.punctual.size()) + e) *
-                             pdfEmitterArea(lights_, lights_.emitters[e], h.triangle) * h.t * h.t /
-                             std::max(cosEmitter, 1e-6f);
-      mis = powerHeuristic(pdfCosine, pdfLight);
-    }
-    sum_ += s.weight * h.emission * mis;
   }
 
   const RayQuery& rays_;
@@ -172,7 +123,7 @@ class VplEstimator {
   vec3 sum_{0};
   std::vector<PathState> states_;
   std::vector<Ray> segments_;
-  std::vector<Pending> pending_;
+  std::vector<vec3> pending_; // radiance added to the VPL if the segment is clear
   std::vector<uint32_t> owners_;
   std::vector<uint8_t> blocked_;
   std::vector<SurfaceHit> hits_;

@@ -241,9 +241,10 @@ class HallBuilder {
     statue.add(box({-0.35, 0, -0.35}, {0.35, 1.0, 0.35}));
     place("chamber globe", statue, material_.stone, {x1 - 1.3, 0, -0.9});
 
+    // The cabinet wall is thicker than the joist above it, which it swallows: level faces would fight.
     const double from = kArcade + kArcadeHalf, cross = columnX(5);
     place("cabinet wall",
-          crossWallWithOpening({cross - 0.13, 0, from}, {cross + 0.13, kGalleryFloor - kSlab, kGalleryBack}, {5.4, 0},
+          crossWallWithOpening({cross - 0.15, 0, from}, {cross + 0.15, kGalleryFloor - kSlab, kGalleryBack}, {5.4, 0},
                                {6.7, 2.5}),
           material_.plaster);
   }

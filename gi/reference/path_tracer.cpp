@@ -1,0 +1,233 @@
+// Paths advance together, one vertex at a time, for a block of pixels.
+#include "gi/reference/path_tracer.h"
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/core/rng.h"
+#include "gi/vpl/light_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+constexpr size_t kBlockPixels = 16; // small pictures still keep all threads busy
+
+/// Surfaces at the centres of pixels [begin, end), rays starting at the near plane as the rasteriser's do.
+std::vector<SurfaceHit> primaryHits(const RayQuery& rays, const CameraView& camera, size_t begin, size_t end) {
+  std::vector<Ray> block;
+  const vec3 forward = -vec3(camera.worldFromView[2]);
+  for (size_t i = begin; i < end; ++i) {
+    const float u = (float(i % camera.width) + 0.5f) / float(camera.width);
+    const float v = (float(i / camera.width) + 0.5f) / float(camera.height);
+    const CameraRay r = cameraRay(camera, u, v);
+    block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction});
+  }
+  std::vector<SurfaceHit> hits(block.size());
+  rays.closest(block, hits);
+  return hits;
+}
+
+/// One path's present vertex. `weight` turns irradiance/π here into irradiance/π at the primary hit.
+struct Path {
+  PathVertex vertex;
+  vec3 weight;
+  uint32_t pixel; // of the block
+  Rng rng;
+};
+
+struct Sample {
+  vec3 direct{0}, indirect{0};
+};
+
+class BlockTracer {
+ public:
+  BlockTracer(const ReferenceInputs& in, size_t firstPixel, std::span<const SurfaceHit> primary)
+      : in_(in), firstPixel_(firstPixel), primary_(primary), samples_(primary.size()) {}
+
+  /// Sample number `index` of every pixel of the block; valid until the next call.
+  std::span<const Sample> trace(uint32_t index, RayCounts& counts) {
+    std::fill(samples_.begin(), samples_.end(), Sample{});
+    paths_.clear();
+    for (uint32_t i = 0; i < primary_.size(); ++i) {
+      const SurfaceHit& h = primary_[i];
+      if (h.valid())
+        paths_.push_back({{h.position, h.normal, h.geometricNormal},
+                          vec3(1),
+                          i,
+                          Rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index)});
+    }
+    const bool raysMeetLight = !in_.lights.emitters.empty() || luminance(in_.lights.sky) > 0;
+    for (int vertex = 0; vertex <= in_.bounces && !paths_.empty(); ++vertex) {
+      connect(vertex, counts);
+      // The last vertex needs its cosine ray only to meet sky and emitters.
+      if (vertex < in_.bounces || raysMeetLight) extend(vertex, counts);
+    }
+    return samples_;
+  }
+
+ private:
+  vec3& sumOf(const Path& path, int vertex) {
+    Sample& s = samples_[path.pixel];
+    return vertex == 0 ? s.direct : s.indirect;
+  }
+
+  void connect(int vertex, RayCounts& counts) {
+    if (in_.lights.lightCount() == 0) return;
+    segments_.clear();
+    pending_.clear();
+    owners_.clear();
+    for (uint32_t i = 0; i < paths_.size(); ++i) {
+      Path& p = paths_[i];
+      const float uLight = p.rng.next();
+      const vec2 a = p.rng.next2();
+      const LightConnection c =
+          connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, lightWeights_);
+      if (maxComponent(c.value) <= 0) continue;
+      segments_.push_back(c.segment);
+      pending_.push_back(c.value);
+      owners_.push_back(i);
+    }
+    blocked_.resize(segments_.size());
+    in_.rays.occluded(segments_, blocked_);
+    counts.occlusion += segments_.size();
+    for (size_t j = 0; j < owners_.size(); ++j)
+      if (!blocked_[j]) sumOf(paths_[owners_[j]], vertex) += pending_[j];
+  }
+
+  void extend(int vertex, RayCounts& counts) {
+    segments_.clear();
+    for (Path& p : paths_) {
+      const vec3 direction = sampleCosineHemisphere(p.vertex.normal, p.rng.next2());
+      // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
+      const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
+      segments_.push_back(
+          {offsetPoint(p.vertex.position, p.vertex.geometricNormal), direction, above ? kInfinity : 0.0f});
+    }
+    hits_.resize(segments_.size());
+    in_.rays.closest(segments_, hits_);
+    counts.closest += segments_.size();
+    size_t alive = 0;
+    for (size_t j = 0; j < paths_.size(); ++j) {
+      Path p = paths_[j];
+      const Ray& ray = segments_[j];
+      const SurfaceHit& h = hits_[j];
+      if (ray.tMax == 0) continue;
+      if (!h.valid()) {
+        sumOf(p, vertex) += p.weight * in_.lights.sky;
+        continue;
+      }
+      if (luminance(h.emission) > 0)
+        sumOf(p, vertex) += p.weight * h.emission * emitterShare(in_.lights, p.vertex, ray.direction, h, lightWeights_);
+      p.weight *= h.albedo;
+      if (vertex == 0) p.weight *= clampFactor(p.vertex, ray.direction, h);
+      p.vertex = {h.position, h.normal, h.geometricNormal};
+      if (maxComponent(p.weight) > 0) paths_[alive++] = p;
+    }
+    paths_.erase(paths_.begin() + long(alive), paths_.end());
+  }
+
+  /// Share of the light along the first segment that remains when its geometry term is bounded: in the area formulation
+  /// a cosine-distributed hit carries G/G, so min(G, clamp)/G (paper 1, 5.4).
+  float clampFactor(const PathVertex& x, const vec3& direction, const SurfaceHit& h) const {
+    if (in_.clamp <= 0) return 1;
+    const float cosines =
+        std::max(0.0f, glm::dot(direction, x.normal)) * std::max(0.0f, -glm::dot(direction, h.normal));
+    return cosines > in_.clamp * h.t * h.t ? in_.clamp * h.t * h.t / cosines : 1.0f;
+  }
+
+  const ReferenceInputs& in_;
+  const size_t firstPixel_;
+  const std::span<const SurfaceHit> primary_;
+  std::vector<Sample> samples_;
+  std::vector<Path> paths_;
+  std::vector<Ray> segments_;
+  std::vector<vec3> pending_; // added to the owner's sum if the segment is clear
+  std::vector<uint32_t> owners_;
+  std::vector<uint8_t> blocked_;
+  std::vector<SurfaceHit> hits_;
+  std::vector<float> lightWeights_;
+};
+
+/// Variance of the mean of n samples from their sums; `c` is the sum of products of a and b.
+double covarianceOfMean(double a, double b, double c, double n) {
+  return n > 1 ? (c - a * b / n) / (n - 1) / n : double(kInfinity);
+}
+
+} // namespace
+
+void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, RayCounts& counts) {
+  CHECK_EQ(sums.width, in.camera.width);
+  CHECK_EQ(sums.height, in.camera.height);
+  const size_t pixels = sums.pixels.size();
+  std::vector<RayCounts> perBlock((pixels + kBlockPixels - 1) / kBlockPixels);
+  parallelFor(perBlock.size(), 1, [&](size_t firstBlock, size_t lastBlock) {
+    for (size_t block = firstBlock; block < lastBlock; ++block) {
+      const size_t begin = block * kBlockPixels, end = std::min(begin + kBlockPixels, pixels);
+      const std::vector<SurfaceHit> primary = primaryHits(in.rays, in.camera, begin, end);
+      perBlock[block].closest += primary.size();
+      BlockTracer tracer(in, begin, primary);
+      for (uint32_t s = 0; s < count; ++s) {
+        const std::span<const Sample> samples = tracer.trace(sums.samples + s, perBlock[block]);
+        for (size_t i = begin; i < end; ++i) {
+          PixelSums& p = sums.pixels[i];
+          const glm::dvec3 direct(samples[i - begin].direct), indirect(samples[i - begin].indirect);
+          p.direct += direct;
+          p.directSquares += direct * direct;
+          p.indirect += indirect;
+          p.indirectSquares += indirect * indirect;
+          p.product += direct * indirect;
+        }
+      }
+    }
+  });
+  sums.samples += count;
+  for (const RayCounts& c : perBlock) counts += c;
+}
+
+ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
+  ReferencePicture picture{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
+  picture.surface.resize(sums.pixels.size());
+  const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
+  const bool indirect = buffer != ReferenceBuffer::Direct;
+  const double n = sums.samples;
+  glm::dvec3 total(0), variance(0);
+  for (size_t begin = 0; begin < sums.pixels.size(); begin += sums.width) {
+    const std::vector<SurfaceHit> row = primaryHits(in.rays, in.camera, begin, begin + sums.width);
+    for (size_t i = begin; i < begin + sums.width; ++i) {
+      const SurfaceHit& h = row[i - begin];
+      const PixelSums& p = sums.pixels[i];
+      picture.surface[i] = h.valid();
+      vec3& mean = picture.mean.pixels[i];
+      if (!h.valid()) {
+        if (direct) mean = in.lights.sky;
+        total += glm::dvec3(mean);
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        const double factor = buffer == ReferenceBuffer::Irradiance ? double(kPi) : double(h.albedo[c]);
+        double sum = 0, ofMean = 0;
+        if (direct) sum += p.direct[c], ofMean += covarianceOfMean(p.direct[c], p.direct[c], p.directSquares[c], n);
+        if (indirect)
+          sum += p.indirect[c], ofMean += covarianceOfMean(p.indirect[c], p.indirect[c], p.indirectSquares[c], n);
+        if (direct && indirect) ofMean += 2 * covarianceOfMean(p.direct[c], p.indirect[c], p.product[c], n);
+        ofMean = factor > 0 ? std::max(0.0, ofMean) * factor * factor : 0;
+        const double value = (direct ? double(h.emission[c]) : 0) + (n > 0 ? factor * sum / n : 0);
+        mean[c] = float(value);
+        picture.error.pixels[i][c] = float(std::sqrt(ofMean));
+        total[c] += value;
+        variance[c] += ofMean;
+      }
+    }
+  }
+  const double count = 3 * double(sums.pixels.size()), sum = total.x + total.y + total.z;
+  if (sum > 0) {
+    picture.relativeError = std::sqrt((variance.x + variance.y + variance.z) / count) / (sum / count);
+    picture.relativeErrorOfMean = (std::sqrt(variance.x) + std::sqrt(variance.y) + std::sqrt(variance.z)) / sum;
+  }
+  return picture;
+}
+
+} // namespace lambent

@@ -1,0 +1,57 @@
+// The truth that pictures are held to: a path tracer over the same scene data, albedos and light units as the VPLs.
+// Paths have exactly B indirect bounces (B = 1: light → y → x), next-event estimation at every vertex and multiple
+// importance sampling for emissive surfaces; the sky is met by the cosine-distributed rays. Pixel rays go through pixel
+// centres, as the rasteriser's. Sample s of pixel p has its own random numbers, so sums do not depend on the number of
+// threads, on how a run is cut into passes, or on being continued later.
+#pragma once
+
+#include "engine/core/image.h"
+#include "gi/vpl/light_set.h"
+
+namespace lambent {
+
+struct ReferenceInputs {
+  const RayQuery& rays;
+  const LightSet& lights;
+  const CameraView& camera;
+  int bounces = 3;   // B; 0: emission and direct light only
+  float clamp = 0;   // largest geometry term between primary hit and first bounce, 1/m² (as gather.clamp); 0 = none
+  uint32_t seed = 1; // of all random numbers
+};
+
+/// Sums over the samples of one pixel. `direct` and `indirect` are irradiance/π: what a white surface would reflect.
+struct PixelSums {
+  glm::dvec3 direct{0}, directSquares{0};
+  glm::dvec3 indirect{0}, indirectSquares{0};
+  glm::dvec3 product{0}; // direct · indirect, for the variance of their sum
+};
+
+struct ReferenceSums {
+  int width = 0, height = 0;
+  uint32_t samples = 0; // of each pixel
+  std::vector<PixelSums> pixels;
+
+  ReferenceSums() = default;
+  ReferenceSums(int w, int h) : width(w), height(h), pixels(size_t(w) * h) {}
+};
+
+/// Takes `count` more samples of every pixel. The sums have the camera's size.
+void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, RayCounts& counts);
+
+/// The same meanings as the buffers of GiFrame.
+enum class ReferenceBuffer { Beauty, Direct, Indirect, Irradiance };
+
+/// A picture and how well it is known.
+struct ReferencePicture {
+  Image mean;
+  Image error;                  // standard error of each pixel's mean; infinite for a single sample
+  std::vector<uint8_t> surface; // 1 where the camera sees a surface, 0 where it sees the sky
+  /// Root of the mean squared standard error over pixels and channels, over the mean of the picture: the RMSE to expect
+  /// against the exact picture, relative.
+  double relativeError = 0;
+  /// Standard error of the picture's mean over that mean, as if a pixel's channels were fully correlated (else less).
+  double relativeErrorOfMean = 0;
+};
+ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
+
+} // namespace lambent

@@ -1,0 +1,68 @@
+#include "gi/vpl/light_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// Share of a sample drawn with density `own` when `other` could have drawn it too. Ratio first: squares overflow.
+float powerHeuristic(float own, float other) {
+  const float ratio = other / own;
+  return 1 / (1 + ratio * ratio);
+}
+
+LightConnection connectToPunctual(const LightView& light, float probability, const PathVertex& vertex,
+                                  const vec3& weight) {
+  const PunctualSample p = punctualIrradiance(light, vertex.position, vertex.normal);
+  if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, vertex.geometricNormal) <= 0) return {};
+  const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal);
+  return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards},
+          weight * p.irradiance / (kPi * probability)};
+}
+
+LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter, float probability,
+                                 const PathVertex& vertex, const vec3& weight, const vec3& u) {
+  const EmitterPoint e = sampleEmitter(lights, emitter, u);
+  const vec3 d = e.position - vertex.position;
+  const float r2 = glm::dot(d, d);
+  if (!(r2 > 0)) return {};
+  const vec3 towards = d / std::sqrt(r2);
+  const float cosReceiver = glm::dot(towards, vertex.normal);
+  float cosEmitter = -glm::dot(towards, e.normal);
+  if (emitter.doubleSided) cosEmitter = std::abs(cosEmitter);
+  if (cosReceiver <= 0 || cosEmitter <= 0 || glm::dot(towards, vertex.geometricNormal) <= 0) return {};
+  const float pdfLight = probability * e.pdfArea * r2 / cosEmitter; // per steradian
+  const float mis = powerHeuristic(pdfLight, pdfCosineHemisphere(cosReceiver));
+  const vec3 emitterSide = -glm::dot(towards, e.normal) > 0 ? e.normal : -e.normal;
+  return {segment(offsetPoint(vertex.position, vertex.geometricNormal), offsetPoint(e.position, emitterSide)),
+          weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))};
+}
+
+} // namespace
+
+LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
+                               const vec3& uPoint, std::vector<float>& weightScratch) {
+  const LightChoice choice(lights, vertex.position, vertex.normal, weightScratch);
+  if (choice.empty()) return {};
+  const uint32_t light = choice.sample(uLight);
+  const float probability = choice.probability(light);
+  if (light < lights.punctual.size()) return connectToPunctual(lights.punctual[light], probability, vertex, weight);
+  return connectToEmitter(lights, lights.emitters[light - lights.punctual.size()], probability, vertex, weight, uPoint);
+}
+
+float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,
+                   std::vector<float>& weightScratch) {
+  const uint32_t e = lights.emitterOf(hit);
+  if (e == kNone) return 1;
+  const LightChoice choice(lights, vertex.position, vertex.normal, weightScratch);
+  const float cosEmitter = std::abs(glm::dot(direction, hit.geometricNormal));
+  const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, vertex.normal));
+  const float pdfLight = choice.probability(uint32_t(lights.punctual.size()) + e) *
+                         pdfEmitterArea(lights, lights.emitters[e], hit.triangle) * hit.t * hit.t /
+                         std::max(cosEmitter, 1e-6f);
+  return powerHeuristic(pdfCosine, pdfLight);
+}
+
+} // namespace lambent

@@ -1,0 +1,30 @@
+// What a light path does at a vertex, shared by the VPLs' radiosity and the reference: one connection to a chosen
+// light, and the share of an emitter that a cosine-distributed ray met. The two split emitters' light between them by
+// multiple importance sampling (power heuristic, Veach 1997).
+#pragma once
+
+#include "gi/vpl/light_set.h"
+
+namespace lambent {
+
+/// A place on a surface where light is collected.
+struct PathVertex {
+  vec3 position, normal, geometricNormal; // unit normals, on the side that is lit
+};
+
+/// Light that reaches a vertex if the segment is clear. `value` is zero where there is nothing to test.
+struct LightConnection {
+  Ray segment;
+  vec3 value{0};
+};
+
+/// Chooses one light and a point on it. `weight` turns irradiance/π at the vertex into what the caller wants; numbers
+/// in [0, 1) for the choice and for the point.
+LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
+                               const vec3& uPoint, std::vector<float>& weightScratch);
+
+/// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
+float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,
+                   std::vector<float>& weightScratch);
+
+} // namespace lambent
