@@ -63,6 +63,7 @@ class Walkthrough {
       const auto now = Clock::now();
       const double seconds = options_.frames ? kTestFrameSeconds : std::chrono::duration<double>(now - before).count();
       before = now;
+      if (!options_.frames) keepUp(i, seconds);
       frame(seconds);
       if (options_.frames && i + 1 == *options_.frames && !options_.screenshot.empty())
         writeScreenshot(options_.screenshot);
@@ -72,6 +73,17 @@ class Walkthrough {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// Lowers the picture's scale once, after the first frames, when this machine cannot keep up (software Mesa in a large
+  /// window). Only the picture changes; the window and the slider stay the person's.
+  void keepUp(int frame, double seconds) {
+    constexpr int kFirst = 4, kLast = 8; // the frames before prepare shaders and maps
+    constexpr double kTooSlow = 0.25, kGoal = 0.15;
+    if (frame >= kFirst) typicalSeconds_ = std::min(typicalSeconds_, seconds);
+    if (frame != kLast || typicalSeconds_ < kTooSlow) return;
+    model_.scale = std::max(0.25f, float(std::sqrt(kGoal / typicalSeconds_))) * model_.scale;
+    hud_.say("picture scale lowered to keep up with this machine (panel: picture scale)");
+  }
 
   void pose(double time) {
     if (shot_)
@@ -204,6 +216,7 @@ class Walkthrough {
   SceneExtractor extractor_;
   HudModel model_;
   std::optional<Entity> lamp_;
+  double typicalSeconds_ = 1e9; // the fastest of the frames that keepUp looks at, seconds
   bool screenshotWanted_ = false;
 };
 
