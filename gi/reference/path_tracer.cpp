@@ -151,9 +151,19 @@ class BlockTracer {
   std::vector<float> lightWeights_;
 };
 
-/// Variance of the mean of n samples from their sums; `c` is the sum of products of a and b.
-double covarianceOfMean(double a, double b, double c, double n) {
-  return n > 1 ? (c - a * b / n) / (n - 1) / n : double(kInfinity);
+struct Estimate {
+  double mean = 0, variance = double(kInfinity); // the variance is the mean's
+};
+
+/// One channel of a pixel's direct or indirect light, or of both.
+Estimate estimateOf(const PixelSums& p, int c, uint32_t samples, bool direct, bool indirect) {
+  const double n = samples;
+  double sum = 0, squares = 0;
+  if (direct) sum += p.direct[c], squares += p.directSquares[c];
+  if (indirect) sum += p.indirect[c], squares += p.indirectSquares[c];
+  if (direct && indirect) squares += 2 * p.product[c];
+  if (samples < 2) return {samples ? sum : 0};
+  return {sum / n, std::max(0.0, squares - sum * sum / n) / (n - 1) / n};
 }
 
 } // namespace
@@ -192,36 +202,33 @@ ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs&
   picture.surface.resize(sums.pixels.size());
   const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
   const bool indirect = buffer != ReferenceBuffer::Direct;
-  const double n = sums.samples;
-  glm::dvec3 total(0), variance(0);
-  for (size_t begin = 0; begin < sums.pixels.size(); begin += sums.width) {
-    const std::vector<SurfaceHit> row = primaryHits(in.rays, in.camera, begin, begin + sums.width);
-    for (size_t i = begin; i < begin + sums.width; ++i) {
-      const SurfaceHit& h = row[i - begin];
-      const PixelSums& p = sums.pixels[i];
-      picture.surface[i] = h.valid();
+  struct Row {
+    glm::dvec3 total{0}, variance{0};
+  };
+  std::vector<Row> rows(size_t(sums.height));
+  parallelFor(rows.size(), 1, [&](size_t firstRow, size_t lastRow) {
+    for (size_t i = firstRow * sums.width; i < lastRow * sums.width; ++i) {
+      const SurfaceHit h = primaryHits(in.rays, in.camera, i, i + 1)[0];
+      Row& row = rows[i / sums.width];
       vec3& mean = picture.mean.pixels[i];
-      if (!h.valid()) {
-        if (direct) mean = in.lights.sky;
-        total += glm::dvec3(mean);
-        continue;
+      picture.surface[i] = h.valid();
+      if (h.valid()) {
+        const vec3 factor = buffer == ReferenceBuffer::Irradiance ? vec3(kPi) : h.albedo;
+        for (int c = 0; c < 3; ++c) {
+          const Estimate e = estimateOf(sums.pixels[i], c, sums.samples, direct, indirect);
+          mean[c] = (direct ? h.emission[c] : 0) + factor[c] * float(e.mean);
+          const double variance = factor[c] > 0 ? e.variance * factor[c] * factor[c] : 0; // not 0·∞
+          picture.error.pixels[i][c] = float(std::sqrt(variance));
+          row.variance[c] += variance;
+        }
+      } else if (direct) {
+        mean = in.lights.sky;
       }
-      for (int c = 0; c < 3; ++c) {
-        const double factor = buffer == ReferenceBuffer::Irradiance ? double(kPi) : double(h.albedo[c]);
-        double sum = 0, ofMean = 0;
-        if (direct) sum += p.direct[c], ofMean += covarianceOfMean(p.direct[c], p.direct[c], p.directSquares[c], n);
-        if (indirect)
-          sum += p.indirect[c], ofMean += covarianceOfMean(p.indirect[c], p.indirect[c], p.indirectSquares[c], n);
-        if (direct && indirect) ofMean += 2 * covarianceOfMean(p.direct[c], p.indirect[c], p.product[c], n);
-        ofMean = factor > 0 ? std::max(0.0, ofMean) * factor * factor : 0;
-        const double value = (direct ? double(h.emission[c]) : 0) + (n > 0 ? factor * sum / n : 0);
-        mean[c] = float(value);
-        picture.error.pixels[i][c] = float(std::sqrt(ofMean));
-        total[c] += value;
-        variance[c] += ofMean;
-      }
+      row.total += glm::dvec3(mean);
     }
-  }
+  });
+  glm::dvec3 total(0), variance(0);
+  for (const Row& r : rows) total += r.total, variance += r.variance;
   const double count = 3 * double(sums.pixels.size()), sum = total.x + total.y + total.z;
   if (sum > 0) {
     picture.relativeError = std::sqrt((variance.x + variance.y + variance.z) / count) / (sum / count);

@@ -27,8 +27,7 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
 /// Stage 2. Marks VPLs that some visible point still sees (paper 1, 3.2.2): first by their mailbox point (in the
 /// frustum, camera → point clear, and point → VPL clear where `geometryMoved`), then in two rounds of up to
 /// `raysPerPoint` rays from every visible point to random unverified VPLs. Points go in blocks, and a block skips what
-/// earlier blocks verified. Where the camera is unchanged and nothing moved, earlier marks stay and only unverified
-/// VPLs are tried.
+/// earlier blocks verified.
 void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
                               std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts);
 
@@ -36,7 +35,7 @@ void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraVie
 struct CandidateHit {
   vec3 position, normal, geometricNormal, albedo;
   vec3 from; // the visible point (off its surface): the first mailbox
-  uint32_t instance = 0;
+  uint32_t instance = 0; // index into SceneView::instances
 };
 
 /// Stage 3. `count` cosine-distributed rays spread evenly over the visible points; misses give no hit.

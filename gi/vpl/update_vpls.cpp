@@ -4,6 +4,7 @@
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace lambent {
 
@@ -11,14 +12,17 @@ namespace {
 
 /// VPLs ride on the object that carries them.
 void carryAlong(VplSet& set, const SceneView& view, std::vector<uint32_t>& moved) {
+  std::unordered_map<uint32_t, const InstanceView*> byId;
+  for (const InstanceView& i : view.instances) byId.emplace(i.id, &i);
   for (uint32_t i = 0; i < set.slots.size(); ++i) {
     Vpl& v = set.slots[i];
     if (!v.alive) continue;
-    if (v.instance >= view.instances.size()) {
-      v.alive = false; // the instance is gone
+    const auto carrier = byId.find(v.instance);
+    if (carrier == byId.end()) {
+      v.alive = false; // the object is gone, and its light with it
       continue;
     }
-    const InstanceView& instance = view.instances[v.instance];
+    const InstanceView& instance = *carrier->second;
     if (!instance.moved) continue;
     const mat4 nowFromBefore = instance.worldFromObject * glm::inverse(instance.worldFromObjectBefore);
     const mat3 normalNow = glm::transpose(glm::inverse(mat3(nowFromBefore)));
@@ -113,7 +117,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
       v.geometricNormal = h.geometricNormal;
       v.albedo = h.albedo;
       v.mailbox = h.from;
-      v.instance = h.instance;
+      v.instance = in.view.instances[h.instance].id;
       v.id = set.nextId++;
       candidates.push_back(v);
     }

@@ -20,7 +20,7 @@ struct Vpl {
   float candidateArea = 0; // the same with k = 1, used by the sampler only
   uint64_t id = 0;         // seeds its light paths; never reused
   uint32_t bornFrame = 0;
-  uint32_t instance = 0; // index into SceneView::instances
+  uint32_t instance = 0; // InstanceView::id of the object that carries it
   vec3 mailbox{0};       // a point seen by both the camera and this VPL, already off its surface
   bool alive = false;    // false: empty slot, brings no light
   bool valid = false;    // indirectly visible in this frame as far as known

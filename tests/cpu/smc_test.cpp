@@ -35,6 +35,7 @@ struct Room {
     lights.punctual.resize(1);
     lights.punctual[0].position = {2, 2.5f, 1};
     lights.punctual[0].intensity = vec3(5);
+    instances[1].id = 1;
     view.instances = instances;
     view.camera = cameraAt({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1});
     settings.vpls = 256;
@@ -122,6 +123,7 @@ TEST(Smc, CameraCutLiftsTheBound) {
   Room room;
   room.rays.addBox({20, 0, -3}, {26, 3, 3}, {vec3(0.6f)});
   room.instances.resize(3);
+  room.instances[2].id = 2;
   room.view.instances = room.instances;
   LightView lamp;
   lamp.position = {23, 2.5f, 0};
@@ -232,6 +234,29 @@ TEST(Smc, VplsRideOnMovingObjects) {
     }
   }
   EXPECT_GT(carried, 0u);
+}
+
+TEST(Smc, VplsOfARemovedObjectGoWithIt) {
+  Room room;
+  room.instances[0].id = 7; // ids are not indices
+  room.update();
+  const VplSet before = room.set;
+  AnalyticQuery empty;
+  empty.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.7f, 0.6f, 0.5f)});
+  room.rays = empty;
+  room.view.instances = std::span(room.instances).first(1);
+  room.view.changes.instances = true;
+  room.update();
+  size_t stayed = 0, gone = 0;
+  for (size_t i = 0; i < before.slots.size(); ++i) {
+    if (before.slots[i].instance == 1)
+      gone += room.set.slots[i].id != before.slots[i].id;
+    else
+      stayed += room.set.slots[i].id == before.slots[i].id;
+    EXPECT_EQ(room.set.slots[i].instance, 7u);
+  }
+  EXPECT_GT(gone, 0u);
+  EXPECT_GT(stayed, before.slots.size() * 3 / 4);
 }
 
 TEST(Smc, NumberOfVplsMayChangeBetweenFrames) {

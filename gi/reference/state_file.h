@@ -1,0 +1,20 @@
+// Sums of a reference on disk, so that a run can go on later. The file is bound to what it is a picture of.
+#pragma once
+
+#include "engine/scene/scene_view.h"
+#include "gi/reference/path_tracer.h"
+
+#include <filesystem>
+
+namespace lambent {
+
+/// Hash of everything that the samples depend on: geometry, materials, textures, lights, camera, size, bounces, clamp,
+/// seed. Where the scene's file lies does not matter.
+uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in);
+
+/// Replaces the file in one step.
+void saveReference(const std::filesystem::path& file, const ReferenceSums& sums, uint64_t key);
+/// Throws InputError for a file that is no state, is damaged, or belongs to another picture.
+ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key);
+
+} // namespace lambent
