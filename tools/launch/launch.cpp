@@ -177,10 +177,10 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--technique", options.technique, "how indirect light is found: smc");
   command.add_option("--preset", options.preset, "low, medium (default), high or ultra; --set changes single settings");
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
-      ->take_all();
+      ->allow_extra_args(false);
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
-  command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")->take_all();
-  command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->take_all();
+  command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")->allow_extra_args(false);
+  command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
   command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
