@@ -1,5 +1,6 @@
 #include "tests/content/placed.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace lambent {
@@ -48,10 +49,10 @@ PlacedScene::PlacedScene(const Scene& scene) {
   }
 }
 
-bool PlacedScene::see(const dvec3& a, const dvec3& b) const {
-  for (const PlacedTriangle& t : triangles_)
-    if (meets(t, a, b - a) <= 1) return false;
-  return true;
+double PlacedScene::distance(const dvec3& origin, const dvec3& direction) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const PlacedTriangle& t : triangles_) nearest = std::min(nearest, meets(t, origin, direction));
+  return nearest;
 }
 
 bool PlacedScene::inSolid(const dvec3& point) const {

@@ -29,8 +29,10 @@ class PlacedScene {
   const std::vector<PlacedTriangle>& triangles() const { return triangles_; }
   const std::string& meshName(const PlacedTriangle& t) const { return meshNames_[t.mesh]; }
 
+  /// To the first surface along the ray, in units of its direction; infinite when there is none.
+  double distance(const dvec3& origin, const dvec3& direction) const;
   /// Nothing lies between the two points.
-  bool see(const dvec3& a, const dvec3& b) const;
+  bool see(const dvec3& a, const dvec3& b) const { return distance(a, b - a) > 1; }
   /// The point lies in a solid. Counts how many more solids a ray from it leaves than enters, so solids may overlap.
   bool inSolid(const dvec3& point) const;
 

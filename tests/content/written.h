@@ -18,6 +18,14 @@ inline std::string contents(const std::filesystem::path& file) {
   return out.str();
 }
 
+/// A recipe's name with only the letters that a test's name may have.
+inline std::string testName(const ContentRecipe& recipe) {
+  std::string name = recipe.name;
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
+inline void PrintTo(const ContentRecipe& recipe, std::ostream* out) { *out << recipe.name; }
+
 struct WrittenScene {
   std::filesystem::path folder;
   GeneratedScene scene;

@@ -22,6 +22,7 @@ struct GeneratedScene {
 struct ContentRecipe {
   std::string name;        // also the default folder and file stem: content/NAME/NAME.gltf
   std::string description; // one line
+  bool bundled = false;    // kept in the repository; the others are made on demand, as they are large
   /// Writes all files into `folder` (made when missing), each to a temporary name first. Throws RunError when the
   /// folder cannot be written.
   std::function<GeneratedScene(const std::filesystem::path& folder)> write;

@@ -22,9 +22,8 @@ ProfilePiece curve(const dvec2& from, const dvec2& to, double bulge, uint32_t st
 
 } // namespace
 
-Geometry column(double height) {
+Geometry column(double height, uint32_t segments) {
   constexpr double kPlinth = 0.14, kAbacus = 0.12, kHalf = 0.31; // the block above and below is 0.62 m wide
-  constexpr uint32_t kSegments = 20;
   const double foot = kPlinth, head = height - kAbacus;
   const std::vector<ProfilePiece> profile{
       {{0, foot}, {0.26, foot}},
@@ -38,20 +37,20 @@ Geometry column(double height) {
       curve({0.195, head - 0.29}, {0.29, head}, -0.18, 4), // bell of the capital
       {{0.29, head}, {0, head}},
   };
-  Geometry g = lathe(profile, kSegments);
+  Geometry g = lathe(profile, segments);
   g.add(box({-kHalf, 0, -kHalf}, {kHalf, kPlinth, kHalf}));
   g.add(box({-kHalf, head, -kHalf}, {kHalf, height, kHalf}));
   return g;
 }
 
-Geometry baluster(double height) {
+Geometry baluster(double height, uint32_t segments) {
   const double neck = 0.72 * height;
   return lathe({{{0, 0}, {0.06, 0}},
                 {{0.06, 0}, {0.06, 0.08}},
                 curve({0.06, 0.08}, {0.035, neck}, 0.06, 4),
                 curve({0.035, neck}, {0.06, height}, -0.12, 2),
                 {{0.06, height}, {0, height}}},
-               8);
+               segments);
 }
 
 Geometry basin() {

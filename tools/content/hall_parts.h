@@ -7,10 +7,10 @@
 namespace lambent::content {
 
 /// Column with plinth, moulded base, tapered shaft, capital and abacus; `height` includes all of them.
-Geometry column(double height);
+Geometry column(double height, uint32_t segments = 20);
 
 /// Stub that carries the rail of the balustrade.
-Geometry baluster(double height);
+Geometry baluster(double height, uint32_t segments = 8);
 
 /// Round basin with a foot and a rim.
 Geometry basin();

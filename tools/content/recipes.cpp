@@ -2,12 +2,36 @@
 
 namespace lambent {
 
-const std::vector<ContentRecipe>& contentRecipes() {
-  static const std::vector<ContentRecipe> recipes{
-      {"hall", "two-storey arcaded hall: sun through an open roof, cloth, a moving lamp and a rolling ball",
-       content::writeHall},
-      {"cornell", "Cornell box with two blocks and a ceiling emitter", content::writeCornell},
+namespace {
+
+using Write = GeneratedScene (*)(const std::filesystem::path&, content::SceneSize);
+
+/// NAME and NAME-small, both made on demand.
+void addSizes(std::vector<ContentRecipe>& recipes, const std::string& name, const std::string& description,
+              Write write) {
+  using content::SceneSize;
+  const auto sized = [write](SceneSize size) {
+    return [write, size](const std::filesystem::path& folder) { return write(folder, size); };
   };
+  recipes.push_back({name, description, false, sized(SceneSize::Full)});
+  recipes.push_back({name + "-small", "the same with fewer parts, for tests", false, sized(SceneSize::Small)});
+}
+
+} // namespace
+
+const std::vector<ContentRecipe>& contentRecipes() {
+  static const std::vector<ContentRecipe> recipes = [] {
+    std::vector<ContentRecipe> all{
+        {"hall", "two-storey arcaded hall: sun through an open roof, cloth, a moving lamp and a rolling ball", true,
+         content::writeHall},
+        {"cornell", "Cornell box with two blocks and a ceiling emitter", true, content::writeCornell},
+    };
+    addSizes(all, "office", "office building: corridors, rooms with open doors, 14 lights", content::writeOffice);
+    addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);
+    addSizes(all, "maze", "maze under a ceiling with 13 static lamps", content::writeMaze);
+    addSizes(all, "atrium", "galleries around a court with one moving lantern", content::writeAtrium);
+    return all;
+  }();
   return recipes;
 }
 

@@ -2,10 +2,15 @@
 #pragma once
 
 #include "tools/content/content.h"
+#include "tools/content/scene_builder.h"
 
 namespace lambent::content {
 
+GeneratedScene writeAtrium(const std::filesystem::path& folder, SceneSize size);
+GeneratedScene writeCitadel(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeCornell(const std::filesystem::path& folder);
 GeneratedScene writeHall(const std::filesystem::path& folder);
+GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size);
+GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);
 
 } // namespace lambent::content

@@ -35,6 +35,13 @@ void Geometry::add(const Geometry& part, const dvec3& offset) {
   for (const uint32_t i : part.indices) indices.push_back(first + i);
 }
 
+Geometry turned(Geometry geometry, double degrees) {
+  const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
+  for (auto* vectors : {&geometry.positions, &geometry.normals})
+    for (dvec3& v : *vectors) v = {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
+  return geometry;
+}
+
 Geometry box(const dvec3& lo, const dvec3& hi) {
   Geometry g;
   const auto corner = [&](int x, int y, int z) { return dvec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z); };
@@ -169,6 +176,41 @@ Geometry cloth(const ClothShape& shape) {
       const uint32_t upper = row * stride + column, lower = upper + stride;
       g.indices.insert(g.indices.end(), {lower, lower + 1, upper + 1, lower, upper + 1, upper});
     }
+  return g;
+}
+
+Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides) {
+  CHECK_LE(2u, line.size());
+  Geometry g;
+  const uint32_t points = uint32_t(line.size());
+  const auto direction = [&](uint32_t i) {
+    return glm::normalize(line[std::min(i + 1, points - 1)] - line[i ? i - 1 : 0]);
+  };
+  const auto outward = [&](uint32_t i, uint32_t s) {
+    const dvec3 side = glm::normalize(glm::cross(direction(i), dvec3(0, 1, 0)));
+    const double angle = kTau * (s % sides) / sides;
+    return std::cos(angle) * side + std::sin(angle) * glm::cross(direction(i), side);
+  };
+  for (uint32_t i = 0; i < points; ++i)
+    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + radius * outward(i, s), outward(i, s));
+  for (uint32_t i = 0; i + 1 < points; ++i)
+    for (uint32_t s = 0; s < sides; ++s) {
+      const uint32_t a = i * sides + s, b = i * sides + (s + 1) % sides;
+      g.indices.insert(g.indices.end(), {a, b, b + sides, a, b + sides, a + sides});
+    }
+  for (const bool end : {false, true}) {
+    const uint32_t i = end ? points - 1 : 0, middle = uint32_t(g.positions.size());
+    const dvec3 normal = end ? direction(i) : -direction(i);
+    g.addVertex(line[i], normal);
+    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + radius * outward(i, s), normal);
+    for (uint32_t s = 0; s < sides; ++s) {
+      const uint32_t a = middle + 1 + s, b = middle + 1 + (s + 1) % sides;
+      if (end)
+        g.indices.insert(g.indices.end(), {middle, a, b});
+      else
+        g.indices.insert(g.indices.end(), {middle, b, a});
+    }
+  }
   return g;
 }
 

@@ -24,6 +24,9 @@ struct Geometry {
   void add(const Geometry& part, const dvec3& offset = dvec3(0));
 };
 
+/// Turned around the vertical axis, degrees counter-clockwise from above.
+Geometry turned(Geometry geometry, double degrees);
+
 /// Box between two corners.
 Geometry box(const dvec3& lo, const dvec3& hi);
 
@@ -58,5 +61,8 @@ struct ClothShape {
   uint32_t columns = 40, rows = 10;
 };
 Geometry cloth(const ClothShape& shape);
+
+/// Round rod along a line of at least two points, with flat ends; no piece is vertical.
+Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides);
 
 } // namespace lambent::content

@@ -1,16 +1,13 @@
 #include "tools/content/textures.h"
 
 #include "engine/core/image.h"
-#include "engine/core/rng.h"
+#include "tools/content/scene_builder.h"
 
 #include <cmath>
 
 namespace lambent::content {
 
 namespace {
-
-/// Uniform in [0, 1), a function of the lattice point alone.
-double hashed(uint32_t x, uint32_t y) { return double(mix64((uint64_t(y) << 32 | x) + 1) >> 11) * 0x1p-53; }
 
 uint8_t encoded(double linear) {
   return uint8_t(std::lround(255.0 * srgbFromLinear(float(glm::clamp(linear, 0.0, 1.0)))));

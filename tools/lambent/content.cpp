@@ -1,4 +1,4 @@
-// lambent content [NAME...]: generates the bundled scenes.
+// lambent content [NAME...]: generates scenes, by default the bundled ones.
 #include "tools/content/content.h"
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -12,9 +12,12 @@ namespace {
 
 void generate(const std::vector<std::string>& names, const OutputOptions& output) {
   std::vector<const ContentRecipe*> chosen;
-  std::vector<std::string> known;
-  for (const ContentRecipe& r : contentRecipes()) known.push_back(r.name);
-  for (const std::string& name : names.empty() ? known : names) {
+  std::vector<std::string> known, bundled;
+  for (const ContentRecipe& r : contentRecipes()) {
+    known.push_back(r.name);
+    if (r.bundled) bundled.push_back(r.name);
+  }
+  for (const std::string& name : names.empty() ? bundled : names) {
     const auto& all = contentRecipes();
     const auto it = std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
     if (it == all.end()) {
@@ -44,8 +47,9 @@ void declareContent(CLI::App& app) {
   auto names = std::make_shared<std::vector<std::string>>();
   auto output = std::make_shared<OutputOptions>();
   std::string known;
-  for (const ContentRecipe& r : contentRecipes()) known += "\n  " + r.name + ": " + r.description;
-  CLI::App* command = app.add_subcommand("content", "generates the bundled scenes (default all):" + known);
+  for (const ContentRecipe& r : contentRecipes())
+    known += "\n  " + r.name + (r.bundled ? " (bundled): " : ": ") + r.description;
+  CLI::App* command = app.add_subcommand("content", "generates scenes (default: the bundled ones):" + known);
   command->add_option("NAME", *names, "scenes to make");
   addOutputOptions(*command, *output, "folder to write to (default: the bundled scenes' own)");
   command->callback([names, output] { generate(*names, *output); });

@@ -1,0 +1,37 @@
+// Movable things of the generated scenes. Each stands on y = 0, centred on the vertical axis, unless said otherwise.
+#pragma once
+
+#include "tools/content/shapes.h"
+
+namespace lambent::content {
+
+/// Swivel chair, its back towards +Z.
+Geometry chair(uint32_t segments);
+
+/// Table top on four legs or, with `pedestals`, on two blocks of drawers.
+Geometry table(double width, double depth, bool pedestals);
+
+/// Keyboard and screen for a table top; the keyboard's own keys cost 12 triangles each.
+Geometry screen();
+Geometry keyboard(uint32_t columns);
+
+/// Open shelf with its back towards -Z, `boards` compartments high.
+Geometry shelf(double width, double height, double depth, uint32_t boards);
+/// Upright books that fill that shelf, only those of every third kind `kind` (0, 1, 2), for three colours.
+Geometry books(double width, double height, double depth, uint32_t boards, uint32_t kind, double meanThickness);
+
+Geometry pot(double radius, double height, uint32_t segments);
+/// Arched leaves from a stem at y = `height`: sheets.
+Geometry fronds(uint32_t count, double length, double height, uint32_t steps);
+
+Geometry barrel(uint32_t segments);
+Geometry mug(uint32_t segments);
+
+/// Shade that hangs with its top at y = 0, open downwards; a lamp fits 0.12 m below its rim.
+Geometry lampShade(uint32_t segments);
+
+/// Flat fixture on a ceiling at y = 0, and the sheet 1 cm below it that emits downwards.
+Geometry panelHousing(double width, double depth);
+Geometry panelEmitter(double width, double depth);
+
+} // namespace lambent::content
