@@ -14,7 +14,16 @@ inline uint64_t mix64(uint64_t x) {
 }
 
 /// One random purpose each, so that no two stages share numbers.
-enum class Stream : uint32_t { VisiblePoints = 1, Validation, Candidates, Resample, LightPaths, Test, Emitters, Reference };
+enum class Stream : uint32_t {
+  VisiblePoints = 1,
+  Validation,
+  Candidates,
+  Resample,
+  LightPaths,
+  Test,
+  Emitters,
+  Reference
+};
 
 /// A sequence of numbers addressed by what they are for.
 class Rng {

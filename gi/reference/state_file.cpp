@@ -27,7 +27,7 @@ class Hash {
   void bytes(const void* data, size_t size) {
     const char* at = static_cast<const char*>(data);
     for (; size >= 8; at += 8, size -= 8) word(at, 8);
-    word(at, size); // also closes the run: an empty one counts
+    if (size > 0) word(at, size);
   }
   template <class T> void value(const T& v) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);

@@ -24,6 +24,7 @@ void declareInspect(CLI::App& app);
 void declareRender(CLI::App& app);
 void declareRecord(CLI::App& app);
 void declareAccuracy(CLI::App& app);
+void declareReference(CLI::App& app);
 void declareCompare(CLI::App& app);
 void declareContent(CLI::App& app);
 void declareSettings(CLI::App& app);

@@ -18,6 +18,7 @@ int runProgram(int argc, char** argv) {
   declareRender(app);
   declareRecord(app);
   declareAccuracy(app);
+  declareReference(app);
   declareCompare(app);
   declareContent(app);
   declareSettings(app);

@@ -1,0 +1,200 @@
+// The reference is the same however it is run, and honest about its own error.
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/trace/embree_query.h"
+#include "gi/reference/state_file.h"
+#include "tests/support/hand_scene.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <unistd.h>
+
+namespace lambent {
+namespace {
+
+/// A room with a lamp, a glowing panel and a window, small.
+class Room : public ::testing::Test {
+ protected:
+  Room() {
+    const uint32_t white = scene_.material(vec3(0.7f, 0.6f, 0.5f));
+    scene_.quad({0, 0, 0}, {0, 0, 3}, {2, 0, 0}, white);
+    scene_.quad({0, 0, 0}, {0, 1, 0}, {0, 0, 3}, white);
+    scene_.quad({0, 0, 3}, {0, 1, 0}, {2, 0, 0}, white);
+    scene_.quad({1.5f, 0.2f, 2.9f}, {0, 0.5f, 0}, {0.3f, 0, 0}, scene_.material(vec3(0.2f), vec3(3, 4, 5), true));
+    scene_.sky = vec3(0.2f, 0.3f, 0.4f);
+    LightView lamp;
+    lamp.position = {1, 0.9f, 1.5f};
+    scene_.lights.push_back(lamp);
+    scene_.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
+    scene_.camera.worldFromView[2] = vec4(0, 0, -1, 0);
+    scene_.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
+    scene_.camera.width = 24;
+    scene_.camera.height = 16;
+    view_ = scene_.view();
+    rays_ = std::make_unique<EmbreeQuery>(scene_.assets);
+    rays_->update(view_);
+    lights_ = collectLights(view_);
+    file_ = std::filesystem::temp_directory_path() / ("lambent-reference-" + std::to_string(getpid()) + ".state");
+  }
+  ~Room() override {
+    setThreadCount(0);
+    std::filesystem::remove(file_);
+  }
+
+  ReferenceInputs inputs(uint32_t seed = 1) const { return {*rays_, lights_, view_.camera, 3, 0, seed}; }
+
+  ReferenceSums sumsOf(std::initializer_list<uint32_t> passes, uint32_t seed = 1) const {
+    ReferenceSums sums(24, 16);
+    for (uint32_t count : passes) addSamples(sums, inputs(seed), count, counts_);
+    return sums;
+  }
+
+  static bool same(const ReferenceSums& a, const ReferenceSums& b) {
+    return a.samples == b.samples &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(PixelSums)) == 0;
+  }
+
+  static std::string bytesOf(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  /// The one line that says why the file is refused.
+  std::string refusal(const ReferenceInputs& in) const {
+    try {
+      loadReference(file_, in, referenceKey(view_, in));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  }
+
+  test::HandScene scene_;
+  SceneView view_;
+  std::unique_ptr<EmbreeQuery> rays_;
+  LightSet lights_;
+  std::filesystem::path file_;
+  mutable RayCounts counts_;
+};
+
+TEST_F(Room, PassesAndThreadsDoNotMatter) {
+  setThreadCount(1);
+  const ReferenceSums one = sumsOf({12});
+  EXPECT_TRUE(same(one, sumsOf({5, 1, 6})));
+  for (int threads : {2, 5}) {
+    setThreadCount(threads);
+    EXPECT_TRUE(same(one, sumsOf({12}))) << threads << " threads";
+  }
+  EXPECT_FALSE(same(one, sumsOf({12}, 2)));
+}
+
+TEST_F(Room, ResumedEqualsOneRun) {
+  const uint64_t key = referenceKey(view_, inputs());
+  saveReference(file_, sumsOf({12}), key);
+  const std::string whole = bytesOf(file_);
+  saveReference(file_, sumsOf({5}), key);
+  EXPECT_NE(bytesOf(file_), whole);
+  ReferenceSums sums = loadReference(file_, inputs(), key);
+  addSamples(sums, inputs(), 7, counts_);
+  saveReference(file_, sums, key);
+  EXPECT_EQ(bytesOf(file_), whole);
+}
+
+TEST_F(Room, StateOfAnotherPictureIsRefused) {
+  const ReferenceInputs in = inputs();
+  saveReference(file_, sumsOf({2}), referenceKey(view_, in));
+  EXPECT_EQ(refusal(in), "accepted");
+  const auto refused = [&](const ReferenceInputs& other, const std::string& why) {
+    EXPECT_NE(refusal(other).find(why), std::string::npos) << refusal(other);
+  };
+  refused(inputs(2), "another picture");
+  refused({*rays_, lights_, view_.camera, 2}, "another picture");
+  refused({*rays_, lights_, view_.camera, 3, 5.0f}, "another picture");
+  CameraView camera = view_.camera;
+  camera.worldFromView[3].x += 0.1f;
+  refused({*rays_, lights_, camera}, "another picture");
+  camera.width = 32;
+  refused({*rays_, lights_, camera}, "24x16");
+  scene_.lights[0].intensity.y = 2;
+  refused(in, "another picture");
+  scene_.lights[0].intensity.y = 1;
+  scene_.assets.meshes[0].positions[0].x += 0.25f;
+  refused(in, "another picture");
+  scene_.assets.meshes[0].positions[0].x -= 0.25f;
+  EXPECT_EQ(refusal(in), "accepted");
+}
+
+TEST_F(Room, DamagedStateIsRefused) {
+  const ReferenceInputs in = inputs();
+  saveReference(file_, sumsOf({2}), referenceKey(view_, in));
+  const std::string whole = bytesOf(file_);
+  const auto refused = [&](std::string bytes, const std::string& why) {
+    std::ofstream(file_, std::ios::binary) << bytes;
+    EXPECT_NE(refusal(in).find(why), std::string::npos) << refusal(in);
+  };
+  refused("", "is not the state");
+  refused("PNG or whatever else people name this way", "is not the state");
+  refused(whole.substr(0, whole.size() - 20), "damaged");
+  std::string flipped = whole;
+  flipped[whole.size() / 2] ^= 1;
+  refused(flipped, "damaged");
+  flipped = whole;
+  flipped[20] ^= 1; // the number of samples
+  refused(flipped, "damaged");
+  flipped = whole;
+  flipped[8] ^= 64; // the version
+  refused(flipped, "another version");
+}
+
+TEST_F(Room, SeedsAgreeWithinTheirErrors) {
+  const ReferencePicture a = readReference(sumsOf({400}, 1), inputs(1), ReferenceBuffer::Beauty);
+  const ReferencePicture b = readReference(sumsOf({400}, 2), inputs(2), ReferenceBuffer::Beauty);
+  double chi2 = 0, sum = 0;
+  size_t n = 0, far = 0;
+  for (size_t i = 0; i < a.mean.pixels.size(); ++i) {
+    if (!a.surface[i]) continue;
+    const double z = (a.mean.pixels[i].y - b.mean.pixels[i].y) /
+                     std::hypot(double(a.error.pixels[i].y), double(b.error.pixels[i].y));
+    chi2 += z * z;
+    sum += z;
+    far += std::abs(z) > test::kDeviateLimit;
+    ++n;
+  }
+  ASSERT_GT(n, 200u);
+  // Means of 400 samples are nearly normal, so Σz is N(0, n) and Σz² chi-square with n degrees: 6e-5 each by chance.
+  EXPECT_LT(std::abs(sum) / std::sqrt(double(n)), test::kDeviateLimit);
+  EXPECT_LT(test::chiSquareDeviate(chi2, double(n)), test::kDeviateLimit);
+  EXPECT_GT(test::chiSquareDeviate(chi2, double(n)), -test::kDeviateLimit) << "errors stated too large";
+  EXPECT_LE(far, 1u) << "of " << n << " pixels; 6e-5 of them by chance, a few more for the tails of paths";
+}
+
+TEST_F(Room, StatedErrorIsTheScatterOfRuns) {
+  const ReferencePicture truth = readReference(sumsOf({4000}, 99), inputs(99), ReferenceBuffer::Indirect);
+  std::vector<double> ratios;
+  for (uint32_t seed = 1; seed <= 10; ++seed) {
+    const ReferencePicture p = readReference(sumsOf({64}, seed), inputs(seed), ReferenceBuffer::Indirect);
+    double squares = 0, total = 0;
+    for (size_t i = 0; i < p.mean.pixels.size(); ++i) {
+      const vec3 d = p.mean.pixels[i] - truth.mean.pixels[i];
+      squares += double(glm::dot(d, d));
+      total += double(truth.mean.pixels[i].x + truth.mean.pixels[i].y + truth.mean.pixels[i].z);
+    }
+    const double n = 3.0 * double(p.mean.pixels.size());
+    ratios.push_back(std::sqrt(squares / n) / (total / n) / p.relativeError);
+  }
+  // The truth's own 64/4000 adds 0.8 %.
+  EXPECT_NEAR(test::meanOf(ratios).mean, 1.008, 0.03 + test::kDeviateLimit * test::meanOf(ratios).error);
+}
+
+TEST_F(Room, SingleSampleHasNoError) {
+  const ReferencePicture p = readReference(sumsOf({1}), inputs(), ReferenceBuffer::Beauty);
+  EXPECT_TRUE(std::isinf(p.relativeError));
+  for (const vec3& pixel : p.mean.pixels) EXPECT_TRUE(isFinite(pixel));
+}
+
+} // namespace
+} // namespace lambent

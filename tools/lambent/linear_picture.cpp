@@ -1,0 +1,45 @@
+#include "tools/lambent/linear_picture.h"
+
+#include "engine/core/error.h"
+#include "tools/lambent/commands.h"
+
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// shaders/display.frag, MODE 0.
+vec3 displayed(const vec3& value, float factor) {
+  if (glm::any(glm::isnan(value))) return {1, 0, 1};
+  if (glm::any(glm::isinf(value))) return {0, 1, 1};
+  vec3 c = glm::max(value * factor, vec3(0));
+  c /= 1 + luminance(c);
+  c = glm::min(c, vec3(1));
+  return {srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)};
+}
+
+} // namespace
+
+Image readLinear(const std::string& file) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension == ".exr") return readExr(file);
+  if (extension == ".pfm") return readPfm(file);
+  throw InputError(file, "not a linear picture (.exr or .pfm)");
+}
+
+void writePicture(const std::string& file, const Image& image, float factor) {
+  checkPictureName(file);
+  if (std::filesystem::path(file).extension() == ".exr") {
+    writeExr(file, image);
+    return;
+  }
+  Image8 out{image.width, image.height, {}};
+  for (const vec3& pixel : image.pixels) {
+    const vec3 shown = displayed(pixel, factor);
+    for (int c = 0; c < 3; ++c) out.rgb.push_back(uint8_t(std::lround(255 * shown[c])));
+  }
+  writePng(file, out);
+}
+
+} // namespace lambent

@@ -1,0 +1,17 @@
+// Pictures that come from the CPU, as files.
+#pragma once
+
+#include "engine/core/image.h"
+
+#include <string>
+
+namespace lambent {
+
+/// .exr or .pfm; throws InputError for other names.
+Image readLinear(const std::string& file);
+
+/// .exr: the values as they are. .png: times `factor`, Reinhard on luminance, sRGB, as the display shows radiance (NaN
+/// magenta, infinity cyan). Throws InputError for other names.
+void writePicture(const std::string& file, const Image& image, float factor);
+
+} // namespace lambent
