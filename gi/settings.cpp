@@ -39,7 +39,7 @@ class Table {
           "V, rays per visible point and round towards unverified VPLs");
     whole("smc.warmup", &Settings::smc, &SmcSettings::warmup, 0, 100000, "iterations before the first picture");
     whole("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, 0, 1024,
-          "k of the density for rendering; 0 = max(1, floor(sqrt(N)/32)) (paper 1, eq. 8)");
+          "k of the density for rendering; 0 = max(1, floor(sqrt(N/32)))");
     choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side"},
            "density estimate: paper 1's, or only neighbours on the same side of the surface");
     choice("smc.visibility", &Settings::smc, &SmcSettings::visibility, {"maps", "rays"},
@@ -209,7 +209,7 @@ void applyPreset(Settings& settings, const std::string& name) {
   static constexpr Preset presets[]{{512, 1024, 8, 64, GatherMode::Interleaved},
                                     {2048, 2048, 16, 128, GatherMode::Interleaved},
                                     {8192, 4096, 16, 128, GatherMode::Interleaved},
-                                    {8192, 4096, 32, 128, GatherMode::Full}};
+                                    {16384, 4096, 16, 128, GatherMode::Interleaved}};
   for (size_t i = 0; i < presetNames().size(); ++i) {
     if (presetNames()[i] != name) continue;
     settings.smc.vpls = presets[i].vpls;

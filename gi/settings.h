@@ -27,7 +27,7 @@ struct SmcSettings {
   int points = 2048;       // directly visible points X
   int validationRays = 16; // V, rays per point and round towards unverified VPLs
   int warmup = 100;        // iterations before the first picture
-  int neighbours = 8; // k of the density for rendering; 0 = paper 1 eq. 8, max(1, ⌊√N/32⌋): too bright, see gi/README
+  int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
   DensityEstimator density = DensityEstimator::KnnSide;
   VplVisibility visibility = VplVisibility::Maps;
 };
@@ -89,7 +89,8 @@ const std::vector<SettingRow>& settingsTable();
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);
-/// Names of the presets, cheapest first. Each is a point of the measured front of error against time (docs/measurements).
+/// Names of the presets, cheapest first. Each is a point of the measured front of error against time
+/// (docs/measurements).
 const std::vector<std::string>& presetNames();
 /// Sets what the preset is about (numbers of VPLs, paths, map texels, gather) and leaves everything else. Throws
 /// InputError that names the presets.

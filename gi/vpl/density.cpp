@@ -66,7 +66,7 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
 
 int neighboursForRendering(const SmcSettings& settings) {
   if (settings.neighbours > 0) return settings.neighbours;
-  return std::max(1, int(std::floor(std::sqrt(float(settings.vpls)) / 32)));
+  return std::max(1, int(std::sqrt(float(settings.vpls) / 32)));
 }
 
 } // namespace lambent

@@ -34,7 +34,7 @@ void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraVie
 /// A point that a ray from a visible point met: a place where a VPL could stand.
 struct CandidateHit {
   vec3 position, normal, geometricNormal, albedo;
-  vec3 from; // the visible point (off its surface): the first mailbox
+  vec3 from;             // the visible point (off its surface): the first mailbox
   uint32_t instance = 0; // index into SceneView::instances
 };
 
@@ -71,7 +71,8 @@ struct DensityPoint {
 };
 std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among,
                                     bool self, int k, DensityEstimator estimator, float areaLimit);
-/// k for rendering: paper 1, eq. 8.
+/// k for rendering, paper 1, eq. 8, read as ⌊√(N/32)⌋. The reading ⌊√N/32⌋, 1 at N = 2048, finds 35 % too much light
+/// (gi/README.md).
 int neighboursForRendering(const SmcSettings& settings);
 
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates

@@ -273,7 +273,7 @@ TEST(Smc, NumberOfVplsMayChangeBetweenFrames) {
 
 TEST(Smc, TheSetCarriesTheRoomsLight) {
   // Σ L·a over the set against ∫ L dA over the room's surface by stratified points. The set spreads VPLs apart, where
-  // the nearest neighbour alone (paper 1, eq. 8 at N = 2048) would find 35 % too much light; the default must be right
+  // the nearest neighbour alone would find 35 % too much light; the default must be right
   // to 4 %.
   Room room;
   room.rays = {};
