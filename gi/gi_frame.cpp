@@ -181,9 +181,8 @@ DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& 
     std::vector<VplLight> samples;
     std::vector<MapPose> poses;
     for (const EmitterPatch& p : emitterPatches(lightSet, shadow.emitterSamples)) {
-      const EmitterSample sample{p.position, p.normal, p.radiance, p.area};
-      samples.push_back(emitterLight(sample));
-      poses.push_back(emitterPose(sample));
+      samples.push_back(emitterLight(p));
+      poses.push_back(emitterPose(p));
     }
     std::vector<uint32_t> dirty;
     if (view.changes.geometry || view.changes.instances || view.changes.first)

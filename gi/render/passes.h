@@ -16,6 +16,7 @@
 #include "engine/trace/ray_query.h"
 #include "gi/render/gpu_scene.h"
 #include "gi/settings.h"
+#include "gi/vpl/light_set.h"
 #include "gi/vpl/vpl_set.h"
 #include "shaders/shared/camera_block.h"
 #include "shaders/shared/vpl_light.h"
@@ -163,14 +164,6 @@ class VplLightBuffer {
 
 // 4. Direct light -----------------------------------------------------------------------------------------------------
 
-/// A point that stands for a patch of an emissive surface (a double-sided one gives one sample per side).
-struct EmitterSample {
-  vec3 position{0};
-  vec3 normal{0, 1, 0}; // the side that emits
-  vec3 radiance{0};     // W/(m² sr)
-  float area = 0;       // m²
-};
-
 /// Shadow maps of all punctual lights and of the sky's directions, for one box of receivers.
 struct LightShadows;
 
@@ -205,8 +198,8 @@ struct DirectInputs {
   const ParaboloidMaps* emitterMaps = nullptr; // null: unshadowed
   const ShadowSettings& shadow;
 };
-VplLight emitterLight(const EmitterSample& sample);
-MapPose emitterPose(const EmitterSample& sample);
+VplLight emitterLight(const EmitterPatch& patch);
+MapPose emitterPose(const EmitterPatch& patch);
 
 /// Direct irradiance at the visible surfaces, W/m², albedo not included.
 struct DirectLight {

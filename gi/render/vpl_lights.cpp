@@ -32,11 +32,11 @@ VplLight vplLight(const Vpl& vpl) {
   return packLight(vpl.position, vpl.normal, vpl.radiance, vpl.alive ? vpl.area : 0.0f);
 }
 
-VplLight emitterLight(const EmitterSample& sample) {
-  return packLight(sample.position, sample.normal, sample.radiance, sample.area);
+VplLight emitterLight(const EmitterPatch& patch) {
+  return packLight(patch.position, patch.normal, patch.radiance, patch.area);
 }
 
-MapPose emitterPose(const EmitterSample& sample) { return {sample.position, sample.normal, sample.normal}; }
+MapPose emitterPose(const EmitterPatch& patch) { return {patch.position, patch.normal, patch.normal}; }
 
 VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
   const gl::PassScope scope(context_.profiler, name_);

@@ -16,7 +16,7 @@ ShadowSettings fixedResolutions() {
 class DirectTest : public GlTest {
  protected:
   /// Direct irradiance of the picture, row 0 at the top.
-  Image irradianceOf(const HandScene& scene, const std::vector<EmitterSample>& emitters = {}) {
+  Image irradianceOf(const HandScene& scene, const std::vector<EmitterPatch>& emitters = {}) {
     const SceneView view = scene.view();
     GpuScene gpu(programs, scene.assets);
     gpu.place(view.instances);
@@ -30,7 +30,7 @@ class DirectTest : public GlTest {
         shadowPass.run({gpu, view.lights, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, settings});
     std::vector<VplLight> lights;
     std::vector<MapPose> poses;
-    for (const EmitterSample& sample : emitters) {
+    for (const EmitterPatch& sample : emitters) {
       lights.push_back(emitterLight(sample));
       poses.push_back(emitterPose(sample));
     }
@@ -132,7 +132,7 @@ TEST_F(DirectTest, MoreLightsThanABlockHolds) {
 
 TEST_F(DirectTest, EmissiveSampleOnAPlane) {
   Floor floor;
-  const EmitterSample sample{.position = {0, 1.2f, 0}, .normal = {0, -1, 0}, .radiance = vec3(5), .area = 0.3f};
+  const EmitterPatch sample{.position = {0, 1.2f, 0}, .normal = {0, -1, 0}, .radiance = vec3(5), .area = 0.3f};
   expectFloor(floor, irradianceOf(floor.scene, {sample}), [](const vec3& p) {
     const vec3 d = vec3(0, 1.2f, 0) - p;
     const float r2 = glm::dot(d, d), cosine = d.y / std::sqrt(r2);
