@@ -19,7 +19,7 @@ enum class Stream : uint32_t {
   Validation,
   Candidates,
   Resample,
-  LightPaths,
+  LightPaths, SamplerPaths,
   Test,
   Emitters,
   Reference

@@ -29,20 +29,18 @@ struct PathState {
 
 class VplEstimator {
  public:
-  VplEstimator(const RayQuery& rays, const LightSet& lights, int paths, int bounces, uint32_t seed)
-      : rays_(rays), lights_(lights), paths_(paths), bounces_(bounces), seed_(seed), states_(paths) {}
+  VplEstimator(const RayQuery& rays, const LightSet& lights, int paths, int bounces, uint32_t seed, Stream stream)
+      : rays_(rays), lights_(lights), paths_(paths), bounces_(bounces), seed_(seed), stream_(stream), states_(paths) {}
 
   vec3 estimate(const Vpl& vpl, RayCounts& counts) {
     sum_ = vec3(0);
     const uint32_t id = uint32_t(mix64(vpl.id));
-    Rng first(seed_, Stream::LightPaths, id);
+    Rng first(seed_, stream_, id);
     const vec3 shift(first.next(), first.next(), first.next());
     const float lightShift = first.next();
     for (int i = 0; i < paths_; ++i)
-      states_[i] = {{vpl.position, vpl.normal, vpl.geometricNormal},
-                    vpl.albedo,
-                    true,
-                    Rng(seed_, Stream::LightPaths, id, uint32_t(i) + 1)};
+      states_[i] = {
+          {vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo, true, Rng(seed_, stream_, id, uint32_t(i) + 1)};
     for (int depth = 0; depth < bounces_; ++depth) {
       connectToLights(depth, shift, lightShift, counts);
       const bool last = depth + 1 == bounces_;
@@ -120,6 +118,7 @@ class VplEstimator {
   const LightSet& lights_;
   const int paths_, bounces_;
   const uint32_t seed_;
+  const Stream stream_;
   vec3 sum_{0};
   std::vector<PathState> states_;
   std::vector<Ray> segments_;
@@ -133,15 +132,18 @@ class VplEstimator {
 } // namespace
 
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
-                      uint32_t seed, RayCounts& counts) {
+                      uint32_t seed, RayCounts& counts, RadianceUse use) {
   constexpr size_t kGrain = 16;
   std::vector<RayCounts> perBlock((vpls.size() + kGrain - 1) / kGrain);
   const bool dark = lights.empty() || bounces < 1;
+  const bool rendering = use == RadianceUse::Rendering;
+  const Stream stream = rendering ? Stream::LightPaths : Stream::SamplerPaths;
+  vec3 Vpl::*const result = rendering ? &Vpl::radiance : &Vpl::samplerRadiance;
   parallelFor(vpls.size(), kGrain, [&](size_t begin, size_t end) {
-    VplEstimator estimator(rays, lights, paths, bounces, seed);
+    VplEstimator estimator(rays, lights, paths, bounces, seed, stream);
     for (size_t i = begin; i < end; ++i) {
       const bool black = maxComponent(vpls[i]->albedo) <= 0;
-      vpls[i]->radiance = dark || black ? vec3(0) : estimator.estimate(*vpls[i], perBlock[begin / kGrain]);
+      vpls[i]->*result = dark || black ? vec3(0) : estimator.estimate(*vpls[i], perBlock[begin / kGrain]);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;

@@ -8,7 +8,7 @@
 namespace lambent {
 
 namespace {
-float samplingIntensity(const Vpl& v) { return luminance(v.radiance) * v.candidateArea; }
+float samplingIntensity(const Vpl& v) { return luminance(v.samplerRadiance) * v.candidateArea; }
 } // namespace
 
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator) {

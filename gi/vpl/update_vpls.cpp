@@ -1,6 +1,7 @@
-// Paper 1, algorithm 1: the stages in order. Two changes of order: VPLs are re-lit before they are compared with
-// candidates (the paper compares fresh candidates with last frame's values, so a switched light would misjudge both for
-// a frame), and a candidate that wins keeps the estimate it won with, because numbers follow its id.
+// Paper 1, algorithm 1: the stages in order. Two things differ. VPLs are re-lit before they are compared with
+// candidates: the paper compares fresh candidates with last frame's values, so a switched light would misjudge both for
+// a frame. And the sampler judges by an estimate of its own, so that its choices do not bias the light (see
+// estimateRadiance).
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -49,6 +50,9 @@ std::vector<DensityPoint> densityPoints(std::span<const Vpl> vpls, std::vector<u
 /// No VPL stands for more than this, m²: 16 times the mean share. An isolated VPL's disk would else reach far beyond
 /// the surface it is on (the paper's clothes line).
 float areaLimit(const VplSet& set) { return 16 * set.visibleArea / float(std::max<size_t>(16, set.slots.size())); }
+
+/// Half the paths rank well enough, so two estimates cost what paper 1's one for VPLs and one for candidates did.
+int samplerPaths(const SmcSettings& settings) { return std::max(1, settings.paths / 2); }
 
 void estimateDensities(VplSet& set, const SmcSettings& settings) {
   std::vector<uint32_t> index;
@@ -121,8 +125,10 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
       v.id = set.nextId++;
       candidates.push_back(v);
     }
-    for (Vpl& v : candidates) lit.push_back(&v);
     estimateRadiance(lit, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity);
+    for (Vpl& v : candidates) lit.push_back(&v);
+    estimateRadiance(lit, in.rays, in.lights, samplerPaths(settings), settings.bounces, in.seed, log.radiosity,
+                     RadianceUse::Sampling);
   }
   VplChanges changes;
   {
@@ -138,6 +144,9 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
     const bool burst = now.mayBurst && invalid * 2 > alive;
     changes = replaceVpls(set, candidates, burst ? settings.vpls : now.moves, settings.density);
     changes.burst = burst;
+    std::vector<Vpl*> won;
+    for (uint32_t slot : changes.movedSlots) won.push_back(&set.slots[slot]);
+    estimateRadiance(won, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity);
   }
   {
     CpuScope scope(log.stages, "density");

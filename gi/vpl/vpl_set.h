@@ -16,6 +16,7 @@ struct Vpl {
   vec3 geometricNormal{0, 1, 0};
   vec3 albedo{0};
   vec3 radiance{0};        // reflected L = B/π, W/(m² sr); no emission of its own
+  vec3 samplerRadiance{0}; // the same by other paths, for the sampler's choices only (see estimateRadiance)
   float area = 0;          // m² that it stands for: π r_k² / k (paper 1, eq. 7, see gi/vpl/density.cpp)
   float candidateArea = 0; // the same with k = 1, used by the sampler only
   uint64_t id = 0;         // seeds its light paths; never reused
