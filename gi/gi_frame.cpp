@@ -4,7 +4,7 @@
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
 #include "gi/render/passes.h"
-#include "gi/vpl/smc.h"
+#include "gi/vpl/sources.h"
 
 #include <algorithm>
 #include <bit>
@@ -154,7 +154,8 @@ void GiFrame::State::prepare(const SceneView& view) {
 VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& lightSet,
                                     const std::function<void(int, int)>& progress) {
   VplUpdateLog log;
-  const VplChanges changes = updateVpls(vpls, {view, *rays, lightSet, settings.smc, seed}, log, progress);
+  const VplChanges changes =
+      placeVpls(settings.vpl.source, vpls, {view, *rays, lightSet, settings.smc, seed}, log, progress);
   for (StageTime& row : log.stages) stats.stages.push_back(std::move(row));
   stats.raysPoints = log.points;
   stats.raysValidation = log.validation;

@@ -11,12 +11,17 @@
 
 namespace lambent {
 
+enum class VplSource : int { Smc, Ir, Mir, Tcas };    // who places the virtual lights: see gi/vpl/sources.h
 enum class VplVisibility : int { Maps, Rays };       // paraboloid shadow maps | exhaustive ray casts (paper 1, fig. 8)
 enum class GatherMode : int { Interleaved, Full };   // 4×4 interleaved subsets + filter | every VPL at every pixel
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
 enum class DensityEstimator : int { Knn, KnnSide };  // paper 1's | only neighbours on the same side count
 enum class FilterKernel : int { Separable, Whole };  // rows then columns | all 49 taps at once
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
+
+struct VplSettings {
+  VplSource source = VplSource::Smc;
+};
 
 struct SmcSettings {
   int vpls = 2048;         // slots N
@@ -70,6 +75,7 @@ struct DebugSettings {
 };
 
 struct Settings {
+  VplSettings vpl;
   SmcSettings smc;
   ShadowSettings shadow;
   GatherSettings gather;
