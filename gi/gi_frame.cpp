@@ -161,6 +161,7 @@ VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& light
   stats.raysValidation = log.validation;
   stats.raysCandidates = log.candidates;
   stats.raysRadiosity = log.radiosity;
+  stats.raysCells = log.cells;
   stats.vplsRelit = log.relit;
   return changes;
 }

@@ -41,7 +41,7 @@ struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages; // CPU and GPU, in order, milliseconds
   double wallMs = 0;
-  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysShadowMaps, raysGather;
+  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather;
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0;
   uint32_t mapsDrawn = 0;
   bool burst = false;

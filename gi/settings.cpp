@@ -41,9 +41,9 @@ class Table {
           "V, rays per visible point and round towards unverified VPLs");
     whole("smc.warmup", &Settings::smc, &SmcSettings::warmup, 0, 100000, "iterations before the first picture");
     whole("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, 0, 1024,
-          "k of the density for rendering; 0 = max(1, floor(sqrt(N/32)))");
-    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side"},
-           "density estimate: paper 1's, or only neighbours on the same side of the surface");
+          "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
+    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"},
+           "what a VPL stands for: paper 1's density, the same by neighbours on its side, or the cell around it");
     choice("smc.visibility", &Settings::smc, &SmcSettings::visibility, {"maps", "rays"},
            "who tests VPLs against pixels: shadow maps, or a ray for every pair (seconds per frame)");
     whole("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, 16, 2048,

@@ -11,12 +11,13 @@
 
 namespace lambent {
 
-enum class VplSource : int { Smc, Ir, Mir, Tcas };    // who places the virtual lights: see gi/vpl/sources.h
+enum class VplSource : int { Smc, Ir, Mir, Tcas };   // who places the virtual lights: see gi/vpl/sources.h
 enum class VplVisibility : int { Maps, Rays };       // paraboloid shadow maps | exhaustive ray casts (paper 1, fig. 8)
 enum class GatherMode : int { Interleaved, Full };   // 4×4 interleaved subsets + filter | every VPL at every pixel
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
-enum class DensityEstimator : int { Knn, KnnSide };  // paper 1's | only neighbours on the same side count
-enum class FilterKernel : int { Separable, Whole };  // rows then columns | all 49 taps at once
+// What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
+enum class DensityEstimator : int { Knn, KnnSide, Cells };
+enum class FilterKernel : int { Separable, Whole };    // rows then columns | all 49 taps at once
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
 
 struct VplSettings {
@@ -33,7 +34,7 @@ struct SmcSettings {
   int validationRays = 16; // V, rays per point and round towards unverified VPLs
   int warmup = 100;        // iterations before the first picture
   int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
-  DensityEstimator density = DensityEstimator::KnnSide;
+  DensityEstimator density = DensityEstimator::Cells;
   VplVisibility visibility = VplVisibility::Maps;
 };
 
@@ -54,7 +55,7 @@ struct ShadowSettings {
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
-  float disk = 4;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
+  float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
 };
 

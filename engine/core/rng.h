@@ -19,10 +19,12 @@ enum class Stream : uint32_t {
   Validation,
   Candidates,
   Resample,
-  LightPaths, SamplerPaths,
+  LightPaths,
+  SamplerPaths,
   Test,
   Emitters,
-  Reference
+  Reference,
+  Cells
 };
 
 /// A sequence of numbers addressed by what they are for.

@@ -19,9 +19,30 @@ struct Cloud {
   float kdtree_get_pt(size_t i, size_t axis) const { return points[i].position[int(axis)]; }
   template <class Box> bool kdtree_get_bbox(Box&) const { return false; }
 };
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, uint32_t>;
 
 } // namespace
+
+struct NeighbourTree::Tree {
+  Cloud cloud;
+  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, uint32_t> index;
+  explicit Tree(std::span<const DensityPoint> among)
+      : cloud{among}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+};
+
+NeighbourTree::NeighbourTree(std::span<const DensityPoint> among) {
+  for (const DensityPoint& p : among) CHECK(isFinite(p.position)); // a NaN silently spoils other answers in nanoflann
+  if (!among.empty()) tree_ = std::make_unique<Tree>(among);
+}
+NeighbourTree::~NeighbourTree() = default;
+
+size_t NeighbourTree::nearest(const vec3& position, size_t count, std::span<uint32_t> index,
+                              std::span<float> distance2) const {
+  return tree_ ? tree_->index.knnSearch(&position.x, count, index.data(), distance2.data()) : 0;
+}
+
+std::span<const uint32_t> NeighbourTree::order() const {
+  return tree_ ? std::span<const uint32_t>(tree_->index.vAcc) : std::span<const uint32_t>();
+}
 
 std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among,
                                     bool self, int k, DensityEstimator estimator, float areaLimit) {
@@ -29,27 +50,26 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
   std::vector<float> areas(queries.size(), areaLimit);
   if (among.empty()) return areas;
   if (self) CHECK_EQ(queries.size(), among.size());
-  for (const DensityPoint& p : among) CHECK(isFinite(p.position)); // a NaN silently spoils other answers in nanoflann
-  const Cloud cloud{among};
-  const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  const NeighbourTree tree(among);
+  const bool oneSide = estimator != DensityEstimator::Knn;
 
   // Neighbours on the other side of a wall are passed over, so look at some more than k.
-  const size_t wanted = size_t(k) + (self ? 1 : 0) + (estimator == DensityEstimator::KnnSide ? 8 : 0);
+  const size_t wanted = size_t(k) + (self ? 1 : 0) + (oneSide ? 8 : 0);
   // Points of the tree query it in its own order, so that neighbours in time are neighbours in space (1.6 times as fast
   // for 33 k points).
-  const bool treeOrder = self && tree.vAcc.size() == queries.size();
+  const std::span<const uint32_t> order = self ? tree.order() : std::span<const uint32_t>();
   parallelFor(queries.size(), 128, [&](size_t begin, size_t end) {
     std::vector<uint32_t> index(wanted);
     std::vector<float> distance2(wanted);
     for (size_t n = begin; n < end; ++n) {
-      const size_t i = treeOrder ? tree.vAcc[n] : n;
+      const size_t i = order.empty() ? n : order[n];
       if (!isFinite(queries[i].position)) continue;
-      const size_t found = tree.knnSearch(&queries[i].position.x, wanted, index.data(), distance2.data());
+      const size_t found = tree.nearest(queries[i].position, wanted, index, distance2);
       int seen = 0;
       float kth = 0;
       for (size_t j = 0; j < found && seen < k; ++j) {
         if (self && index[j] == i) continue;
-        if (estimator == DensityEstimator::KnnSide && !sameSide(queries[i].normal, among[index[j]].normal)) continue;
+        if (oneSide && !sameSide(queries[i].normal, among[index[j]].normal)) continue;
         kth = distance2[j];
         ++seen;
       }

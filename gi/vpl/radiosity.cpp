@@ -32,7 +32,7 @@ class VplEstimator {
   VplEstimator(const RayQuery& rays, const LightSet& lights, int paths, int bounces, uint32_t seed, Stream stream)
       : rays_(rays), lights_(lights), paths_(paths), bounces_(bounces), seed_(seed), stream_(stream), states_(paths) {}
 
-  vec3 estimate(const Vpl& vpl, RayCounts& counts) {
+  vec3 estimate(const Vpl& vpl, const VplCell* cell, RayCounts& counts) {
     sum_ = vec3(0);
     const uint32_t id = uint32_t(mix64(vpl.id));
     Rng first(seed_, stream_, id);
@@ -41,6 +41,7 @@ class VplEstimator {
     for (int i = 0; i < paths_; ++i)
       states_[i] = {
           {vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo, true, Rng(seed_, stream_, id, uint32_t(i) + 1)};
+    if (cell && !spreadOver(*cell, first.next())) return vec3(0);
     for (int depth = 0; depth < bounces_; ++depth) {
       connectToLights(depth, shift, lightShift, counts);
       const bool last = depth + 1 == bounces_;
@@ -52,6 +53,33 @@ class VplEstimator {
   }
 
  private:
+  /// Starts the paths at points of the cell, in proportion to their areas (systematic sampling). False when it is
+  /// empty.
+  bool spreadOver(const VplCell& cell, float u) {
+    float total = 0;
+    for (const CellPoint& p : cell.points)
+      if (p.owned()) total += p.area;
+    if (total <= 0) return false;
+    int path = 0;
+    float sum = 0;
+    for (const CellPoint& p : cell.points) {
+      if (!p.owned()) continue;
+      sum += p.area;
+      for (; path < paths_ && (float(path) + u) * total <= sum * float(paths_); ++path) place(path, p);
+    }
+    for (const CellPoint& last = lastOwned(cell); path < paths_; ++path) place(path, last); // rounding
+    return true;
+  }
+  static const CellPoint& lastOwned(const VplCell& cell) {
+    size_t i = cell.points.size() - 1;
+    while (!cell.points[i].owned()) --i;
+    return cell.points[i];
+  }
+  void place(int path, const CellPoint& p) {
+    states_[path].vertex = {p.position, p.normal, p.geometricNormal};
+    states_[path].weight = p.albedo;
+  }
+
   void connectToLights(int depth, const vec3& shift, float lightShift, RayCounts& counts) {
     if (lights_.lightCount() == 0) return;
     segments_.clear();
@@ -132,7 +160,7 @@ class VplEstimator {
 } // namespace
 
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
-                      uint32_t seed, RayCounts& counts, RadianceUse use) {
+                      uint32_t seed, RayCounts& counts, RadianceUse use, std::span<const VplCell* const> cells) {
   constexpr size_t kGrain = 16;
   std::vector<RayCounts> perBlock((vpls.size() + kGrain - 1) / kGrain);
   const bool dark = lights.empty() || bounces < 1;
@@ -142,8 +170,9 @@ void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const Li
   parallelFor(vpls.size(), kGrain, [&](size_t begin, size_t end) {
     VplEstimator estimator(rays, lights, paths, bounces, seed, stream);
     for (size_t i = begin; i < end; ++i) {
-      const bool black = maxComponent(vpls[i]->albedo) <= 0;
-      vpls[i]->*result = dark || black ? vec3(0) : estimator.estimate(*vpls[i], perBlock[begin / kGrain]);
+      const VplCell* const cell = cells.empty() ? nullptr : cells[i];
+      const bool black = !cell && maxComponent(vpls[i]->albedo) <= 0;
+      vpls[i]->*result = dark || black ? vec3(0) : estimator.estimate(*vpls[i], cell, perBlock[begin / kGrain]);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;

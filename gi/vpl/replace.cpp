@@ -60,7 +60,7 @@ VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, 
     v.valid = true;
     changes.movedSlots.push_back(slot);
     for (Vpl& c : candidates) {
-      if (c.alive || (estimator == DensityEstimator::KnnSide && !sameSide(c.normal, v.normal))) continue;
+      if (c.alive || (estimator != DensityEstimator::Knn && !sameSide(c.normal, v.normal))) continue;
       const vec3 d = c.position - v.position;
       c.candidateArea = std::min(c.candidateArea, kPi * glm::dot(d, d));
     }

@@ -11,6 +11,7 @@
 #include "gi/vpl/vpl_set.h"
 
 #include <functional>
+#include <memory>
 
 namespace lambent {
 
@@ -58,9 +59,13 @@ Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, u
 /// There are two estimates with numbers of their own. The sampler keeps what looks bright and drops what looks dark, so
 /// the noise of the estimate that it judges by is biased upwards in the set that survives (in a room lit by a narrow
 /// spot the set brought 45 % too much light when both were one). Rendering uses the other, which no choice has seen.
+///
+/// With `cells` (one for each VPL, or none) the paths of a VPL start all over its cell, so the result is the mean over
+/// the surface that it stands for.
 enum class RadianceUse { Rendering, Sampling };
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
-                      uint32_t seed, RayCounts& counts, RadianceUse use = RadianceUse::Rendering);
+                      uint32_t seed, RayCounts& counts, RadianceUse use = RadianceUse::Rendering,
+                      std::span<const VplCell* const> cells = {});
 
 /// Whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts as
 /// the same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would make
@@ -80,6 +85,26 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
 /// (gi/README.md).
 int neighboursForRendering(const SmcSettings& settings);
 
+/// Nearest neighbours of points on a surface.
+class NeighbourTree {
+ public:
+  explicit NeighbourTree(std::span<const DensityPoint> among); // must outlive the tree; positions finite
+  ~NeighbourTree();
+  /// The `count` nearest of `among`, ascending; returns how many there are. Both spans hold `count`.
+  size_t nearest(const vec3& position, size_t count, std::span<uint32_t> index, std::span<float> distance2) const;
+  /// Index of the i-th point in the tree's own order (queries in that order are neighbours in memory).
+  std::span<const uint32_t> order() const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Stage 6, other than the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
+/// whose VPL is new or stands elsewhere. Returns the slots whose cell changed, ascending: their radiance is another.
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const SceneView& view,
+                                  std::span<const uint32_t> moved, float radiusLimit, uint32_t seed, RayCounts& counts);
+
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates
 /// stronger than 95 % of the set (paper 1, 3.2.5). Each pick lowers the area of candidates near it, so winners of one
 /// frame do not sit side by side. Empty slots are filled beyond the bound. Slots never change place.
@@ -97,7 +122,7 @@ struct VplUpdate {
 /// Times and rays of one update, for the frame log.
 struct VplUpdateLog {
   std::vector<StageTime> stages;
-  RayCounts points, validation, candidates, radiosity;
+  RayCounts points, validation, candidates, radiosity, cells;
   uint32_t relit = 0; // VPLs whose radiance was estimated again
 };
 

@@ -5,6 +5,7 @@
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace lambent {
@@ -54,17 +55,47 @@ float areaLimit(const VplSet& set) { return 16 * set.visibleArea / float(std::ma
 /// Half the paths rank well enough, so two estimates cost what paper 1's one for VPLs and one for candidates did.
 int samplerPaths(const SmcSettings& settings) { return std::max(1, settings.paths / 2); }
 
-void estimateDensities(VplSet& set, const SmcSettings& settings) {
+/// The sampler's densities, k = 1.
+void estimateSamplerDensities(VplSet& set, const SmcSettings& settings) {
   std::vector<uint32_t> index;
   const std::vector<DensityPoint> points = densityPoints(set.slots, index);
-  const int k = neighboursForRendering(settings);
-  const std::vector<float> sampling = representedAreas(points, points, true, 1, settings.density, areaLimit(set));
-  const std::vector<float> rendering =
-      k == 1 ? sampling : representedAreas(points, points, true, k, settings.density, areaLimit(set));
-  for (size_t i = 0; i < index.size(); ++i) {
-    set.slots[index[i]].candidateArea = sampling[i];
-    set.slots[index[i]].area = rendering[i];
+  const std::vector<float> areas = representedAreas(points, points, true, 1, settings.density, areaLimit(set));
+  for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].candidateArea = areas[i];
+}
+
+/// What rendering uses: areas of all VPLs, radiance of `moved` slots and of those whose cell changed, or of all.
+void estimateLight(VplSet& set, const VplUpdate& in, std::span<const uint32_t> moved, bool relight, VplUpdateLog& log) {
+  const SmcSettings& settings = in.settings;
+  const bool cells = settings.density == DensityEstimator::Cells;
+  std::vector<uint32_t> changed(moved.begin(), moved.end());
+  {
+    CpuScope scope(log.stages, "density");
+    if (cells) {
+      changed = updateCells(set, in.rays, in.view, moved, std::sqrt(areaLimit(set) / kPi), in.seed, log.cells);
+    } else {
+      set.cells.clear();
+      std::vector<uint32_t> index;
+      const std::vector<DensityPoint> points = densityPoints(set.slots, index);
+      const std::vector<float> areas =
+          representedAreas(points, points, true, neighboursForRendering(settings), settings.density, areaLimit(set));
+      for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].area = areas[i];
+    }
   }
+  CpuScope scope(log.stages, "radiosity");
+  if (relight) {
+    changed.clear();
+    for (uint32_t i = 0; i < set.slots.size(); ++i) changed.push_back(i);
+  }
+  std::vector<Vpl*> lit;
+  std::vector<const VplCell*> cellsOfLit;
+  for (uint32_t slot : changed) {
+    if (!set.slots[slot].alive) continue;
+    lit.push_back(&set.slots[slot]);
+    if (cells) cellsOfLit.push_back(&set.cells[slot]);
+  }
+  log.relit += uint32_t(lit.size());
+  estimateRadiance(lit, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity,
+                   RadianceUse::Rendering, cellsOfLit);
 }
 
 struct Iteration {
@@ -112,7 +143,6 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
     if (now.relight)
       for (Vpl& v : set.slots)
         if (v.alive) lit.push_back(&v);
-    log.relit += uint32_t(lit.size());
     for (uint32_t pick : resampled.picks) {
       const CandidateHit& h = hits[pick];
       Vpl v;
@@ -125,7 +155,6 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
       v.id = set.nextId++;
       candidates.push_back(v);
     }
-    estimateRadiance(lit, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity);
     for (Vpl& v : candidates) lit.push_back(&v);
     estimateRadiance(lit, in.rays, in.lights, samplerPaths(settings), settings.bounces, in.seed, log.radiosity,
                      RadianceUse::Sampling);
@@ -144,13 +173,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
     const bool burst = now.mayBurst && invalid * 2 > alive;
     changes = replaceVpls(set, candidates, burst ? settings.vpls : now.moves, settings.density);
     changes.burst = burst;
-    std::vector<Vpl*> won;
-    for (uint32_t slot : changes.movedSlots) won.push_back(&set.slots[slot]);
-    estimateRadiance(won, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity);
-  }
-  {
-    CpuScope scope(log.stages, "density");
-    estimateDensities(set, settings);
+    estimateSamplerDensities(set, settings);
   }
   return changes;
 }
@@ -183,8 +206,10 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   now.moves = settings.moves;
   now.geometryMoved = changed.geometry || changed.instances;
   now.mayBurst = changed.camera && !start;
-  now.relight =
+  const bool relight =
       changed.lights || now.geometryMoved || set.litPaths != settings.paths || set.litBounces != settings.bounces;
+  const bool estimatorChanged = set.cells.empty() == (settings.density == DensityEstimator::Cells);
+  now.relight = relight;
   set.litPaths = settings.paths;
   set.litBounces = settings.bounces;
 
@@ -206,6 +231,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   if (progress && more) progress(more, more);
   std::sort(moved.begin(), moved.end());
   moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  estimateLight(set, in, moved, relight || estimatorChanged, log);
   all.movedSlots = std::move(moved);
   all.kept = all.alive - std::min<uint32_t>(all.alive, uint32_t(all.movedSlots.size()));
   mergeStages(log.stages);

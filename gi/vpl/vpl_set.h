@@ -30,8 +30,25 @@ struct Vpl {
   float intensity() const { return luminance(radiance) * area; }
 };
 
+/// A point of the surface near a VPL, with what decides whose cell it lies in. World space.
+struct CellPoint {
+  vec3 position, normal, geometricNormal, albedo;
+  float area = 0;         // m² of surface that the point stands for
+  float own2 = 0;         // squared distance to the VPL, m²
+  float rival2 = 0;       // to the nearest other VPL on the same piece of surface, where that is nearer
+  uint32_t rival = kNone; // its slot
+  bool owned() const { return rival == kNone; }
+};
+
+/// The surface that a VPL stands for: all that is nearer to it than to any other (see gi/vpl/cells.cpp).
+struct VplCell {
+  std::vector<CellPoint> points; // those owned and those that may become so
+  float radius = 0;              // m, scale that the points were drawn with; 0 = none drawn
+};
+
 struct VplSet {
   std::vector<Vpl> slots;
+  std::vector<VplCell> cells; // by slot; empty with densities by nearest neighbours
   uint64_t nextId = 1;
   uint32_t frame = 0;               // iterations so far
   float visibleArea = 0;            // m², running estimate of the indirectly visible surface

@@ -55,6 +55,7 @@ nlohmann::json figuresOf(const FrameStats& s) {
             {"validation", rays(s.raysValidation)},
             {"candidates", rays(s.raysCandidates)},
             {"radiosity", rays(s.raysRadiosity)},
+            {"cells", rays(s.raysCells)},
             {"gather", rays(s.raysGather)}}},
           {"vpls",
            {{"alive", s.vplsAlive},

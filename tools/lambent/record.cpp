@@ -40,7 +40,8 @@ class FrameLog {
     writeAtomically(file, [&](const fs::path& temporary) {
       std::ofstream out(temporary);
       out << "frame,time_s,rays_points,rays_validation,rays_candidates,rays_radiosity_closest,rays_radiosity_occlusion,"
-             "rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,maps_drawn,burst,shadow_maker,plan,"
+             "rays_cells,rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,maps_drawn,burst,shadow_"
+             "maker,plan,"
              "timing,wall_ms,write_ms";
       for (const std::string& s : stages_) out << ',' << columnName(s);
       out << '\n';
@@ -51,8 +52,8 @@ class FrameLog {
         std::snprintf(time, sizeof time, "%.6f", r.time);
         out << s.frame << ',' << time << ',' << all(s.raysPoints) << ',' << all(s.raysValidation) << ','
             << all(s.raysCandidates) << ',' << s.raysRadiosity.closest << ',' << s.raysRadiosity.occlusion << ','
-            << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ',' << s.vplsMoved << ','
-            << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.mapsDrawn << ',' << s.burst << ','
+            << all(s.raysCells) << ',' << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ','
+            << s.vplsMoved << ',' << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.mapsDrawn << ',' << s.burst << ','
             << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ',' << s.plan << ',' << s.timing << ','
             << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
         for (const std::string& name : stages_) {

@@ -1,0 +1,144 @@
+// Cells of VPLs: the surface that each stands for.
+#include "engine/core/rng.h"
+#include "engine/trace/analytic_query.h"
+#include "gi/vpl/smc.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent {
+namespace {
+
+Vpl vplAt(const vec3& position, const vec3& normal, uint64_t id, const vec3& seenFrom) {
+  Vpl v;
+  v.position = position;
+  v.normal = v.geometricNormal = normal;
+  v.albedo = vec3(0.5f);
+  v.id = id;
+  v.mailbox = seenFrom;
+  v.alive = v.valid = true;
+  return v;
+}
+
+std::vector<uint32_t> allSlots(const VplSet& set) {
+  std::vector<uint32_t> slots;
+  for (uint32_t i = 0; i < set.slots.size(); ++i) slots.push_back(i);
+  return slots;
+}
+
+/// A set of random points on the inside of a box from -half to half, seen from its centre.
+VplSet onBox(const vec3& half, int count, uint32_t seed) {
+  const float pairs[3] = {half.y * half.z, half.z * half.x, half.x * half.y};
+  VplSet set;
+  Rng rng(seed, Stream::Test, 1);
+  for (int i = 0; i < count; ++i) {
+    float u = rng.next() * (pairs[0] + pairs[1] + pairs[2]);
+    int axis = 0;
+    while (axis < 2 && u > pairs[axis]) u -= pairs[axis++];
+    const float side = rng.next() < 0.5f ? -1.0f : 1.0f;
+    vec3 p, n(0);
+    for (int c = 0; c < 3; ++c) p[c] = (2 * rng.next() - 1) * half[c];
+    p[axis] = side * half[axis];
+    n[axis] = -side;
+    set.slots.push_back(vplAt(p, n, uint64_t(i) + 1, vec3(0)));
+  }
+  return set;
+}
+
+TEST(Cells, CoverTheSurfaceOnce) {
+  const vec3 half(2, 1, 3);
+  AnalyticQuery rays;
+  rays.addBox(-half, half, {vec3(0.5f)});
+  const double truth = 8 * double(half.x * half.y + half.y * half.z + half.z * half.x);
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    VplSet set = onBox(half, 1000, seed);
+    RayCounts counts;
+    updateCells(set, rays, {}, allSlots(set), 10, seed, counts);
+    double area = 0;
+    for (const Vpl& v : set.slots) area += v.area;
+    EXPECT_NEAR(area / truth, 1, 0.03) << "seed " << seed;
+  }
+}
+
+TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
+  // In a convex room everything is connected: a point is owned when no VPL on its side is nearer than its own.
+  const vec3 half(2, 1, 3);
+  AnalyticQuery rays;
+  rays.addBox(-half, half, {vec3(0.5f)});
+  VplSet set = onBox(half, 400, 1);
+  const VplSet others = onBox(half, 400, 2);
+  RayCounts counts;
+  updateCells(set, rays, {}, allSlots(set), 10, 1, counts);
+  SceneView still;
+  still.changes = {false, false, false, false, false};
+  for (uint32_t frame = 0; frame < 20; ++frame) {
+    std::vector<uint32_t> moved;
+    for (uint32_t slot = frame; slot < 400; slot += 29) {
+      set.slots[slot] = others.slots[(slot + 31 * frame) % 400];
+      set.slots[slot].id = 1000 * (frame + 1) + slot;
+      moved.push_back(slot);
+    }
+    updateCells(set, rays, still, moved, 10, 1, counts);
+  }
+  size_t owned = 0, points = 0;
+  for (uint32_t slot = 0; slot < 400; ++slot)
+    for (const CellPoint& p : set.cells[slot].points) {
+      bool nearest = true;
+      for (uint32_t other = 0; other < 400; ++other) {
+        const Vpl& v = set.slots[other];
+        const vec3 d = v.position - p.position;
+        nearest &= other == slot || !sameSide(p.normal, v.normal) || glm::dot(d, d) >= p.own2;
+      }
+      EXPECT_EQ(p.owned(), nearest);
+      owned += p.owned();
+      ++points;
+    }
+  EXPECT_GT(owned, points / 10);
+  EXPECT_LT(owned, points);
+}
+
+TEST(Cells, AThinStripHasItsOwnArea) {
+  // Paper 1, fig. 10: a clothes line; disks about its VPLs are many times as large as the line.
+  AnalyticQuery rays;
+  rays.addBox({-2, 1, -0.01f}, {2, 1.01f, 0.01f}, {vec3(0.5f)});
+  VplSet set;
+  for (int i = 0; i < 40; ++i)
+    set.slots.push_back(vplAt({-1.95f + 0.1f * float(i), 1.01f, 0}, {0, 1, 0}, uint64_t(i) + 1, {0, 4, 0}));
+  RayCounts counts;
+  updateCells(set, rays, {}, allSlots(set), 1, 1, counts);
+  double area = 0;
+  for (const Vpl& v : set.slots) area += v.area;
+  EXPECT_NEAR(area, 4 * 0.02, 0.4 * 4 * 0.02); // seen from above, only its upper face counts
+}
+
+TEST(Cells, DoNotReachThroughAWall) {
+  // Two rooms, a lamp in one of them, VPLs close to the wall on both sides.
+  AnalyticQuery rays;
+  rays.addBox({-2, 0, -1}, {2, 2, 1}, {vec3(0.5f)});
+  rays.addBox({-0.01f, 0, -1}, {0.01f, 2, 1}, {vec3(0.5f)});
+  LightSet lights;
+  lights.punctual.resize(1);
+  lights.punctual[0].position = {1, 1, 0};
+  VplSet set;
+  std::vector<Vpl*> all;
+  for (int i = 0; i < 20; ++i) // few on the dark side, many on the bright one
+    set.slots.push_back(vplAt({-0.05f, 0, -0.95f + 0.1f * float(i)}, {0, 1, 0}, uint64_t(i) + 1, {-1, 1, 0}));
+  Rng rng(1, Stream::Test, 2);
+  for (int i = 0; i < 400; ++i)
+    set.slots.push_back(
+        vplAt({0.05f + 1.9f * rng.next(), 0, 2 * rng.next() - 1}, {0, 1, 0}, uint64_t(i) + 100, {1, 1, 0.5f}));
+  RayCounts counts;
+  updateCells(set, rays, {}, allSlots(set), 1, 1, counts);
+  std::vector<const VplCell*> cells;
+  for (uint32_t i = 0; i < set.slots.size(); ++i) {
+    all.push_back(&set.slots[i]);
+    cells.push_back(&set.cells[i]);
+  }
+  estimateRadiance(all, rays, lights, 16, 1, 1, counts, RadianceUse::Rendering, cells);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(set.slots[i].radiance, vec3(0)) << i;
+  double bright = 0;
+  for (size_t i = 20; i < set.slots.size(); ++i) bright += luminance(set.slots[i].radiance);
+  EXPECT_GT(bright, 0);
+}
+
+} // namespace
+} // namespace lambent
