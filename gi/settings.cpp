@@ -30,7 +30,7 @@ class Table {
     constexpr float big = 1e30f;
     choice("vpl.source", &Settings::vpl, &VplSettings::source, {"smc", "ir", "mir", "tcas"},
            "who places virtual lights; named techniques set it");
-    whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 32768, "VPL slots N; time of every stage grows with it");
+    whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 65536, "VPL slots N; time of every stage grows with it");
     whole("smc.moves", &Settings::smc, &SmcSettings::moves, 0, 32768,
           "M_max, VPLs replaced per frame; each costs a shadow map");
     whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "candidate rays per VPL slot");

@@ -90,7 +90,7 @@ struct SettingRow {
   std::string name; // "smc.vpls"
   std::string help; // meaning, unit, cost, one line
   std::string defaultText;
-  std::string range; // "1..32768" or "maps|rays"
+  std::string range; // "1..65536" or "maps|rays"
 };
 const std::vector<SettingRow>& settingsTable();
 

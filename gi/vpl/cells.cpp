@@ -211,15 +211,20 @@ Standing standing(const VplSet& set) {
   return s;
 }
 
-/// Nearest connected VPL that is nearer to `p` than its own.
-void findRival(CellPoint& p, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
+/// Whether the VPL in slot `a` has the point rather than the one in `b`, by squared distances; of two VPLs in one place
+/// only one has it.
+bool nearer(float a2, uint32_t a, float b2, uint32_t b) { return a2 < b2 || (a2 == b2 && a < b); }
+
+/// Nearest connected VPL that is nearer to `p` than its own, the one in `own`.
+void findRival(CellPoint& p, uint32_t own, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
                const Connection& connected) {
   std::array<uint32_t, kNeighbours> index;
   std::array<float, kNeighbours> distance2;
   const size_t found = tree.nearest(p.position, kNeighbours, index, distance2);
   p.rival = kNone;
-  for (size_t j = 0; j < found && distance2[j] < p.own2; ++j) {
+  for (size_t j = 0; j < found && distance2[j] <= p.own2; ++j) {
     const uint32_t slot = vpls.slots[index[j]];
+    if (slot == own || !nearer(distance2[j], slot, p.own2, own)) continue;
     if (!sameSide(p.normal, set.slots[slot].normal) || !connected(set.slots[slot], p, distance2[j])) continue;
     p.rival = slot;
     p.rival2 = distance2[j];
@@ -286,7 +291,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Scene
       for (const Aabb& box : boxes) draw = draw || touches(box, vpl.position, kScales.back().radius * cell.radius);
       if (draw) {
         sampler.draw(vpl, std::max(radius, 1e-5f), viewersOf(vpl, set, vpls, tree), cell, count);
-        for (CellPoint& p : cell.points) findRival(p, set, vpls, tree, connected);
+        for (CellPoint& p : cell.points) findRival(p, slot, set, vpls, tree, connected);
         changed[slot] = 1;
       } else {
         near.clear(); // moved VPLs that can be nearer to a point than its own
@@ -298,13 +303,13 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Scene
         for (CellPoint& p : cell.points) {
           const bool before = p.owned();
           if (p.rival != kNone && (placed[p.rival] || !set.slots[p.rival].alive))
-            findRival(p, set, vpls, tree, connected);
+            findRival(p, slot, set, vpls, tree, connected);
           for (uint32_t other : near) {
             const Vpl& v = set.slots[other];
             const vec3 d = v.position - p.position;
             const float d2 = glm::dot(d, d);
-            if (d2 >= (p.owned() ? p.own2 : p.rival2) || !sameSide(p.normal, v.normal) || !connected(v, p, d2))
-              continue;
+            const bool wins = p.owned() ? nearer(d2, other, p.own2, slot) : nearer(d2, other, p.rival2, p.rival);
+            if (!wins || !sameSide(p.normal, v.normal) || !connected(v, p, d2)) continue;
             p.rival = other;
             p.rival2 = d2;
           }

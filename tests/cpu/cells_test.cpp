@@ -96,6 +96,23 @@ TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
   EXPECT_LT(owned, points);
 }
 
+TEST(Cells, TwoVplsInOnePlaceShareNothing) {
+  AnalyticQuery rays;
+  rays.addBox({-2, -1, -2}, {2, 1, 2}, {vec3(0.5f)});
+  VplSet once = onBox({2, 1, 2}, 300, 1), twice = once;
+  for (int i = 0; i < 300; ++i) {
+    twice.slots.push_back(once.slots[i]);
+    twice.slots.back().id += 1000;
+  }
+  RayCounts counts;
+  double areas[2] = {0, 0};
+  updateCells(once, rays, {}, allSlots(once), 10, 1, counts);
+  updateCells(twice, rays, {}, allSlots(twice), 10, 1, counts);
+  for (const Vpl& v : once.slots) areas[0] += v.area;
+  for (const Vpl& v : twice.slots) areas[1] += v.area;
+  EXPECT_NEAR(areas[1] / areas[0], 1, 0.1); // neighbours are half as many: cells reach less far
+}
+
 TEST(Cells, AThinStripHasItsOwnArea) {
   // Paper 1, fig. 10: a clothes line; disks about its VPLs are many times as large as the line.
   AnalyticQuery rays;
