@@ -22,7 +22,9 @@ enum class Stream : uint32_t {
   LightPaths, SamplerPaths,
   Test,
   Emitters,
-  Reference
+  Reference,
+  Photons,
+  Acceptance
 };
 
 /// A sequence of numbers addressed by what they are for.

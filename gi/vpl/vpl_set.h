@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/core/math.h"
+#include "gi/settings.h"
 
 #include <cstdint>
 #include <vector>
@@ -32,6 +33,7 @@ struct Vpl {
 
 struct VplSet {
   std::vector<Vpl> slots;
+  VplSource source = VplSource::Smc; // who filled the slots
   uint64_t nextId = 1;
   uint32_t frame = 0;               // iterations so far
   float visibleArea = 0;            // m², running estimate of the indirectly visible surface
