@@ -200,16 +200,20 @@ TEST(Photons, LightsAreChosenByPowerAndRangeIsKept) {
 }
 
 TEST(Photons, EverySubsetOfInterleavedSamplingIsEven) {
-  // Slots of one class, slot mod 16, must see all light: here the mean of a coordinate, which 43 random photons know to
-  // 0.044 and a run of the sequence to a fraction of that.
+  // Slots of one class, slot mod 16, must see all light. The mean of a coordinate over 43 random photons is known to
+  // 1/√(12·43) = 0.044; a run of the sequence must do better.
   constexpr uint32_t kPhotons = 683;
+  glm::dvec2 squares(0);
   for (uint32_t c = 0; c < 16; ++c) {
-    vec2 sum(0);
+    glm::dvec2 sum(0);
     int count = 0;
-    for (uint32_t i = c; i < kPhotons; i += 16, ++count) sum += photonNumbers(sequenceIndex(i, kPhotons), 5).direction;
-    EXPECT_NEAR(sum.x / float(count), 0.5f, 0.03f) << "class " << c;
-    EXPECT_NEAR(sum.y / float(count), 0.5f, 0.03f) << "class " << c;
+    for (uint32_t i = c; i < kPhotons; i += 16, ++count)
+      sum += glm::dvec2(photonNumbers(sequenceIndex(i, kPhotons), 5).direction);
+    const glm::dvec2 off = sum / double(count) - 0.5;
+    squares += off * off / 16.0;
   }
+  EXPECT_LT(std::sqrt(squares.x), 0.03);
+  EXPECT_LT(std::sqrt(squares.y), 0.03);
   std::vector<uint32_t> all;
   for (uint32_t i = 0; i < kPhotons; ++i) all.push_back(sequenceIndex(i, kPhotons));
   std::sort(all.begin(), all.end());
@@ -225,7 +229,9 @@ TEST(SystematicResampling, DrawsExpectedNumbers) {
     const std::vector<uint32_t> times = systematicMultiplicities(weights, 1000, u);
     EXPECT_EQ(std::accumulate(times.begin(), times.end(), 0u), 1000u);
     for (size_t i = 0; i < weights.size(); ++i) {
-      if (weights[i] == 0) EXPECT_EQ(times[i], 0u);
+      if (weights[i] == 0) {
+        EXPECT_EQ(times[i], 0u);
+      }
       EXPECT_LT(std::abs(double(times[i]) - 1000 * double(weights[i]) / total), 1.001);
     }
   }
@@ -256,7 +262,7 @@ test::Mean truth(const World& world, int bounces) {
   std::vector<Vpl*> all;
   for (Vpl& v : receivers) all.push_back(&v);
   RayCounts counts;
-  for (uint32_t run = 0; run < 32; ++run) {
+  for (uint32_t run = 0; run < 64; ++run) {
     double mean = 0;
     for (size_t i = 0; i < receivers.size(); ++i) receivers[i].id = 1 + run * receivers.size() + i;
     for (const auto& [depth, sign] : {std::pair{bounces + 1, 1.0}, std::pair{1, -1.0}}) {
@@ -269,7 +275,11 @@ test::Mean truth(const World& world, int bounces) {
 }
 
 TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
+  // Seen: a part of the floor at some distance from block and walls, where no VPL comes so close that the mean over
+  // seeds has a heavy tail.
   World world(GetParam());
+  world.view.camera = cameraAt({0.5f, 2.5f, 0.8f}, {0, -1, -0.001f});
+  world.view.camera.fovY = 0.5f;
   world.view.camera.width = 8;
   world.view.camera.height = 5;
   const int bounces = GetParam() == VplSource::Tcas ? 1 : 3;
@@ -278,7 +288,8 @@ TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
   exact.disk = 0;
   std::vector<double> means;
   RayCounts counts;
-  for (uint32_t seed = 1; seed <= 60; ++seed) {
+  const uint32_t seeds = GetParam() == VplSource::Mir ? 60 : 300;
+  for (uint32_t seed = 1; seed <= seeds; ++seed) {
     world.set = {};
     world.update(seed);
     double mean = 0;
@@ -287,10 +298,9 @@ TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
     means.push_back(mean / 40);
   }
   const test::Mean m = test::meanOf(means), t = truth(world, bounces);
-  RecordProperty("share", std::to_string(m.mean / t.mean));
-  EXPECT_LT(m.error, 0.01 * t.mean); // so the bound below means something
-  EXPECT_LT(t.error, 0.003 * t.mean);
-  // mir's density loses some of its neighbours at edges: 1 % allowed.
+  EXPECT_LT(m.error, 0.004 * t.mean); // so the bound below means something
+  EXPECT_LT(t.error, 0.001 * t.mean);
+  // mir's density loses some of its neighbours at edges (measured: -0.5 % with these 16 k candidates): 1 % allowed.
   const double bias = GetParam() == VplSource::Mir ? 0.01 * t.mean : 0;
   EXPECT_LT(std::abs(m.mean - t.mean), bias + test::kDeviateLimit * std::hypot(m.error, t.error))
       << m.mean / t.mean << " +- " << m.error / t.mean;
@@ -331,11 +341,19 @@ TEST_P(Comparator, ListsTheSlotsThatMoved) {
       const bool listed = std::binary_search(c.movedSlots.begin(), c.movedSlots.end(), s);
       EXPECT_EQ(listed, b.alive && (!a.alive || a.position != b.position || a.normal != b.normal)) << "slot " << s;
       EXPECT_EQ(listed, b.alive && a.id != b.id) << "slot " << s;
-      if (b.alive) EXPECT_TRUE(b.valid && (b.instance == 10 || b.instance == 11)) << "slot " << s;
+      if (b.alive) {
+        EXPECT_TRUE(b.valid && (b.instance == 10 || b.instance == 11)) << "slot " << s;
+      }
     }
-    if (GetParam() == VplSource::Mir) EXPECT_EQ(c.movedSlots.size(), 256u); // each frame on its own
-    if (GetParam() != VplSource::Mir && frame != 1) EXPECT_TRUE(c.movedSlots.empty());
-    if (frame == 1) EXPECT_GT(c.movedSlots.size(), 200u);
+    if (GetParam() == VplSource::Mir) {
+      EXPECT_EQ(c.movedSlots.size(), 256u);
+    } // each frame on its own
+    if (GetParam() != VplSource::Mir && frame != 1) {
+      EXPECT_TRUE(c.movedSlots.empty());
+    }
+    if (frame == 1) {
+      EXPECT_GT(c.movedSlots.size(), 200u);
+    }
   }
 }
 
@@ -377,7 +395,9 @@ TEST_P(Comparator, FewVplsAndChangingNumbers) {
     EXPECT_GE(world.update().alive, 1u) << n;
     ASSERT_EQ(world.set.slots.size(), size_t(n));
     for (const Vpl& v : world.set.slots)
-      if (v.alive) EXPECT_TRUE(isFinite(v.radiance) && std::isfinite(v.area) && v.area > 0) << n;
+      if (v.alive) {
+        EXPECT_TRUE(isFinite(v.radiance) && std::isfinite(v.area) && v.area > 0) << n;
+      }
   }
 }
 
@@ -393,7 +413,9 @@ TEST_P(Comparator, StartsAfreshAfterAnotherSource) {
   for (size_t i = 0; i < fresh.set.slots.size(); ++i) {
     EXPECT_EQ(changed.set.slots[i].position, fresh.set.slots[i].position);
     EXPECT_EQ(changed.set.slots[i].radiance, fresh.set.slots[i].radiance);
-    if (changed.set.slots[i].alive) EXPECT_GE(changed.set.slots[i].id, used);
+    if (changed.set.slots[i].alive) {
+      EXPECT_GE(changed.set.slots[i].id, used);
+    }
   }
   changed.vpl.source = VplSource::Smc; // and back: all slots are new to the maps
   EXPECT_EQ(changed.update().movedSlots.size(), 256u);
