@@ -274,30 +274,39 @@ test::Mean truth(const World& world, int bounces) {
   return test::meanOf(estimates);
 }
 
-TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
-  // Seen: a part of the floor at some distance from block and walls, where no VPL comes so close that the mean over
-  // seeds has a heavy tail.
-  World world(GetParam());
+/// A part of the floor at some distance from block and walls, where no VPL comes so close that the mean over seeds has
+/// a heavy tail.
+void lookAtTheFloor(World& world) {
   world.view.camera = cameraAt({0.5f, 2.5f, 0.8f}, {0, -1, -0.001f});
   world.view.camera.fovY = 0.5f;
   world.view.camera.width = 8;
   world.view.camera.height = 5;
-  const int bounces = GetParam() == VplSource::Tcas ? 1 : 3;
-  world.settings.bounces = bounces;
+}
+
+/// Mean irradiance over the picture from the VPLs of independent seeds, a ray for every pair, without the gather's
+/// blur.
+test::Mean meanOverSeeds(World& world, uint32_t seeds) {
   GatherSettings exact;
   exact.disk = 0;
   std::vector<double> means;
   RayCounts counts;
-  const uint32_t seeds = GetParam() == VplSource::Mir ? 60 : 300;
   for (uint32_t seed = 1; seed <= seeds; ++seed) {
     world.set = {};
     world.update(seed);
     double mean = 0;
     for (const vec3& e : gatherByRays(world.rays, world.view.camera, world.set.slots, exact, counts))
-      mean += double(e.x);
-    means.push_back(mean / 40);
+      mean += double(e.x) / 40;
+    means.push_back(mean);
   }
-  const test::Mean m = test::meanOf(means), t = truth(world, bounces);
+  return test::meanOf(means);
+}
+
+TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
+  World world(GetParam());
+  lookAtTheFloor(world);
+  const int bounces = GetParam() == VplSource::Tcas ? 1 : 3;
+  world.settings.bounces = bounces;
+  const test::Mean m = meanOverSeeds(world, GetParam() == VplSource::Mir ? 60 : 300), t = truth(world, bounces);
   EXPECT_LT(m.error, 0.004 * t.mean); // so the bound below means something
   EXPECT_LT(t.error, 0.001 * t.mean);
   // mir's density loses some of its neighbours at edges (measured: -0.5 % with these 16 k candidates): 1 % allowed.
@@ -433,6 +442,24 @@ TEST(InstantRadiosity, PhotonsThatLeaveTheSceneLeaveSlotsEmpty) {
   for (size_t i = 128; i < 256; ++i) EXPECT_FALSE(world.set.slots[i].alive);
 }
 
+TEST(InstantRadiosity, FurtherBouncesAreCosineDistributed) {
+  // From any point of a sphere, cosine-distributed rays meet it uniformly: heights are uniform after the first bounce.
+  World world(VplSource::Ir);
+  world.rays = {};
+  world.rays.addSphere({0, 0, 0}, 2, {vec3(0.5f)});
+  world.view.boundsWorld = {vec3(-2), vec3(2)};
+  world.lights.punctual[0].type = LightType::Spot;
+  world.lights.punctual[0].position = {0, 0, 0};
+  world.lights.punctual[0].direction = {0, -1, 0};
+  world.lights.punctual[0].outerConeCos = 0.95f;
+  world.settings.vpls = 30000;
+  world.update();
+  std::vector<double> observed(20, 0), expected(20, 1000);
+  for (size_t i = 10000; i < 30000; ++i) ++observed[size_t((world.set.slots[i].position.y + 2) / 4 * 19.9999f)];
+  EXPECT_LT(test::chiSquareDeviate(observed, expected), test::kDeviateLimit);
+  for (size_t i = 0; i < 10000; ++i) EXPECT_LT(world.set.slots[i].position.y, -1.89f);
+}
+
 TEST(InstantRadiosity, TakesNoNoticeOfTheCamera) {
   World world(VplSource::Ir);
   world.update();
@@ -468,6 +495,25 @@ TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
   // Photons do not care for the picture.
   std::sort(brought.begin(), brought.end());
   EXPECT_LT(brought[brought.size() * 9 / 10], 3 * brought[brought.size() / 10]);
+}
+
+TEST(AdaptiveSampling, AnyNumberOfStepsBringsTheSameLight) {
+  // Chains that started anywhere would bring too little or too much light until they forget it. Most of the lamps'
+  // light is out of sight here.
+  World world(VplSource::Tcas);
+  lookAtTheFloor(world);
+  world.rays.addBox({20, 0, -3}, {26, 3, 3}, {vec3(0.6f)});
+  world.view.boundsWorld.hi.x = 26;
+  world.lights.punctual.push_back(lampAt({23, 2, 1}, 20));
+  world.settings.bounces = 1;
+  const test::Mean t = truth(world, 1);
+  for (int steps : {0, 1, 4}) {
+    world.vpl.tcasIterations = steps;
+    const test::Mean m = meanOverSeeds(world, 300);
+    EXPECT_LT(m.error, 0.01 * t.mean);
+    EXPECT_LT(std::abs(m.mean - t.mean), test::kDeviateLimit * std::hypot(m.error, t.error))
+        << steps << " steps: " << m.mean / t.mean << " +- " << m.error / t.mean;
+  }
 }
 
 TEST(AdaptiveSampling, PrefersWhatThePictureCouldSee) {
