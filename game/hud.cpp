@@ -87,8 +87,8 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   ImGui::PushItemWidth(-110);
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
-  std::string technique = "smc";
-  choose("technique", {"smc"}, technique);
+  std::string technique = techniqueOf(gi.settings());
+  if (choose("technique", techniqueNames(), technique)) applyTechnique(gi.settings(), technique);
   if (choose("preset", presetNames(), model.preset)) applyPreset(gi.settings(), model.preset);
   ImGui::TextWrapped("plan: %s", stats.plan.c_str());
 

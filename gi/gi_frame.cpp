@@ -155,7 +155,7 @@ VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& light
                                     const std::function<void(int, int)>& progress) {
   VplUpdateLog log;
   const VplChanges changes =
-      placeVpls(settings.vpl.source, vpls, {view, *rays, lightSet, settings.smc, seed}, log, progress);
+      placeVpls(settings.vpl.source, vpls, {view, *rays, lightSet, settings.smc, seed, settings.vpl}, log, progress);
   for (StageTime& row : log.stages) stats.stages.push_back(std::move(row));
   stats.raysPoints = log.points;
   stats.raysValidation = log.validation;

@@ -30,6 +30,10 @@ class Table {
     constexpr float big = 1e30f;
     choice("vpl.source", &Settings::vpl, &VplSettings::source, {"smc", "ir", "mir", "tcas"},
            "who places virtual lights; named techniques set it");
+    whole("vpl.mirCandidates", &Settings::vpl, &VplSettings::mirCandidates, 1, 1024,
+          "mir: light paths per VPL slot to choose from; its time and memory grow with it");
+    whole("vpl.tcasIterations", &Settings::vpl, &VplSettings::tcasIterations, 0, 1024,
+          "tcas: Metropolis-Hastings iterations per VPL and frame, a ray each");
     whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 65536, "VPL slots N; time of every stage grows with it");
     whole("smc.moves", &Settings::smc, &SmcSettings::moves, 0, 32768,
           "M_max, VPLs replaced per frame; each costs a shadow map");
@@ -223,5 +227,24 @@ void applyPreset(Settings& settings, const std::string& name) {
   }
   throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
 }
+
+const std::vector<std::string>& techniqueNames() {
+  static const std::vector<std::string> names{"smc", "ir", "mir", "tcas"}; // in the order of VplSource
+  return names;
+}
+
+void applyTechnique(Settings& settings, const std::string& name) {
+  for (size_t i = 0; i < techniqueNames().size(); ++i) {
+    if (techniqueNames()[i] != name) continue;
+    settings.vpl.source = VplSource(i);
+    return;
+  }
+  const std::string near = nearestName(name, techniqueNames());
+  throw InputError("--technique " + name,
+                   "no such technique (" + (near.empty() ? "smc, ir, mir or tcas" : "did you mean " + near + "?") +
+                       ")");
+}
+
+const std::string& techniqueOf(const Settings& settings) { return techniqueNames()[size_t(settings.vpl.source)]; }
 
 } // namespace lambent

@@ -22,6 +22,8 @@ enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | gl
 
 struct VplSettings {
   VplSource source = VplSource::Smc;
+  int mirCandidates = 256; // mir: paths per VPL slot to choose from (paper 1, 5.1: 256:1)
+  int tcasIterations = 16; // tcas: Metropolis–Hastings iterations per VPL and frame (paper 1, 5.1)
 };
 
 struct SmcSettings {
@@ -102,6 +104,13 @@ const std::vector<std::string>& presetNames();
 /// Sets what the preset is about (numbers of VPLs, paths, map texels, gather) and leaves everything else. Throws
 /// InputError that names the presets.
 void applyPreset(Settings& settings, const std::string& name);
+
+/// Names of the techniques: choices of settings that belong together (gi/README.md, "Comparators").
+const std::vector<std::string>& techniqueNames();
+/// Throws InputError that gives the nearest name, or all of them.
+void applyTechnique(Settings& settings, const std::string& name);
+/// The technique that the settings amount to.
+const std::string& techniqueOf(const Settings& settings);
 
 /// Text of the present value.
 std::string settingText(const Settings& settings, std::string_view name);

@@ -24,7 +24,9 @@ enum class Stream : uint32_t {
   Test,
   Emitters,
   Reference,
-  Cells
+  Cells,
+  Photons,
+  Acceptance
 };
 
 /// A sequence of numbers addressed by what they are for.

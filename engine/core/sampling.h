@@ -32,6 +32,8 @@ class Distribution {
   size_t size() const { return cdf_.size(); }
   /// Index with probability weight/total, never one of weight zero. Requires !empty().
   uint32_t sample(float u) const;
+  /// Share of the total before entry i: the least u that sample() answers with it. Requires !empty().
+  float cumulative(uint32_t i) const { return i ? float(cdf_[i - 1] / cdf_.back()) : 0; }
   float probability(uint32_t i) const { return empty() ? 0 : float((cdf_[i] - (i ? cdf_[i - 1] : 0)) / cdf_.back()); }
 
  private:

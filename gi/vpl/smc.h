@@ -117,6 +117,7 @@ struct VplUpdate {
   const LightSet& lights;
   const SmcSettings& settings;
   uint32_t seed = 1;
+  VplSettings vpl = {}; // of the comparators (gi/vpl/sources.h)
 };
 
 /// Times and rays of one update, for the frame log.

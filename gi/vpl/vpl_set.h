@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/core/math.h"
+#include "gi/settings.h"
 
 #include <cstdint>
 #include <vector>
@@ -49,6 +50,7 @@ struct VplCell {
 struct VplSet {
   std::vector<Vpl> slots;
   std::vector<VplCell> cells; // by slot; empty with densities by nearest neighbours
+  VplSource source = VplSource::Smc; // who filled the slots
   uint64_t nextId = 1;
   uint32_t frame = 0;               // iterations so far
   float visibleArea = 0;            // m², running estimate of the indirectly visible surface

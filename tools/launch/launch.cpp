@@ -153,10 +153,10 @@ void addDefaultLight(Stage& stage, const SceneView& view) {
 }
 
 void chooseSettings(Stage& stage, const LaunchOptions& options) {
-  if (options.technique != "smc") throw InputError("--technique " + options.technique, "no such technique (smc)");
   if (!options.preset.empty()) applyPreset(stage.settings, options.preset);
   if (stage.shot)
     for (const auto& [name, value] : stage.shot->set) applySetting(stage.settings, name, value);
+  if (!options.technique.empty()) applyTechnique(stage.settings, options.technique);
   for (const std::string& text : options.set) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
@@ -174,7 +174,7 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--target", options.target, "look at x,y,z");
   command.add_option("--fov", options.fovDegrees, "vertical field of view, degrees");
   command.add_option("--size", options.size, "WIDTHxHEIGHT");
-  command.add_option("--technique", options.technique, "how indirect light is found: smc");
+  command.add_option("--technique", options.technique, "who places virtual lights: smc (default), ir, mir or tcas");
   command.add_option("--preset", options.preset, "low, medium (default), high or ultra; --set changes single settings");
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);

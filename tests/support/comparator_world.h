@@ -1,0 +1,61 @@
+// A small world of analytic shapes with a set of virtual lights that one of the techniques places.
+#pragma once
+
+#include "engine/trace/analytic_query.h"
+#include "gi/vpl/sources.h"
+
+namespace lambent::test {
+
+inline CameraView cameraAt(const vec3& eye, const vec3& forward) {
+  CameraView c;
+  const vec3 z = -glm::normalize(forward), x = glm::normalize(glm::cross(vec3(0, 1, 0), z)), y = glm::cross(z, x);
+  c.worldFromView = mat4(vec4(x, 0), vec4(y, 0), vec4(z, 0), vec4(eye, 1));
+  c.fovY = 0.8f;
+  return c;
+}
+
+inline LightView lampAt(const vec3& position, float intensity) {
+  LightView l;
+  l.position = position;
+  l.intensity = vec3(intensity);
+  return l;
+}
+
+/// A world of analytic shapes and a set to fill. Starts as a closed room of 6×3×6 m with a block, lit by a lamp.
+struct ComparatorWorld {
+  AnalyticQuery rays;
+  LightSet lights;
+  std::vector<InstanceView> instances{4};
+  SceneView view;
+  SmcSettings settings;
+  VplSettings vpl;
+  VplSet set;
+
+  explicit ComparatorWorld(VplSource source) {
+    rays.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.7f, 0.6f, 0.5f)});
+    rays.addBox({-2.2f, 0, -1}, {-1.2f, 1.5f, 0}, {vec3(0.4f)});
+    lights.punctual = {lampAt({1.5f, 2, 1}, 5)};
+    for (uint32_t i = 0; i < instances.size(); ++i) instances[i].id = 10 + i; // ids are not indices
+    view.instances = instances;
+    view.camera = cameraAt({0, 1.5f, 2.5f}, {0, -0.7f, -1});
+    view.boundsWorld = {vec3(-3, 0, -3), vec3(3, 3, 3)};
+    settings.vpls = 256;
+    settings.points = 512;
+    settings.warmup = 5;
+    vpl.source = source;
+    vpl.mirCandidates = 64;
+  }
+  ComparatorWorld(const ComparatorWorld&) = delete;
+  VplChanges update(uint32_t seed = 1) {
+    VplUpdateLog log;
+    return placeVpls(vpl.source, set, {view, rays, lights, settings, seed, vpl}, log);
+  }
+  double power() const { // Σ radiance · area, W/sr
+    double sum = 0;
+    for (const Vpl& v : set.slots)
+      if (v.alive) sum += double(v.radiance.x) * v.area;
+    return sum;
+  }
+};
+
+} // namespace lambent::test
