@@ -7,7 +7,7 @@
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
 #include "gi/effects.h"
-#include "gi/measure/shadow_agreement.h"
+#include "gi/render/shadow_agreement.h"
 #include "gi/settings.h"
 #include "gi/vpl/vpl_set.h"
 

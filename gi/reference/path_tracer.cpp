@@ -5,6 +5,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "gi/vpl/light_paths.h"
+#include "gi/vpl/smc.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,19 +16,13 @@ namespace {
 
 constexpr size_t kBlockPixels = 16; // small pictures still keep all threads busy
 
-/// Surfaces at the centres of pixels [begin, end), rays starting at the near plane as the rasteriser's do.
+/// Surfaces at the centres of pixels [begin, end).
 std::vector<SurfaceHit> primaryHits(const RayQuery& rays, const CameraView& camera, size_t begin, size_t end) {
-  std::vector<Ray> block;
-  const vec3 forward = -vec3(camera.worldFromView[2]);
-  for (size_t i = begin; i < end; ++i) {
-    const float u = (float(i % camera.width) + 0.5f) / float(camera.width);
-    const float v = (float(i / camera.width) + 0.5f) / float(camera.height);
-    const CameraRay r = cameraRay(camera, u, v);
-    block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction});
-  }
-  std::vector<SurfaceHit> hits(block.size());
-  rays.closest(block, hits);
-  return hits;
+  std::vector<vec2> centres;
+  for (size_t i = begin; i < end; ++i)
+    centres.push_back({(float(i % camera.width) + 0.5f) / float(camera.width),
+                       (float(i / camera.width) + 0.5f) / float(camera.height)});
+  return surfacesAt(rays, camera, centres);
 }
 
 /// One path's present vertex. `weight` turns irradiance/π here into irradiance/π at the primary hit.
@@ -151,6 +146,15 @@ class BlockTracer {
   std::vector<float> lightWeights_;
 };
 
+void addTo(PixelSums& p, const Sample& s) {
+  const glm::dvec3 direct(s.direct), indirect(s.indirect);
+  p.direct += direct;
+  p.directSquares += direct * direct;
+  p.indirect += indirect;
+  p.indirectSquares += indirect * indirect;
+  p.product += direct * indirect;
+}
+
 struct Estimate {
   double mean = 0, variance = double(kInfinity); // the variance is the mean's
 };
@@ -182,19 +186,29 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
       for (uint32_t s = 0; s < count; ++s) {
         const std::span<const Sample> samples = tracer.trace(sums.samples + s, perBlock[block]);
         for (size_t i = begin; i < end; ++i) {
-          PixelSums& p = sums.pixels[i];
-          const glm::dvec3 direct(samples[i - begin].direct), indirect(samples[i - begin].indirect);
-          p.direct += direct;
-          p.directSquares += direct * direct;
-          p.indirect += indirect;
-          p.indirectSquares += indirect * indirect;
-          p.product += direct * indirect;
+          addTo(sums.pixels[i], samples[i - begin]);
         }
       }
     }
   });
   sums.samples += count;
   for (const RayCounts& c : perBlock) counts += c;
+}
+
+std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, const ReferenceInputs& in, uint32_t samples,
+                                      RayCounts& counts) {
+  std::vector<PixelSums> sums(surfaces.size());
+  constexpr size_t kGrain = 8;
+  std::vector<RayCounts> perBlock((surfaces.size() + kGrain - 1) / kGrain);
+  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+    BlockTracer tracer(in, begin, surfaces.subspan(begin, end - begin));
+    for (uint32_t s = 0; s < samples; ++s) {
+      const std::span<const Sample> values = tracer.trace(s, perBlock[begin / kGrain]);
+      for (size_t i = begin; i < end; ++i) addTo(sums[i], values[i - begin]);
+    }
+  });
+  for (const RayCounts& c : perBlock) counts += c;
+  return sums;
 }
 
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {

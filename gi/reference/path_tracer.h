@@ -38,6 +38,12 @@ struct ReferenceSums {
 /// Takes `count` more samples of every pixel. The sums have the camera's size.
 void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, RayCounts& counts);
 
+/// `samples` samples at each of some surfaces (surfacesAt), as at the pixels of a picture. Random numbers belong to the
+/// surface's index and the sample, not to a frame: when the camera moves a little the noise of a tracked pixel stays
+/// nearly the same, so differences between consecutive frames are known far better than the values.
+std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, const ReferenceInputs& in, uint32_t samples,
+                                      RayCounts& counts);
+
 /// The same meanings as the buffers of GiFrame.
 enum class ReferenceBuffer { Beauty, Direct, Indirect, Irradiance };
 

@@ -11,53 +11,63 @@ float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area,
   return settings.clamp > 0 ? glm::min(g, settings.clamp) : g;
 }
 
-std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
-                               const GatherSettings& settings, RayCounts& counts) {
-  const size_t width = size_t(camera.width), height = size_t(camera.height);
-  std::vector<vec3> irradiance(width * height, vec3(0));
-  std::vector<RayCounts> perRow(height);
-  parallelFor(height, 1, [&](size_t begin, size_t end) {
-    std::vector<Ray> primary(width), segments;
-    std::vector<SurfaceHit> hits(width);
+std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points) {
+  std::vector<Ray> block;
+  const vec3 forward = -vec3(camera.worldFromView[2]);
+  for (const vec2& p : points) {
+    const CameraRay r = cameraRay(camera, p.x, p.y);
+    block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction});
+  }
+  std::vector<SurfaceHit> hits(block.size());
+  rays.closest(block, hits);
+  return hits;
+}
+
+std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
+                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts) {
+  constexpr size_t kGrain = 16;
+  std::vector<vec3> irradiance(surfaces.size(), vec3(0));
+  std::vector<RayCounts> perBlock((surfaces.size() + kGrain - 1) / kGrain);
+  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+    std::vector<Ray> segments;
     std::vector<vec3> values;
     std::vector<uint8_t> blocked;
-    for (size_t y = begin; y < end; ++y) {
-      for (size_t x = 0; x < width; ++x) {
-        const CameraRay r = cameraRay(camera, (float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
-        primary[x] = {r.origin, r.direction};
+    for (size_t i = begin; i < end; ++i) {
+      const SurfaceHit& h = surfaces[i];
+      if (!h.valid()) continue;
+      const vec3 origin = offsetPoint(h.position, h.geometricNormal);
+      segments.clear();
+      values.clear();
+      for (const Vpl& v : vpls) {
+        if (!v.alive || maxComponent(v.radiance) <= 0) continue;
+        const vec3 d = v.position - h.position;
+        const float r2 = glm::dot(d, d);
+        if (!(r2 > 0)) continue;
+        const float inverse = 1 / std::sqrt(r2);
+        const float g =
+            geometryTerm(glm::dot(d, h.normal) * inverse, -glm::dot(d, v.normal) * inverse, r2, v.area, settings);
+        if (g <= 0) continue;
+        segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal)));
+        values.push_back(v.radiance * (v.area * g));
       }
-      rays.closest(primary, hits);
-      perRow[y].closest += width;
-      for (size_t x = 0; x < width; ++x) {
-        const SurfaceHit& h = hits[x];
-        if (!h.valid()) continue;
-        const vec3 origin = offsetPoint(h.position, h.geometricNormal);
-        segments.clear();
-        values.clear();
-        for (const Vpl& v : vpls) {
-          if (!v.alive || maxComponent(v.radiance) <= 0) continue;
-          const vec3 d = v.position - h.position;
-          const float r2 = glm::dot(d, d);
-          if (!(r2 > 0)) continue;
-          const float inverse = 1 / std::sqrt(r2);
-          const float g =
-              geometryTerm(glm::dot(d, h.normal) * inverse, -glm::dot(d, v.normal) * inverse, r2, v.area, settings);
-          if (g <= 0) continue;
-          segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal)));
-          values.push_back(v.radiance * (v.area * g));
-        }
-        blocked.resize(segments.size());
-        rays.occluded(segments, blocked);
-        perRow[y].occlusion += segments.size();
-        vec3 sum(0);
-        for (size_t j = 0; j < values.size(); ++j)
-          if (!blocked[j]) sum += values[j];
-        irradiance[y * width + x] = sum;
-      }
+      blocked.resize(segments.size());
+      rays.occluded(segments, blocked);
+      perBlock[begin / kGrain].occlusion += segments.size();
+      for (size_t j = 0; j < values.size(); ++j)
+        if (!blocked[j]) irradiance[i] += values[j];
     }
   });
-  for (const RayCounts& c : perRow) counts += c;
+  for (const RayCounts& c : perBlock) counts += c;
   return irradiance;
+}
+
+std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
+                               const GatherSettings& settings, RayCounts& counts) {
+  std::vector<vec2> centres;
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
+  counts.closest += centres.size();
+  return irradianceByRays(rays, surfacesAt(rays, camera, centres), vpls, settings, counts);
 }
 
 } // namespace lambent

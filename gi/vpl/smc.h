@@ -138,6 +138,14 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
                                const GatherSettings& settings, RayCounts& counts);
 
+/// What the camera sees at points (u, v) of its picture, v down, in [0, 1]. Rays start at the near plane, as the
+/// rasteriser's.
+std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points);
+
+/// Irradiance at surfaces from all VPLs, a ray for every pair; zero where there is none.
+std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
+                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts);
+
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
 /// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);

@@ -26,6 +26,7 @@ void declareRecord(CLI::App& app);
 void declareAccuracy(CLI::App& app);
 void declareReference(CLI::App& app);
 void declareCompare(CLI::App& app);
+void declareStability(CLI::App& app);
 void declareContent(CLI::App& app);
 void declareSettings(CLI::App& app);
 

@@ -20,6 +20,7 @@ int runProgram(int argc, char** argv) {
   declareAccuracy(app);
   declareReference(app);
   declareCompare(app);
+  declareStability(app);
   declareContent(app);
   declareSettings(app);
   try {

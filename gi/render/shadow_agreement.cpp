@@ -1,4 +1,4 @@
-#include "gi/measure/shadow_agreement.h"
+#include "gi/render/shadow_agreement.h"
 
 #include "engine/core/parallel.h"
 #include "shaders/shared/shadow_lookup.h"

@@ -1,0 +1,70 @@
+#include "gi/measure/stability.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+float toneMappedLuminance(const vec3& radiance, float exposure) {
+  const float y = exposure * luminance(radiance);
+  return y / (1 + y);
+}
+
+StabilityErrors stabilityErrors(const PixelSeries& technique, const PixelSeries& truth,
+                                std::span<const uint32_t> pixels) {
+  CHECK_EQ(technique.size(), truth.size());
+  StabilityErrors out;
+  double error = 0, change = 0, bias = 0;
+  size_t changes = 0;
+  for (size_t t = 0; t < truth.size(); ++t)
+    for (uint32_t p : pixels) {
+      const double e = double(technique[t][p]) - truth[t][p];
+      if (std::isnan(e)) continue;
+      error += std::abs(e);
+      bias += e;
+      ++out.count;
+      if (t == 0) continue;
+      const double before = double(technique[t - 1][p]) - truth[t - 1][p];
+      if (std::isnan(before)) continue;
+      change += std::abs(e - before);
+      ++changes;
+    }
+  if (out.count) out.error = error / double(out.count), out.bias = bias / double(out.count);
+  if (changes) out.change = change / double(changes);
+  return out;
+}
+
+Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::span<const uint32_t> pixels,
+                  std::span<const size_t> steps, float least) {
+  CHECK_EQ(technique.size(), truth.size());
+  std::vector<double> frames;
+  for (size_t s = 0; s < steps.size(); ++s) {
+    const size_t begin = steps[s], end = s + 1 < steps.size() ? steps[s + 1] : truth.size();
+    if (begin == 0 || begin >= end) continue;
+    const size_t settled = std::max<size_t>(1, (end - begin) / 4);
+    for (uint32_t p : pixels) {
+      if (!(std::abs(truth[begin][p] - truth[begin - 1][p]) >= least)) continue;
+      double last = 0;
+      for (size_t t = end - settled; t < end; ++t) last += technique[t][p] / double(settled);
+      const double before = technique[begin - 1][p], whole = last - before;
+      if (!(std::abs(whole) > 0)) { // it does not follow at all
+        frames.push_back(double(end - begin));
+        continue;
+      }
+      size_t t = begin;
+      while (t < end && (technique[t][p] - before) / whole < 0.9) ++t;
+      frames.push_back(double(t - begin));
+    }
+  }
+  Latency out;
+  out.count = frames.size();
+  if (frames.empty()) return out;
+  std::sort(frames.begin(), frames.end());
+  out.median = frames[frames.size() / 2];
+  out.worstTenth = frames[std::min(frames.size() - 1, frames.size() * 9 / 10)];
+  return out;
+}
+
+} // namespace lambent

@@ -1,0 +1,130 @@
+// Errors over time on series with known answers, and truth at tracked pixels.
+#include "engine/core/rng.h"
+#include "engine/trace/embree_query.h"
+#include "gi/measure/stability.h"
+#include "gi/reference/path_tracer.h"
+#include "gi/vpl/smc.h"
+#include "tests/support/hand_scene.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lambent {
+namespace {
+
+TEST(Stability, ReinhardOfExposedLuminance) {
+  EXPECT_FLOAT_EQ(toneMappedLuminance(vec3(0.5f), 2), 0.5f);
+  EXPECT_EQ(toneMappedLuminance(vec3(0), 2), 0);
+}
+
+TEST(Stability, ErrorAndChangeOfAKnownSeries) {
+  const PixelSeries truth{{0.5f, 0.1f}, {0.6f, 0.1f}, {0.6f, 0.1f}};
+  const PixelSeries technique{{0.6f, 0.1f}, {0.6f, 0.3f}, {0.5f, 0.1f}}; // E: .1 0 | 0 .2 | -.1 0
+  const uint32_t both[] = {0, 1}, second[] = {1};
+  const StabilityErrors e = stabilityErrors(technique, truth, both);
+  EXPECT_NEAR(e.error, 0.4 / 6, 1e-6);
+  EXPECT_NEAR(e.bias, 0.2 / 6, 1e-6);
+  EXPECT_NEAR(e.change, (0.1 + 0.2 + 0.1 + 0.2) / 4, 1e-6);
+  EXPECT_EQ(e.count, 6u);
+  EXPECT_NEAR(stabilityErrors(technique, truth, second).change, 0.2, 1e-6);
+}
+
+TEST(Stability, ErrorThatStaysIsNoChange) {
+  PixelSeries truth, technique;
+  for (int t = 0; t < 50; ++t) {
+    truth.push_back({float(t) / 100});
+    technique.push_back({float(t) / 100 + 0.125f});
+  }
+  const uint32_t pixel[] = {0};
+  const StabilityErrors e = stabilityErrors(technique, truth, pixel);
+  EXPECT_NEAR(e.error, 0.125, 1e-6);
+  EXPECT_NEAR(e.change, 0, 1e-6);
+}
+
+TEST(Stability, PixelsWithoutSurfaceAreLeftOut) {
+  const float none = std::nanf("");
+  const PixelSeries truth{{0.5f}, {none}, {0.5f}, {0.5f}}, technique{{0.6f}, {none}, {0.9f}, {0.8f}};
+  const uint32_t pixel[] = {0};
+  const StabilityErrors e = stabilityErrors(technique, truth, pixel);
+  EXPECT_EQ(e.count, 3u);
+  EXPECT_NEAR(e.error, 0.8 / 3, 1e-6);
+  EXPECT_NEAR(e.change, 0.1, 1e-6); // only from frame 2 to 3
+}
+
+TEST(Stability, LatencyOfAnExponentialApproach) {
+  // 1 − r^(n+1) of the step is made n frames after it: 90 % at n = ⌈ln 0.1/ln r⌉ − 1.
+  const size_t step = 5, frames = 205;
+  const uint32_t pixel[] = {0};
+  const size_t steps[] = {step};
+  for (const auto& [r, expected] : std::vector<std::pair<double, double>>{{0.0, 0}, {0.5, 3}, {0.9, 21}}) {
+    PixelSeries truth, technique;
+    for (size_t t = 0; t < frames; ++t) {
+      truth.push_back({t < step ? 0.1f : 0.6f});
+      technique.push_back({t < step ? 0.2f : float(0.2 + 0.4 * (1 - std::pow(r, double(t - step + 1))))});
+    }
+    const Latency l = latency90(technique, truth, pixel, steps);
+    EXPECT_EQ(l.median, expected) << r;
+    EXPECT_EQ(l.count, 1u);
+  }
+}
+
+TEST(Stability, LatencyOfAStepDownAndOfOneThatIsMissed) {
+  PixelSeries truth, technique;
+  for (size_t t = 0; t < 40; ++t) {
+    truth.push_back({t < 10 || t >= 20 ? 0.6f : 0.1f, 0.5f});
+    technique.push_back({t < 12 || t >= 20 ? 0.6f : 0.1f, float(t) / 40}); // two frames late, then at once
+  }
+  const uint32_t both[] = {0, 1};
+  const size_t steps[] = {10, 20};
+  const Latency l = latency90(technique, truth, both, steps);
+  EXPECT_EQ(l.count, 2u); // the second pixel's truth does not change
+  EXPECT_EQ(l.worstTenth, 2);
+  const PixelSeries stuck(40, {0.6f, 0.5f});
+  EXPECT_EQ(latency90(stuck, truth, both, steps).worstTenth, 20); // as long as there was
+  EXPECT_EQ(latency90(technique, truth, both, {}).count, 0u);
+}
+
+TEST(TrackedPixels, AgreeWithThePictureAtPixelCentres) {
+  test::HandScene scene;
+  scene.box({0, 0, 0}, {2, 1, 3}, scene.material(vec3(0.6f, 0.5f, 0.4f)), true);
+  LightView lamp;
+  lamp.position = {1.6f, 0.4f, 2.5f};
+  scene.lights.push_back(lamp);
+  scene.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
+  scene.camera.worldFromView[2] = vec4(0, 0, -1, 0);
+  scene.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
+  scene.camera.width = 16;
+  scene.camera.height = 8;
+  const SceneView view = scene.view();
+  EmbreeQuery rays(scene.assets);
+  rays.update(view);
+  const LightSet lights = collectLights(view);
+  constexpr uint32_t kSamples = 400;
+  RayCounts counts;
+  ReferenceSums picture(16, 8);
+  addSamples(picture, {rays, lights, view.camera, 3, 0, 1}, kSamples, counts);
+  std::vector<vec2> centres;
+  for (int i = 0; i < 16 * 8; ++i) centres.push_back({(float(i % 16) + 0.5f) / 16, (float(i / 16) + 0.5f) / 8});
+  const std::vector<SurfaceHit> surfaces = surfacesAt(rays, view.camera, centres);
+  const auto sums = sampleSurfaces(surfaces, {rays, lights, view.camera, 3, 0, 2}, kSamples, counts); // another seed
+  double statistic = 0;
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const auto moments = [&](const PixelSums& p) {
+      const double mean = p.indirect.x / kSamples;
+      return std::pair(mean, (p.indirectSquares.x / kSamples - mean * mean) / (kSamples - 1));
+    };
+    const auto [a, va] = moments(sums[i]);
+    const auto [b, vb] = moments(picture.pixels[i]);
+    EXPECT_TRUE(surfaces[i].valid());
+    EXPECT_GT(a, 0);
+    statistic += (a - b) * (a - b) / (va + vb);
+  }
+  // Squares of 128 normal deviates; their variances are estimates, which widens the tail a little.
+  EXPECT_LT(test::chiSquareDeviate(statistic, double(sums.size())), 4.5);
+  EXPECT_GT(test::chiSquareDeviate(statistic, double(sums.size())), -4.5);
+}
+
+} // namespace
+} // namespace lambent

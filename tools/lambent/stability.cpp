@@ -1,0 +1,286 @@
+// lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7).
+#include "engine/core/error.h"
+#include "engine/core/progress.h"
+#include "engine/platform/gl_context.h"
+#include "engine/trace/embree_query.h"
+#include "gi/reference/path_tracer.h"
+#include "gi/vpl/sources.h"
+#include "tools/lambent/commands.h"
+#include "tools/lambent/stability_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct StabilityOptions {
+  LaunchOptions launch;
+  OutputOptions output;
+  std::vector<std::string> shots, techniques{"smc", "ir", "mir", "tcas"};
+  int samples = 1024, frames = 0, grid = 16;
+  bool check = false;
+};
+
+/// A technique with all that it keeps between frames. With shadow maps a whole frame is drawn and the tracked pixels
+/// are read from the indirect buffer; with rays only they are gathered, each from all virtual lights.
+class Follower {
+ public:
+  Follower(const Stage& stage, const std::string& name) : settings_(stage.settings), seed_(stage.seed) {
+    run.name = name;
+    applyTechnique(settings_, name);
+    if (settings_.smc.visibility == VplVisibility::Maps) gi_.emplace(settings_, seed_);
+  }
+
+  /// Radiance of indirect light at the tracked points of this frame.
+  std::vector<vec3> frame(const SceneView& view, const RayQuery& rays, const LightSet& lights,
+                          std::span<const vec2> points, std::span<const SurfaceHit> surfaces) {
+    if (gi_) {
+      const FrameStats& stats = gi_->run(view);
+      place(stats.stages);
+      const Image picture = gi_->read(Buffer::Indirect);
+      std::vector<vec3> out;
+      for (const vec2& p : points) {
+        const int x = std::min(int(p.x * float(picture.width)), picture.width - 1);
+        const int y = std::min(int(p.y * float(picture.height)), picture.height - 1);
+        out.push_back(picture.pixels[size_t(y) * picture.width + x]);
+      }
+      return out;
+    }
+    VplUpdateLog log;
+    placeVpls(settings_.vpl.source, set_, {view, rays, lights, settings_.smc, seed_, settings_.vpl}, log);
+    place(log.stages);
+    RayCounts counts;
+    std::vector<vec3> out = irradianceByRays(rays, surfaces, set_.slots, settings_.gather, counts);
+    for (size_t i = 0; i < out.size(); ++i) out[i] *= surfaces[i].albedo / kPi;
+    return out;
+  }
+
+  double medianPlaceMs() {
+    if (placeMs_.size() > 1) placeMs_.erase(placeMs_.begin()); // the warm-up
+    std::nth_element(placeMs_.begin(), placeMs_.begin() + placeMs_.size() / 2, placeMs_.end());
+    return placeMs_[placeMs_.size() / 2];
+  }
+
+  TechniqueRun run;
+
+ private:
+  void place(const std::vector<StageTime>& stages) {
+    double ms = 0;
+    for (const StageTime& s : stages) ms += s.cpuMs;
+    placeMs_.push_back(ms);
+  }
+
+  Settings settings_;
+  uint32_t seed_;
+  VplSet set_;
+  std::optional<GiFrame> gi_;
+  std::vector<double> placeMs_;
+};
+
+/// Frames in which some light differs from the frame before by half or more.
+class StepFinder {
+ public:
+  bool step(const SceneView& view) {
+    bool found = false;
+    std::vector<float> now;
+    for (const LightView& l : view.lights) now.push_back(luminance(l.intensity));
+    for (size_t i = 0; i < now.size() && now.size() == before_.size(); ++i)
+      found |= std::min(now[i], before_[i]) < 0.5f * std::max(now[i], before_[i]);
+    before_ = std::move(now);
+    return found;
+  }
+
+ private:
+  std::vector<float> before_;
+};
+
+/// log-average luminance of the surfaces at the tracked points in the first frame to 0.18, as GiFrame measures a
+/// picture.
+float exposureOf(const std::vector<vec3>& radiance) {
+  double sum = 0;
+  size_t count = 0;
+  for (const vec3& r : radiance)
+    if (luminance(r) > 0) sum += std::log(double(luminance(r))), ++count;
+  return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
+}
+
+std::vector<vec3> indirectOf(std::span<const PixelSums> sums, std::span<const SurfaceHit> surfaces, int samples) {
+  std::vector<vec3> out;
+  for (size_t i = 0; i < sums.size(); ++i)
+    out.push_back(surfaces[i].valid() ? surfaces[i].albedo * vec3(sums[i].indirect / double(samples)) : vec3(0));
+  return out;
+}
+
+/// Standard error of the tone-mapped luminance, by its derivative 1/(1+x)², as if channels were fully correlated.
+double toneMappedVariance(const PixelSums& sums, const SurfaceHit& surface, int samples, float exposure) {
+  const double n = samples;
+  const glm::dvec3 mean = sums.indirect / n;
+  const glm::dvec3 variance = glm::max(glm::dvec3(0), sums.indirectSquares / n - mean * mean) / std::max(1.0, n - 1);
+  const vec3 error = surface.albedo * vec3(glm::sqrt(variance));
+  const double x = exposure * luminance(surface.albedo * vec3(mean));
+  const double e = exposure * luminance(error) / ((1 + x) * (1 + x));
+  return e * e;
+}
+
+ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context) {
+  LaunchOptions launch = options.launch;
+  launch.scene = file;
+  // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
+  launch.set.insert(launch.set.begin(), "smc.visibility=rays");
+  const auto stage = openStage(launch);
+  if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
+  say(*stage, options.output.quiet);
+
+  if (stage->settings.smc.visibility == VplVisibility::Maps && !context) context.emplace(GlContext::headless());
+
+  std::vector<vec2> points = stage->shot->pixels;
+  ShotRun shot;
+  shot.name = fs::path(file).stem().string();
+  shot.vpls = stage->settings.smc.vpls;
+  shot.fps = stage->shot->fps;
+  shot.marked = points.size();
+  for (int y = 0; y < options.grid; ++y)
+    for (int x = 0; x < options.grid; ++x) points.push_back((vec2(x, y) + 0.5f) / float(options.grid));
+  std::vector<uint32_t> marked, grid;
+  for (uint32_t i = 0; i < points.size(); ++i) (i < shot.marked ? marked : grid).push_back(i);
+
+  std::vector<std::unique_ptr<Follower>> followers;
+  for (const std::string& name : options.techniques) followers.push_back(std::make_unique<Follower>(*stage, name));
+  std::unique_ptr<EmbreeQuery> rays;
+  StepFinder steps;
+  std::vector<size_t> stepFrames;
+  float exposure = stage->settings.image.exposure;
+  double variance = 0;
+  size_t values = 0;
+  const int total =
+      options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
+  Progress progress(shot.name, options.output.quiet);
+  for (int f = 0; f < total && !interrupted; ++f) {
+    const SceneView view = stage->at(f / stage->shot->fps);
+    if (!rays) rays = std::make_unique<EmbreeQuery>(*view.assets);
+    rays->update(view);
+    const LightSet lights = collectLights(view);
+    if (steps.step(view)) stepFrames.push_back(size_t(f));
+    const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, points);
+    RayCounts counts;
+    const std::vector<PixelSums> sums =
+        sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
+                       uint32_t(options.samples), counts);
+    const std::vector<vec3> truth = indirectOf(sums, surfaces, options.samples);
+    if (exposure <= 0) exposure = exposureOf(truth);
+    const auto toneMapped = [&](const std::vector<vec3>& radiance) {
+      std::vector<float> out;
+      for (size_t i = 0; i < radiance.size(); ++i)
+        out.push_back(surfaces[i].valid() ? toneMappedLuminance(radiance[i], exposure) : std::nanf(""));
+      return out;
+    };
+    shot.truth.push_back(toneMapped(truth));
+    for (size_t i = 0; i < sums.size(); ++i)
+      if (surfaces[i].valid())
+        variance += toneMappedVariance(sums[i], surfaces[i], options.samples, exposure), ++values;
+    for (auto& follower : followers)
+      follower->run.series.push_back(toneMapped(follower->frame(view, *rays, lights, points, surfaces)));
+    progress.update(f + 1, total);
+  }
+  if (interrupted) throw RunError("interrupted: nothing is written");
+  shot.truthError = values ? std::sqrt(variance / double(values)) : 0;
+  for (auto& follower : followers) {
+    TechniqueRun& run = follower->run;
+    run.marked = stabilityErrors(run.series, shot.truth, marked);
+    run.grid = stabilityErrors(run.series, shot.truth, grid);
+    run.latency = latency90(run.series, shot.truth, grid, stepFrames);
+    run.placeMs = follower->medianPlaceMs();
+    shot.techniques.push_back(std::move(run));
+  }
+  return shot;
+}
+
+/// Throws RunError unless smc changes its error least in every shot and follows steps of the light within two frames.
+void checkSteadiest(const std::vector<ShotRun>& shots) {
+  std::string failures;
+  for (const ShotRun& s : shots) {
+    const TechniqueRun* smc = s.technique("smc");
+    if (smc && smc->latency.worstTenth > 2)
+      throw RunError("smc follows the light in " + s.name + " only after " +
+                     std::to_string(int(smc->latency.worstTenth)) + " frames");
+    for (const TechniqueRun& t : s.techniques)
+      if (!smc || (t.name != "smc" && !(smc->grid.change < t.grid.change)))
+        failures += (failures.empty() ? "" : ", ") + t.name + " in " + s.name;
+  }
+  if (!failures.empty()) throw RunError("smc is not steadier than " + failures);
+}
+
+void stability(const StabilityOptions& options) {
+  for (const std::string& name : options.techniques) {
+    Settings ignored;
+    applyTechnique(ignored, name);
+  }
+  if (options.check && options.techniques.size() < 2)
+    throw InputError("--check", "needs smc and others (--techniques)");
+  const fs::path folder = options.output.out.empty() ? fs::path("out/stability") : fs::path(options.output.out);
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+  std::optional<GlContext> context; // made when a shot wants maps
+  std::vector<ShotRun> shots;
+  for (const std::string& file : options.shots) shots.push_back(follow(options, file, context));
+
+  std::string conditions = "Truth: path tracing with " + std::to_string(options.samples) +
+                           " paths per pixel; standard error of its values (tone-mapped luminance):";
+  for (const ShotRun& s : shots) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s %.4f in ", &s == shots.data() ? "" : ",", s.truthError);
+    conditions += text + s.name;
+  }
+  conditions += ". " + std::to_string(options.grid * options.grid) + " grid pixels, " +
+                std::to_string(shots.front().truth.size()) + " frames of the first shot.";
+  writeStabilityReport(folder, shots, conditions);
+  nlohmann::json figures = nlohmann::json::array();
+  for (const ShotRun& s : shots)
+    for (const TechniqueRun& t : s.techniques)
+      figures.push_back({{"shot", s.name},
+                         {"technique", t.name},
+                         {"vpls", s.vpls},
+                         {"error_marked", t.marked.error},
+                         {"change_marked", t.marked.change},
+                         {"error_grid", t.grid.error},
+                         {"change_grid", t.grid.change},
+                         {"bias_grid", t.grid.bias},
+                         {"l90_median", t.latency.median},
+                         {"l90_worst_tenth", t.latency.worstTenth},
+                         {"l90_count", t.latency.count},
+                         {"truth_error", s.truthError}});
+  writeJson(options.output.json, figures);
+  if (!options.output.quiet)
+    std::printf("%s%s\nreport: %s\n", stabilityTable(shots).c_str(), conditions.c_str(),
+                (folder / "stability.html").c_str());
+  if (options.check) checkSteadiest(shots);
+}
+
+} // namespace
+
+void declareStability(CLI::App& app) {
+  auto options = std::make_shared<StabilityOptions>();
+  CLI::App* command = app.add_subcommand("stability", "errors of techniques over the frames of shots, against truth");
+  command->add_option("SHOT", options->shots, "shot files (.json)")->required();
+  addLaunchOptions(*command, options->launch);
+  addOutputOptions(*command, options->output, "folder for the report (default out/stability)");
+  command->add_option("--techniques", options->techniques, "comma-separated (default smc,ir,mir,tcas)")->delimiter(',');
+  command->add_option("--spp", options->samples, "paths per pixel and frame of the truth (default 1024)")
+      ->check(CLI::Range(2, 1 << 24));
+  command->add_option("--frames", options->frames, "only the first so many of each shot")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--grid", options->grid, "grid of so many by so many pixels besides the marked (default 16)")
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--check", options->check,
+                    "exit with 1 unless smc has the smallest |E'| (grid) in every shot and L90 of two frames at most");
+  command->callback([options] { stability(*options); });
+}
+
+} // namespace lambent

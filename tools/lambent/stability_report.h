@@ -1,0 +1,41 @@
+// What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots and tables in one HTML page.
+#pragma once
+
+#include "gi/measure/stability.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lambent {
+
+/// One technique over one shot.
+struct TechniqueRun {
+  std::string name;
+  PixelSeries series;
+  StabilityErrors marked, grid;
+  Latency latency;
+  double placeMs = 0; // median time per frame of placing virtual lights
+};
+
+/// One shot. The first `marked` pixels are the shot's own, the others its grid.
+struct ShotRun {
+  std::string name;
+  int vpls = 0;
+  double fps = 30;
+  size_t marked = 0;
+  PixelSeries truth;
+  double truthError = 0; // standard error of a value of the truth, RMS, tone-mapped luminance
+  std::vector<TechniqueRun> techniques;
+
+  const TechniqueRun* technique(const std::string& name) const;
+};
+
+/// stability.csv, stability.md, stability.html and one series-SHOT.csv per shot, each in one step.
+void writeStabilityReport(const std::filesystem::path& folder, const std::vector<ShotRun>& shots,
+                          const std::string& conditions);
+/// The Markdown table, as it is printed too.
+std::string stabilityTable(const std::vector<ShotRun>& shots);
+
+} // namespace lambent
