@@ -263,7 +263,7 @@ bool touches(const Aabb& box, const vec3& centre, float radius) {
 std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const SceneView& view,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
-  set.cells.resize(set.slots.size());
+  if (set.cells.size() != set.slots.size()) set.cells.assign(set.slots.size(), {}); // rivals may be gone: draw all anew
   const Standing vpls = standing(set);
   const NeighbourTree tree(vpls.points);
   // Scale of a cell: 0.9 of the distance to its third neighbour. Chords reach four times as far.

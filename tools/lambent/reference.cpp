@@ -6,22 +6,27 @@
 #include "gi/reference/state_file.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/linear_picture.h"
+#include "tools/lambent/tracked_pixels.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
 namespace lambent {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+namespace fs = std::filesystem;
 
 struct ReferenceOptions {
   LaunchOptions launch;
   OutputOptions output;
-  std::string buffer = "beauty", state, errors;
+  std::string buffer = "beauty", state, errors, pixels;
+  int grid = 16;
   std::optional<int> samples;
   double error = 0, time = 0;
   bool clamped = false;
@@ -40,6 +45,11 @@ ReferenceBuffer referenceBufferByName(const std::string& name) {
   throw InputError("--buffer " + name,
                    "no such buffer of the reference (" +
                        (near.empty() ? "beauty, direct, indirect, irradiance" : "did you mean " + near + "?") + ")");
+}
+
+void checkClamp(const ReferenceOptions& options, const Settings& settings) {
+  if (options.clamped && settings.gather.clamp <= 0)
+    throw InputError("--clamped", "there is no clamp (give one, in 1/m^2: --set gather.clamp=10)");
 }
 
 /// As GiFrame measures it: log-average luminance of the visible surfaces to 0.18.
@@ -111,7 +121,56 @@ class Run {
   uint32_t wanted_ = 0, saved_ = 0;
 };
 
+/// Indirect radiance at the tracked pixels of every frame of a shot.
+void trackPixels(const ReferenceOptions& options) {
+  if (fs::path(options.pixels).extension() != ".csv") throw InputError(options.pixels, "not a table (.csv)");
+  const auto stage = openStage(options.launch);
+  say(*stage, options.output.quiet);
+  if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
+  const Settings& settings = stage->settings;
+  checkClamp(options, settings);
+  const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
+  const uint32_t samples = uint32_t(options.samples.value_or(kDefaultSamples));
+  std::unique_ptr<EmbreeQuery> rays;
+  std::ostringstream rows;
+  const int total = stage->shot->frameCount();
+  int done = 0;
+  {
+    Progress progress("tracing paths", options.output.quiet);
+    for (; done < total && !interrupted; progress.update(++done, total)) {
+      const SceneView view = stage->at(done / stage->shot->fps);
+      if (!rays) rays = std::make_unique<EmbreeQuery>(*view.assets);
+      rays->update(view);
+      const LightSet lights = collectLights(view);
+      const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, tracked.points);
+      RayCounts counts;
+      const std::vector<PixelSums> sums = sampleSurfaces(
+          surfaces,
+          {*rays, lights, view.camera, settings.smc.bounces, options.clamped ? settings.gather.clamp : 0, stage->seed},
+          samples, counts);
+      for (size_t i = 0; i < sums.size(); ++i) {
+        const TrackedValue v = trackedValue(sums[i], surfaces[i], samples);
+        rows << done << ',' << i << ',' << (i < tracked.marked) << ',' << tracked.points[i].x << ','
+             << tracked.points[i].y << ',' << surfaces[i].valid();
+        for (int c = 0; c < 3; ++c) rows << ',' << v.radiance[c];
+        for (int c = 0; c < 3; ++c) rows << ',' << v.error[c];
+        rows << '\n';
+      }
+    }
+  }
+  writeAtomically(options.pixels, [&](const fs::path& temporary) {
+    std::ofstream out(temporary);
+    out << "frame,pixel,marked,u,v,surface,r,g,b,error_r,error_g,error_b\n" << rows.str();
+    if (!out.flush()) throw RunError(options.pixels + ": cannot be written");
+  });
+  if (!options.output.quiet)
+    std::printf("%s: indirect radiance at %zu pixels (%zu marked) in %d frames, %u samples each\n",
+                options.pixels.c_str(), tracked.points.size(), tracked.marked, done, samples);
+  if (interrupted) throw RunError("interrupted: " + std::to_string(done) + " frames are written");
+}
+
 void reference(const ReferenceOptions& options) {
+  if (!options.pixels.empty()) return trackPixels(options);
   const ReferenceBuffer buffer = referenceBufferByName(options.buffer);
   const std::string out = options.output.out.empty() ? "reference.exr" : options.output.out;
   checkPictureName(out);
@@ -119,8 +178,7 @@ void reference(const ReferenceOptions& options) {
   const auto stage = openStage(options.launch);
   say(*stage, options.output.quiet);
   const Settings& settings = stage->settings;
-  if (options.clamped && settings.gather.clamp <= 0)
-    throw InputError("--clamped", "there is no clamp (give one, in 1/m^2: --set gather.clamp=10)");
+  checkClamp(options, settings);
   const SceneView view = stage->at(options.time);
   EmbreeQuery rays(*view.assets);
   rays.update(view);
@@ -186,6 +244,10 @@ void declareReference(CLI::App& app) {
   command->add_option("--time", options->time, "seconds into the shot or the scene's animation");
   command->add_option("--state", options->state, "keep the sums in this file, and go on from it when it is there");
   command->add_option("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
+  command->add_option("--pixels", options->pixels,
+                      "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
+  command->add_option("--grid", options->grid, "grid of so many by so many pixels (default 16)")
+      ->check(CLI::Range(0, 256));
   command->add_flag("--clamped", options->clamped,
                     "bound the geometry term between picture and first bounce as gather.clamp bounds virtual lights");
   command->callback([options] { reference(*options); });

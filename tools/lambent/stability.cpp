@@ -7,6 +7,7 @@
 #include "gi/vpl/sources.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/stability_report.h"
+#include "tools/lambent/tracked_pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,21 +111,10 @@ float exposureOf(const std::vector<vec3>& radiance) {
   return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
 }
 
-std::vector<vec3> indirectOf(std::span<const PixelSums> sums, std::span<const SurfaceHit> surfaces, int samples) {
-  std::vector<vec3> out;
-  for (size_t i = 0; i < sums.size(); ++i)
-    out.push_back(surfaces[i].valid() ? surfaces[i].albedo * vec3(sums[i].indirect / double(samples)) : vec3(0));
-  return out;
-}
-
-/// Standard error of the tone-mapped luminance, by its derivative 1/(1+x)², as if channels were fully correlated.
-double toneMappedVariance(const PixelSums& sums, const SurfaceHit& surface, int samples, float exposure) {
-  const double n = samples;
-  const glm::dvec3 mean = sums.indirect / n;
-  const glm::dvec3 variance = glm::max(glm::dvec3(0), sums.indirectSquares / n - mean * mean) / std::max(1.0, n - 1);
-  const vec3 error = surface.albedo * vec3(glm::sqrt(variance));
-  const double x = exposure * luminance(surface.albedo * vec3(mean));
-  const double e = exposure * luminance(error) / ((1 + x) * (1 + x));
+/// Variance of the tone-mapped luminance, by its derivative 1/(1+x)², as if channels were fully correlated.
+double toneMappedVariance(const TrackedValue& value, float exposure) {
+  const double x = exposure * luminance(value.radiance);
+  const double e = exposure * luminance(value.error) / ((1 + x) * (1 + x));
   return e * e;
 }
 
@@ -139,14 +129,13 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
 
   if (stage->settings.smc.visibility == VplVisibility::Maps && !context) context.emplace(GlContext::headless());
 
-  std::vector<vec2> points = stage->shot->pixels;
+  const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
+  const std::vector<vec2>& points = tracked.points;
   ShotRun shot;
   shot.name = fs::path(file).stem().string();
   shot.vpls = stage->settings.smc.vpls;
   shot.fps = stage->shot->fps;
-  shot.marked = points.size();
-  for (int y = 0; y < options.grid; ++y)
-    for (int x = 0; x < options.grid; ++x) points.push_back((vec2(x, y) + 0.5f) / float(options.grid));
+  shot.marked = tracked.marked;
   std::vector<uint32_t> marked, grid;
   for (uint32_t i = 0; i < points.size(); ++i) (i < shot.marked ? marked : grid).push_back(i);
 
@@ -172,7 +161,12 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     const std::vector<PixelSums> sums =
         sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
                        uint32_t(options.samples), counts);
-    const std::vector<vec3> truth = indirectOf(sums, surfaces, options.samples);
+    std::vector<TrackedValue> known;
+    std::vector<vec3> truth;
+    for (size_t i = 0; i < sums.size(); ++i) {
+      known.push_back(trackedValue(sums[i], surfaces[i], uint32_t(options.samples)));
+      truth.push_back(known.back().radiance);
+    }
     if (exposure <= 0) exposure = exposureOf(truth);
     const auto toneMapped = [&](const std::vector<vec3>& radiance) {
       std::vector<float> out;
@@ -182,8 +176,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     };
     shot.truth.push_back(toneMapped(truth));
     for (size_t i = 0; i < sums.size(); ++i)
-      if (surfaces[i].valid())
-        variance += toneMappedVariance(sums[i], surfaces[i], options.samples, exposure), ++values;
+      if (surfaces[i].valid()) variance += toneMappedVariance(known[i], exposure), ++values;
     for (auto& follower : followers)
       follower->run.series.push_back(toneMapped(follower->frame(view, *rays, lights, points, surfaces)));
     progress.update(f + 1, total);

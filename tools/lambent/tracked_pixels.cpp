@@ -1,0 +1,22 @@
+#include "tools/lambent/tracked_pixels.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+TrackedPixels trackedPixels(const Shot& shot, int grid) {
+  TrackedPixels tracked{shot.pixels, shot.pixels.size()};
+  for (int y = 0; y < grid; ++y)
+    for (int x = 0; x < grid; ++x) tracked.points.push_back((vec2(x, y) + 0.5f) / float(grid));
+  return tracked;
+}
+
+TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples) {
+  if (!surface.valid()) return {};
+  const double n = samples;
+  const glm::dvec3 mean = sums.indirect / n;
+  const glm::dvec3 variance = glm::max(glm::dvec3(0), sums.indirectSquares / n - mean * mean) / std::max(1.0, n - 1);
+  return {surface.albedo * vec3(mean), surface.albedo * vec3(glm::sqrt(variance))};
+}
+
+} // namespace lambent
