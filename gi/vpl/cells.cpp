@@ -98,7 +98,7 @@ class CellSampler {
       rays_now_.resize(alive);
     }
     keepConnected(vpl, cell, counts);
-    keepIndirectlyVisible(viewers, cell, counts);
+    weighByVisibility(vpl, viewers, cell, counts);
   }
 
  private:
@@ -154,20 +154,36 @@ class CellSampler {
     keepOpen(cell);
   }
 
-  /// There are no VPLs where nothing visible looks, so a cell at the border would take all the surface beyond it, and
-  /// its light: the sunlit outside of a wall through a window. A point stays when a viewer sees it.
-  void keepIndirectlyVisible(std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
+  /// Light leaves a cell from the place of its VPL, so a point counts by how well it is seen compared with that place:
+  /// the number of viewers, points that the camera sees, that see it over the number that see the VPL, two at most.
+  /// What none sees counts nothing: the sunlit outside of a wall beside a window.
+  void weighByVisibility(const Vpl& vpl, std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
+    std::vector<uint16_t> seen(cell.points.size(), 0);
     open_.assign(cell.points.size(), 0);
+    float seenVpl = 0;
     for (const vec3& from : viewers) {
       rays_now_.clear();
       which_.clear();
+      if (glm::dot(from - vpl.position, vpl.geometricNormal) > 0) {
+        ++counts.occlusion;
+        seenVpl += !rays_.occluded(segment(from, offsetPoint(vpl.position, vpl.geometricNormal)));
+      }
       for (uint32_t i = 0; i < cell.points.size(); ++i) {
         const CellPoint& p = cell.points[i];
-        if (open_[i] || glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
+        if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
         rays_now_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal)));
         which_.push_back(i);
       }
+      open_.assign(cell.points.size(), 0);
       test(counts);
+      for (size_t i = 0; i < open_.size(); ++i) seen[i] += open_[i];
+    }
+    const bool own = viewers.size() == 1 && viewers[0] == vpl.mailbox;
+    if (seenVpl == 0 && !own)
+      return weighByVisibility(vpl, {&vpl.mailbox, 1}, cell, counts); // looked at from there only
+    for (size_t i = 0; i < cell.points.size(); ++i) {
+      open_[i] = seen[i] > 0;
+      cell.points[i].area *= seenVpl > 0 ? std::min(2.0f, float(seen[i]) / seenVpl) : 1.0f;
     }
     keepOpen(cell);
   }
@@ -232,13 +248,14 @@ void findRival(CellPoint& p, uint32_t own, const VplSet& set, const Standing& vp
   }
 }
 
-/// Mailbox points of the VPLs nearest to a place, its own first.
+/// Mailbox points of the VPLs nearest to this one: what looks this way. Not its own, which sees it by definition.
 std::vector<vec3> viewersOf(const Vpl& vpl, const VplSet& set, const Standing& vpls, const NeighbourTree& tree) {
   std::array<uint32_t, kNeighbours> index;
   std::array<float, kNeighbours> distance2;
   const size_t found = tree.nearest(vpl.position, kNeighbours, index, distance2);
-  std::vector<vec3> viewers{vpl.mailbox};
-  for (size_t j = 0; j < found; ++j) viewers.push_back(set.slots[vpls.slots[index[j]]].mailbox);
+  std::vector<vec3> viewers;
+  for (size_t j = 0; j < found; ++j)
+    if (&set.slots[vpls.slots[index[j]]] != &vpl) viewers.push_back(set.slots[vpls.slots[index[j]]].mailbox);
   return viewers;
 }
 
