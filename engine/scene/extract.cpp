@@ -66,15 +66,16 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     v.worldFromObject = w.worldFromNode;
     if (!makeInvertible(v.worldFromObject)) return;
     v.worldFromObjectBefore = v.worldFromObject;
+    v.boundsWorld = v.boundsWorldBefore = transformed(scene.assets.meshes[m.mesh].boundsObject, v.worldFromObject);
     if (const auto before = instancesBefore.find(v.id);
         before != instancesBefore.end() && before->second->mesh == v.mesh) {
       v.worldFromObjectBefore = before->second->worldFromObject;
+      v.boundsWorldBefore = before->second->boundsWorld;
       v.moved = v.worldFromObjectBefore != v.worldFromObject;
       changes.geometry |= v.moved;
     } else {
       changes.instances = true;
     }
-    v.boundsWorld = transformed(scene.assets.meshes[m.mesh].boundsObject, v.worldFromObject);
     view.boundsWorld.add(v.boundsWorld);
     instances.push_back(v);
   });

@@ -16,6 +16,7 @@ struct InstanceView {
   mat4 worldFromObjectBefore{1}; // of the previous extraction; equal when it did not move
   bool moved = false;
   Aabb boundsWorld;
+  Aabb boundsWorldBefore; // of the previous extraction; equal when it did not move
 };
 
 enum class LightType : uint8_t { Point, Spot, Directional };

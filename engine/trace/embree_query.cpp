@@ -248,6 +248,7 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     hit.instance = rh.hit.instID[0];
     hit.primitive = rh.hit.geomID;
     hit.triangle = rh.hit.primID;
+    hit.barycentric = {rh.hit.u, rh.hit.v};
   }
 }
 

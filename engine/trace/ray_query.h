@@ -31,6 +31,7 @@ struct SurfaceHit {
   uint32_t instance = kNone; // index into SceneView::instances
   uint32_t primitive = 0;    // of the instance's mesh
   uint32_t triangle = 0;     // within the primitive
+  vec2 barycentric{0};       // weights of the triangle's second and third corner
 
   bool valid() const { return t < kInfinity; }
 };
