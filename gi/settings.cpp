@@ -37,7 +37,11 @@ class Table {
     whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 65536, "VPL slots N; time of every stage grows with it");
     whole("smc.moves", &Settings::smc, &SmcSettings::moves, 0, 32768,
           "M_max, VPLs replaced per frame; each costs a shadow map");
-    whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "candidate rays per VPL slot");
+    whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "rays per candidate drawn");
+    whole("smc.poolFrames", &Settings::smc, &SmcSettings::poolFrames, 1, 64,
+          "frames that a candidate is kept, so that N/poolFrames are drawn per frame; 1 = all, as paper 1");
+    flag("smc.cache", &Settings::smc, &SmcSettings::cache,
+         "keep light paths until something that they touch moves; same results, 0.5 kB per path");
     whole("smc.paths", &Settings::smc, &SmcSettings::paths, 1, 4096, "light paths per VPL and candidate");
     whole("smc.bounces", &Settings::smc, &SmcSettings::bounces, 0, 32, "indirect bounces B; 0 = direct light only");
     whole("smc.points", &Settings::smc, &SmcSettings::points, 1, 1 << 20, "camera rays that find visible points");

@@ -29,13 +29,15 @@ struct VplSettings {
 struct SmcSettings {
   int vpls = 2048;         // slots N
   int moves = 16;          // M_max, replacements per frame
-  int candidateRays = 16;  // candidate rays per VPL slot (16:1 resampling)
+  int candidateRays = 16;  // candidate rays per candidate drawn (16:1 resampling)
+  int poolFrames = 8;      // frames that a candidate is kept; 1 = all drawn anew in every frame (paper 1)
   int paths = 16;          // light paths per VPL radiosity estimate
   int bounces = 3;         // B: B=1 is light → VPL → pixel
   int points = 2048;       // directly visible points X
   int validationRays = 16; // V, rays per point and round towards unverified VPLs
   int warmup = 100;        // iterations before the first picture
   int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
+  bool cache = true;       // keep light paths until geometry that they touch moves; same results
   DensityEstimator density = DensityEstimator::Cells;
   VplVisibility visibility = VplVisibility::Maps;
 };

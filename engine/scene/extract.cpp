@@ -56,7 +56,8 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
   SceneChanges changes{first_, first_, first_, first_, first_};
   SceneView view;
 
-  const auto instancesBefore = byId(instances_);
+  auto instancesBefore = byId(instances_);
+  addedOrRemoved_.clear();
   std::vector<InstanceView> instances;
   instances.reserve(instances_.size());
   scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
@@ -73,13 +74,15 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
       v.boundsWorldBefore = before->second->boundsWorld;
       v.moved = v.worldFromObjectBefore != v.worldFromObject;
       changes.geometry |= v.moved;
+      instancesBefore.erase(before);
     } else {
-      changes.instances = true;
+      addedOrRemoved_.push_back(v.boundsWorld);
     }
     view.boundsWorld.add(v.boundsWorld);
     instances.push_back(v);
   });
-  changes.instances |= instances.size() != instances_.size();
+  for (const auto& [id, gone] : instancesBefore) addedOrRemoved_.push_back(gone->boundsWorld);
+  changes.instances |= !addedOrRemoved_.empty();
 
   const auto lightsBefore = byId(lights_);
   std::vector<LightView> lights;
@@ -113,6 +116,7 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
   view.assets = &scene.assets;
   view.instances = instances_;
   view.lights = lights_;
+  view.addedOrRemoved = addedOrRemoved_;
   view.skyRadiance = scene.skyRadiance;
   view.camera = camera;
   view.changes = changes;

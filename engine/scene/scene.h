@@ -68,6 +68,7 @@ class SceneExtractor {
 
  private:
   std::vector<InstanceView> instances_;
+  std::vector<Aabb> addedOrRemoved_;
   std::vector<LightView> lights_;
   CameraView camera_;
   vec3 sky_{0};

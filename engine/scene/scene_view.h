@@ -57,6 +57,7 @@ struct SceneView {
   const SceneAssets* assets = nullptr;
   std::span<const InstanceView> instances;
   std::span<const LightView> lights;
+  std::span<const Aabb> addedOrRemoved; // world bounds of instances that came or went since the previous extraction
   vec3 skyRadiance{0}; // constant over the sphere
   CameraView camera;
   Aabb boundsWorld; // of all instances

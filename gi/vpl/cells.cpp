@@ -259,25 +259,9 @@ std::vector<vec3> viewersOf(const Vpl& vpl, const VplSet& set, const Standing& v
   return viewers;
 }
 
-/// Places that moving objects left or came to.
-std::vector<Aabb> disturbed(const SceneView& view) {
-  std::vector<Aabb> boxes;
-  for (const InstanceView& i : view.instances)
-    if (i.moved) {
-      boxes.push_back(i.boundsWorld);
-      boxes.push_back(transformed(i.boundsWorld, i.worldFromObjectBefore * glm::inverse(i.worldFromObject)));
-    }
-  return boxes;
-}
-
-bool touches(const Aabb& box, const vec3& centre, float radius) {
-  const vec3 d = glm::max(glm::max(box.lo - centre, centre - box.hi), vec3(0));
-  return !box.empty() && glm::dot(d, d) <= radius * radius;
-}
-
 } // namespace
 
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const SceneView& view,
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Disturbance& disturbance,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
   if (set.cells.size() != set.slots.size()) set.cells.assign(set.slots.size(), {}); // rivals may be gone: draw all anew
@@ -287,7 +271,6 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Scene
   constexpr int kScaleNeighbour = 3;
   const std::vector<float> shares =
       representedAreas(vpls.points, vpls.points, true, kScaleNeighbour, DensityEstimator::KnnSide, kInfinity);
-  const std::vector<Aabb> boxes = view.changes.geometry ? disturbed(view) : std::vector<Aabb>{};
   std::vector<uint8_t> placed(set.slots.size(), 0), changed(set.slots.size(), 0);
   for (uint32_t slot : moved) placed[slot] = 1;
 
@@ -304,8 +287,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Scene
       VplCell& cell = set.cells[slot];
       const float spacing = std::sqrt(shares[n] * float(kScaleNeighbour) / kPi);
       const float radius = std::min(0.9f * spacing, radiusLimit);
-      bool draw = placed[slot] || view.changes.instances || !(cell.radius > 0.5f * radius && cell.radius < 2 * radius);
-      for (const Aabb& box : boxes) draw = draw || touches(box, vpl.position, kScales.back().radius * cell.radius);
+      const bool draw = placed[slot] || !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
+                        disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
       if (draw) {
         sampler.draw(vpl, std::max(radius, 1e-5f), viewersOf(vpl, set, vpls, tree), cell, count);
         for (CellPoint& p : cell.points) findRival(p, slot, set, vpls, tree, connected);

@@ -33,34 +33,38 @@ vec3 offPosition(const Vpl& v) { return offsetPoint(v.position, v.geometricNorma
 
 } // namespace
 
-void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
-                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed,
-                              RayCounts& counts) {
+void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView& camera,
+                     const VisibilityUpdate& update, RayCounts& counts) {
   const mat4 viewFromWorld = glm::inverse(camera.worldFromView);
-  std::vector<RayCounts> perBlock((set.slots.size() + 63) / 64);
-  parallelFor(set.slots.size(), 64, [&](size_t begin, size_t end) {
+  constexpr size_t kGrain = 64;
+  std::vector<RayCounts> perBlock((vpls.size() + kGrain - 1) / kGrain);
+  parallelFor(vpls.size(), kGrain, [&](size_t begin, size_t end) {
     std::vector<Ray> block;
     std::vector<uint32_t> owner;
     for (size_t i = begin; i < end; ++i) {
-      Vpl& v = set.slots[i];
-      v.valid = false;
-      if (!v.alive || !inFrustum(camera, viewFromWorld, v.mailbox)) continue;
-      block.push_back(cameraSegment(camera, viewFromWorld, v.mailbox));
-      owner.push_back(uint32_t(i));
-      if (geometryMoved) {
-        block.push_back(segment(v.mailbox, offPosition(v)));
+      Vpl& v = vpls[i];
+      if (!v.valid) continue;
+      v.valid = inFrustum(camera, viewFromWorld, v.mailbox) && !update.moved->touches(v.mailbox, 0);
+      if (!v.valid) continue;
+      const Ray towards[2] = {cameraSegment(camera, viewFromWorld, v.mailbox), segment(v.mailbox, offPosition(v))};
+      const bool doubtful[2] = {update.camera, !update.carried.empty() && update.carried[i]};
+      for (int k = 0; k < 2; ++k) {
+        if (!doubtful[k] && !update.moved->touches(towards[k])) continue;
+        block.push_back(towards[k]);
         owner.push_back(uint32_t(i));
       }
     }
     std::vector<uint8_t> blocked(block.size());
     rays.occluded(block, blocked);
-    perBlock[begin / 64].occlusion += block.size();
-    for (uint32_t i : owner) set.slots[i].valid = true;
+    perBlock[begin / kGrain].occlusion += block.size();
     for (size_t j = 0; j < block.size(); ++j)
-      if (blocked[j]) set.slots[owner[j]].valid = false;
+      if (blocked[j]) vpls[owner[j]].valid = false;
   });
   for (const RayCounts& c : perBlock) counts += c;
+}
 
+void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePoint> points, int raysPerPoint,
+                    uint32_t seed, RayCounts& counts) {
   constexpr size_t kPointsPerBlock = 256;
   std::vector<uint32_t> open;
   for (uint32_t round = 0; round < 2; ++round) {

@@ -11,8 +11,8 @@ struct PhotonNumbers {
   float light;
   vec2 position, direction;
 };
-/// `index`-th point of a sequence that fills these five dimensions evenly over any run of indices (additive recurrence),
-/// shifted by the seed.
+/// `index`-th point of a sequence that fills these five dimensions evenly over any run of indices (additive
+/// recurrence), shifted by the seed.
 PhotonNumbers photonNumbers(uint32_t index, uint32_t seed);
 
 /// Place in the sequence of the `i`-th of `count` photons in slot order. Interleaved sampling shows a pixel only the

@@ -7,9 +7,12 @@
 // of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
 // paths of one VPL share stratified numbers at the first vertex: 4×4 strata for directions, an additive recurrence for
 // lights.
+//
+// In two steps. Tracing finds the vertices, which depend on geometry alone; lighting connects them to the lights and
+// adds up. What is traced is kept (gi/vpl/kept_paths.h), and each step is done again only for paths that need it. The
+// sum is always taken over all vertices in the same order, so it has the bits of an estimate from scratch.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
-#include "gi/vpl/light_paths.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -19,37 +22,50 @@ namespace lambent {
 
 namespace {
 
-/// One path's present vertex. `weight` turns irradiance/π at this vertex into radiance leaving the VPL.
-struct PathState {
-  PathVertex vertex;
-  vec3 weight;
-  bool alive = true;
-  Rng rng{0, Stream::LightPaths, 0};
-};
+bool sameStart(const KeptVertex& a, const KeptVertex& b) {
+  return a.at.position == b.at.position && a.at.normal == b.at.normal && a.at.geometricNormal == b.at.geometricNormal &&
+         a.weight == b.weight;
+}
 
 class VplEstimator {
  public:
-  VplEstimator(const RayQuery& rays, const LightSet& lights, int paths, int bounces, uint32_t seed, Stream stream)
-      : rays_(rays), lights_(lights), paths_(paths), bounces_(bounces), seed_(seed), stream_(stream), states_(paths) {}
+  VplEstimator(const RayQuery& rays, const LightSet& lights, const RadianceUpdate& update)
+      : rays_(rays), lights_(lights), update_(update), paths_(update.paths),
+        stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths), starts_(paths_) {}
 
-  vec3 estimate(const Vpl& vpl, const VplCell* cell, RayCounts& counts) {
-    sum_ = vec3(0);
+  /// Brings `kept` up to date. False: the radiance is what it was.
+  bool estimate(const Vpl& vpl, const VplCell* cell, KeptPaths& kept, vec3& radiance, PathCounts& counts) {
     const uint32_t id = uint32_t(mix64(vpl.id));
-    Rng first(seed_, stream_, id);
-    const vec3 shift(first.next(), first.next(), first.next());
-    const float lightShift = first.next();
-    for (int i = 0; i < paths_; ++i)
-      states_[i] = {
-          {vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo, true, Rng(seed_, stream_, id, uint32_t(i) + 1)};
-    if (cell && !spreadOver(*cell, first.next())) return vec3(0);
-    for (int depth = 0; depth < bounces_; ++depth) {
-      connectToLights(depth, shift, lightShift, counts);
-      const bool last = depth + 1 == bounces_;
-      // The last vertex needs its cosine ray only to meet sky and emitters.
-      if (last && lights_.emitters.empty() && luminance(lights_.sky) <= 0) break;
-      extend(depth, last, counts);
+    Rng first(update_.seed, stream_, id);
+    shift_ = vec3(first.next(), first.next(), first.next());
+    lightShift_ = first.next();
+    counts.paths += uint64_t(paths_);
+    for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
+    if (cell && !spreadOver(*cell, first.next())) {
+      kept.clear();
+      radiance = vec3(0);
+      return true;
     }
-    return sum_ / float(paths_);
+    const bool lastRays = update_.lastRays || !lights_.emitters.empty() || luminance(lights_.sky) > 0;
+    const bool anew = kept.id != vpl.id || kept.paths != paths_ || kept.bounces != update_.bounces ||
+                      (lastRays && !kept.lastRays) || (update_.instancesChanged && !kept.emitters.empty()) ||
+                      (cell != nullptr) != kept.overCell;
+    if (anew) {
+      kept.id = vpl.id;
+      kept.paths = paths_;
+      kept.bounces = update_.bounces;
+      kept.lastRays = lastRays;
+      kept.overCell = cell != nullptr;
+      kept.vertices.assign(size_t(paths_) * update_.bounces, {});
+      kept.lengths.assign(paths_, 0);
+      kept.emitters.clear();
+    }
+    const bool doubtful = findStale(kept, anew);
+    if (!stale_.empty()) trace(kept, id, counts);
+    counts.traced += stale_.size();
+    if (stale_.empty() && !doubtful && !update_.lightsChanged) return false;
+    radiance = light(kept, id, counts) / float(paths_);
+    return true;
   }
 
  private:
@@ -76,82 +92,160 @@ class VplEstimator {
     return cell.points[i];
   }
   void place(int path, const CellPoint& p) {
-    states_[path].vertex = {p.position, p.normal, p.geometricNormal};
-    states_[path].weight = p.albedo;
+    starts_[path].at = {p.position, p.normal, p.geometricNormal};
+    starts_[path].weight = p.albedo;
   }
 
-  void connectToLights(int depth, const vec3& shift, float lightShift, RayCounts& counts) {
-    if (lights_.lightCount() == 0) return;
-    segments_.clear();
-    pending_.clear();
+  /// Lists the paths to be traced: those that start elsewhere and those with a ray through a place where geometry
+  /// moved. Forgets connections through such places; true when there are any.
+  bool findStale(KeptPaths& kept, bool all) {
+    stale_.clear();
+    bool doubtful = false;
+    const Disturbance& moved = *update_.moved;
     for (int i = 0; i < paths_; ++i) {
-      PathState& s = states_[i];
-      if (!s.alive) continue;
-      // Drawn whether used or not: the sequence does not depend on what the lights do.
-      float uLight = s.rng.next();
-      vec3 u(s.rng.next(), s.rng.next(), s.rng.next());
-      if (depth == 0) {
-        uLight = std::min((float(i) + lightShift) / float(paths_), 0x1.fffffep-1f);
-        u = additiveRecurrence3(uint32_t(i), shift);
+      bool stale = all || !sameStart(kept.vertices[i], starts_[i]);
+      for (int depth = 0; !stale && !moved.empty() && depth < kept.lengths[i]; ++depth) {
+        KeptVertex& v = kept.vertices[depth * paths_ + i];
+        const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal);
+        stale = v.distance > 0 && moved.touches(Ray{origin, v.direction, v.distance});
+        if (!stale && v.lightReach > 0 && moved.touches(Ray{origin, v.lightDirection, v.lightReach})) {
+          v.lightReach = 0;
+          doubtful = true;
+        }
       }
-      const LightConnection c = connectToLight(lights_, s.vertex, s.weight, uLight, u, weights_);
+      if (stale) stale_.push_back(i);
+    }
+    return doubtful;
+  }
+
+  /// Random numbers of a path's vertex: four for the light, two for the next ray. The same whatever the lights do.
+  Rng numbersAt(uint32_t id, int path, int depth) const {
+    constexpr uint32_t kPerVertex = 6;
+    Rng rng(update_.seed, stream_, id, uint32_t(path) + 1);
+    rng.skip(kPerVertex * uint32_t(depth));
+    return rng;
+  }
+
+  void trace(KeptPaths& kept, uint32_t id, PathCounts& counts) {
+    const auto isStale = [&](const KeptPaths::EmitterHit& e) {
+      return std::binary_search(stale_.begin(), stale_.end(), int(e.vertex) % paths_);
+    };
+    std::erase_if(kept.emitters, isStale);
+    for (int path : stale_) {
+      kept.vertices[path] = starts_[path];
+      kept.lengths[path] = 1;
+    }
+    const int side = int(std::sqrt(float(paths_)));
+    for (int depth = 0; depth < kept.bounces; ++depth) {
+      const bool last = depth + 1 == kept.bounces;
+      if (last && !kept.lastRays) break;
+      segments_.clear();
+      owners_.clear();
+      for (int path : stale_) {
+        if (kept.lengths[path] <= depth) continue;
+        KeptVertex& v = kept.vertices[depth * paths_ + path];
+        Rng rng = numbersAt(id, path, depth);
+        rng.skip(4);
+        vec2 u = rng.next2();
+        if (depth == 0 && path < side * side) u = (vec2(path % side, path / side) + u) / float(side);
+        const vec3 direction = sampleCosineHemisphere(v.at.normal, u);
+        if (glm::dot(direction, v.at.geometricNormal) <= 0) continue; // under the real surface of a smooth-shaded one
+        v.direction = direction;
+        segments_.push_back({offsetPoint(v.at.position, v.at.geometricNormal), direction});
+        owners_.push_back(path);
+      }
+      hits_.resize(segments_.size());
+      rays_.closest(segments_, hits_);
+      counts.rays.closest += segments_.size();
+      for (size_t j = 0; j < owners_.size(); ++j) {
+        const uint32_t index = uint32_t(depth * paths_ + owners_[j]);
+        KeptVertex& v = kept.vertices[index];
+        const SurfaceHit& h = hits_[j];
+        v.distance = h.t;
+        if (!h.valid()) continue;
+        if (luminance(h.emission) > 0) {
+          v.metEmitter = true;
+          kept.emitters.push_back({index, h});
+        }
+        const vec3 weight = v.weight * h.albedo;
+        if (last || maxComponent(weight) <= 0) continue;
+        kept.vertices[index + paths_] = {{h.position, h.normal, h.geometricNormal}, weight};
+        ++kept.lengths[owners_[j]];
+      }
+    }
+    std::sort(kept.emitters.begin(), kept.emitters.end(),
+              [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
+  }
+
+  vec3 light(KeptPaths& kept, uint32_t id, PathCounts& counts) {
+    vec3 sum(0);
+    auto emitter = kept.emitters.begin();
+    for (int depth = 0; depth < kept.bounces; ++depth) {
+      sum += connections(kept, depth, id, counts);
+      for (int path = 0; path < paths_; ++path) {
+        if (kept.lengths[path] <= depth) continue;
+        const KeptVertex& v = kept.vertices[depth * paths_ + path];
+        if (v.distance == kInfinity) sum += v.weight * lights_.sky;
+        if (!v.metEmitter) continue;
+        sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
+        ++emitter;
+      }
+    }
+    return sum;
+  }
+
+  /// Light that reaches the vertices of one depth. Rays are cast only for connections that are not those of last time.
+  vec3 connections(KeptPaths& kept, int depth, uint32_t id, PathCounts& counts) {
+    vec3 sum(0);
+    if (lights_.lightCount() == 0) return sum;
+    segments_.clear();
+    owners_.clear();
+    pending_.clear();
+    for (int path = 0; path < paths_; ++path) {
+      if (kept.lengths[path] <= depth) continue;
+      KeptVertex& v = kept.vertices[depth * paths_ + path];
+      Rng rng = numbersAt(id, path, depth);
+      float uLight = rng.next();
+      vec3 u(rng.next(), rng.next(), rng.next());
+      if (depth == 0) {
+        uLight = std::min((float(path) + lightShift_) / float(paths_), 0x1.fffffep-1f);
+        u = additiveRecurrence3(uint32_t(path), shift_);
+      }
+      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, weights_);
       if (maxComponent(c.value) <= 0) continue;
+      pending_.push_back({&v, c.value});
+      if (v.lightReach == c.segment.tMax && v.lightDirection == c.segment.direction) continue;
+      v.lightReach = c.segment.tMax;
+      v.lightDirection = c.segment.direction;
       segments_.push_back(c.segment);
-      pending_.push_back(c.value);
+      owners_.push_back(depth * paths_ + path);
     }
     blocked_.resize(segments_.size());
     rays_.occluded(segments_, blocked_);
-    counts.occlusion += segments_.size();
-    for (size_t j = 0; j < pending_.size(); ++j)
-      if (!blocked_[j]) sum_ += pending_[j];
+    counts.rays.occlusion += segments_.size();
+    for (size_t j = 0; j < owners_.size(); ++j) kept.vertices[owners_[j]].blocked = blocked_[j];
+    for (const auto& [vertex, value] : pending_)
+      if (!vertex->blocked) sum += value;
+    return sum;
   }
 
-  void extend(int depth, bool last, RayCounts& counts) {
-    segments_.clear();
-    owners_.clear();
-    const int side = int(std::sqrt(float(paths_)));
-    for (int i = 0; i < paths_; ++i) {
-      PathState& s = states_[i];
-      if (!s.alive) continue;
-      vec2 u = s.rng.next2();
-      if (depth == 0 && i < side * side) u = (vec2(i % side, i / side) + u) / float(side);
-      const vec3 direction = sampleCosineHemisphere(s.vertex.normal, u);
-      if (glm::dot(direction, s.vertex.geometricNormal) <= 0) { // under the real surface of a smooth-shaded one
-        s.alive = false;
-        continue;
-      }
-      segments_.push_back({offsetPoint(s.vertex.position, s.vertex.geometricNormal), direction});
-      owners_.push_back(uint32_t(i));
-    }
-    hits_.resize(segments_.size());
-    rays_.closest(segments_, hits_);
-    counts.closest += segments_.size();
-    for (size_t j = 0; j < owners_.size(); ++j) {
-      PathState& s = states_[owners_[j]];
-      const SurfaceHit& h = hits_[j];
-      if (!h.valid()) {
-        sum_ += s.weight * lights_.sky;
-        s.alive = false;
-        continue;
-      }
-      if (luminance(h.emission) > 0)
-        sum_ += s.weight * h.emission * emitterShare(lights_, s.vertex, segments_[j].direction, h, weights_);
-      s.weight *= h.albedo;
-      s.alive = !last && maxComponent(s.weight) > 0;
-      s.vertex = {h.position, h.normal, h.geometricNormal};
-    }
-  }
+  struct Pending {
+    const KeptVertex* vertex;
+    vec3 value; // radiance added to the VPL if the connection is clear
+  };
 
   const RayQuery& rays_;
   const LightSet& lights_;
-  const int paths_, bounces_;
-  const uint32_t seed_;
+  const RadianceUpdate& update_;
+  const int paths_;
   const Stream stream_;
-  vec3 sum_{0};
-  std::vector<PathState> states_;
+  vec3 shift_{0};
+  float lightShift_ = 0;
+  std::vector<KeptVertex> starts_;
+  std::vector<int> stale_; // paths to be traced, ascending
   std::vector<Ray> segments_;
-  std::vector<vec3> pending_; // radiance added to the VPL if the segment is clear
-  std::vector<uint32_t> owners_;
+  std::vector<Pending> pending_;
+  std::vector<int> owners_;
   std::vector<uint8_t> blocked_;
   std::vector<SurfaceHit> hits_;
   std::vector<float> weights_;
@@ -159,23 +253,43 @@ class VplEstimator {
 
 } // namespace
 
-void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
-                      uint32_t seed, RayCounts& counts, RadianceUse use, std::span<const VplCell* const> cells) {
+PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& rays, const LightSet& lights,
+                            const RadianceUpdate& update) {
   constexpr size_t kGrain = 16;
-  std::vector<RayCounts> perBlock((vpls.size() + kGrain - 1) / kGrain);
-  const bool dark = lights.empty() || bounces < 1;
-  const bool rendering = use == RadianceUse::Rendering;
-  const Stream stream = rendering ? Stream::LightPaths : Stream::SamplerPaths;
-  vec3 Vpl::*const result = rendering ? &Vpl::radiance : &Vpl::samplerRadiance;
-  parallelFor(vpls.size(), kGrain, [&](size_t begin, size_t end) {
-    VplEstimator estimator(rays, lights, paths, bounces, seed, stream);
+  std::vector<PathCounts> perBlock((jobs.size() + kGrain - 1) / kGrain);
+  const bool dark = lights.empty() || update.bounces < 1;
+  vec3 Vpl::*const result = update.use == RadianceUse::Rendering ? &Vpl::radiance : &Vpl::samplerRadiance;
+  parallelFor(jobs.size(), kGrain, [&](size_t begin, size_t end) {
+    VplEstimator estimator(rays, lights, update);
+    KeptPaths scratch;
     for (size_t i = begin; i < end; ++i) {
-      const VplCell* const cell = cells.empty() ? nullptr : cells[i];
-      const bool black = !cell && maxComponent(vpls[i]->albedo) <= 0;
-      vpls[i]->*result = dark || black ? vec3(0) : estimator.estimate(*vpls[i], cell, perBlock[begin / kGrain]);
+      const RadianceJob& job = jobs[i];
+      KeptPaths& kept = job.kept ? *job.kept : scratch;
+      if (!job.kept) scratch.clear();
+      if (dark || (!job.cell && maxComponent(job.vpl->albedo) <= 0)) {
+        kept.clear();
+        job.vpl->*result = vec3(0);
+        continue;
+      }
+      PathCounts& counts = perBlock[begin / kGrain];
+      counts.lit += estimator.estimate(*job.vpl, job.cell, kept, job.vpl->*result, counts);
     }
   });
-  for (const RayCounts& c : perBlock) counts += c;
+  PathCounts all;
+  for (const PathCounts& c : perBlock) all += c;
+  return all;
+}
+
+void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
+                      uint32_t seed, RayCounts& counts, RadianceUse use, std::span<const VplCell* const> cells) {
+  std::vector<RadianceJob> jobs;
+  for (size_t i = 0; i < vpls.size(); ++i) jobs.push_back({vpls[i], cells.empty() ? nullptr : cells[i], nullptr});
+  RadianceUpdate update;
+  update.paths = paths;
+  update.bounces = bounces;
+  update.seed = seed;
+  update.use = use;
+  counts += estimateRadiance(jobs, rays, lights, update).rays;
 }
 
 } // namespace lambent

@@ -7,6 +7,8 @@
 
 #include "engine/core/profile.h"
 #include "gi/settings.h"
+#include "gi/vpl/disturbance.h"
+#include "gi/vpl/kept_paths.h"
 #include "gi/vpl/light_set.h"
 #include "gi/vpl/vpl_set.h"
 
@@ -25,12 +27,23 @@ struct VisiblePoint {
 std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraView& camera, int count, uint32_t seed,
                                             uint32_t frame, RayCounts& counts);
 
-/// Stage 2. Marks VPLs that some visible point still sees (paper 1, 3.2.2): first by their mailbox point (in the
-/// frustum, camera → point clear, and point → VPL clear where `geometryMoved`), then in two rounds of up to
-/// `raysPerPoint` rays from every visible point to random unverified VPLs. Points go in blocks, and a block skips what
-/// earlier blocks verified.
-void verifyIndirectVisibility(VplSet& set, const RayQuery& rays, const CameraView& camera, bool geometryMoved,
-                              std::span<const VisiblePoint> points, int raysPerPoint, uint32_t seed, RayCounts& counts);
+/// What is known since the last update.
+struct VisibilityUpdate {
+  bool camera = true;                        // the camera changed
+  const Disturbance* moved = &kNothingMoved; // where geometry did
+  std::span<const uint8_t> carried = {};     // by slot: this VPL moved with its object; empty: none did
+};
+
+/// Stage 2a. Tests VPLs by their mailbox points (paper 1, 3.2.2): in the frustum, camera → point clear, point → VPL
+/// clear. Rays are cast only where the camera or something in the way changed. A mailbox point in a place where
+/// geometry moved is given up: it may hang in mid-air now. Sets `valid`.
+void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView& camera,
+                     const VisibilityUpdate& update, RayCounts& counts);
+
+/// Stage 2b. For those left: two rounds of up to `raysPerPoint` rays from every visible point to random unverified
+/// VPLs. Points go in blocks, and a block skips what earlier blocks verified.
+void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePoint> points, int raysPerPoint,
+                    uint32_t seed, RayCounts& counts);
 
 /// A point that a ray from a visible point met: a place where a VPL could stand.
 struct CandidateHit {
@@ -63,6 +76,41 @@ Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, u
 /// With `cells` (one for each VPL, or none) the paths of a VPL start all over its cell, so the result is the mean over
 /// the surface that it stands for.
 enum class RadianceUse { Rendering, Sampling };
+
+struct RadianceUpdate {
+  int paths = 16, bounces = 3;
+  uint32_t seed = 1;
+  RadianceUse use = RadianceUse::Rendering;
+  // Since the kept paths were brought up to date:
+  const Disturbance* moved = &kNothingMoved; // where geometry changed
+  bool lightsChanged = true;                 // emitters on moving objects count
+  bool instancesChanged = false;             // added or removed: indices of instances are others
+  bool lastRays = false;                     // send the last vertices' rays even when neither emitter nor sky is there
+};
+
+/// One estimate. With `kept`, what is left of the paths of last time is used, and the radiance stays where nothing
+/// that it depends on changed.
+struct RadianceJob {
+  Vpl* vpl = nullptr;
+  const VplCell* cell = nullptr; // null: all paths start at the VPL
+  KeptPaths* kept = nullptr;     // null: from scratch
+};
+
+struct PathCounts {
+  uint64_t paths = 0, traced = 0; // light paths asked for, and those traced anew
+  uint64_t lit = 0;               // VPLs and candidates whose light was added up again
+  RayCounts rays;
+  PathCounts& operator+=(const PathCounts& o) {
+    paths += o.paths, traced += o.traced, lit += o.lit;
+    rays += o.rays;
+    return *this;
+  }
+};
+
+/// Bit for bit the radiance of an estimate from scratch, whatever was kept.
+PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& rays, const LightSet& lights,
+                            const RadianceUpdate& update);
+/// From scratch.
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
                       uint32_t seed, RayCounts& counts, RadianceUse use = RadianceUse::Rendering,
                       std::span<const VplCell* const> cells = {});
@@ -101,13 +149,15 @@ class NeighbourTree {
 };
 
 /// Stage 6, other than the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
-/// whose VPL is new or stands elsewhere. Returns the slots whose cell changed, ascending: their radiance is another.
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const SceneView& view,
+/// whose VPL is new or stands elsewhere; cells that `disturbance` touches are drawn anew. Returns the slots whose cell
+/// changed, ascending: their radiance is another.
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Disturbance& disturbance,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed, RayCounts& counts);
 
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates
 /// stronger than 95 % of the set (paper 1, 3.2.5). Each pick lowers the area of candidates near it, so winners of one
 /// frame do not sit side by side. Empty slots are filled beyond the bound. Slots never change place.
+/// Candidates that were taken are marked alive.
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
 
 /// What one update needs besides the set.
@@ -124,7 +174,8 @@ struct VplUpdate {
 struct VplUpdateLog {
   std::vector<StageTime> stages;
   RayCounts points, validation, candidates, radiosity, cells;
-  uint32_t relit = 0; // VPLs whose radiance was estimated again
+  PathCounts paths;   // of VPLs and candidates
+  uint32_t relit = 0; // VPLs whose radiance was added up again
 };
 
 /// All stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on replacements

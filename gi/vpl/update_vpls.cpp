@@ -7,34 +7,74 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace lambent {
 
 namespace {
 
-/// VPLs ride on the object that carries them.
-void carryAlong(VplSet& set, const SceneView& view, std::vector<uint32_t>& moved) {
+/// What happened since the last update, in the terms of the stages.
+struct Since {
+  bool camera = false, lights = false, instances = false;
+  Disturbance moved;
+  std::vector<uint8_t> carried; // by slot: moved with its object; empty: none did
+
+  bool geometry() const { return !moved.empty() || instances; }
+};
+
+/// Lamps that move, come or go are lights that change.
+bool emittersChanged(const VplUpdate& in) {
+  return in.view.changes.instances ||
+         std::any_of(in.lights.emitters.begin(), in.lights.emitters.end(),
+                     [&](const Emitter& e) { return in.view.instances[e.instance].moved; });
+}
+
+/// VPLs ride on the object that carries them. Objects that are gone take their VPLs along.
+void carryAlong(VplSet& set, const SceneView& view, Since& since, std::vector<uint32_t>& moved) {
   std::unordered_map<uint32_t, const InstanceView*> byId;
   for (const InstanceView& i : view.instances) byId.emplace(i.id, &i);
+  since.carried.assign(set.slots.size(), 0);
   for (uint32_t i = 0; i < set.slots.size(); ++i) {
     Vpl& v = set.slots[i];
     if (!v.alive) continue;
     const auto carrier = byId.find(v.instance);
     if (carrier == byId.end()) {
-      v.alive = false; // the object is gone, and its light with it
+      v.alive = v.valid = false;
       continue;
     }
     const InstanceView& instance = *carrier->second;
-    if (!instance.moved) continue;
-    const mat4 nowFromBefore = instance.worldFromObject * glm::inverse(instance.worldFromObjectBefore);
-    const mat3 normalNow = glm::transpose(glm::inverse(mat3(nowFromBefore)));
-    v.position = vec3(nowFromBefore * vec4(v.position, 1));
-    v.normal = glm::normalize(normalNow * v.normal);
-    v.geometricNormal = glm::normalize(normalNow * v.geometricNormal);
+    if (!instance.moved && !view.changes.first) continue;
+    const mat3 normalFromObject = glm::transpose(glm::inverse(mat3(instance.worldFromObject)));
+    v.position = vec3(instance.worldFromObject * vec4(v.positionObject, 1));
+    v.normal = glm::normalize(normalFromObject * v.normalObject);
+    v.geometricNormal = glm::normalize(normalFromObject * v.geometricNormalObject);
     if (!isFinite(v.position) || !isFinite(v.normal) || !isFinite(v.geometricNormal))
-      v.alive = false; // scaled to nothing
+      v.alive = v.valid = false; // scaled to nothing
+    since.carried[i] = 1;
     moved.push_back(i);
   }
+  std::unordered_set<uint32_t> still;
+  for (const InstanceView& i : view.instances)
+    if (!i.moved && !view.changes.first) still.insert(i.id);
+  for (Vpl& v : set.pool) v.valid = v.valid && still.contains(v.instance);
+}
+
+Vpl candidateAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
+  const InstanceView& carrier = view.instances[h.instance];
+  const mat3 normalFromWorld = glm::transpose(mat3(carrier.worldFromObject));
+  Vpl v;
+  v.position = h.position;
+  v.normal = h.normal;
+  v.geometricNormal = h.geometricNormal;
+  v.albedo = h.albedo;
+  v.mailbox = h.from;
+  v.instance = carrier.id;
+  v.positionObject = vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1));
+  v.normalObject = glm::normalize(normalFromWorld * h.normal);
+  v.geometricNormalObject = glm::normalize(normalFromWorld * h.geometricNormal);
+  v.id = id;
+  v.valid = true;
+  return v;
 }
 
 std::vector<DensityPoint> densityPoints(std::span<const Vpl> vpls, std::vector<uint32_t>& index) {
@@ -63,15 +103,36 @@ void estimateSamplerDensities(VplSet& set, const SmcSettings& settings) {
   for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].candidateArea = areas[i];
 }
 
+RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceUse use) {
+  RadianceUpdate update;
+  update.paths = use == RadianceUse::Rendering ? in.settings.paths : samplerPaths(in.settings);
+  update.bounces = in.settings.bounces;
+  update.seed = in.seed;
+  update.use = use;
+  update.moved = &since.moved;
+  update.lightsChanged = since.lights;
+  update.instancesChanged = since.instances;
+  return update;
+}
+
+void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const Since& since, RadianceUse use,
+           VplUpdateLog& log) {
+  const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights, radianceUpdate(in, since, use));
+  log.paths += counts;
+  log.radiosity += counts.rays;
+  if (use == RadianceUse::Rendering) log.relit += uint32_t(counts.lit);
+}
+
 /// What rendering uses: areas of all VPLs, radiance of `moved` slots and of those whose cell changed, or of all.
-void estimateLight(VplSet& set, const VplUpdate& in, std::span<const uint32_t> moved, bool relight, VplUpdateLog& log) {
+void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::span<const uint32_t> moved, bool all,
+                   VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   const bool cells = settings.density == DensityEstimator::Cells;
   std::vector<uint32_t> changed(moved.begin(), moved.end());
   {
     CpuScope scope(log.stages, "density");
     if (cells) {
-      changed = updateCells(set, in.rays, in.view, moved, std::sqrt(areaLimit(set) / kPi), in.seed, log.cells);
+      changed = updateCells(set, in.rays, since.moved, moved, std::sqrt(areaLimit(set) / kPi), in.seed, log.cells);
     } else {
       set.cells.clear();
       std::vector<uint32_t> index;
@@ -82,35 +143,73 @@ void estimateLight(VplSet& set, const VplUpdate& in, std::span<const uint32_t> m
     }
   }
   CpuScope scope(log.stages, "radiosity");
-  if (relight) {
+  if (all) {
     changed.clear();
     for (uint32_t i = 0; i < set.slots.size(); ++i) changed.push_back(i);
   }
-  std::vector<Vpl*> lit;
-  std::vector<const VplCell*> cellsOfLit;
-  for (uint32_t slot : changed) {
-    if (!set.slots[slot].alive) continue;
-    lit.push_back(&set.slots[slot]);
-    if (cells) cellsOfLit.push_back(&set.cells[slot]);
+  std::vector<RadianceJob> jobs;
+  for (uint32_t slot : changed)
+    if (set.slots[slot].alive)
+      jobs.push_back(
+          {&set.slots[slot], cells ? &set.cells[slot] : nullptr, settings.cache ? &set.lightPaths[slot] : nullptr});
+  light(jobs, in, since, RadianceUse::Rendering, log);
+}
+
+/// Drops candidates that the camera no longer sees by their mailbox, and makes room for those of this frame. Returns
+/// how many are to be drawn.
+int makeRoomInPool(VplSet& set, const SmcSettings& settings) {
+  const int share = (settings.vpls + settings.poolFrames - 1) / settings.poolFrames;
+  size_t kept = 0;
+  for (size_t i = 0; i < set.pool.size(); ++i) {
+    if (!set.pool[i].valid || set.pool[i].alive) continue; // lost, or taken
+    if (kept != i) {
+      set.pool[kept] = set.pool[i];
+      std::swap(set.poolPaths[kept], set.poolPaths[i]);
+    }
+    ++kept;
   }
-  log.relit += uint32_t(lit.size());
-  estimateRadiance(lit, in.rays, in.lights, settings.paths, settings.bounces, in.seed, log.radiosity,
-                   RadianceUse::Rendering, cellsOfLit);
+  const size_t room = size_t(std::max(0, settings.vpls - share));
+  const size_t oldest = kept > room ? kept - room : 0;
+  set.pool.resize(kept);
+  set.poolPaths.resize(kept);
+  set.pool.erase(set.pool.begin(), set.pool.begin() + oldest);
+  set.poolPaths.erase(set.poolPaths.begin(), set.poolPaths.begin() + oldest);
+  return settings.vpls - int(set.pool.size());
+}
+
+/// Winners keep the paths that they were judged by.
+void handOverPaths(VplSet& set, std::span<const uint32_t> movedSlots) {
+  std::unordered_map<uint64_t, size_t> byId;
+  for (size_t i = 0; i < set.pool.size(); ++i)
+    if (set.pool[i].alive) byId.emplace(set.pool[i].id, i);
+  for (uint32_t slot : movedSlots) std::swap(set.samplerPaths[slot], set.poolPaths[byId.at(set.slots[slot].id)]);
 }
 
 struct Iteration {
   int moves;
-  bool relight, geometryMoved;
+  bool relight;  // all values of the sampler
   bool mayBurst; // the camera changed: a cut is possible
 };
 
-VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUpdateLog& log) {
+VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const Iteration& now, VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   ++set.frame;
   std::vector<VisiblePoint> points;
+  int draws = 0;
+  {
+    CpuScope scope(log.stages, "validate");
+    const VisibilityUpdate changed{since.camera, &since.moved, since.carried};
+    verifyMailboxes(set.slots, in.rays, in.view.camera, changed, log.validation);
+    verifyMailboxes(set.pool, in.rays, in.view.camera, {since.camera, &since.moved}, log.validation);
+    draws = makeRoomInPool(set, settings);
+  }
+  const auto open = [](const Vpl& v) { return v.alive && !v.valid; };
+  const bool anyOpen = std::any_of(set.slots.begin(), set.slots.end(), open);
   {
     CpuScope scope(log.stages, "points");
-    points = findVisiblePoints(in.rays, in.view.camera, settings.points, in.seed, set.frame, log.points);
+    // As many rays towards candidates leave each point whether few or all candidates are drawn.
+    const int wanted = anyOpen ? settings.points : int(int64_t(settings.points) * draws / settings.vpls);
+    points = findVisiblePoints(in.rays, in.view.camera, std::max(1, wanted), in.seed, set.frame, log.points);
   }
   if (points.empty()) { // the camera faces the sky: nothing can be verified, nothing is lost
     VplChanges none;
@@ -118,61 +217,52 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Iteration& now, VplUp
     none.kept = none.alive;
     return none;
   }
-  {
+  if (anyOpen) {
     CpuScope scope(log.stages, "validate");
-    verifyIndirectVisibility(set, in.rays, in.view.camera, now.geometryMoved, points, settings.validationRays, in.seed,
-                             log.validation);
+    verifyByPoints(set, in.rays, points, settings.validationRays, in.seed, log.validation);
   }
   std::vector<CandidateHit> hits;
   {
     CpuScope scope(log.stages, "candidates");
-    hits = traceCandidates(in.rays, points, settings.candidateRays * settings.vpls, in.seed, set.frame, log.candidates);
+    hits = traceCandidates(in.rays, points, settings.candidateRays * draws, in.seed, set.frame, log.candidates);
   }
   Resampled resampled;
   {
     CpuScope scope(log.stages, "resample");
-    resampled = resampleUniformInArea(hits, settings.vpls, in.seed, set.frame);
+    resampled = resampleUniformInArea(hits, draws, in.seed, set.frame);
     // A slow average: the limit on areas must not flicker.
     const float area = float(resampled.area);
     set.visibleArea = set.visibleArea > 0 ? glm::mix(set.visibleArea, area, 1.0f / 16) : area;
   }
-  std::vector<Vpl> candidates;
   {
     CpuScope scope(log.stages, "radiosity");
-    std::vector<Vpl*> lit;
+    const size_t old = now.relight ? 0 : set.pool.size();
+    for (uint32_t pick : resampled.picks) set.pool.push_back(candidateAt(hits[pick], in.view, set.nextId++));
+    set.poolPaths.resize(set.pool.size());
+    std::vector<RadianceJob> jobs;
     if (now.relight)
-      for (Vpl& v : set.slots)
-        if (v.alive) lit.push_back(&v);
-    for (uint32_t pick : resampled.picks) {
-      const CandidateHit& h = hits[pick];
-      Vpl v;
-      v.position = h.position;
-      v.normal = h.normal;
-      v.geometricNormal = h.geometricNormal;
-      v.albedo = h.albedo;
-      v.mailbox = h.from;
-      v.instance = in.view.instances[h.instance].id;
-      v.id = set.nextId++;
-      candidates.push_back(v);
-    }
-    for (Vpl& v : candidates) lit.push_back(&v);
-    estimateRadiance(lit, in.rays, in.lights, samplerPaths(settings), settings.bounces, in.seed, log.radiosity,
-                     RadianceUse::Sampling);
+      for (uint32_t i = 0; i < set.slots.size(); ++i)
+        if (set.slots[i].alive)
+          jobs.push_back({&set.slots[i], nullptr, settings.cache ? &set.samplerPaths[i] : nullptr});
+    for (size_t i = old; i < set.pool.size(); ++i)
+      jobs.push_back({&set.pool[i], nullptr, settings.cache ? &set.poolPaths[i] : nullptr});
+    light(jobs, in, since, RadianceUse::Sampling, log);
   }
   VplChanges changes;
   {
     CpuScope scope(log.stages, "replace");
     std::vector<uint32_t> index;
     std::vector<DensityPoint> queries;
-    for (const Vpl& v : candidates) queries.push_back({v.position, v.normal});
+    for (const Vpl& v : set.pool) queries.push_back({v.position, v.normal});
     const std::vector<float> areas =
         representedAreas(queries, densityPoints(set.slots, index), false, 1, settings.density, areaLimit(set));
-    for (size_t i = 0; i < candidates.size(); ++i) candidates[i].candidateArea = areas[i];
+    for (size_t i = 0; i < set.pool.size(); ++i) set.pool[i].candidateArea = areas[i];
     size_t alive = 0, invalid = 0;
     for (const Vpl& v : set.slots) alive += v.alive, invalid += v.alive && !v.valid;
     const bool burst = now.mayBurst && invalid * 2 > alive;
-    changes = replaceVpls(set, candidates, burst ? settings.vpls : now.moves, settings.density);
+    changes = replaceVpls(set, set.pool, burst ? settings.vpls : now.moves, settings.density);
     changes.burst = burst;
+    handOverPaths(set, changes.movedSlots);
     estimateSamplerDensities(set, settings);
   }
   return changes;
@@ -200,38 +290,47 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   const bool start = set.slots.empty();
   std::vector<uint32_t> moved;
   set.slots.resize(settings.vpls);
-  if (changed.geometry || changed.instances) carryAlong(set, in.view, moved);
+  set.samplerPaths.resize(set.slots.size());
+  set.lightPaths.resize(set.slots.size());
+  Since since;
+  since.camera = changed.camera;
+  since.lights = changed.lights || changed.first || emittersChanged(in);
+  since.instances = changed.instances;
+  since.moved = Disturbance(in.view);
+  if (changed.first || !settings.cache)
+    for (auto* all : {&set.samplerPaths, &set.lightPaths, &set.poolPaths})
+      for (KeptPaths& k : *all) k.clear();
+  if (changed.first) { // or frames were missed: nothing else can be relied on either
+    set.cells.clear();
+    set.pool.clear();
+    set.poolPaths.clear();
+  }
+  if (changed.geometry || changed.instances || changed.first) carryAlong(set, in.view, since, moved);
 
-  Iteration now;
-  now.moves = settings.moves;
-  now.geometryMoved = changed.geometry || changed.instances;
-  now.mayBurst = changed.camera && !start;
-  const bool relight =
-      changed.lights || now.geometryMoved || set.litPaths != settings.paths || set.litBounces != settings.bounces;
+  const bool settingsChanged = set.litPaths != settings.paths || set.litBounces != settings.bounces;
+  const bool relight = since.lights || since.geometry() || settingsChanged || !settings.cache;
   const bool estimatorChanged = set.cells.empty() == (settings.density == DensityEstimator::Cells);
-  now.relight = relight;
   set.litPaths = settings.paths;
   set.litBounces = settings.bounces;
 
-  VplChanges all = iterate(set, in, now, log);
+  VplChanges all = iterate(set, in, since, {settings.moves, relight, changed.camera && !start}, log);
   moved.insert(moved.end(), all.movedSlots.begin(), all.movedSlots.end());
   // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the picture.
   constexpr int kBurstIterations = 3;
   const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
-  now.relight = now.geometryMoved = now.mayBurst = false;
-  if (!start) now.moves = std::max(settings.moves, settings.vpls / 8);
+  const Iteration again{start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false};
   for (int i = 0; i < more; ++i) {
     if (progress) progress(i, more);
-    const VplChanges again = iterate(set, in, now, log);
-    moved.insert(moved.end(), again.movedSlots.begin(), again.movedSlots.end());
-    all.invalid = again.invalid;
-    all.alive = again.alive;
-    all.strong = again.strong;
+    const VplChanges next = iterate(set, in, {}, again, log);
+    moved.insert(moved.end(), next.movedSlots.begin(), next.movedSlots.end());
+    all.invalid = next.invalid;
+    all.alive = next.alive;
+    all.strong = next.strong;
   }
   if (progress && more) progress(more, more);
   std::sort(moved.begin(), moved.end());
   moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
-  estimateLight(set, in, moved, relight || estimatorChanged, log);
+  estimateLight(set, in, since, moved, relight || estimatorChanged, log);
   all.movedSlots = std::move(moved);
   all.kept = all.alive - std::min<uint32_t>(all.alive, uint32_t(all.movedSlots.size()));
   mergeStages(log.stages);

@@ -4,6 +4,7 @@
 
 #include "engine/core/math.h"
 #include "gi/settings.h"
+#include "gi/vpl/kept_paths.h"
 
 #include <cstdint>
 #include <vector>
@@ -23,9 +24,11 @@ struct Vpl {
   uint64_t id = 0;         // seeds its light paths; never reused
   uint32_t bornFrame = 0;
   uint32_t instance = 0; // InstanceView::id of the object that carries it
-  vec3 mailbox{0};       // a point seen by both the camera and this VPL, already off its surface
-  bool alive = false;    // false: empty slot, brings no light
-  bool valid = false;    // indirectly visible in this frame as far as known
+  vec3 positionObject{0}, normalObject{0, 1, 0},
+      geometricNormalObject{0, 1, 0}; // in that object's space: VPLs ride on it
+  vec3 mailbox{0};                    // a point seen by both the camera and this VPL, already off its surface
+  bool alive = false;                 // false: empty slot, brings no light
+  bool valid = false;                 // indirectly visible in this frame as far as known
 
   /// Intensity I = L/p up to the factor N (paper 1, eq. 6): radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
@@ -49,8 +52,11 @@ struct VplCell {
 
 struct VplSet {
   std::vector<Vpl> slots;
-  std::vector<VplCell> cells; // by slot; empty with densities by nearest neighbours
-  VplSource source = VplSource::Smc; // who filled the slots
+  std::vector<VplCell> cells;                      // by slot; empty with densities by nearest neighbours
+  std::vector<KeptPaths> samplerPaths, lightPaths; // by slot: of samplerRadiance and radiance; empty without path cache
+  std::vector<Vpl> pool;                           // candidates that may yet be wanted, oldest first
+  std::vector<KeptPaths> poolPaths;                // of their samplerRadiance
+  VplSource source = VplSource::Smc;               // who filled the slots
   uint64_t nextId = 1;
   uint32_t frame = 0;               // iterations so far
   float visibleArea = 0;            // m², running estimate of the indirectly visible surface

@@ -68,8 +68,6 @@ TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
   const VplSet others = onBox(half, 400, 2);
   RayCounts counts;
   updateCells(set, rays, {}, allSlots(set), 10, 1, counts);
-  SceneView still;
-  still.changes = {false, false, false, false, false};
   for (uint32_t frame = 0; frame < 20; ++frame) {
     std::vector<uint32_t> moved;
     for (uint32_t slot = frame; slot < 400; slot += 29) {
@@ -77,7 +75,7 @@ TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
       set.slots[slot].id = 1000 * (frame + 1) + slot;
       moved.push_back(slot);
     }
-    updateCells(set, rays, still, moved, 10, 1, counts);
+    updateCells(set, rays, {}, moved, 10, 1, counts);
   }
   size_t owned = 0, points = 0;
   for (uint32_t slot = 0; slot < 400; ++slot)

@@ -224,6 +224,8 @@ TEST(Smc, VplsRideOnMovingObjects) {
   room.instances[1].worldFromObjectBefore = mat4(1);
   room.instances[1].worldFromObject = step;
   room.instances[1].moved = true;
+  room.instances[1].boundsWorld = {{-0.25f, 0, -0.5f}, {0.75f, 1.5f, 0.5f}};
+  room.instances[1].boundsWorldBefore = {{-0.5f, 0, -0.5f}, {0.5f, 1.5f, 0.5f}};
   room.view.changes.geometry = true;
   room.settings.moves = 0; // keep everyone
   const VplChanges c = room.update();
@@ -249,6 +251,8 @@ TEST(Smc, VplsOfARemovedObjectGoWithIt) {
   AnalyticQuery empty;
   empty.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.7f, 0.6f, 0.5f)});
   room.rays = empty;
+  const Aabb block[] = {{{-0.5f, 0, -0.5f}, {0.5f, 1.5f, 0.5f}}};
+  room.view.addedOrRemoved = block;
   room.view.instances = std::span(room.instances).first(1);
   room.view.changes.instances = true;
   room.update();
