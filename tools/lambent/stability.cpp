@@ -132,7 +132,7 @@ double toneMappedVariance(const TrackedValue& value, float exposure) {
   return e * e;
 }
 
-constexpr int kStillFrames = 8; // to measure each time at which a shot stands still
+constexpr int kStillFrames = 6; // to measure each time at which a shot stands still
 
 /// One shot, as it moves or, with `stillAt` (a share of its length), standing still at that time.
 ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
@@ -161,6 +161,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   for (const std::string& name : options.techniques) followers.push_back(std::make_unique<Follower>(*stage, name));
   std::unique_ptr<EmbreeQuery> rays;
   StepFinder steps;
+  std::vector<PixelSums> sums;
   float exposure = stage->settings.image.exposure;
   double variance = 0;
   size_t values = 0;
@@ -176,9 +177,9 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     if (steps.step(view)) shot.steps.push_back(size_t(f));
     const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, points);
     RayCounts counts;
-    const std::vector<PixelSums> sums =
-        sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
-                       uint32_t(options.samples), counts);
+    if (!stillAt || f == 0)
+      sums = sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
+                            uint32_t(options.samples), counts);
     std::vector<TrackedValue> known;
     std::vector<vec3> truth;
     for (size_t i = 0; i < sums.size(); ++i) {
