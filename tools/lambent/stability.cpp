@@ -84,7 +84,7 @@ class Follower {
   std::vector<double> placeMs_;
 };
 
-/// A corner of its bounds moved by half their diagonal or more.
+/// A corner of its bounds moved by a quarter of their diagonal or more.
 bool jumped(const InstanceView& instance, const SceneAssets& assets) {
   if (!instance.moved) return false;
   const Aabb& b = assets.meshes[instance.mesh].boundsObject;
@@ -94,7 +94,7 @@ bool jumped(const InstanceView& instance, const SceneAssets& assets) {
     farthest =
         std::max(farthest, glm::length(vec3((instance.worldFromObject - instance.worldFromObjectBefore) * corner)));
   }
-  return farthest > 0 && farthest >= 0.5f * instance.boundsWorld.diameter();
+  return farthest > 0 && farthest >= 0.25f * instance.boundsWorld.diameter();
 }
 
 /// Frames in which some light differs from the frame before by half or more, or some object jumps.
