@@ -40,15 +40,19 @@ Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::s
                   std::span<const size_t> steps, float least) {
   CHECK_EQ(technique.size(), truth.size());
   std::vector<double> frames;
+  double own = 0, wanted = 0;
   for (size_t s = 0; s < steps.size(); ++s) {
     const size_t begin = steps[s], end = s + 1 < steps.size() ? steps[s + 1] : truth.size();
     if (begin == 0 || begin >= end) continue;
     const size_t settled = std::max<size_t>(1, (end - begin) / 4);
     for (uint32_t p : pixels) {
-      if (!(std::abs(truth[begin][p] - truth[begin - 1][p]) >= least)) continue;
+      const double change = double(truth[begin][p]) - truth[begin - 1][p];
+      if (!(std::abs(change) >= least)) continue;
       double last = 0;
       for (size_t t = end - settled; t < end; ++t) last += technique[t][p] / double(settled);
       const double before = technique[begin - 1][p], whole = last - before;
+      own += std::copysign(1.0, change) * whole;
+      wanted += std::abs(change);
       if (!(std::abs(whole) > 0)) { // it does not follow at all
         frames.push_back(double(end - begin));
         continue;
@@ -61,6 +65,7 @@ Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::s
   Latency out;
   out.count = frames.size();
   if (frames.empty()) return out;
+  out.followed = own / wanted;
   std::sort(frames.begin(), frames.end());
   out.median = frames[frames.size() / 2];
   out.worstTenth = frames[std::min(frames.size() - 1, frames.size() * 9 / 10)];

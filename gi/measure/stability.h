@@ -26,15 +26,17 @@ struct StabilityErrors {
 StabilityErrors stabilityErrors(const PixelSeries& technique, const PixelSeries& truth,
                                 std::span<const uint32_t> pixels);
 
-/// How soon a technique follows a step of the light, in frames: L90 of one pixel is the number of frames after the one
-/// in which the light changed until 90 % of the technique's own change has been made for the first time; 0 = at once.
+/// How soon a technique follows a step of the scene, in frames: L90 of one pixel is the number of frames after the one
+/// in which the scene changed until 90 % of the technique's own change has been made for the first time; 0 = at once.
 /// Its own change leads from its value before the step to its mean over the last quarter of the time until the next
 /// step. Pixels whose truth changes by less than `least` are left out.
+/// As a technique that hardly changes at all would be quick, `followed` says how much of the truth's change is made.
 struct Latency {
   double median = 0, worstTenth = 0; // over pixels and steps; the worst tenth's best
+  double followed = 0;               // sum of own changes, towards the truth's, over the sum of the truth's; 1 is all
   size_t count = 0;                  // of pixels and steps; 0: no step that shows
 };
-/// `steps`: frames in which the light differs from the frame before by a step, ascending.
+/// `steps`: frames in which the scene differs from the frame before by a step, ascending.
 Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::span<const uint32_t> pixels,
                   std::span<const size_t> steps, float least = 0.02f);
 

@@ -25,6 +25,9 @@ const std::vector<ContentRecipe>& contentRecipes() {
         {"hall", "two-storey arcaded hall: sun through an open roof, cloth, a moving lamp and a rolling ball", true,
          content::writeHall},
         {"cornell", "Cornell box with two blocks and a ceiling emitter", true, content::writeCornell},
+        {"door", "a dark room beside a bright one, and the door leaf between them", true, content::writeDoor},
+        {"red-box", "white corridor, and a red box to be carried along it", true, content::writeRedBox},
+        {"lift", "hall of three storeys with a lift in front of lit rooms", true, content::writeLift},
     };
     addSizes(all, "office", "office building: corridors, rooms with open doors, 14 lights", content::writeOffice);
     addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);

@@ -9,8 +9,11 @@ namespace lambent::content {
 GeneratedScene writeAtrium(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeCitadel(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeCornell(const std::filesystem::path& folder);
+GeneratedScene writeDoor(const std::filesystem::path& folder);
 GeneratedScene writeHall(const std::filesystem::path& folder);
+GeneratedScene writeLift(const std::filesystem::path& folder);
 GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);
+GeneratedScene writeRedBox(const std::filesystem::path& folder);
 
 } // namespace lambent::content

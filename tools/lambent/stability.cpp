@@ -24,7 +24,7 @@ struct StabilityOptions {
   LaunchOptions launch;
   OutputOptions output;
   std::vector<std::string> shots, techniques{"smc", "ir", "mir", "tcas"};
-  int samples = 1024, frames = 0, grid = 16;
+  int samples = 1024, frames = 0, grid = 16, still = 0;
   bool check = false;
 };
 
@@ -84,11 +84,25 @@ class Follower {
   std::vector<double> placeMs_;
 };
 
-/// Frames in which some light differs from the frame before by half or more.
+/// A corner of its bounds moved by a quarter of their diagonal or more.
+bool jumped(const InstanceView& instance, const SceneAssets& assets) {
+  if (!instance.moved) return false;
+  const Aabb& b = assets.meshes[instance.mesh].boundsObject;
+  float farthest = 0;
+  for (int i = 0; i < 8; ++i) {
+    const vec4 corner(i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z, 1);
+    farthest =
+        std::max(farthest, glm::length(vec3((instance.worldFromObject - instance.worldFromObjectBefore) * corner)));
+  }
+  return farthest > 0 && farthest >= 0.25f * instance.boundsWorld.diameter();
+}
+
+/// Frames in which some light differs from the frame before by half or more, or some object jumps.
 class StepFinder {
  public:
   bool step(const SceneView& view) {
     bool found = false;
+    for (const InstanceView& i : view.instances) found |= jumped(i, *view.assets);
     std::vector<float> now;
     for (const LightView& l : view.lights) now.push_back(luminance(l.intensity));
     for (size_t i = 0; i < now.size() && now.size() == before_.size(); ++i)
@@ -118,7 +132,11 @@ double toneMappedVariance(const TrackedValue& value, float exposure) {
   return e * e;
 }
 
-ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context) {
+constexpr int kStillFrames = 6; // to measure each time at which a shot stands still
+
+/// One shot, as it moves or, with `stillAt` (a share of its length), standing still at that time.
+ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
+               std::optional<double> stillAt = {}) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
   // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
@@ -143,24 +161,25 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   for (const std::string& name : options.techniques) followers.push_back(std::make_unique<Follower>(*stage, name));
   std::unique_ptr<EmbreeQuery> rays;
   StepFinder steps;
-  std::vector<size_t> stepFrames;
+  std::vector<PixelSums> sums;
   float exposure = stage->settings.image.exposure;
   double variance = 0;
   size_t values = 0;
-  const int total =
+  const int length =
       options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  Progress progress(shot.name, options.output.quiet);
+  const int total = stillAt ? kStillFrames : length;
+  Progress progress(shot.name + (stillAt ? " standing still" : ""), options.output.quiet);
   for (int f = 0; f < total && !interrupted; ++f) {
-    const SceneView view = stage->at(f / stage->shot->fps);
+    const SceneView view = stage->at((stillAt ? *stillAt * length : f) / stage->shot->fps);
     if (!rays) rays = std::make_unique<EmbreeQuery>(*view.assets);
     rays->update(view);
     const LightSet lights = collectLights(view);
-    if (steps.step(view)) stepFrames.push_back(size_t(f));
+    if (steps.step(view)) shot.steps.push_back(size_t(f));
     const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, points);
     RayCounts counts;
-    const std::vector<PixelSums> sums =
-        sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
-                       uint32_t(options.samples), counts);
+    if (!stillAt || f == 0)
+      sums = sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
+                            uint32_t(options.samples), counts);
     std::vector<TrackedValue> known;
     std::vector<vec3> truth;
     for (size_t i = 0; i < sums.size(); ++i) {
@@ -187,11 +206,43 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     TechniqueRun& run = follower->run;
     run.marked = stabilityErrors(run.series, shot.truth, marked);
     run.grid = stabilityErrors(run.series, shot.truth, grid);
-    run.latency = latency90(run.series, shot.truth, grid, stepFrames);
+    run.latency = latency90(run.series, shot.truth, grid, shot.steps);
     run.placeMs = follower->medianPlaceMs();
     shot.techniques.push_back(std::move(run));
   }
   return shot;
+}
+
+/// Measures the shot at `times` times at which it stands still, in the middles of as many equal parts of its length.
+void measureStill(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
+                  ShotRun& shot) {
+  for (int i = 0; i < options.still; ++i) {
+    const ShotRun still = follow(options, file, context, (i + 0.5) / options.still);
+    for (size_t t = 0; t < shot.techniques.size(); ++t) {
+      shot.techniques[t].stillMarked.error += still.techniques[t].marked.error / options.still;
+      shot.techniques[t].stillGrid.error += still.techniques[t].grid.error / options.still;
+    }
+  }
+  shot.still = true;
+}
+
+/// Throws RunError unless smc's error is at most 1.25 times what it is while the scene stands still, and steps are
+/// followed within six frames.
+void checkFollows(const std::vector<ShotRun>& shots) {
+  constexpr double kMostOverStill = 1.25, kMostFrames = 6, kLeastFollowed = 0.8;
+  std::string failures;
+  const auto fail = [&](const std::string& what) { failures += (failures.empty() ? "" : "; ") + what; };
+  for (const ShotRun& s : shots) {
+    const TechniqueRun* smc = s.technique("smc");
+    if (!smc) throw InputError("--check", "needs smc (--techniques)");
+    if (s.still && !(smc->marked.error <= kMostOverStill * smc->stillMarked.error &&
+                     smc->grid.error <= kMostOverStill * smc->stillGrid.error))
+      fail("|E| grows too much with motion in " + s.name);
+    if (!s.steps.empty() &&
+        !(smc->latency.count > 0 && smc->latency.worstTenth <= kMostFrames && smc->latency.followed >= kLeastFollowed))
+      fail("steps are followed too late or not wholly in " + s.name);
+  }
+  if (!failures.empty()) throw RunError("smc: " + failures);
 }
 
 /// Throws RunError unless smc changes its error least in every shot and follows steps of the light within two frames.
@@ -214,15 +265,18 @@ void stability(const StabilityOptions& options) {
     Settings ignored;
     applyTechnique(ignored, name);
   }
-  if (options.check && options.techniques.size() < 2)
-    throw InputError("--check", "needs smc and others (--techniques)");
+  if (options.check && options.still == 0 && options.techniques.size() < 2)
+    throw InputError("--check", "needs smc and others (--techniques), or --still");
   const fs::path folder = options.output.out.empty() ? fs::path("out/stability") : fs::path(options.output.out);
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
-  for (const std::string& file : options.shots) shots.push_back(follow(options, file, context));
+  for (const std::string& file : options.shots) {
+    shots.push_back(follow(options, file, context));
+    if (options.still > 0 && shots.back().steps.empty()) measureStill(options, file, context, shots.back());
+  }
 
   std::string conditions = "Truth: path tracing with " + std::to_string(options.samples) +
                            " paths per pixel; standard error of its values (tone-mapped luminance):";
@@ -236,7 +290,7 @@ void stability(const StabilityOptions& options) {
   writeStabilityReport(folder, shots, conditions);
   nlohmann::json figures = nlohmann::json::array();
   for (const ShotRun& s : shots)
-    for (const TechniqueRun& t : s.techniques)
+    for (const TechniqueRun& t : s.techniques) {
       figures.push_back({{"shot", s.name},
                          {"technique", t.name},
                          {"vpls", s.vpls},
@@ -247,13 +301,18 @@ void stability(const StabilityOptions& options) {
                          {"bias_grid", t.grid.bias},
                          {"l90_median", t.latency.median},
                          {"l90_worst_tenth", t.latency.worstTenth},
+                         {"l90_followed", t.latency.followed},
                          {"l90_count", t.latency.count},
                          {"truth_error", s.truthError}});
+      if (!s.still) continue;
+      figures.back()["error_still_marked"] = t.stillMarked.error;
+      figures.back()["error_still_grid"] = t.stillGrid.error;
+    }
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
     std::printf("%s%s\nreport: %s\n", stabilityTable(shots).c_str(), conditions.c_str(),
                 (folder / "stability.html").c_str());
-  if (options.check) checkSteadiest(shots);
+  if (options.check) (options.still > 0 ? checkFollows : checkSteadiest)(shots);
 }
 
 } // namespace
@@ -271,8 +330,13 @@ void declareStability(CLI::App& app) {
       ->check(CLI::Range(1, 1000000));
   command->add_option("--grid", options->grid, "grid of so many by so many pixels besides the marked (default 16)")
       ->check(CLI::Range(1, 256));
+  command
+      ->add_option("--still", options->still,
+                   "also at so many times at which the shot stands still, for |E| over still")
+      ->check(CLI::Range(0, 1000));
   command->add_flag("--check", options->check,
-                    "exit with 1 unless smc has the smallest |E'| (grid) in every shot and L90 of two frames at most");
+                    "exit with 1 unless smc has the smallest |E'| (grid) in every shot and L90 of two frames at most; "
+                    "with --still, unless |E| of smc is at most 1.25 times the still one, and L90 six frames at most");
   command->callback([options] { stability(*options); });
 }
 

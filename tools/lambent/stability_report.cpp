@@ -42,6 +42,16 @@ std::string publishedRatio(std::string shot) {
   return "";
 }
 
+/// |E| over what it is while the scene stands still: marked, grid.
+std::string overStill(const ShotRun& shot, const TechniqueRun& t) {
+  if (!shot.still) return "";
+  return format("%.2f, %.2f", t.marked.error / t.stillMarked.error, t.grid.error / t.stillGrid.error);
+}
+
+std::string latencyText(const Latency& l) {
+  return l.count ? format("%.0f, %.0f, %.0f %%", l.median, l.worstTenth, 100 * l.followed) : "";
+}
+
 void writeText(const fs::path& file, const std::string& text) {
   writeAtomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
@@ -52,13 +62,14 @@ void writeText(const fs::path& file, const std::string& text) {
 
 std::string csv(const std::vector<ShotRun>& shots) {
   std::ostringstream out;
-  out << "shot,technique,vpls,frames,error_marked,change_marked,error_grid,change_grid,bias_grid,l90_median,"
-         "l90_worst_tenth,l90_count,place_ms,truth_error\n";
+  out << "shot,technique,vpls,frames,error_marked,change_marked,error_grid,change_grid,bias_grid,error_still_marked,"
+         "error_still_grid,l90_median,l90_worst_tenth,l90_followed,l90_count,place_ms,truth_error\n";
   for (const ShotRun& s : shots)
     for (const TechniqueRun& t : s.techniques)
       out << s.name << ',' << t.name << ',' << s.vpls << ',' << s.truth.size() << ',' << t.marked.error << ','
           << t.marked.change << ',' << t.grid.error << ',' << t.grid.change << ',' << t.grid.bias << ','
-          << t.latency.median << ',' << t.latency.worstTenth << ',' << t.latency.count << ','
+          << (s.still ? format("%g,%g,", t.stillMarked.error, t.stillGrid.error) : ",,") << t.latency.median << ','
+          << t.latency.worstTenth << ',' << t.latency.followed << ',' << t.latency.count << ','
           << format("%.3f", t.placeMs) << ',' << s.truthError << '\n';
   return out.str();
 }
@@ -122,15 +133,15 @@ std::string html(const std::vector<ShotRun>& shots, const std::string& condition
          "solid #ddd;text-align:right}td:nth-child(-n+2){text-align:left}svg text{font:10px sans-serif}</style>\n"
       << "<h1>Temporal stability</h1><p>" << conditions
       << "</p><p>E = technique − truth in tone-mapped luminance, E' its change from frame to frame (paper 1, table 1). "
-         "L90: frames until 90 % of a step of the light is followed.</p>\n<table><tr><th>shot<th>technique<th>N<th>|E| "
-         "marked<th>|E'| marked<th>|E| grid<th>|E'| grid<th>bias<th>L90 median, worst tenth<th>ms to place</tr>\n";
+         "L90: frames until 90 % of a step of the scene is followed.</p>\n<table><tr><th>shot<th>technique<th>N<th>|E| "
+         "marked<th>|E'| marked<th>|E| grid<th>|E'| grid<th>bias<th>|E| over still<th>L90 median, worst tenth, share "
+         "followed<th>ms to place</tr>\n";
   for (const ShotRun& s : shots)
     for (const TechniqueRun& t : s.techniques)
       out << "<tr><td>" << s.name << "<td>" << t.name
           << format("<td>%d<td>%.4f<td>%.4f<td>%.4f<td>%.4f<td>%+.4f", s.vpls, t.marked.error, t.marked.change,
                     t.grid.error, t.grid.change, t.grid.bias)
-          << (t.latency.count ? format("<td>%.0f, %.0f", t.latency.median, t.latency.worstTenth) : "<td>")
-          << format("<td>%.1f</tr>\n", t.placeMs);
+          << "<td>" << overStill(s, t) << "<td>" << latencyText(t.latency) << format("<td>%.1f</tr>\n", t.placeMs);
   out << "</table>\n";
   for (const ShotRun& s : shots) {
     out << "<h2>" << s.name << "</h2><p><b>truth</b>";
@@ -153,8 +164,8 @@ const TechniqueRun* ShotRun::technique(const std::string& wanted) const {
 std::string stabilityTable(const std::vector<ShotRun>& shots) {
   std::ostringstream out;
   out << "| shot | technique | N | \\|E\\| marked | \\|E'\\| marked | \\|E\\| grid | \\|E'\\| grid | bias | \\|E'\\| "
-         "over "
-         "ir's | paper 1 | L90, worst tenth | ms to place |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+         "over ir's | paper 1 | \\|E\\| over still | L90, worst tenth, followed | ms to place |\n"
+         "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ShotRun& s : shots) {
     const TechniqueRun* ir = s.technique("ir");
     for (const TechniqueRun& t : s.techniques)
@@ -162,9 +173,8 @@ std::string stabilityTable(const std::vector<ShotRun>& shots) {
           << format(" | %.4f | %.4f | %.4f | %.4f | %+.4f | ", t.marked.error, t.marked.change, t.grid.error,
                     t.grid.change, t.grid.bias)
           << (ir && ir->grid.change > 0 ? format("%.2f", t.grid.change / ir->grid.change) : "") << " | "
-          << (t.name == "smc" ? publishedRatio(s.name) : "") << " | "
-          << (t.latency.count ? format("%.0f, %.0f", t.latency.median, t.latency.worstTenth) : "")
-          << format(" | %.1f |\n", t.placeMs);
+          << (t.name == "smc" ? publishedRatio(s.name) : "") << " | " << overStill(s, t) << " | "
+          << latencyText(t.latency) << format(" | %.1f |\n", t.placeMs);
   }
   return out.str();
 }

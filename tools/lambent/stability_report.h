@@ -15,6 +15,7 @@ struct TechniqueRun {
   std::string name;
   PixelSeries series;
   StabilityErrors marked, grid;
+  StabilityErrors stillMarked, stillGrid; // of the same view standing still, where ShotRun::still is set
   Latency latency;
   double placeMs = 0; // median time per frame of placing virtual lights
 };
@@ -26,7 +27,9 @@ struct ShotRun {
   double fps = 30;
   size_t marked = 0;
   PixelSeries truth;
-  double truthError = 0; // standard error of a value of the truth, RMS, tone-mapped luminance
+  std::vector<size_t> steps; // frames in which the scene changes by a step
+  bool still = false;        // also measured standing still
+  double truthError = 0;     // standard error of a value of the truth, RMS, tone-mapped luminance
   std::vector<TechniqueRun> techniques;
 
   const TechniqueRun* technique(const std::string& name) const;

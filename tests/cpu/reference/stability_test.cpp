@@ -67,6 +67,7 @@ TEST(Stability, LatencyOfAnExponentialApproach) {
     const Latency l = latency90(technique, truth, pixel, steps);
     EXPECT_EQ(l.median, expected) << r;
     EXPECT_EQ(l.count, 1u);
+    EXPECT_NEAR(l.followed, 0.8, 1e-4); // 0.4 of 0.5
   }
 }
 
@@ -83,6 +84,7 @@ TEST(Stability, LatencyOfAStepDownAndOfOneThatIsMissed) {
   EXPECT_EQ(l.worstTenth, 2);
   const PixelSeries stuck(40, {0.6f, 0.5f});
   EXPECT_EQ(latency90(stuck, truth, both, steps).worstTenth, 20); // as long as there was
+  EXPECT_EQ(latency90(stuck, truth, both, steps).followed, 0);
   EXPECT_EQ(latency90(technique, truth, both, {}).count, 0u);
 }
 
