@@ -154,7 +154,10 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
   const Mesh& mesh = assets.meshes[meshIndex];
   if (mesh.triangles.empty()) return {};
   BottomLevel out{rtcNewScene(device)};
-  if (refits) rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_DYNAMIC);
+  if (refits) { // without these two Embree builds anew whatever the geometries ask for
+    rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(out.scene, RTC_BUILD_QUALITY_LOW);
+  }
   // Embree reads four floats per vertex, so one more follows the last: our own copies, shared by the primitives.
   RTCBuffer vertices = rtcNewBuffer(device, positions.size() * sizeof(vec3) + sizeof(float));
   writeVertices(vertices, positions);

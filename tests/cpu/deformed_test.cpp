@@ -160,6 +160,29 @@ TEST(DeformedRays, RigidInstancesAreBitIdenticalBesideThem) {
   EXPECT_GT(rigid, 200);
 }
 
+TEST(DeformedRays, MasksStayWithTheirVertices) {
+  test::HandScene scene;
+  const uint32_t lattice = scene.material(vec3(1));
+  TextureImage image;
+  image.width = 2, image.height = 1;
+  image.texels = {u8vec4(255, 0, 0, 0), u8vec4(0, 255, 0, 255)}; // left half cut out
+  scene.assets.images.push_back(image);
+  Material& m = scene.assets.materials[lattice];
+  m.alphaMode = AlphaMode::Mask;
+  m.baseColorTexture.image = 0;
+  m.baseColorTexture.nearest = true;
+  scene.assets.meshes.push_back(test::sheet(8, lattice));
+  scene.instance(0, mat4(1));
+  std::vector<vec3> shifted = scene.assets.meshes[0].positions;
+  for (vec3& p : shifted) p.x += 10;
+  scene.reshape(0, shifted);
+  EmbreeQuery query(scene.assets);
+  query.update(scene.view());
+  EXPECT_FALSE(query.occluded(Ray{{9.5f, 0.3f, 1}, {0, 0, -1}}));
+  EXPECT_TRUE(query.occluded(Ray{{10.5f, 0.3f, 1}, {0, 0, -1}}));
+  EXPECT_FALSE(query.occluded(Ray{{0.5f, 0.3f, 1}, {0, 0, -1}})) << "where the bind pose is";
+}
+
 TEST(SurfacePoint, IsWhereTheHitWasAlsoAfterTheSurfaceMoved) {
   Sheets sheets;
   test::HandScene& scene = sheets.scene;
