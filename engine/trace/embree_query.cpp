@@ -146,9 +146,9 @@ struct EmbreeQuery::State {
   void reshape(Instance& out, const DeformedMesh& deformed);
 };
 
-/// `refits`: the vertices will move. The hierarchy is then built once and only its boxes follow, which costs a fraction
-/// of building it; it stays exact, but gets slower to trace the farther the shape departs from the one it was built
-/// for.
+/// `refits`: the vertices will move. The hierarchy is then built once and only its boxes follow, which costs about a
+/// tenth of building it; it stays exact, but gets slower to trace the farther the shape departs from the one it was
+/// built for.
 EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, const std::vector<vec3>& positions,
                                                           bool refits) {
   const Mesh& mesh = assets.meshes[meshIndex];
