@@ -55,9 +55,8 @@ void GpuScene::place(std::span<const InstanceView> instances) {
                    [](const Item& a, const Item& b) { return a.range.material < b.range.material; });
 
   const uint64_t bytes = std::max<size_t>(1, rows.size()) * sizeof(vec4);
-  if (!instanceRows_ || instanceRows_.bytes() < bytes) {
+  if (!instanceRows_ || instanceRows_.bytes() < bytes)
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
-  }
   for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
     if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
   instanceRows_.write(0, rows.size() * sizeof(vec4), rows.data());

@@ -16,7 +16,8 @@ gl::Buffer roomFor(const char* label, const gl::Buffer& from, uint64_t count, ui
 
 } // namespace
 
-/// Gives every deformed instance its run. Done again only when such instances come, go or change their mesh.
+/// Gives every deformed instance its run. Done again only when instances come or go, change their mesh, or start or
+/// stop being deformed.
 void GpuScene::layOutDeformed(std::span<const InstanceView> instances) {
   std::vector<uint32_t> baseVertex(instances.size(), kNone);
   uint64_t total = 0;

@@ -69,7 +69,7 @@ TEST_F(DeformedDraw, GBufferAgreesWithRaysAsTheShapeChanges) {
     reshape(phase);
     expectAgreesWithRays(pass, gpu);
   }
-  // One of them alone changes; then instances come before it, and it becomes rigid.
+  // One of them alone changes; then it becomes rigid while the other changes.
   scene.reshape(2, waves(scene.assets.meshes[2], 0.4f, 4));
   expectAgreesWithRays(pass, gpu);
   scene.instances[2].deformed = nullptr;
