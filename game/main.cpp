@@ -36,15 +36,14 @@ class Walkthrough {
  public:
   explicit Walkthrough(const GameOptions& options)
       : options_(options), stage_(openStage(options.launch)), shot_(stage_->shot), scene_(stage_->scene),
-        player_(stage_->camera, worldBounds(scene_).diameter()),
+        diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, diameter_),
         context_(GlContext::window("Lambent", stage_->camera.width, stage_->camera.height)),
         gi_(stage_->settings, stage_->seed), hud_(context_.handle()), interaction_(context_.handle()),
         recorder_(scene_.file) {
     for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << warning << "\n";
     for (const std::string& note : stage_->notes) hud_.say(note);
-    const float diameter = worldBounds(scene_).diameter();
     // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
-    model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter * diameter, 1e-6f);
+    model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter_ * diameter_, 1e-6f);
     model_.speed = player_.speed();
     model_.buffer = bufferByName(options.buffer);
     if (!options.launch.preset.empty()) model_.preset = options.launch.preset;
@@ -154,7 +153,7 @@ class Walkthrough {
       lamp_.reset();
       return;
     }
-    const float reach = 0.01f * worldBounds(scene_).diameter();
+    const float reach = 0.01f * diameter_;
     const vec3 hand = player_.position() + reach * player_.forward() - vec3(0, reach, 0);
     if (!lamp_) {
       LightView light;
@@ -207,6 +206,7 @@ class Walkthrough {
   const std::unique_ptr<Stage> stage_;
   const std::optional<Shot>& shot_;
   Scene& scene_;
+  const float diameter_; // of the scene as it starts, metres
   Player player_;
   GlContext context_;
   GiFrame gi_;

@@ -26,7 +26,8 @@ enum class Stream : uint32_t {
   Reference,
   Cells,
   Photons,
-  Acceptance
+  Acceptance,
+  MapTests
 };
 
 /// A sequence of numbers addressed by what they are for.

@@ -38,6 +38,29 @@ void applyChannel(Transform& t, const AnimationChannel& channel, float time) {
   }
 }
 
+/// The keys around a time, and where between them: equal keys where a value is held.
+struct Between {
+  size_t key = 0, after = 0;
+  float u = 0, span = 0; // share of the way, seconds between the two
+};
+
+Between findKeys(const std::vector<float>& times, Interpolation interpolation, float time) {
+  CHECK(!times.empty());
+  const size_t after = size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  if (after == 0) return {};
+  const size_t key = after - 1;
+  if (after == times.size() || interpolation == Interpolation::Step) return {key, key};
+  const float span = times[after] - times[key]; // > 0: upper_bound skips equal times
+  return {key, after, (time - times[key]) / span, span};
+}
+
+/// Hermite spline; tangents are per second, hence the span.
+template <class V> V hermite(const Between& at, const V& from, const V& leaving, const V& arriving, const V& to) {
+  const float u = at.u, u2 = u * u, u3 = u2 * u;
+  return (2 * u3 - 3 * u2 + 1) * from + (u3 - 2 * u2 + u) * (at.span * leaving) + (3 * u2 - 2 * u3) * to +
+         (u3 - u2) * (at.span * arriving);
+}
+
 void applyMotion(Transform& t, const Motion& motion, double time) {
   const double period = motion.swingPeriod > 0 ? motion.swingPeriod : 1;
   const double turns = time / period;
@@ -63,28 +86,35 @@ float clipTime(const AnimationClip& clip, double time) {
 } // namespace
 
 vec4 sampleChannel(const AnimationChannel& channel, float time) {
-  CHECK(!channel.times.empty());
-  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
   const bool rotation = channel.path == ChannelPath::Rotation;
-  const auto value = [&](size_t key) { return channel.values[cubic ? 3 * key + 1 : key]; };
   const auto finish = [&](const vec4& v) { return rotation ? unitOrIdentity(v) : v; };
-
-  const size_t after =
-      size_t(std::upper_bound(channel.times.begin(), channel.times.end(), time) - channel.times.begin());
-  if (after == 0) return finish(value(0));
-  const size_t key = after - 1;
-  if (after == channel.times.size() || channel.interpolation == Interpolation::Step) return finish(value(key));
-
-  const float span = channel.times[after] - channel.times[key]; // > 0: upper_bound skips equal times
-  const float u = (time - channel.times[key]) / span;
+  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
+  const auto value = [&](size_t key) { return channel.values[cubic ? 3 * key + 1 : key]; };
+  const Between at = findKeys(channel.times, channel.interpolation, time);
+  if (at.after == at.key) return finish(value(at.key));
   if (!cubic)
-    return rotation ? finish(slerpShorter(value(key), value(after), u)) : glm::mix(value(key), value(after), u);
+    return rotation ? finish(slerpShorter(value(at.key), value(at.after), at.u))
+                    : glm::mix(value(at.key), value(at.after), at.u);
+  return finish(
+      hermite(at, value(at.key), channel.values[3 * at.key + 2], channel.values[3 * at.after], value(at.after)));
+}
 
-  // Hermite spline; tangents are per second, hence the span.
-  const vec4 leaving = span * channel.values[3 * key + 2], arriving = span * channel.values[3 * after];
-  const float u2 = u * u, u3 = u2 * u;
-  return finish((2 * u3 - 3 * u2 + 1) * value(key) + (u3 - 2 * u2 + u) * leaving + (3 * u2 - 2 * u3) * value(after) +
-                (u3 - u2) * arriving);
+void sampleChannel(const WeightsChannel& channel, float time, std::vector<float>& weights) {
+  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
+  // `row` counts keys, or in-tangents, values and out-tangents of keys.
+  const auto number = [&](size_t row, size_t i) { return channel.values[row * channel.count + i]; };
+  const auto value = [&](size_t key, size_t i) { return number(cubic ? 3 * key + 1 : key, i); };
+  const Between at = findKeys(channel.times, channel.interpolation, time);
+  weights.resize(channel.count);
+  for (size_t i = 0; i < channel.count; ++i) {
+    if (at.after == at.key)
+      weights[i] = value(at.key, i);
+    else if (cubic)
+      weights[i] =
+          hermite(at, value(at.key, i), number(3 * at.key + 2, i), number(3 * at.after, i), value(at.after, i));
+    else
+      weights[i] = glm::mix(value(at.key, i), value(at.after, i), at.u);
+  }
 }
 
 void animate(Scene& scene, double time) {
@@ -96,9 +126,15 @@ void animate(Scene& scene, double time) {
   for (const Entity e : unrested) registry.emplace<Animated>(e, registry.get<Transform>(e));
 
   registry.each<Animated, Transform>([](Entity, const Animated& a, Transform& t) { t = a.rest; });
-  for (const AnimationClip& clip : scene.animations)
+  registry.each<AnimatedWeights, MorphWeights>(
+      [](Entity, const AnimatedWeights& a, MorphWeights& m) { m.weights = a.rest; });
+  for (const AnimationClip& clip : scene.animations) {
     for (const AnimationChannel& channel : clip.channels)
       if (auto* t = registry.tryGet<Transform>(channel.target)) applyChannel(*t, channel, clipTime(clip, time));
+    for (const WeightsChannel& channel : clip.weightsChannels)
+      if (auto* m = registry.tryGet<MorphWeights>(channel.target))
+        sampleChannel(channel, clipTime(clip, time), m->weights);
+  }
   registry.each<Motion, Transform>([&](Entity, const Motion& m, Transform& t) { applyMotion(t, m, time); });
   updateWorldTransforms(scene);
 }

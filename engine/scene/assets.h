@@ -54,6 +54,19 @@ struct Primitive {
   uint32_t firstTriangle = 0, triangleCount = 0;
   uint32_t material = 0;
   Aabb boundsObject;
+  bool flat = false; // normals are the triangles', each with vertices of its own: made anew when the mesh is deformed
+};
+
+/// Up to four joints per vertex, as indices into the joints of the skin that the mesh is shown with. The weights of a
+/// vertex sum to one over all sets of its mesh, or are all zero: such a vertex follows no joint.
+struct JointSet {
+  std::vector<glm::uvec4> joints;
+  std::vector<vec4> weights;
+};
+
+/// What full weight of a morph target adds to the vertices, object space. Each empty, or one per vertex.
+struct MorphTarget {
+  std::vector<vec3> positions, normals;
 };
 
 /// Triangle mesh in object space, metres. `normals` always has one unit vector per vertex (made by the importer where
@@ -66,6 +79,9 @@ struct Mesh {
   std::vector<uvec3> triangles; // indices into the vertex arrays; sorted by primitive
   std::vector<Primitive> primitives;
   Aabb boundsObject;
+  // How an instance of it may be deformed (deform.h); the vertices above are those of the bind pose, unmorphed.
+  std::vector<JointSet> jointSets;
+  std::vector<MorphTarget> morphTargets;
 };
 
 struct SceneAssets {

@@ -48,6 +48,19 @@ struct MeshInstance {
   uint32_t mesh = 0; // index into SceneAssets::meshes
 };
 
+/// The mesh of the entity follows joints: entities with a WorldTransform, and for each the matrix from the mesh's bind
+/// pose to the joint's own space. The joints alone place the surface in the world; the entity's own transform does not
+/// (glTF 2.0, 3.7.3.1).
+struct Skin {
+  std::vector<Entity> joints;
+  std::vector<mat4> jointFromBind; // beside `joints`
+};
+
+/// How much of each morph target of the entity's mesh is added; missing ones count as zero.
+struct MorphWeights {
+  std::vector<float> weights;
+};
+
 /// Stands at the entity's origin and shines along its -Z. Units as in LightView.
 struct PunctualLight {
   LightType type = LightType::Point;
@@ -66,6 +79,11 @@ struct CameraLens {
 /// The pose that animation starts from: animate() puts the entity back to it before it applies channels and motion.
 struct Animated {
   Transform rest;
+};
+
+/// The same for morph weights.
+struct AnimatedWeights {
+  std::vector<float> rest;
 };
 
 /// Scripted motion for scenes whose file has no animation. The two parts add up; either may be idle.
@@ -90,14 +108,26 @@ struct AnimationChannel {
   std::vector<vec4> values;
 };
 
+/// Key frames of the morph weights of one entity, `count` to a value; otherwise as AnimationChannel.
+struct WeightsChannel {
+  Entity target;
+  Interpolation interpolation = Interpolation::Linear;
+  size_t count = 0;
+  std::vector<float> times;
+  std::vector<float> values; // count per time, or three times count
+};
+
 struct AnimationClip {
   std::string name;
   double duration = 0; // seconds: the last key of all channels
   std::vector<AnimationChannel> channels;
+  std::vector<WeightsChannel> weightsChannels;
 };
 
 /// Value of a channel at `time`, held before the first and after the last key. Rotations are unit quaternions (xyzw),
 /// interpolated along the shorter arc.
 vec4 sampleChannel(const AnimationChannel& channel, float time);
+/// The same for morph weights; `weights` gets channel.count values.
+void sampleChannel(const WeightsChannel& channel, float time, std::vector<float>& weights);
 
 } // namespace lambent

@@ -37,12 +37,12 @@ struct Triangle {
 /// All instances' triangles in world space, wound so that the cross product of the edges is the front.
 std::vector<Triangle> worldTriangles(const Scene& scene) {
   std::vector<Triangle> triangles;
-  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance& m, const WorldTransform& w) {
-    const Mesh& mesh = scene.assets.meshes[m.mesh];
-    const bool mirrored = glm::determinant(mat3(w.worldFromNode)) < 0;
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
+    const std::vector<vec3>& positions = deformed ? deformed->positions : mesh.positions;
+    const bool mirrored = glm::determinant(mat3(worldFromObject)) < 0;
     for (const uvec3& t : mesh.triangles) {
       vec3 p[3];
-      for (int c = 0; c < 3; ++c) p[c] = vec3(w.worldFromNode * vec4(mesh.positions[t[c]], 1));
+      for (int c = 0; c < 3; ++c) p[c] = vec3(worldFromObject * vec4(positions[t[c]], 1));
       if (mirrored) std::swap(p[1], p[2]);
       triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});
     }

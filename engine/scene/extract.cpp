@@ -1,38 +1,14 @@
 // Extraction: what the registry holds now, as spans, and how it differs from the extraction before.
 
+#include "engine/core/parallel.h"
 #include "engine/scene/scene.h"
 
+#include <atomic>
 #include <unordered_map>
 
 namespace lambent {
 
 namespace {
-
-/// A matrix that flattens its object onto a plane or line cannot be inverted, and so gives no normals. Its lost axes
-/// get back this share of the largest one: invisible, and well inside float precision.
-constexpr float kFlattenedScale = 1e-5f;
-
-/// Gives a flattened matrix its lost axes back. False when it still cannot be inverted: all axes lost, not finite, or
-/// sheared flat; such instances are left out.
-bool makeInvertible(mat4& m) {
-  for (int c = 0; c < 4; ++c)
-    if (!isFinite(vec3(m[c]))) return false;
-  const float largest = glm::max(glm::length(vec3(m[0])), glm::max(glm::length(vec3(m[1])), glm::length(vec3(m[2]))));
-  if (!(largest > 1e-12f)) return false;
-  const float least = kFlattenedScale * largest;
-  for (int c = 0; c < 3; ++c) { // axes of no length: along what the other two leave free
-    if (glm::length(vec3(m[c])) >= least) continue;
-    const vec3 a = vec3(m[(c + 1) % 3]), b = vec3(m[(c + 2) % 3]);
-    vec3 free = glm::cross(a, b);
-    if (!(glm::length(free) > least * least)) {
-      const vec3 longer = glm::length(a) > glm::length(b) ? a : b;
-      free = glm::cross(longer, std::abs(longer.x) < 0.5f * glm::length(longer) ? vec3(1, 0, 0) : vec3(0, 1, 0));
-    }
-    m[c] = vec4(least * glm::normalize(free), 0);
-  }
-  const float box = glm::length(vec3(m[0])) * glm::length(vec3(m[1])) * glm::length(vec3(m[2]));
-  return std::abs(glm::determinant(mat3(m))) > 1e-6f * box; // else three axes in one plane: shear has flattened it
-}
 
 bool sameLight(const LightView& a, const LightView& b) {
   return a.type == b.type && a.position == b.position && a.direction == b.direction && a.intensity == b.intensity &&
@@ -50,7 +26,49 @@ template <class View> std::unordered_map<uint32_t, const View*> byId(const std::
   return map;
 }
 
+/// See DeformedMesh::revision.
+uint64_t nextRevision() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 } // namespace
+
+/// Poses every instance that is skinned or morphed, anew where its pose changed. Shapes stay at their address, since
+/// views point to them.
+std::vector<InstanceView> SceneExtractor::placeInstances(const Scene& scene) {
+  std::vector<InstanceView> instances;
+  instances.reserve(instances_.size());
+  std::unordered_map<uint32_t, Shape> shapes;
+  std::vector<Shape*> changed;
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
+    std::optional<PlacedPose> placed = poseOf(scene, e, m, w);
+    if (!placed) return;
+    InstanceView v;
+    v.id = e.id();
+    v.mesh = m.mesh;
+    v.worldFromObject = v.worldFromObjectBefore = placed->worldFromObject;
+    if (deforms(scene.assets.meshes[m.mesh], placed->pose)) {
+      auto node = shapes_.extract(v.id);
+      Shape& shape = node ? shapes.insert(std::move(node)).position->second : shapes[v.id];
+      if (shape.mesh != v.mesh || shape.pose != placed->pose) {
+        shape.mesh = v.mesh;
+        shape.pose = std::move(placed->pose);
+        shape.deformed.revision = nextRevision();
+        v.reshaped = true;
+        changed.push_back(&shape);
+      }
+      v.deformed = &shape.deformed;
+    }
+    instances.push_back(v);
+  });
+  shapes_ = std::move(shapes);
+  parallelFor(changed.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      deform(scene.assets.meshes[changed[i]->mesh], changed[i]->pose, changed[i]->deformed);
+  });
+  return instances;
+}
 
 SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, double time) {
   SceneChanges changes{first_, first_, first_, first_, first_};
@@ -58,29 +76,24 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
 
   auto instancesBefore = byId(instances_);
   addedOrRemoved_.clear();
-  std::vector<InstanceView> instances;
-  instances.reserve(instances_.size());
-  scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
-    InstanceView v;
-    v.id = e.id();
-    v.mesh = m.mesh;
-    v.worldFromObject = w.worldFromNode;
-    if (!makeInvertible(v.worldFromObject)) return;
-    v.worldFromObjectBefore = v.worldFromObject;
-    v.boundsWorld = v.boundsWorldBefore = transformed(scene.assets.meshes[m.mesh].boundsObject, v.worldFromObject);
+  std::vector<InstanceView> instances = placeInstances(scene);
+  for (InstanceView& v : instances) {
+    const Aabb& box = v.deformed ? v.deformed->boundsObject : scene.assets.meshes[v.mesh].boundsObject;
+    v.boundsWorld = v.boundsWorldBefore = transformed(box, v.worldFromObject);
     if (const auto before = instancesBefore.find(v.id);
         before != instancesBefore.end() && before->second->mesh == v.mesh) {
       v.worldFromObjectBefore = before->second->worldFromObject;
       v.boundsWorldBefore = before->second->boundsWorld;
-      v.moved = v.worldFromObjectBefore != v.worldFromObject;
+      v.reshaped |= (v.deformed == nullptr) != (before->second->deformed == nullptr);
+      v.moved = v.reshaped || v.worldFromObjectBefore != v.worldFromObject;
       changes.geometry |= v.moved;
       instancesBefore.erase(before);
     } else {
+      v.reshaped = false; // there was no shape to differ from
       addedOrRemoved_.push_back(v.boundsWorld);
     }
     view.boundsWorld.add(v.boundsWorld);
-    instances.push_back(v);
-  });
+  }
   for (const auto& [id, gone] : instancesBefore) addedOrRemoved_.push_back(gone->boundsWorld);
   changes.instances |= !addedOrRemoved_.empty();
 

@@ -3,10 +3,14 @@
 #include "engine/scene/gltf_import.h"
 
 #include <cmath>
+#include <optional>
 
 namespace lambent::gltf {
 
 namespace {
+
+bool finite(float v) { return std::isfinite(v); }
+bool finite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
 
 std::vector<vec4> readValues(const Document& doc, int accessor, ChannelPath path, const std::string& place) {
   if (path == ChannelPath::Rotation) return readAccessor<vec4>(doc, accessor, place);
@@ -23,26 +27,81 @@ Interpolation interpolationMode(Document& doc, const std::string& name, const st
   return Interpolation::Linear;
 }
 
-/// Checks what sampleChannel relies on.
-void checkKeys(const Document& doc, const AnimationChannel& channel, const std::string& place) {
-  if (channel.times.empty()) doc.fail(place, "has no keys");
-  for (size_t i = 0; i < channel.times.size(); ++i)
-    if (!std::isfinite(channel.times[i]) || (i > 0 && channel.times[i] < channel.times[i - 1]))
+/// Checks what sampleChannel relies on; `perValue` numbers make one value.
+template <class V>
+void checkKeys(const Document& doc, const std::vector<float>& times, const std::vector<V>& values, size_t perValue,
+               Interpolation interpolation, const std::string& place) {
+  if (times.empty()) doc.fail(place, "has no keys");
+  for (size_t i = 0; i < times.size(); ++i)
+    if (!std::isfinite(times[i]) || (i > 0 && times[i] < times[i - 1]))
       doc.fail(place, "the time of key " + std::to_string(i) + " is not a number, or earlier than the one before it");
-  const size_t perKey = channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
-  if (channel.values.size() != perKey * channel.times.size())
-    doc.fail(place, "has " + std::to_string(channel.values.size()) + " values for " +
-                        std::to_string(channel.times.size()) + " keys (" +
-                        std::to_string(perKey * channel.times.size()) + " expected)");
-  for (const vec4& v : channel.values)
-    if (!isFinite(vec3(v)) || !std::isfinite(v.w)) doc.fail(place, "holds a value that is not a finite number");
+  const size_t expected = (interpolation == Interpolation::CubicSpline ? 3 : 1) * perValue * times.size();
+  if (values.size() != expected)
+    doc.fail(place, "has " + std::to_string(values.size()) + " values for " + std::to_string(times.size()) + " keys (" +
+                        std::to_string(expected) + " expected)");
+  for (const V& v : values)
+    if (!finite(v)) doc.fail(place, "holds a value that is not a finite number");
+}
+
+/// The node's property that the channel drives; nothing when it is not one we know.
+std::optional<ChannelPath> channelPath(const std::string& name) {
+  if (name == "translation") return ChannelPath::Translation;
+  if (name == "rotation") return ChannelPath::Rotation;
+  if (name == "scale") return ChannelPath::Scale;
+  return {};
+}
+
+/// Where a channel of the file and its sampler are.
+struct Source {
+  Import& import;
+  const Sampler& sampler;
+  Entity target;
+  std::string place;
+};
+
+void addTransformChannel(const Source& from, ChannelPath path, AnimationClip& clip) {
+  Document& doc = from.import.doc;
+  Registry& registry = from.import.scene.registry;
+  AnimationChannel out;
+  out.target = from.target;
+  out.path = path;
+  out.interpolation = interpolationMode(doc, from.sampler.interpolation, from.place);
+  out.times = readAccessor<float>(doc, from.sampler.input, from.place + ", input");
+  out.values = readValues(doc, from.sampler.output, path, from.place + ", output");
+  checkKeys(doc, out.times, out.values, 1, out.interpolation, from.place);
+  if (registry.get<Transform>(out.target).matrix) {
+    from.import.counted["animation channel(s) of nodes with a sheared matrix left out"]++;
+    return;
+  }
+  if (!registry.has<Animated>(out.target)) registry.emplace<Animated>(out.target, registry.get<Transform>(out.target));
+  clip.duration = std::max(clip.duration, double(out.times.back()));
+  clip.channels.push_back(std::move(out));
+}
+
+void addWeightsChannel(const Source& from, AnimationClip& clip) {
+  Document& doc = from.import.doc;
+  Registry& registry = from.import.scene.registry;
+  const auto* morph = registry.tryGet<MorphWeights>(from.target);
+  if (!morph) {
+    from.import.counted["animation channel(s) of weights of nodes without morph targets left out"]++;
+    return;
+  }
+  WeightsChannel out;
+  out.target = from.target;
+  out.count = morph->weights.size();
+  out.interpolation = interpolationMode(doc, from.sampler.interpolation, from.place);
+  out.times = readAccessor<float>(doc, from.sampler.input, from.place + ", input");
+  out.values = readAccessor<float>(doc, from.sampler.output, from.place + ", output");
+  checkKeys(doc, out.times, out.values, out.count, out.interpolation, from.place);
+  if (!registry.has<AnimatedWeights>(out.target)) registry.emplace<AnimatedWeights>(out.target, morph->weights);
+  clip.duration = std::max(clip.duration, double(out.times.back()));
+  clip.weightsChannels.push_back(std::move(out));
 }
 
 } // namespace
 
 void importAnimations(Import& import) {
   Document& doc = import.doc;
-  Registry& registry = import.scene.registry;
   for (size_t a = 0; a < doc.animations.size(); ++a) {
     const Animation& in = doc.animations[a];
     AnimationClip clip;
@@ -54,33 +113,16 @@ void importAnimations(Import& import) {
       doc.checkIndex(channel.node, doc.nodes.size(), "node", place);
       if (!import.reached(channel.node)) continue; // of another scene
 
-      AnimationChannel out;
-      if (channel.path == "translation") {
-        out.path = ChannelPath::Translation;
-      } else if (channel.path == "rotation") {
-        out.path = ChannelPath::Rotation;
-      } else if (channel.path == "scale") {
-        out.path = ChannelPath::Scale;
-      } else {
+      const std::optional<ChannelPath> path = channelPath(channel.path);
+      if (!path && channel.path != "weights") {
         import.counted["animation channel(s) of '" + channel.path + "' left out"]++;
         continue;
       }
-      const Sampler& sampler = doc.at(in.samplers, channel.sampler, "sampler", place);
-      out.target = import.entities[size_t(channel.node)];
-      out.interpolation = interpolationMode(doc, sampler.interpolation, place);
-      out.times = readAccessor<float>(doc, sampler.input, place + ", input");
-      out.values = readValues(doc, sampler.output, out.path, place + ", output");
-      checkKeys(doc, out, place);
-      if (registry.get<Transform>(out.target).matrix) {
-        import.counted["animation channel(s) of nodes with a sheared matrix left out"]++;
-        continue;
-      }
-      if (!registry.has<Animated>(out.target))
-        registry.emplace<Animated>(out.target, registry.get<Transform>(out.target));
-      clip.duration = std::max(clip.duration, double(out.times.back()));
-      clip.channels.push_back(std::move(out));
+      const Source from{import, doc.at(in.samplers, channel.sampler, "sampler", place),
+                        import.entities[size_t(channel.node)], place};
+      path ? addTransformChannel(from, *path, clip) : addWeightsChannel(from, clip);
     }
-    if (!clip.channels.empty()) import.scene.animations.push_back(std::move(clip));
+    if (!clip.channels.empty() || !clip.weightsChannels.empty()) import.scene.animations.push_back(std::move(clip));
   }
 }
 

@@ -158,6 +158,13 @@ void takeMaterials(Document& doc, const tinygltf::Model& model) {
   }
 }
 
+std::vector<float> morphWeights(const Document& doc, const std::vector<double>& given, const std::string& place) {
+  const std::vector<float> weights(given.begin(), given.end());
+  for (const float w : weights)
+    if (!std::isfinite(w)) doc.fail(place, "weights hold a number beyond single precision");
+  return weights;
+}
+
 Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
   const std::string place = label("node", index, n.name);
   Node out;
@@ -168,6 +175,7 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
   out.camera = n.camera;
   if (const auto l = n.extensions.find("KHR_lights_punctual"); l != n.extensions.end())
     out.light = int(number(l->second, "light", -1));
+  out.weights = morphWeights(doc, n.weights, place);
   Transform& t = out.transform;
   t.translation = numbers<3>(doc, n.translation, place, "translation", vec3(0));
   t.scale = numbers<3>(doc, n.scale, place, "scale", vec3(1));
@@ -192,9 +200,9 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
 void takeNodes(Document& doc, tinygltf::Model& model) {
   for (const auto& n : model.nodes) doc.nodes.push_back(takeNode(doc, n, doc.nodes.size()));
   for (auto& m : model.meshes) {
-    Mesh out{m.name, {}};
+    Mesh out{m.name, {}, morphWeights(doc, m.weights, label("mesh", doc.meshes.size(), m.name))};
     for (auto& p : m.primitives)
-      out.primitives.push_back({std::move(p.attributes), p.indices, p.material, p.mode, !p.targets.empty()});
+      out.primitives.push_back({std::move(p.attributes), p.indices, p.material, p.mode, std::move(p.targets)});
     doc.meshes.push_back(std::move(out));
   }
   for (const auto& s : model.skins) doc.skins.push_back({s.name, s.joints, s.inverseBindMatrices});

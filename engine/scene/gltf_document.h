@@ -61,12 +61,13 @@ struct Material {
 struct Primitive {
   std::map<std::string, int> attributes;
   int indices = -1, material = -1, mode = 4;
-  bool morphTargets = false;
+  std::vector<std::map<std::string, int>> targets; // per morph target, its attributes
 };
 
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  std::vector<float> weights; // of morph targets; empty where the file gives none
 };
 
 struct Node {
@@ -74,6 +75,7 @@ struct Node {
   std::vector<int> children;
   int mesh = -1, skin = -1, camera = -1, light = -1;
   Transform transform;
+  std::vector<float> weights; // instead of the mesh's
 };
 
 struct Skin {

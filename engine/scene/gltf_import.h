@@ -10,14 +10,20 @@
 
 namespace lambent::gltf {
 
+/// Where a mesh refers to the highest of its joints; place empty when it has none.
+struct HighestJoint {
+  uint32_t joint = 0;
+  std::string place;
+};
+
 /// What import has made so far: where a thing of the file went in SceneAssets (kNone: nothing to show).
 struct Import {
   Document doc;
   Scene scene;
-  std::map<std::pair<int, int>, uint32_t> meshes; // by (mesh, the node that skins it or -1)
-  std::map<int, uint32_t> materials, images;      // material -1: the default one
-  std::vector<mat4> worldFromNode;                // of every node that the scene reaches, at rest
-  std::vector<Entity> entities;                   // by node; invalid where the scene does not reach it
+  std::map<std::pair<int, bool>, uint32_t> meshes; // by (mesh, whether its joints were read)
+  std::map<uint32_t, HighestJoint> highestJoints;  // by slot of SceneAssets::meshes
+  std::map<int, uint32_t> materials, images;       // material -1: the default one
+  std::vector<Entity> entities;                    // by node; invalid where the scene does not reach it
 
   bool reached(int node) const { return entities[size_t(node)] != Entity(); }
 
@@ -28,13 +34,12 @@ struct Import {
 /// Entities for one scene of the file, with cameras, lights and mesh instances.
 void importNodes(Import& import, const std::string& sceneName);
 
-/// A glTF mesh as a slot of SceneAssets::meshes, kNone when it holds no triangles. With a skinned node (else -1): in
-/// the rest pose of the node's skin, in the node's own space.
-uint32_t importMesh(Import& import, int mesh, int skinnedNode);
+/// A glTF mesh as a slot of SceneAssets::meshes, kNone when it holds no triangles. `skinned`: with its vertices'
+/// joints.
+uint32_t importMesh(Import& import, int mesh, bool skinned);
 
-/// Matrices that take each joint's vertices from the bind pose to the space of `node` with the joints at rest; empty
-/// when the skin cannot be applied there.
-std::vector<mat4> restSkinMatrices(Import& import, int node);
+/// Skin and morph weights for the node's entity, whose mesh is in `slot`.
+void importDeformation(Import& import, int node, uint32_t slot);
 
 uint32_t importMaterial(Import& import, int material);
 

@@ -84,7 +84,6 @@ void importNodes(Import& import, const std::string& sceneName) {
   Document& doc = import.doc;
   Registry& registry = import.scene.registry;
   import.entities.assign(doc.nodes.size(), Entity());
-  import.worldFromNode.assign(doc.nodes.size(), mat4(1));
 
   // Depth first, children in file order, on a stack of our own: files may nest nodes deeper than ours is.
   struct Visit {
@@ -109,15 +108,10 @@ void importNodes(Import& import, const std::string& sceneName) {
     decompose(node.transform);
     const Entity e = registry.create();
     import.entities[size_t(index)] = e;
-    mat4& world = import.worldFromNode[size_t(index)];
-    world = node.transform.local();
     if (!node.name.empty()) registry.emplace<Name>(e, node.name);
     registry.emplace<Transform>(e, node.transform);
-    if (parent >= 0) {
-      registry.emplace<Parent>(e, import.entities[size_t(parent)]);
-      world = import.worldFromNode[size_t(parent)] * world;
-    }
-    registry.emplace<WorldTransform>(e, world);
+    registry.emplace<WorldTransform>(e);
+    if (parent >= 0) registry.emplace<Parent>(e, import.entities[size_t(parent)]);
     push(node.children, index);
   }
 
@@ -129,8 +123,10 @@ void importNodes(Import& import, const std::string& sceneName) {
     if (node.light >= 0) addPunctual(import, e, node, place);
     if (node.mesh < 0) continue;
     doc.checkIndex(node.mesh, doc.meshes.size(), "mesh", place);
-    const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0 ? index : -1);
-    if (mesh != kNone) registry.emplace<MeshInstance>(e, mesh);
+    const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0);
+    if (mesh == kNone) continue;
+    registry.emplace<MeshInstance>(e, mesh);
+    importDeformation(import, index, mesh);
   }
 }
 

@@ -1,39 +1,69 @@
-// Skins, frozen: the mesh is posed once, with the joints as the file places them. Posing it in the space of its own
-// node (glTF poses in world space and ignores that node) lets the figure be moved as one rigid object.
+// Skins and morph weights of nodes: what a mesh is posed by. The vertices' side of it is read with the mesh.
 
 #include "engine/scene/gltf_import.h"
 
-#include <cmath>
-
 namespace lambent::gltf {
 
-std::vector<mat4> restSkinMatrices(Import& import, int node) {
-  Document& doc = import.doc;
-  const std::string nodePlace = label("node", size_t(node), doc.nodes[size_t(node)].name);
-  const int skinIndex = doc.nodes[size_t(node)].skin;
-  const Skin& skin = doc.at(doc.skins, skinIndex, "skin", nodePlace);
-  const std::string place = label("skin", size_t(skinIndex), skin.name);
+namespace {
 
-  std::vector<mat4> inverseBind(skin.joints.size(), mat4(1));
-  if (skin.inverseBindMatrices >= 0) {
-    inverseBind = readAccessor<mat4>(doc, skin.inverseBindMatrices, place + ", inverse bind matrices");
-    if (inverseBind.size() < skin.joints.size()) doc.fail(place, "has fewer inverse bind matrices than joints");
+lambent::Skin readSkin(const Import& import, const Skin& in, const std::string& place) {
+  const Document& doc = import.doc;
+  lambent::Skin skin;
+  if (in.joints.empty()) doc.fail(place, "has no joints");
+  for (const int node : in.joints) {
+    doc.checkIndex(node, doc.nodes.size(), "node", place);
+    if (!import.reached(node)) doc.fail(place, "joint node " + std::to_string(node) + " is not part of the scene");
+    skin.joints.push_back(import.entities[size_t(node)]);
   }
-  const mat4 worldFromNode = import.worldFromNode[size_t(node)];
-  if (!(std::abs(glm::determinant(mat3(worldFromNode))) > 0)) {
-    doc.warn(nodePlace + ": is scaled to nothing; its skin is not applied");
-    return {};
+  skin.jointFromBind.assign(in.joints.size(), mat4(1));
+  if (in.inverseBindMatrices < 0) return skin;
+  skin.jointFromBind = readAccessor<mat4>(doc, in.inverseBindMatrices, place + ", inverse bind matrices");
+  if (skin.jointFromBind.size() < in.joints.size()) doc.fail(place, "has fewer inverse bind matrices than joints");
+  skin.jointFromBind.resize(in.joints.size());
+  for (size_t j = 0; j < skin.jointFromBind.size(); ++j)
+    for (int c = 0; c < 4; ++c)
+      if (!isFinite(vec3(skin.jointFromBind[j][c])))
+        doc.fail(place, "inverse bind matrix " + std::to_string(j) + " holds a number that is not finite");
+  return skin;
+}
+
+void addSkin(Import& import, int node, uint32_t slot) {
+  Document& doc = import.doc;
+  const Node& in = doc.nodes[size_t(node)];
+  const std::string nodePlace = label("node", size_t(node), in.name);
+  const Skin& skin = doc.at(doc.skins, in.skin, "skin", nodePlace);
+  const std::string place = label("skin", size_t(in.skin), skin.name);
+  const HighestJoint& highest = import.highestJoints.at(slot);
+  if (highest.place.empty()) {
+    doc.warn(nodePlace + ": has a skin, but no vertex of its mesh follows a joint; shown rigid");
+    return;
   }
-  const mat4 nodeFromWorld = glm::inverse(worldFromNode);
-  std::vector<mat4> matrices;
-  for (size_t i = 0; i < skin.joints.size(); ++i) {
-    doc.checkIndex(skin.joints[i], doc.nodes.size(), "node", place);
-    if (!import.reached(skin.joints[i]))
-      doc.fail(place, "joint node " + std::to_string(skin.joints[i]) + " is not part of the scene");
-    matrices.push_back(nodeFromWorld * import.worldFromNode[size_t(skin.joints[i])] * inverseBind[i]);
-  }
-  import.counted["skinned mesh(es) frozen in the rest pose"]++;
-  return matrices;
+  if (highest.joint >= skin.joints.size())
+    doc.fail(highest.place, "follows joint " + std::to_string(highest.joint) + ", but " + place + " of " + nodePlace +
+                                " has " + std::to_string(skin.joints.size()));
+  import.scene.registry.emplace<lambent::Skin>(import.entities[size_t(node)], readSkin(import, skin, place));
+}
+
+void addMorphWeights(Import& import, int node, uint32_t slot) {
+  Document& doc = import.doc;
+  const Node& in = doc.nodes[size_t(node)];
+  const Mesh& mesh = doc.meshes[size_t(in.mesh)];
+  const size_t targets = import.scene.assets.meshes[slot].morphTargets.size();
+  const bool own = !in.weights.empty();
+  std::vector<float> weights = own ? in.weights : mesh.weights;
+  if (!weights.empty() && weights.size() != targets)
+    doc.fail(own ? label("node", size_t(node), in.name) : label("mesh", size_t(in.mesh), mesh.name),
+             "has " + std::to_string(weights.size()) + " weights for " + std::to_string(targets) + " morph targets");
+  if (targets == 0) return;
+  weights.resize(targets, 0.0f);
+  import.scene.registry.emplace<MorphWeights>(import.entities[size_t(node)], std::move(weights));
+}
+
+} // namespace
+
+void importDeformation(Import& import, int node, uint32_t slot) {
+  if (import.doc.nodes[size_t(node)].skin >= 0) addSkin(import, node, slot);
+  addMorphWeights(import, node, slot);
 }
 
 } // namespace lambent::gltf

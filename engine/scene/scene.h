@@ -1,15 +1,17 @@
 // The scene: an ECS registry that owns everything that lives, and the assets it refers to. This header is the contents
-// page of engine/scene, in data-flow order: load → animate → extract.
+// page of engine/scene, in data-flow order: load → animate → pose (deform.h) → extract.
 #pragma once
 
 #include "engine/ecs/registry.h"
 #include "engine/scene/assets.h"
 #include "engine/scene/components.h"
+#include "engine/scene/deform.h"
 #include "engine/scene/scene_view.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace lambent {
@@ -61,12 +63,20 @@ CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
 quat rotationTowards(const vec3& direction);
 
 /// Turns the registry into a SceneView; keeps what it needs to tell what moved since its last call.
-/// Spans stay valid until the next call.
+/// Spans and deformed meshes stay valid until the next call.
 class SceneExtractor {
  public:
   SceneView extract(const Scene& scene, const CameraView& camera, double time);
 
  private:
+  struct Shape {
+    uint32_t mesh = kNone;
+    Pose pose;
+    DeformedMesh deformed;
+  };
+  std::vector<InstanceView> placeInstances(const Scene& scene);
+
+  std::unordered_map<uint32_t, Shape> shapes_; // by entity
   std::vector<InstanceView> instances_;
   std::vector<Aabb> addedOrRemoved_;
   std::vector<LightView> lights_;

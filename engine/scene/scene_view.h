@@ -8,13 +8,26 @@
 
 namespace lambent {
 
+/// Vertices of an instance whose mesh is skinned or morphed, as posed now: beside those of its Mesh, in the same object
+/// space, with unit normals. Triangles, texture coordinates and colours stay the mesh's.
+struct DeformedMesh {
+  std::vector<vec3> positions, normals;
+  std::vector<Aabb> primitiveBoundsObject; // beside Mesh::primitives
+  Aabb boundsObject;
+  /// Different for every shape that any extraction of this process has made: who keeps a copy knows by it whether the
+  /// copy still holds. Says nothing else, and so may not enter a result.
+  uint64_t revision = 0;
+};
+
 /// One placed mesh. `id` is stable while the entity lives; instances keep their order between frames.
 struct InstanceView {
   uint32_t id = 0;
   uint32_t mesh = 0; // index into SceneAssets::meshes
   mat4 worldFromObject{1};
-  mat4 worldFromObjectBefore{1}; // of the previous extraction; equal when it did not move
-  bool moved = false;
+  mat4 worldFromObjectBefore{1};          // of the previous extraction; equal when it did not move
+  bool moved = false;                     // placed or shaped otherwise than in the previous extraction
+  bool reshaped = false;                  // its vertices, in object space, are not those of the previous extraction
+  const DeformedMesh* deformed = nullptr; // null: rigid, the mesh's own vertices; valid until the next extraction
   Aabb boundsWorld;
   Aabb boundsWorldBefore; // of the previous extraction; equal when it did not move
 };
@@ -49,7 +62,7 @@ struct SceneChanges {
   bool first = true;     // nothing was extracted before
   bool camera = true;    // pose, lens or size
   bool lights = true;    // any light added, removed, moved or changed; sky
-  bool geometry = true;  // any instance moved
+  bool geometry = true;  // any instance moved or was reshaped
   bool instances = true; // instances were added or removed
 };
 

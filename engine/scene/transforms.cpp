@@ -60,8 +60,8 @@ std::optional<Entity> findByName(const Scene& scene, const std::string& name) {
 
 Aabb worldBounds(const Scene& scene) {
   Aabb bounds;
-  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance& m, const WorldTransform& w) {
-    bounds.add(transformed(scene.assets.meshes[m.mesh].boundsObject, w.worldFromNode));
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
+    bounds.add(transformed(deformed ? deformed->boundsObject : mesh.boundsObject, worldFromObject));
   });
   return bounds;
 }

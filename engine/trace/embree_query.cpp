@@ -106,105 +106,172 @@ void fillRay(RTCRay& out, const Ray& r) {
   out.flags = 0;
 }
 
+void writeVertices(RTCBuffer vertices, const std::vector<vec3>& positions) {
+  std::memcpy(rtcGetBufferData(vertices), positions.data(), positions.size() * sizeof(vec3));
+}
+
 } // namespace
 
 struct EmbreeQuery::State {
+  /// The triangles of one mesh, or of one deformed instance.
+  struct BottomLevel {
+    RTCScene scene = nullptr;     // null: no triangles
+    RTCBuffer vertices = nullptr; // of a deformed instance, to be written again
+  };
+
   struct Instance {
     uint32_t mesh = kNone;
     RTCGeometry geometry = nullptr; // owned by the top level
     mat3 normalFromObject{1};
+    // Only of a deformed instance; the positions and normals are copies, since the view's live no longer than it.
+    BottomLevel own;
+    uint64_t revision = 0;
+    std::vector<vec3> positions, normals;
+
+    bool deformed() const { return revision != 0; }
   };
 
   const SceneAssets& assets;
   RTCDevice device = nullptr;
-  std::vector<RTCScene> meshes; // null for a mesh without triangles
-  std::vector<GeometryData> geometryData;
+  std::vector<RTCScene> meshes;                        // null for a mesh without triangles
+  std::vector<std::vector<GeometryData>> geometryData; // by mesh and primitive; addresses are handed to Embree
   RTCScene top = nullptr;
   std::vector<Instance> instances; // index = Embree instance id = index into SceneView::instances
 
   explicit State(const SceneAssets& a) : assets(a) {}
+
+  BottomLevel build(uint32_t mesh, const std::vector<vec3>& positions, bool refits);
+  void place(uint32_t index, const InstanceView& in);
+  void remove(uint32_t index);
+  void reshape(Instance& out, const DeformedMesh& deformed);
 };
+
+/// `refits`: the vertices will move. The hierarchy is then built once and only its boxes follow, which costs about a
+/// tenth of building it; it stays exact, but gets slower to trace the farther the shape departs from the one it was
+/// built for.
+EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, const std::vector<vec3>& positions,
+                                                          bool refits) {
+  const Mesh& mesh = assets.meshes[meshIndex];
+  if (mesh.triangles.empty()) return {};
+  BottomLevel out{rtcNewScene(device)};
+  if (refits) { // without these two Embree builds anew whatever the geometries ask for
+    rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(out.scene, RTC_BUILD_QUALITY_LOW);
+  }
+  // Embree reads four floats per vertex, so one more follows the last: our own copies, shared by the primitives.
+  RTCBuffer vertices = rtcNewBuffer(device, positions.size() * sizeof(vec3) + sizeof(float));
+  writeVertices(vertices, positions);
+  RTCBuffer indices = rtcNewBuffer(device, mesh.triangles.size() * sizeof(uvec3));
+  std::memcpy(rtcGetBufferData(indices), mesh.triangles.data(), mesh.triangles.size() * sizeof(uvec3));
+  for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
+    const Primitive& primitive = mesh.primitives[p];
+    if (primitive.triangleCount == 0) continue;
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (refits) rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_REFIT);
+    rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(vec3), positions.size());
+    rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices,
+                         primitive.firstTriangle * sizeof(uvec3), sizeof(uvec3), primitive.triangleCount);
+    if (assets.materials[primitive.material].alphaMode == AlphaMode::Mask) {
+      rtcSetGeometryUserData(g, &geometryData[meshIndex][p]);
+      rtcSetGeometryIntersectFilterFunction(g, alphaFilter);
+      rtcSetGeometryOccludedFilterFunction(g, alphaFilter);
+    }
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(out.scene, g, p);
+    rtcReleaseGeometry(g);
+  }
+  if (refits)
+    out.vertices = vertices;
+  else
+    rtcReleaseBuffer(vertices);
+  rtcReleaseBuffer(indices);
+  rtcCommitScene(out.scene);
+  return out;
+}
+
+/// Takes over the vertices of a deformed instance.
+void EmbreeQuery::State::reshape(Instance& out, const DeformedMesh& deformed) {
+  out.revision = deformed.revision;
+  out.positions = deformed.positions;
+  out.normals = deformed.normals;
+  if (!out.own.scene) {
+    out.own = build(out.mesh, deformed.positions, true);
+    return;
+  }
+  writeVertices(out.own.vertices, deformed.positions);
+  const Mesh& mesh = assets.meshes[out.mesh];
+  for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
+    if (mesh.primitives[p].triangleCount == 0) continue;
+    RTCGeometry g = rtcGetGeometry(out.own.scene, p);
+    rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(g);
+  }
+  rtcCommitScene(out.own.scene);
+}
+
+void EmbreeQuery::State::remove(uint32_t index) {
+  Instance& instance = instances[index];
+  if (instance.geometry) rtcDetachGeometry(top, index);
+  if (instance.own.scene) rtcReleaseScene(instance.own.scene);
+  if (instance.own.vertices) rtcReleaseBuffer(instance.own.vertices);
+  instance = {};
+}
+
+/// Makes Embree's instance `index` what the view's is.
+void EmbreeQuery::State::place(uint32_t index, const InstanceView& in) {
+  Instance& out = instances[index];
+  if (out.mesh != in.mesh || out.deformed() != (in.deformed != nullptr)) {
+    remove(index);
+    out.mesh = in.mesh;
+  }
+  if (in.deformed && in.deformed->revision != out.revision) reshape(out, *in.deformed);
+  if (RTCScene bottom = in.deformed ? out.own.scene : meshes[in.mesh]; bottom && !out.geometry) {
+    out.geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(out.geometry, bottom);
+    rtcAttachGeometryByID(top, out.geometry, index);
+    rtcReleaseGeometry(out.geometry); // the top level holds it now
+  }
+  out.normalFromObject = glm::transpose(glm::inverse(mat3(in.worldFromObject)));
+  if (!out.geometry) return;
+  rtcSetGeometryTransform(out.geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &in.worldFromObject[0][0]);
+  rtcCommitGeometry(out.geometry);
+}
 
 EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<State>(assets)) {
   State& s = *state_;
   s.device = rtcNewDevice(nullptr);
   if (!s.device) throw RunError("Embree: no device (error " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
-  size_t geometries = 0;
-  for (const Mesh& mesh : assets.meshes) geometries += mesh.primitives.size();
-  s.geometryData.reserve(geometries); // addresses are handed to Embree
   for (uint32_t m = 0; m < assets.meshes.size(); ++m) {
-    const Mesh& mesh = assets.meshes[m];
-    if (mesh.triangles.empty()) {
-      s.meshes.push_back(nullptr);
-      continue;
-    }
-    RTCScene scene = rtcNewScene(s.device);
-    // Embree reads four floats per vertex, so one more follows the last: our own copies, shared by the primitives.
-    RTCBuffer vertices = rtcNewBuffer(s.device, mesh.positions.size() * sizeof(vec3) + sizeof(float));
-    std::memcpy(rtcGetBufferData(vertices), mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
-    RTCBuffer indices = rtcNewBuffer(s.device, mesh.triangles.size() * sizeof(uvec3));
-    std::memcpy(rtcGetBufferData(indices), mesh.triangles.data(), mesh.triangles.size() * sizeof(uvec3));
-    for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
-      const Primitive& primitive = mesh.primitives[p];
-      if (primitive.triangleCount == 0) continue;
-      RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(vec3),
-                           mesh.positions.size());
-      rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices,
-                           primitive.firstTriangle * sizeof(uvec3), sizeof(uvec3), primitive.triangleCount);
-      if (assets.materials[primitive.material].alphaMode == AlphaMode::Mask) {
-        s.geometryData.push_back({&assets, m, p});
-        rtcSetGeometryUserData(g, &s.geometryData.back());
-        rtcSetGeometryIntersectFilterFunction(g, alphaFilter);
-        rtcSetGeometryOccludedFilterFunction(g, alphaFilter);
-      }
-      rtcCommitGeometry(g);
-      rtcAttachGeometryByID(scene, g, p);
-      rtcReleaseGeometry(g);
-    }
-    rtcReleaseBuffer(vertices);
-    rtcReleaseBuffer(indices);
-    rtcCommitScene(scene);
-    s.meshes.push_back(scene);
+    std::vector<GeometryData>& data = s.geometryData.emplace_back();
+    for (uint32_t p = 0; p < assets.meshes[m].primitives.size(); ++p) data.push_back({&assets, m, p});
+    s.meshes.push_back(s.build(m, assets.meshes[m].positions, false).scene);
   }
   s.top = rtcNewScene(s.device);
   rtcCommitScene(s.top);
 }
 
 EmbreeQuery::~EmbreeQuery() {
-  rtcReleaseScene(state_->top);
-  for (RTCScene m : state_->meshes)
+  State& s = *state_;
+  for (uint32_t i = 0; i < s.instances.size(); ++i) s.remove(i);
+  rtcReleaseScene(s.top);
+  for (RTCScene m : s.meshes)
     if (m) rtcReleaseScene(m);
-  rtcReleaseDevice(state_->device);
+  rtcReleaseDevice(s.device);
 }
 
 void EmbreeQuery::update(const SceneView& view) {
   State& s = *state_;
-  bool dirty = s.instances.size() != view.instances.size();
-  for (uint32_t i = uint32_t(view.instances.size()); i < s.instances.size(); ++i)
-    if (s.instances[i].geometry) rtcDetachGeometry(s.top, i);
-  const size_t before = s.instances.size();
-  s.instances.resize(view.instances.size());
-  for (uint32_t i = 0; i < view.instances.size(); ++i) {
+  const size_t before = s.instances.size(), now = view.instances.size();
+  bool dirty = before != now;
+  for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));
+  s.instances.resize(now);
+  for (uint32_t i = 0; i < now; ++i) {
     const InstanceView& in = view.instances[i];
-    State::Instance& out = s.instances[i];
-    const bool isNew = i >= before || out.mesh != in.mesh;
-    if (!isNew && !in.moved && !view.changes.instances && !view.changes.first) continue;
+    const State::Instance& out = s.instances[i];
+    const bool other = out.mesh != in.mesh || out.revision != (in.deformed ? in.deformed->revision : 0);
+    if (!other && !in.moved && !view.changes.instances && !view.changes.first) continue;
     dirty = true;
-    if (isNew) {
-      if (out.geometry) rtcDetachGeometry(s.top, i);
-      out = {in.mesh, nullptr, mat3(1)};
-      if (RTCScene mesh = s.meshes[in.mesh]) {
-        out.geometry = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(out.geometry, mesh);
-        rtcAttachGeometryByID(s.top, out.geometry, i);
-        rtcReleaseGeometry(out.geometry); // the top level holds it now
-      }
-    }
-    out.normalFromObject = glm::transpose(glm::inverse(mat3(in.worldFromObject)));
-    if (!out.geometry) continue;
-    rtcSetGeometryTransform(out.geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &in.worldFromObject[0][0]);
-    rtcCommitGeometry(out.geometry);
+    s.place(i, in);
   }
   if (dirty) rtcCommitScene(s.top);
 }
@@ -227,16 +294,18 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     const Primitive& primitive = mesh.primitives[rh.hit.geomID];
     const Material& material = s.assets.materials[primitive.material];
     const Corner c = cornerOf(mesh, primitive, rh.hit.primID, rh.hit.u, rh.hit.v);
-    const vec3 p0 = mesh.positions[c.vertices.x];
+    const std::vector<vec3>& positions = instance.deformed() ? instance.positions : mesh.positions;
+    const std::vector<vec3>& normals = instance.deformed() ? instance.normals : mesh.normals;
+    const vec3 p0 = positions[c.vertices.x];
     const vec3 front =
-        instance.normalFromObject * glm::cross(mesh.positions[c.vertices.y] - p0, mesh.positions[c.vertices.z] - p0);
+        instance.normalFromObject * glm::cross(positions[c.vertices.y] - p0, positions[c.vertices.z] - p0);
     const float length = glm::length(front);
     if (!(length > 0)) continue; // squashed to nothing by the instance's scale
     const bool fromFront = glm::dot(front, rays[i].direction) < 0;
     hit.t = rh.ray.tfar;
     hit.position = rays[i].origin + rays[i].direction * hit.t;
     hit.geometricNormal = front * ((fromFront ? 1.0f : -1.0f) / length);
-    const vec3 shading = instance.normalFromObject * c.interpolate(mesh.normals) * (fromFront ? 1.0f : -1.0f);
+    const vec3 shading = instance.normalFromObject * c.interpolate(normals) * (fromFront ? 1.0f : -1.0f);
     const float shadingLength = glm::length(shading);
     // A shading normal that looks away from the ray would light the surface from behind.
     hit.normal =

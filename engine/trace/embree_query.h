@@ -1,4 +1,5 @@
-// RayQuery over a scene with Embree (3 or 4): one bottom-level scene per mesh, instanced by a top-level scene.
+// RayQuery over a scene with Embree (3 or 4): one bottom-level scene per mesh, and one per deformed instance, instanced
+// by a top-level scene.
 #pragma once
 
 #include "engine/trace/ray_query.h"
@@ -11,7 +12,8 @@ class EmbreeQuery final : public RayQuery {
   explicit EmbreeQuery(const SceneAssets& assets);
   ~EmbreeQuery() override;
 
-  /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went.
+  /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went, and refits the
+  /// bottom level of what was reshaped.
   void update(const SceneView& view);
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;

@@ -112,6 +112,9 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   for (const InstanceView& i : view.instances) {
     hash.value(i.mesh);
     hash.bytes(&i.worldFromObject, sizeof i.worldFromObject);
+    if (!i.deformed) continue;
+    hash.values(i.deformed->positions);
+    hash.values(i.deformed->normals);
   }
   for (const LightView& light : view.lights) add(hash, light);
   hash.value(view.skyRadiance);

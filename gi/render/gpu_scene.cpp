@@ -21,11 +21,14 @@ bool Frustum::mayShow(const Aabb& box) const {
 }
 
 void GpuScene::place(std::span<const InstanceView> instances) {
-  bool changed = instances.size() != instances_.size();
-  for (size_t i = 0; i < instances.size() && !changed; ++i)
-    changed = instances[i].mesh != instances_[i].mesh || instances[i].worldFromObject != instances_[i].worldFromObject;
-  if (!changed) return;
-  instances_.assign(instances.begin(), instances.end());
+  std::vector<Placed> placed;
+  placed.reserve(instances.size());
+  for (const InstanceView& i : instances)
+    placed.push_back({i.mesh, i.worldFromObject, i.deformed ? i.deformed->revision : 0});
+  if (placed == placed_) return;
+  layOutDeformed(instances);
+  uploadDeformed(instances);
+  placed_ = std::move(placed);
 
   std::vector<vec4> rows;
   rows.reserve(instances.size() * 3);
@@ -33,10 +36,16 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   bounds_ = {};
   triangleCount_ = 0;
   for (uint32_t i = 0; i < instances.size(); ++i) {
-    const mat4 transposed = glm::transpose(instances[i].worldFromObject);
+    const InstanceView& instance = instances[i];
+    const mat4 transposed = glm::transpose(instance.worldFromObject);
     rows.insert(rows.end(), {transposed[0], transposed[1], transposed[2]});
-    for (const PrimitiveRange& range : meshes_[instances[i].mesh]) {
-      items_.push_back({i, range, transformed(range.boundsObject, instances[i].worldFromObject)});
+    for (PrimitiveRange range : meshes_[instance.mesh].primitives) {
+      if (instance.deformed) {
+        range.baseVertex = deformed_.baseVertex[i];
+        range.boundsObject = instance.deformed->primitiveBoundsObject[range.primitive];
+      }
+      items_.push_back(
+          {i, range, transformed(range.boundsObject, instance.worldFromObject), instance.deformed != nullptr});
       bounds_.add(items_.back().boundsWorld);
       triangleCount_ += range.indexCount / 3;
     }
@@ -46,10 +55,10 @@ void GpuScene::place(std::span<const InstanceView> instances) {
                    [](const Item& a, const Item& b) { return a.range.material < b.range.material; });
 
   const uint64_t bytes = std::max<size_t>(1, rows.size()) * sizeof(vec4);
-  if (!instanceRows_ || instanceRows_.bytes() < bytes) {
+  if (!instanceRows_ || instanceRows_.bytes() < bytes)
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
-    glVertexArrayVertexBuffer(vertexArray_.name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
-  }
+  for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
+    if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
   instanceRows_.write(0, rows.size() * sizeof(vec4), rows.data());
 }
 
@@ -73,7 +82,8 @@ void GpuScene::bindMaterial(uint32_t index) const {
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
-  glBindVertexArray(vertexArray_.name());
+  GLuint array = vertexArray_.name();
+  glBindVertexArray(array);
   glVertexAttrib4f(3, 1, 1, 1, 1); // the colour of vertices without colour (context state, not the array's)
   const gl::Program* program = nullptr;
   uint32_t bound = kNone, draws = 0;
@@ -91,6 +101,8 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
       if (kind == DrawKind::GBuffer || material.masked) bindMaterial(item.range.material);
       bound = item.range.material;
     }
+    if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
+      glBindVertexArray(array = wanted);
     glDrawElementsInstancedBaseVertexBaseInstance(
         GL_TRIANGLES, GLsizei(item.range.indexCount), GL_UNSIGNED_INT,
         reinterpret_cast<const void*>(uintptr_t(item.range.firstIndex) * sizeof(uint32_t)), 1,

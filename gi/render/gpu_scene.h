@@ -31,7 +31,7 @@ class GpuScene {
   /// Uploads meshes, materials and textures (mipmapped). `assets` is read only here.
   GpuScene(gl::ProgramCache& programs, const SceneAssets& assets);
 
-  /// Takes over this frame's instances; uploads transforms when any moved.
+  /// Takes over this frame's instances; uploads transforms when any moved, and the vertices of what was reshaped.
   void place(std::span<const InstanceView> instances);
 
   /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer. Sets programs,
@@ -46,6 +46,7 @@ class GpuScene {
   static constexpr GLuint kInstanceBinding = 4;
 
   struct PrimitiveRange {
+    uint32_t primitive; // of its mesh
     uint32_t firstIndex, indexCount, baseVertex, material;
     Aabb boundsObject;
   };
@@ -54,13 +55,35 @@ class GpuScene {
     GLuint baseSampler, emissiveSampler;
     bool masked;
   };
+  struct MeshRange {
+    uint32_t baseVertex, vertexCount;
+    std::vector<PrimitiveRange> primitives; // without empty ones
+  };
   struct Item {
     uint32_t instance;
     PrimitiveRange range;
     Aabb boundsWorld;
+    bool deformed;
+  };
+  /// What place() was last given; revision 0: rigid.
+  struct Placed {
+    uint32_t mesh;
+    mat4 worldFromObject;
+    uint64_t revision;
+    bool operator==(const Placed&) const = default;
+  };
+  /// Vertices of the deformed instances, one after the other; attributes that do not deform are copies of the mesh's.
+  struct DeformedVertices {
+    gl::Buffer positions, normals, uvs, colors;
+    gl::VertexArray array;
+    std::vector<uint32_t> baseVertex; // by instance; kNone: rigid
   };
 
   void uploadMeshes(const SceneAssets& assets);
+  gl::VertexArray vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
+                                const gl::Buffer& uvs, const gl::Buffer& colors) const;
+  void layOutDeformed(std::span<const InstanceView> instances);
+  void uploadDeformed(std::span<const InstanceView> instances);
   void uploadMaterials(const SceneAssets& assets);
   uint32_t samplerFor(const TextureRef& ref);
   void bindMaterial(uint32_t index) const;
@@ -71,10 +94,11 @@ class GpuScene {
   gl::VertexArray vertexArray_;
   std::vector<gl::Texture> textures_;
   std::map<uint32_t, gl::Sampler> samplers_; // by packed wrap and filter modes
-  std::vector<std::vector<PrimitiveRange>> meshes_;
+  std::vector<MeshRange> meshes_;
+  DeformedVertices deformed_;
   std::vector<MaterialDraw> materialDraws_;
   size_t materialStride_ = 256;
-  std::vector<InstanceView> instances_;
+  std::vector<Placed> placed_;
   std::vector<Item> items_; // sorted by material
   Aabb bounds_;
   uint32_t triangleCount_ = 0;

@@ -63,8 +63,7 @@ void attribute(const gl::VertexArray& array, GLuint location, const gl::Buffer& 
 
 } // namespace
 
-GpuScene::GpuScene(gl::ProgramCache& programs, const SceneAssets& assets)
-    : programs_(programs), vertexArray_("scene/vertices") {
+GpuScene::GpuScene(gl::ProgramCache& programs, const SceneAssets& assets) : programs_(programs) {
   uploadMeshes(assets);
   uploadMaterials(assets);
 }
@@ -90,13 +89,16 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
       if (anyUv) uvs.push_back(vec4(uv0.x, uv0.y, uv1.x, uv1.y));
       if (anyColor) colors.push_back(glm::packUnorm4x16(mesh.colors.empty() ? vec4(1) : mesh.colors[i]));
     }
-    std::vector<PrimitiveRange>& ranges = meshes_.emplace_back();
-    for (const Primitive& p : mesh.primitives)
-      if (p.triangleCount > 0)
-        ranges.push_back(
-            {(baseTriangle + p.firstTriangle) * 3, p.triangleCount * 3, baseVertex, p.material, p.boundsObject});
+    MeshRange& range = meshes_.emplace_back(MeshRange{baseVertex, uint32_t(mesh.positions.size()), {}});
+    for (uint32_t i = 0; i < mesh.primitives.size(); ++i)
+      if (const Primitive& p = mesh.primitives[i]; p.triangleCount > 0)
+        range.primitives.push_back(
+            {i, (baseTriangle + p.firstTriangle) * 3, p.triangleCount * 3, baseVertex, p.material, p.boundsObject});
   }
-  if (positions.empty()) return;
+  if (positions.empty()) {
+    vertexArray_ = gl::VertexArray("scene/vertices"); // nothing to draw, but bound all the same
+    return;
+  }
 
   positions_ = gl::Buffer::of<vec3>("scene/positions", positions);
   normals_ = gl::Buffer::of<uint64_t>("scene/normals", normals);
@@ -104,17 +106,25 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
   if (anyColor) colors_ = gl::Buffer::of<uint64_t>("scene/colors", colors);
   if (!triangles.empty()) indices_ = gl::Buffer::of<uvec3>("scene/indices", triangles);
 
-  attribute(vertexArray_, 0, positions_, 3, GL_FLOAT, false, sizeof(vec3));
-  attribute(vertexArray_, 1, normals_, 3, GL_SHORT, true, sizeof(uint64_t));
-  attribute(vertexArray_, 2, uvs_, 4, GL_FLOAT, false, sizeof(vec4));
-  attribute(vertexArray_, 3, colors_, 4, GL_UNSIGNED_SHORT, true, sizeof(uint64_t));
+  vertexArray_ = vertexArrayOf("scene/vertices", positions_, normals_, uvs_, colors_);
+}
+
+/// Attributes from these buffers, rows of worldFromObject per instance, and the indices of all meshes.
+gl::VertexArray GpuScene::vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
+                                        const gl::Buffer& uvs, const gl::Buffer& colors) const {
+  gl::VertexArray array(label);
+  attribute(array, 0, positions, 3, GL_FLOAT, false, sizeof(vec3));
+  attribute(array, 1, normals, 3, GL_SHORT, true, sizeof(uint64_t));
+  attribute(array, 2, uvs, 4, GL_FLOAT, false, sizeof(vec4));
+  attribute(array, 3, colors, 4, GL_UNSIGNED_SHORT, true, sizeof(uint64_t));
   for (GLuint row = 0; row < 3; ++row) {
-    glEnableVertexArrayAttrib(vertexArray_.name(), kInstanceBinding + row);
-    glVertexArrayAttribFormat(vertexArray_.name(), kInstanceBinding + row, 4, GL_FLOAT, GL_FALSE, row * sizeof(vec4));
-    glVertexArrayAttribBinding(vertexArray_.name(), kInstanceBinding + row, kInstanceBinding);
+    glEnableVertexArrayAttrib(array.name(), kInstanceBinding + row);
+    glVertexArrayAttribFormat(array.name(), kInstanceBinding + row, 4, GL_FLOAT, GL_FALSE, row * sizeof(vec4));
+    glVertexArrayAttribBinding(array.name(), kInstanceBinding + row, kInstanceBinding);
   }
-  glVertexArrayBindingDivisor(vertexArray_.name(), kInstanceBinding, 1);
-  if (indices_) glVertexArrayElementBuffer(vertexArray_.name(), indices_.name());
+  glVertexArrayBindingDivisor(array.name(), kInstanceBinding, 1);
+  if (indices_) glVertexArrayElementBuffer(array.name(), indices_.name());
+  return array;
 }
 
 uint32_t GpuScene::samplerFor(const TextureRef& ref) {

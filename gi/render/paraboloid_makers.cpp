@@ -76,55 +76,58 @@ void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose&
   gl::drawFullscreen();
 }
 
-void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
-  for (uint32_t slot : slots)
-    rasterInto(in, in.poses[slot], arrays_[slot / kLayersPerArray], int(slot % kLayersPerArray));
+/// Maps are drawn whole: a part costs the same three faces.
+void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
+  for (const MapJob& job : jobs)
+    rasterInto(in, in.poses[job.slot], arrays_[job.slot / kLayersPerArray], int(job.slot % kLayersPerArray));
 }
 
 // Rays ---------------------------------------------------------------------------------------------------------------
 
-std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose) {
+std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels) {
   const int n = in.resolution;
   const mat3 worldFromLight = frameOf(pose);
   const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
   std::vector<Ray> rays;
   std::vector<uint32_t> texelOfRay;
-  rays.reserve(size_t(n) * n);
-  texelOfRay.reserve(size_t(n) * n);
+  rays.reserve(size_t(texels.area()));
+  texelOfRay.reserve(size_t(texels.area()));
   // 8×8 blocks keep neighbouring rays neighbours in memory, for the ray tracer's packets.
-  for (int by = 0; by < n; by += 8)
-    for (int bx = 0; bx < n; bx += 8)
-      for (int y = by; y < std::min(by + 8, n); ++y)
-        for (int x = bx; x < std::min(bx + 8, n); ++x) {
+  for (int by = texels.y0; by < texels.y1; by += 8)
+    for (int bx = texels.x0; bx < texels.x1; bx += 8)
+      for (int y = by; y < std::min(by + 8, texels.y1); ++y)
+        for (int x = bx; x < std::min(bx + 8, texels.x1); ++x) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
           if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
           rays.push_back({origin, worldFromLight * d, in.farDistance});
-          texelOfRay.push_back(uint32_t(y * n + x));
+          texelOfRay.push_back(uint32_t((y - texels.y0) * (texels.x1 - texels.x0) + x - texels.x0));
         }
   std::vector<float> distances(rays.size());
   in.rays->distances(rays, distances);
-  std::vector<uint16_t> texels(size_t(n) * n, 65535);
+  std::vector<uint16_t> values(size_t(texels.area()), 65535);
   for (size_t i = 0; i < rays.size(); ++i)
     if (distances[i] < in.farDistance)
-      texels[texelOfRay[i]] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
-  return texels;
+      values[texelOfRay[i]] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
+  return values;
 }
 
-void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
+void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
   // In batches, so that the texels of 2048 maps need not wait in memory together (64 MiB at 128²).
   constexpr size_t kBatch = 64;
-  std::vector<std::vector<uint16_t>> maps(std::min(kBatch, slots.size()));
-  for (size_t begin = 0; begin < slots.size(); begin += kBatch) {
-    const size_t count = std::min(kBatch, slots.size() - begin);
-    parallelFor(count, 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[slots[begin + i]]);
+  std::vector<std::vector<uint16_t>> maps(std::min(kBatch, jobs.size()));
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 2); // rows of any number of texels
+  for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
+    const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
+    parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels);
     });
-    for (size_t i = 0; i < count; ++i) {
-      const uint32_t slot = slots[begin + i];
-      glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, 0, 0, int(slot % kLayersPerArray), in.resolution,
-                          in.resolution, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
+    for (size_t i = 0; i < batch.size(); ++i) {
+      const auto& [slot, t] = batch[i];
+      glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, t.x0, t.y0, int(slot % kLayersPerArray),
+                          t.x1 - t.x0, t.y1 - t.y0, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
     }
   }
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
 } // namespace lambent

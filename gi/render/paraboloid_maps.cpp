@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 
 namespace lambent {
 
@@ -34,27 +33,27 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   const gl::PassScope scope(context_.profiler, name_);
   mapsDrawn_ = 0;
   CHECK(in.farDistance > 0);
-  std::vector<uint32_t> all;
-  std::span<const uint32_t> slots = in.dirtySlots;
+  std::vector<MapJob> all;
+  std::span<const MapJob> jobs = in.jobs;
   if (allocate(in)) {
     all.resize(in.poses.size());
-    std::iota(all.begin(), all.end(), 0u);
-    slots = all;
+    for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
+    jobs = all;
   }
-  for (uint32_t slot : slots) CHECK_LT(slot, in.poses.size());
+  for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
 
   ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
-  if (maker == ShadowMaker::Auto && !measuredMaker_ && !slots.empty()) measureMakers(in, slots);
+  if (maker == ShadowMaker::Auto && !measuredMaker_ && !jobs.empty()) measureMakers(in, jobs);
   if (maker == ShadowMaker::Auto)
     maker = measuredMaker_.value_or(ShadowMaker::Rays);
-  else if (!slots.empty())
+  else if (!jobs.empty())
     makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
 
   if (maker == ShadowMaker::Rays)
-    drawRays(in, slots);
+    drawRays(in, jobs);
   else
-    drawRaster(in, slots);
-  mapsDrawn_ = uint32_t(slots.size());
+    drawRaster(in, jobs);
+  mapsDrawn_ = uint32_t(jobs.size());
   return {arrays_, resolution_, in.farDistance};
 }
 
@@ -77,12 +76,12 @@ bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   return true;
 }
 
-void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const uint32_t> slots) {
+void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
   // The first map of each maker pays for shaders and caches. Eight more, spread over the slots, are timed: enough to
   // even out where they stand, and the rays' worker threads get more than one map each.
-  std::vector<uint32_t> sample;
-  for (size_t i = 0; i < std::min<size_t>(8, slots.size()); ++i)
-    sample.push_back(slots[i * slots.size() / std::min<size_t>(8, slots.size())]);
+  std::vector<MapJob> sample;
+  for (size_t i = 0; i < std::min<size_t>(8, jobs.size()); ++i)
+    sample.push_back({jobs[i * jobs.size() / std::min<size_t>(8, jobs.size())].slot, TexelRect::whole(in.resolution)});
   drawRaster(in, std::span(sample).first(1));
   drawRays(in, std::span(sample).first(1));
   const double rasterMs = secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
@@ -121,7 +120,7 @@ MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, 
                                                     .height = in.resolution,
                                                     .layers = 2});
   rasterInto(in, pose, scratch, 0);
-  const std::vector<uint16_t> texels = castMap(in, pose);
+  const std::vector<uint16_t> texels = castMap(in, pose, TexelRect::whole(in.resolution));
   glTextureSubImage3D(scratch.name(), 0, 0, 0, 1, in.resolution, in.resolution, 1, GL_DEPTH_COMPONENT,
                       GL_UNSIGNED_SHORT, texels.data());
   return {in.resolution, readMap(scratch, 0, in.farDistance), readMap(scratch, 1, in.farDistance)};

@@ -15,6 +15,7 @@
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
 #include "gi/render/gpu_scene.h"
+#include "gi/render/map_job.h"
 #include "gi/settings.h"
 #include "gi/vpl/light_set.h"
 #include "gi/vpl/vpl_set.h"
@@ -69,12 +70,6 @@ class GBufferPass {
 
 // 2. Shadow maps of VPLs and of emissive samples ---------------------------------------------------------------------
 
-/// Where a paraboloid map stands and looks.
-struct MapPose {
-  vec3 position{0};
-  vec3 normal{0, 1, 0}; // axis of the map, unit; the gather must be given the same
-  vec3 geometricNormal{0, 1, 0};
-};
 /// Poses of all slots of a set (empty slots too).
 std::vector<MapPose> mapPoses(const VplSet& set);
 
@@ -90,7 +85,7 @@ struct ParaboloidMapInputs {
   const GpuScene& scene;
   const RayQuery* rays = nullptr;       // null: raster only
   std::span<const MapPose> poses;       // all slots
-  std::span<const uint32_t> dirtySlots; // those to draw anew; others keep their map
+  std::span<const MapJob> jobs;         // what to draw anew; the rest keeps its texels. By slot, one each
   float farDistance = 1;                // scene diameter, metres
   int resolution = 128;                 // every slot is drawn anew when it, farDistance or the number of slots changes
   ShadowMaker maker = ShadowMaker::Auto;
@@ -109,7 +104,7 @@ class ParaboloidMapPass {
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
 
-  uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run
+  uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
   /// Who draws, and how it was chosen: "rays (2.1 ms a map, raster 14.0 ms)". Empty before the first map.
   const std::string& makerReport() const { return makerReport_; }
   /// The stored map of a slot, as distances in metres (kInfinity where nothing is met).
@@ -119,9 +114,9 @@ class ParaboloidMapPass {
 
  private:
   bool allocate(const ParaboloidMapInputs& in); // true when every map must be drawn anew
-  void measureMakers(const ParaboloidMapInputs& in, std::span<const uint32_t> slots);
-  void drawRaster(const ParaboloidMapInputs& in, std::span<const uint32_t> slots);
-  void drawRays(const ParaboloidMapInputs& in, std::span<const uint32_t> slots);
+  void measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
+  void drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
+  void drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array, int layer);
 
   PassContext context_;

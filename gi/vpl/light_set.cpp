@@ -62,6 +62,7 @@ LightSet collectLights(const SceneView& view) {
   for (uint32_t i = 0; i < view.instances.size(); ++i) {
     const InstanceView& instance = view.instances[i];
     const Mesh& mesh = view.assets->meshes[instance.mesh];
+    const std::vector<vec3>& positions = instance.deformed ? instance.deformed->positions : mesh.positions;
     for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
       const Primitive& primitive = mesh.primitives[p];
       const Material& material = view.assets->materials[primitive.material];
@@ -75,7 +76,7 @@ LightSet collectLights(const SceneView& view) {
       std::vector<EmitterTriangle> triangles;
       for (uint32_t t = 0; t < primitive.triangleCount; ++t) {
         const uvec3 v = mesh.triangles[primitive.firstTriangle + t];
-        const auto world = [&](uint32_t k) { return vec3(instance.worldFromObject * vec4(mesh.positions[k], 1)); };
+        const auto world = [&](uint32_t k) { return vec3(instance.worldFromObject * vec4(positions[k], 1)); };
         EmitterTriangle e = makeEmitterTriangle(world(v.x), world(v.y), world(v.z), mean);
         if (mirrored) e.normal = -e.normal;
         e.meshTriangle = t;

@@ -37,7 +37,7 @@ class DirectTest : public GlTest {
     const VplLights uploaded = lightBuffer.run(lights);
     const ParaboloidMaps maps = mapPass.run({.scene = gpu,
                                              .poses = poses,
-                                             .dirtySlots = {},
+                                             .jobs = {},
                                              .farDistance = view.boundsWorld.diameter(),
                                              .resolution = settings.emitterResolution});
     DirectInputs in{gbuffer, shadows, nullptr, nullptr, settings};

@@ -10,12 +10,12 @@ class MapsTest : public GlTest {
     gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
     gpu->place(room.scene.instances);
     return {
-        .scene = *gpu, .rays = &room.rays, .poses = poses, .dirtySlots = dirty, .farDistance = 3.5f, .resolution = 64};
+        .scene = *gpu, .rays = &room.rays, .poses = poses, .jobs = jobs, .farDistance = 3.5f, .resolution = 64};
   }
 
   std::unique_ptr<GpuScene> gpu;
   std::vector<MapPose> poses;
-  std::vector<uint32_t> dirty;
+  std::vector<MapJob> jobs;
 };
 
 TEST_F(MapsTest, MakersAgree) {
@@ -50,7 +50,7 @@ TEST_F(MapsTest, MakersAgree) {
 TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
   const Room room;
   poses = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}};
-  dirty = {0};
+  jobs = {{0, TexelRect::whole(64)}};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
     ParaboloidMapInputs in = inputs(room);
     in.maker = maker;
@@ -73,9 +73,9 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   const std::string report = pass.makerReport();
   EXPECT_NE(report.find("rays"), std::string::npos);
   EXPECT_NE(report.find("raster"), std::string::npos);
-  dirty = {3, 4};
+  jobs = {{3, TexelRect::whole(64)}, {4, {10, 20, 30, 25}}};
   ParaboloidMapInputs again = in;
-  again.dirtySlots = dirty;
+  again.jobs = jobs;
   pass.run(again);
   EXPECT_EQ(pass.mapsDrawn(), 2u);
   EXPECT_EQ(pass.makerReport(), report);

@@ -3,6 +3,8 @@
 
 #include "engine/scene/scene_view.h"
 
+#include <cmath>
+#include <map>
 #include <vector>
 
 namespace lambent::test {
@@ -60,6 +62,32 @@ class HandScene {
     return uint32_t(instances.size() - 1);
   }
 
+  /// Gives the instance vertices of its own; normals are the means of the triangles around them.
+  void reshape(uint32_t index, std::vector<vec3> positions) {
+    InstanceView& i = instances[index];
+    const Mesh& mesh = assets.meshes[i.mesh];
+    DeformedMesh& shape = shapes_[index];
+    shape = {};
+    shape.revision = ++lastRevision_;
+    shape.positions = std::move(positions);
+    shape.normals.assign(shape.positions.size(), vec3(0));
+    for (const Primitive& primitive : mesh.primitives) {
+      Aabb& box = shape.primitiveBoundsObject.emplace_back();
+      for (uint32_t t = 0; t < primitive.triangleCount; ++t) {
+        const uvec3 v = mesh.triangles[primitive.firstTriangle + t];
+        const std::vector<vec3>& p = shape.positions;
+        for (int c = 0; c < 3; ++c)
+          box.add(p[v[c]]), shape.normals[v[c]] += glm::cross(p[v.y] - p[v.x], p[v.z] - p[v.x]);
+      }
+      shape.boundsObject.add(box);
+    }
+    for (vec3& n : shape.normals) n = glm::normalize(n);
+    i.reshaped = i.moved = true;
+    i.deformed = &shape;
+    i.boundsWorldBefore = i.boundsWorld;
+    i.boundsWorld = transformed(shape.boundsObject, i.worldFromObject);
+  }
+
   SceneView view() const {
     SceneView v;
     v.assets = &assets;
@@ -76,6 +104,40 @@ class HandScene {
   std::vector<LightView> lights;
   vec3 sky{0};
   CameraView camera;
+
+ private:
+  std::map<uint32_t, DeformedMesh> shapes_; // by instance; addresses stay
+  uint64_t lastRevision_ = 0;
 };
+
+/// A sheet of n × n quads over [-1,1]² at z = 0, front +z.
+inline Mesh sheet(uint32_t n, uint32_t material) {
+  Mesh mesh;
+  for (uint32_t y = 0; y <= n; ++y)
+    for (uint32_t x = 0; x <= n; ++x) {
+      mesh.positions.push_back(vec3(vec2(x, y) * (2.0f / float(n)) - 1.0f, 0));
+      mesh.uv0.push_back(vec2(x, y) / float(n));
+    }
+  mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
+  for (uint32_t y = 0; y < n; ++y)
+    for (uint32_t x = 0; x < n; ++x) {
+      const uint32_t a = y * (n + 1) + x, b = a + n + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {uvec3(a, a + 1, b + 1), uvec3(a, b + 1, b)});
+    }
+  for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
+  mesh.primitives.push_back({0, uint32_t(mesh.triangles.size()), material, mesh.boundsObject});
+  return mesh;
+}
+
+/// The sheet's vertices with waves of `height` across them, and `phase` along these, radians.
+inline std::vector<vec3> waves(const Mesh& sheet, float height, float phase) {
+  std::vector<vec3> positions = sheet.positions;
+  for (vec3& p : positions) {
+    const vec2 at(p);
+    p.z += height * std::sin(4 * at.x + 2 * at.y + phase);
+    p.x += 0.3f * height * std::cos(5 * at.y + phase);
+  }
+  return positions;
+}
 
 } // namespace lambent::test

@@ -20,6 +20,10 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   uint64_t meshTriangles = 0, placedTriangles = 0;
   for (const Mesh& m : assets.meshes) meshTriangles += m.triangles.size();
   for (const InstanceView& i : view.instances) placedTriangles += assets.meshes[i.mesh].triangles.size();
+  size_t skinned = 0, morphed = 0;
+  stage->scene.registry.each<Skin, MeshInstance>([&](Entity, const Skin&, const MeshInstance&) { ++skinned; });
+  stage->scene.registry.each<MorphWeights, MeshInstance>(
+      [&](Entity, const MorphWeights&, const MeshInstance&) { ++morphed; });
   uint64_t texels = 0;
   for (const TextureImage& i : assets.images) texels += i.texels.size();
   const LightSet lights = collectLights(view);
@@ -32,6 +36,8 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   j["mesh_triangles"] = meshTriangles;
   j["meshes"] = assets.meshes.size();
   j["instances"] = view.instances.size();
+  j["skinned_instances"] = skinned;
+  j["morphed_instances"] = morphed;
   j["materials"] = assets.materials.size();
   j["images"] = assets.images.size();
   j["image_mib"] = double(texels) * 4 / (1 << 20);
@@ -59,6 +65,7 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   std::printf("%s\n", stage->scene.file.c_str());
   std::printf("  triangles  %llu placed, %llu in %zu meshes, %zu instances\n", (unsigned long long)placedTriangles,
               (unsigned long long)meshTriangles, assets.meshes.size(), view.instances.size());
+  if (skinned + morphed > 0) std::printf("  deformed   %zu skinned, %zu morphed instances\n", skinned, morphed);
   std::printf("  materials  %zu, %zu images (%.1f MiB)\n", assets.materials.size(), assets.images.size(),
               double(texels) * 4 / (1 << 20));
   std::printf("  size       %.3g x %.3g x %.3g m\n", double(size.x), double(size.y), double(size.z));

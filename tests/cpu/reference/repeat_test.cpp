@@ -125,6 +125,11 @@ TEST_F(Room, StateOfAnotherPictureIsRefused) {
   scene_.assets.meshes[0].positions[0].x += 0.25f;
   refused(in, "another picture");
   scene_.assets.meshes[0].positions[0].x -= 0.25f;
+  std::vector<vec3> posed = scene_.assets.meshes[0].positions;
+  posed[0].x += 0.25f;
+  scene_.reshape(0, posed);
+  refused(in, "another picture");
+  scene_.instances[0].deformed = nullptr;
   EXPECT_EQ(refusal(in), "accepted");
 }
 

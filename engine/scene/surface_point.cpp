@@ -1,0 +1,35 @@
+#include "engine/scene/surface_point.h"
+
+#include "engine/core/error.h"
+
+namespace lambent {
+
+SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_t primitiveIndex, uint32_t triangle,
+                          vec2 barycentric) {
+  CHECK_LT(instanceIndex, view.instances.size());
+  const InstanceView& instance = view.instances[instanceIndex];
+  const Mesh& mesh = view.assets->meshes[instance.mesh];
+  CHECK_LT(primitiveIndex, mesh.primitives.size());
+  CHECK_LT(triangle, mesh.primitives[primitiveIndex].triangleCount);
+  const uvec3 corners = mesh.triangles[mesh.primitives[primitiveIndex].firstTriangle + triangle];
+  const std::vector<vec3>& positions = instance.deformed ? instance.deformed->positions : mesh.positions;
+  const std::vector<vec3>& normals = instance.deformed ? instance.deformed->normals : mesh.normals;
+  const auto interpolate = [&](const std::vector<vec3>& of) {
+    return of[corners.x] * (1 - barycentric.x - barycentric.y) + of[corners.y] * barycentric.x +
+           of[corners.z] * barycentric.y;
+  };
+  const mat3 normalFromObject = glm::transpose(glm::inverse(mat3(instance.worldFromObject)));
+  const auto unit = [](const vec3& v, const vec3& otherwise) {
+    const float length = glm::length(v);
+    return length > 0 ? v / length : otherwise;
+  };
+  const vec3 p0 = positions[corners.x];
+  SurfacePoint point;
+  point.position = vec3(instance.worldFromObject * vec4(interpolate(positions), 1));
+  point.geometricNormal =
+      unit(normalFromObject * glm::cross(positions[corners.y] - p0, positions[corners.z] - p0), vec3(0));
+  point.normal = unit(normalFromObject * interpolate(normals), point.geometricNormal);
+  return point;
+}
+
+} // namespace lambent

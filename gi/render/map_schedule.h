@@ -1,0 +1,40 @@
+// Which VPL maps are drawn in a frame while objects move: only those that see one, only the part that it covers, most
+// important first within a budget.
+#pragma once
+
+#include "gi/render/map_job.h"
+#include "gi/vpl/disturbance.h"
+
+#include <vector>
+
+namespace lambent {
+
+class MapSchedule {
+ public:
+  /// Queues the texels of each map in which something that moved is seen or was. `poses` and `brightness` (what the light
+  /// brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
+  void disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
+               const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
+  /// Queues every map as a whole.
+  void disturbAll(size_t slots, int resolution);
+
+  /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that stand elsewhere) whole and for certain,
+  /// others in order of brightness times frames waited until `texels` are spent. By slot, ascending.
+  std::vector<MapJob> take(std::span<const uint32_t> first, std::span<const float> brightness, int resolution,
+                           int64_t texels);
+
+  size_t waiting() const; // maps with texels in the queue
+  void clear() { stale_.clear(); }
+
+ private:
+  struct Stale {
+    TexelRect texels;
+    uint32_t frames = 0; // waited
+  };
+  std::vector<Stale> stale_; // by slot
+};
+
+/// Texels of a map that the box can cover, with a margin of one; empty when it lies behind the light.
+TexelRect texelsCovered(const MapPose& pose, const Aabb& box, int resolution);
+
+} // namespace lambent
