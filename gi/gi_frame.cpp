@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
+#include "gi/render/map_schedule.h"
 #include "gi/render/passes.h"
 #include "gi/vpl/sources.h"
 
@@ -62,8 +63,10 @@ struct GiFrame::State {
   std::unique_ptr<EmbreeQuery> rays;
   VplSet vpls;
   std::vector<VplLight> lights;
-  std::vector<uint32_t> staleMaps; // slots whose map may show where a moved object was, oldest first
+  MapSchedule mapSchedule;
+  std::vector<MapPose> emitterPoses;
   float farDistance = 0;
+  Aabb receivers; // see visibleBounds
   bool calibrated = false;
   float exposure = 0;
 
@@ -74,7 +77,9 @@ struct GiFrame::State {
 
   void prepare(const SceneView& view);
   VplChanges moveVpls(const SceneView& view, const LightSet& lights, const std::function<void(int, int)>& progress);
-  std::vector<uint32_t> mapsToDraw(const SceneView& view, const VplChanges& changes);
+  float mapReach(const SceneView& view);
+  std::vector<MapJob> mapsToDraw(const SceneView& view, const VplChanges& changes, std::span<const MapPose> poses);
+  std::vector<MapJob> emitterMapJobs(const SceneView& view, std::span<const MapPose> poses, int resolution);
   DirectLight drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lights, const GBuffer& gbuffer);
   IndirectLight drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer);
   void takeGpuRows() {
@@ -166,6 +171,23 @@ VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& light
   return changes;
 }
 
+/// Lamps that stand elsewhere get a new map, others the part that an object moved through.
+std::vector<MapJob> GiFrame::State::emitterMapJobs(const SceneView& view, std::span<const MapPose> poses,
+                                                   int resolution) {
+  const Disturbance moved(view);
+  std::vector<MapJob> jobs;
+  for (uint32_t i = 0; i < poses.size(); ++i) {
+    TexelRect texels;
+    if (view.changes.first || i >= emitterPoses.size() || poses[i] != emitterPoses[i])
+      texels = TexelRect::whole(resolution);
+    else
+      for (const Aabb& box : moved.boxes()) texels.add(texelsCovered(poses[i], box, resolution));
+    if (!texels.empty()) jobs.push_back({i, texels});
+  }
+  emitterPoses.assign(poses.begin(), poses.end());
+  return jobs;
+}
+
 DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lightSet,
                                        const GBuffer& gbuffer) {
   ShadowSettings shadow = settings.shadow;
@@ -173,9 +195,10 @@ DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& 
   if (shadow.sunResolution == 0) shadow.sunResolution = 2 * width;
   if (shadow.pointResolution == 0) shadow.pointResolution = std::max(1, width / 2);
   if (shadow.spotResolution == 0) shadow.spotResolution = width;
+  if (view.changes.first || view.changes.camera || view.changes.geometry || view.changes.instances)
+    receivers = visibleBounds(*rays, view, stats.raysPoints);
   const LightShadows& shadows =
-      lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance, visibleBounds(*rays, view, stats.raysPoints),
-                           view.boundsWorld, view.changes.geometry || view.changes.instances, shadow});
+      lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance, receivers, view.boundsWorld, view.changes.geometry || view.changes.instances, shadow});
   DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
   VplLights emitters;
   ParaboloidMaps maps;
@@ -186,12 +209,10 @@ DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& 
       samples.push_back(emitterLight(p));
       poses.push_back(emitterPose(p));
     }
-    std::vector<uint32_t> dirty;
-    if (view.changes.geometry || view.changes.instances || view.changes.first)
-      for (uint32_t i = 0; i < poses.size(); ++i) dirty.push_back(i);
     emitters = emitterBuffer.run(samples);
+    const std::vector<MapJob> jobs = emitterMapJobs(view, poses, shadow.emitterResolution);
     maps = emitterMapPass.run(
-        {*gpuScene, rays.get(), poses, dirty, view.boundsWorld.diameter(), shadow.emitterResolution, shadow.maker});
+        {*gpuScene, rays.get(), poses, jobs, mapReach(view), shadow.emitterResolution, shadow.maker});
     in.emitters = &emitters;
     in.emitterMaps = &maps;
     stats.mapsDrawn += emitterMapPass.mapsDrawn();
@@ -199,29 +220,28 @@ DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& 
   return directPass.run(in);
 }
 
-/// Maps of moved slots, and while objects move a few of the others in turn.
-std::vector<uint32_t> GiFrame::State::mapsToDraw(const SceneView& view, const VplChanges& changes) {
+/// Distance that stands for 1 in the maps. All are drawn anew when it changes, so it leaves room to grow.
+float GiFrame::State::mapReach(const SceneView& view) {
   const float wanted = view.boundsWorld.diameter();
-  if (wanted > farDistance || wanted < 0.5f * farDistance) { // the maps' unit: all are drawn anew when it changes
+  if (wanted > farDistance || wanted < 0.5f * farDistance)
     farDistance = view.changes.geometry && farDistance > 0 ? 1.25f * wanted : wanted;
-    std::vector<uint32_t> all(vpls.slots.size());
-    for (uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    staleMaps.clear();
-    return all;
-  }
-  std::vector<uint32_t> dirty = changes.movedSlots;
-  if (view.changes.geometry || view.changes.instances) {
-    std::vector<uint8_t> listed(vpls.slots.size(), 0);
-    for (uint32_t i : staleMaps) listed[i] = 1;
-    for (uint32_t i = 0; i < vpls.slots.size(); ++i)
-      if (!listed[i]) staleMaps.push_back(i);
-  }
-  const size_t again = std::min<size_t>(settings.shadow.refresh, staleMaps.size());
-  dirty.insert(dirty.end(), staleMaps.begin(), staleMaps.begin() + again);
-  staleMaps.erase(staleMaps.begin(), staleMaps.begin() + again);
-  std::sort(dirty.begin(), dirty.end());
-  dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
-  return dirty;
+  return farDistance;
+}
+
+/// Maps of lights that stand elsewhere, and as far as the budget goes of those that see where objects moved.
+std::vector<MapJob> GiFrame::State::mapsToDraw(const SceneView& view, const VplChanges& changes,
+                                               std::span<const MapPose> poses) {
+  const int resolution = settings.shadow.resolution;
+  std::vector<float> brightness;
+  // A light that brings nothing now may do so later, so its map is not given up.
+  for (const Vpl& v : vpls.slots) brightness.push_back(v.alive ? std::max(v.intensity(), 1e-20f) : 0);
+  if (view.changes.geometry || view.changes.instances)
+    mapSchedule.disturb(poses, brightness, Disturbance(view), *rays, resolution, settings.shadow.motionRays, seed,
+                        stats.frame, stats.raysMapTests);
+  const int64_t texels = int64_t(settings.shadow.refresh) * resolution * resolution;
+  std::vector<MapJob> jobs = mapSchedule.take(changes.movedSlots, brightness, resolution, texels);
+  stats.mapsWaiting = uint32_t(mapSchedule.waiting());
+  return jobs;
 }
 
 IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer) {
@@ -233,11 +253,13 @@ IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChang
   lights.clear();
   for (const Vpl& v : vpls.slots) lights.push_back(vplLight(v));
   const VplLights vplLights = vplBuffer.run(lights);
-  std::erase_if(staleMaps, [&](uint32_t slot) { return slot >= vpls.slots.size(); });
-  const std::vector<uint32_t> dirty = mapsToDraw(view, changes);
   const std::vector<MapPose> poses = mapPoses(vpls);
-  const ParaboloidMaps maps = vplMapPass.run(
-      {*gpuScene, rays.get(), poses, dirty, farDistance, settings.shadow.resolution, settings.shadow.maker});
+  ParaboloidMapInputs in{
+      *gpuScene, rays.get(), poses, {}, mapReach(view), settings.shadow.resolution, settings.shadow.maker};
+  if (vplMapPass.drawsAllAnew(in)) mapSchedule.clear();
+  const std::vector<MapJob> jobs = mapsToDraw(view, changes, poses);
+  in.jobs = jobs;
+  const ParaboloidMaps maps = vplMapPass.run(in);
   stats.mapsDrawn += vplMapPass.mapsDrawn();
   stats.shadowMaker = vplMapPass.makerReport();
   const RawIndirect raw = gatherPass.run({gbuffer, vplLights, &maps, settings.shadow.bias, settings.gather});

@@ -41,9 +41,10 @@ struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages; // CPU and GPU, in order, milliseconds
   double wallMs = 0;
-  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather;
+  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather, raysMapTests;
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0;
-  uint32_t mapsDrawn = 0;
+  uint32_t mapsDrawn = 0;   // paraboloid maps, in part or whole
+  uint32_t mapsWaiting = 0; // that show where a moved object was, and had to wait for later frames
   bool burst = false;
   std::string plan; // the effect plan in one line
   std::string shadowMaker, timing;

@@ -61,7 +61,9 @@ class Table {
     real("shadow.bias", &Settings::shadow, &ShadowSettings::bias, 0, 100,
          "depth bias of VPL maps, texels at the receiver");
     whole("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, 0, 32768,
-          "VPL maps drawn again per frame, in turn, while objects move");
+          "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
+    whole("shadow.motionRays", &Settings::shadow, &ShadowSettings::motionRays, 0, 1024,
+          "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
     whole("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, 0, 16384,
           "texels per side of a directional light's map; 0 = 2w, w the picture's width rounded up to a power of two");
     whole("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution, 0, 8192,

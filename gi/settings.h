@@ -46,7 +46,8 @@ struct ShadowSettings {
   int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
   float bias = 1.0f; // in texels of the map at the receiver
-  int refresh = 16;  // VPL maps drawn again per frame, in turn, while objects move
+  int refresh = 16;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w
   int pointResolution = 0; // w/2 per cube face

@@ -34,8 +34,8 @@ uint64_t nextRevision() {
 
 } // namespace
 
-/// Poses every instance that is skinned or morphed, anew where its pose changed. Shapes stay at their address, since
-/// views point to them.
+/// Poses every instance that is skinned or morphed, anew where its pose changed. A changed shape is a new object: who
+/// holds the old one may still read it.
 std::vector<InstanceView> SceneExtractor::placeInstances(const Scene& scene) {
   std::vector<InstanceView> instances;
   instances.reserve(instances_.size());
@@ -54,18 +54,19 @@ std::vector<InstanceView> SceneExtractor::placeInstances(const Scene& scene) {
       if (shape.mesh != v.mesh || shape.pose != placed->pose) {
         shape.mesh = v.mesh;
         shape.pose = std::move(placed->pose);
-        shape.deformed.revision = nextRevision();
+        shape.deformed = std::make_shared<DeformedMesh>();
+        shape.deformed->revision = nextRevision();
         v.reshaped = true;
         changed.push_back(&shape);
       }
-      v.deformed = &shape.deformed;
+      v.deformed = shape.deformed;
     }
     instances.push_back(v);
   });
   shapes_ = std::move(shapes);
   parallelFor(changed.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      deform(scene.assets.meshes[changed[i]->mesh], changed[i]->pose, changed[i]->deformed);
+      deform(scene.assets.meshes[changed[i]->mesh], changed[i]->pose, *changed[i]->deformed);
   });
   return instances;
 }

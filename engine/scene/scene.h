@@ -63,7 +63,7 @@ CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
 quat rotationTowards(const vec3& direction);
 
 /// Turns the registry into a SceneView; keeps what it needs to tell what moved since its last call.
-/// Spans and deformed meshes stay valid until the next call.
+/// Spans stay valid until the next call.
 class SceneExtractor {
  public:
   SceneView extract(const Scene& scene, const CameraView& camera, double time);
@@ -72,7 +72,7 @@ class SceneExtractor {
   struct Shape {
     uint32_t mesh = kNone;
     Pose pose;
-    DeformedMesh deformed;
+    std::shared_ptr<DeformedMesh> deformed;
   };
   std::vector<InstanceView> placeInstances(const Scene& scene);
 

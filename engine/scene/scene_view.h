@@ -4,6 +4,7 @@
 #include "engine/core/math.h"
 #include "engine/scene/assets.h"
 
+#include <memory>
 #include <span>
 
 namespace lambent {
@@ -27,7 +28,7 @@ struct InstanceView {
   mat4 worldFromObjectBefore{1};          // of the previous extraction; equal when it did not move
   bool moved = false;                     // placed or shaped otherwise than in the previous extraction
   bool reshaped = false;                  // its vertices, in object space, are not those of the previous extraction
-  const DeformedMesh* deformed = nullptr; // null: rigid, the mesh's own vertices; valid until the next extraction
+  std::shared_ptr<const DeformedMesh> deformed; // null: rigid, the mesh's own vertices; never written again
   Aabb boundsWorld;
   Aabb boundsWorldBefore; // of the previous extraction; equal when it did not move
 };

@@ -56,7 +56,7 @@ void GpuScene::layOutDeformed(std::span<const InstanceView> instances) {
 void GpuScene::uploadDeformed(std::span<const InstanceView> instances) {
   std::vector<uint64_t> normals;
   for (size_t i = 0; i < instances.size(); ++i) {
-    const DeformedMesh* shape = instances[i].deformed;
+    const DeformedMesh* shape = instances[i].deformed.get();
     if (!shape || (i < placed_.size() && placed_[i].revision == shape->revision)) continue;
     CHECK_EQ(shape->positions.size(), size_t(meshes_[instances[i].mesh].vertexCount));
     normals.clear();

@@ -1,0 +1,46 @@
+// What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are drawn anew.
+#pragma once
+
+#include "engine/core/math.h"
+
+#include <cstdint>
+
+namespace lambent {
+
+/// Where a light stands. World space; the map covers the hemisphere around `normal`.
+struct MapPose {
+  vec3 position{0}; // on the surface
+  vec3 normal{0, 1, 0}; // shading normal, unit
+  vec3 geometricNormal{0, 1, 0}; // unit; the map's origin lies off the surface on this side
+  bool operator==(const MapPose&) const = default;
+};
+
+/// Texels [x0, x1) × [y0, y1) of a map.
+struct TexelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  bool operator==(const TexelRect&) const = default;
+  static TexelRect whole(int resolution) { return {0, 0, resolution, resolution}; }
+  bool empty() const { return x1 <= x0 || y1 <= y0; }
+  int area() const { return empty() ? 0 : (x1 - x0) * (y1 - y0); }
+  /// Grows to hold `o` too.
+  void add(const TexelRect& o) {
+    if (o.empty()) return;
+    if (empty()) {
+      *this = o;
+      return;
+    }
+    x0 = x0 < o.x0 ? x0 : o.x0;
+    y0 = y0 < o.y0 ? y0 : o.y0;
+    x1 = x1 > o.x1 ? x1 : o.x1;
+    y1 = y1 > o.y1 ? y1 : o.y1;
+  }
+};
+
+/// Texels of the map of one slot that are drawn anew.
+struct MapJob {
+  uint32_t slot = 0;
+  TexelRect texels;
+};
+
+} // namespace lambent

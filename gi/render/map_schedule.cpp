@@ -62,8 +62,8 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
                           RayCounts& counts) {
   stale_.resize(poses.size());
   constexpr size_t kGrain = 64;
-  // With many movers rays would take longer than the maps; what has had its share counts as seen.
-  const int boxesTested = 8;
+  // With many movers rays would take longer than the maps; a light that has tried so many counts as seeing the rest.
+  constexpr int kBoxesTested = 8;
   std::vector<RayCounts> perBlock((poses.size() + kGrain - 1) / kGrain);
   parallelFor(poses.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -76,7 +76,7 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
         TexelRect all = stale_[i].texels;
         all.add(texels);
         if (texels.empty() || all == stale_[i].texels) continue; // behind it, or listed already
-        if (tested++ < boxesTested &&
+        if (raysPerBox > 0 && tested++ < kBoxesTested &&
             !seesPlace(origin, poses[i].geometricNormal, box, rays, rng, raysPerBox, perBlock[begin / kGrain]))
           continue;
         stale_[i].texels = all;

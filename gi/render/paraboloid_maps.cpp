@@ -35,7 +35,8 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   CHECK(in.farDistance > 0);
   std::vector<MapJob> all;
   std::span<const MapJob> jobs = in.jobs;
-  if (allocate(in)) {
+  if (drawsAllAnew(in)) {
+    allocate(in);
     all.resize(in.poses.size());
     for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
     jobs = all;
@@ -57,12 +58,13 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   return {arrays_, resolution_, in.farDistance};
 }
 
-bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
+bool ParaboloidMapPass::drawsAllAnew(const ParaboloidMapInputs& in) const {
+  return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size();
+}
+
+void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   const size_t needed = (in.poses.size() + kLayersPerArray - 1) / kLayersPerArray;
   const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
-  const bool fits = resolution_ == in.resolution && arrays_.size() == needed && farDistance_ == in.farDistance &&
-                    (needed == 0 || arrays_.back().desc().layers == lastLayers);
-  if (fits) return false;
   arrays_.clear();
   for (size_t i = 0; i < needed; ++i)
     arrays_.emplace_back(name_ + "/array " + std::to_string(i),
@@ -73,7 +75,7 @@ bool ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
                                          .layers = i + 1 < needed ? kLayersPerArray : lastLayers});
   resolution_ = in.resolution;
   farDistance_ = in.farDistance;
-  return true;
+  slots_ = in.poses.size();
 }
 
 void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {

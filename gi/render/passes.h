@@ -103,6 +103,8 @@ class ParaboloidMapPass {
   ParaboloidMapPass(PassContext context, std::string name) : context_(context), name_(std::move(name)) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
+  /// Whether a run would draw every map, whatever its jobs.
+  bool drawsAllAnew(const ParaboloidMapInputs& in) const;
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
   /// Who draws, and how it was chosen: "rays (2.1 ms a map, raster 14.0 ms)". Empty before the first map.
@@ -113,7 +115,7 @@ class ParaboloidMapPass {
   MakerComparison compareMakers(const ParaboloidMapInputs& in, const MapPose& pose);
 
  private:
-  bool allocate(const ParaboloidMapInputs& in); // true when every map must be drawn anew
+  void allocate(const ParaboloidMapInputs& in);
   void measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
@@ -125,6 +127,7 @@ class ParaboloidMapPass {
   gl::Texture faces_;
   gl::Framebuffer facesFramebuffer_, layerFramebuffer_;
   int resolution_ = 0;
+  size_t slots_ = 0;
   float farDistance_ = 0;
   std::optional<ShadowMaker> measuredMaker_;
   uint32_t mapsDrawn_ = 0;

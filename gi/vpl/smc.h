@@ -50,6 +50,8 @@ struct CandidateHit {
   vec3 position, normal, geometricNormal, albedo;
   vec3 from;             // the visible point (off its surface): the first mailbox
   uint32_t instance = 0; // index into SceneView::instances
+  uint32_t primitive = 0, triangle = 0;
+  vec2 barycentric{0};
 };
 
 /// Stage 3. `count` cosine-distributed rays spread evenly over the visible points; misses give no hit.
@@ -183,6 +185,10 @@ struct VplUpdateLog {
 /// `progress` (may be empty) hears of each.
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});
+
+/// Moves the VPLs of `view`'s moved objects (of all, if so asked) to their places there, and gives up those whose object
+/// is gone. Returns the slots that were placed anew, ascending. updateVpls does it too; placing twice changes nothing.
+std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
 /// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
 /// ray tracing"). Row 0 at the top; zero where the camera sees nothing.

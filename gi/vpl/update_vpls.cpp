@@ -4,6 +4,8 @@
 // estimateRadiance).
 #include "gi/vpl/smc.h"
 
+#include "engine/scene/surface_point.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -29,51 +31,47 @@ bool emittersChanged(const VplUpdate& in) {
                      [&](const Emitter& e) { return in.view.instances[e.instance].moved; });
 }
 
-/// VPLs ride on the object that carries them. Objects that are gone take their VPLs along.
-void carryAlong(VplSet& set, const SceneView& view, Since& since, std::vector<uint32_t>& moved) {
-  std::unordered_map<uint32_t, const InstanceView*> byId;
-  for (const InstanceView& i : view.instances) byId.emplace(i.id, &i);
-  since.carried.assign(set.slots.size(), 0);
-  for (uint32_t i = 0; i < set.slots.size(); ++i) {
-    Vpl& v = set.slots[i];
-    if (!v.alive) continue;
-    const auto carrier = byId.find(v.instance);
-    if (carrier == byId.end()) {
-      v.alive = v.valid = false;
-      continue;
-    }
-    const InstanceView& instance = *carrier->second;
-    if (!instance.moved && !view.changes.first) continue;
-    const mat3 normalFromObject = glm::transpose(glm::inverse(mat3(instance.worldFromObject)));
-    v.position = vec3(instance.worldFromObject * vec4(v.positionObject, 1));
-    v.normal = glm::normalize(normalFromObject * v.normalObject);
-    v.geometricNormal = glm::normalize(normalFromObject * v.geometricNormalObject);
-    if (!isFinite(v.position) || !isFinite(v.normal) || !isFinite(v.geometricNormal))
-      v.alive = v.valid = false; // scaled to nothing
-    since.carried[i] = 1;
-    moved.push_back(i);
+/// Puts a VPL where its place on the carrier is now.
+void place(Vpl& v, const SceneView& view, uint32_t instanceIndex) {
+  const InstanceView& carrier = view.instances[instanceIndex];
+  const SurfacePlace& on = v.place;
+  if (carrier.deformed) {
+    const SurfacePoint p = surfacePoint(view, instanceIndex, on.primitive, on.triangle, on.barycentric);
+    const float side = on.back ? -1.0f : 1.0f;
+    v.position = p.position;
+    v.geometricNormal = side * p.geometricNormal;
+    v.normal = glm::dot(p.normal, p.geometricNormal) > 0 ? side * p.normal : v.geometricNormal;
+  } else {
+    const mat3 normalFromObject = glm::transpose(glm::inverse(mat3(carrier.worldFromObject)));
+    v.position = vec3(carrier.worldFromObject * vec4(on.position, 1));
+    v.normal = glm::normalize(normalFromObject * on.normal);
+    v.geometricNormal = glm::normalize(normalFromObject * on.geometricNormal);
   }
-  std::unordered_set<uint32_t> still;
-  for (const InstanceView& i : view.instances)
-    if (!i.moved && !view.changes.first) still.insert(i.id);
-  for (Vpl& v : set.pool) v.valid = v.valid && still.contains(v.instance);
+  // Squashed to nothing.
+  if (!isFinite(v.position) || !isFinite(v.normal) || !(glm::dot(v.geometricNormal, v.geometricNormal) > 0.5f))
+    v.alive = v.valid = false;
 }
 
 Vpl candidateAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
   const InstanceView& carrier = view.instances[h.instance];
   const mat3 normalFromWorld = glm::transpose(mat3(carrier.worldFromObject));
   Vpl v;
-  v.position = h.position;
-  v.normal = h.normal;
-  v.geometricNormal = h.geometricNormal;
   v.albedo = h.albedo;
   v.mailbox = h.from;
   v.instance = carrier.id;
-  v.positionObject = vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1));
-  v.normalObject = glm::normalize(normalFromWorld * h.normal);
-  v.geometricNormalObject = glm::normalize(normalFromWorld * h.geometricNormal);
+  v.place = {vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1)),
+             glm::normalize(normalFromWorld * h.normal),
+             glm::normalize(normalFromWorld * h.geometricNormal),
+             h.primitive,
+             h.triangle,
+             h.barycentric};
+  if (carrier.deformed) {
+    const SurfacePoint p = surfacePoint(view, h.instance, h.primitive, h.triangle, h.barycentric);
+    v.place.back = glm::dot(p.geometricNormal, h.geometricNormal) < 0;
+  }
   v.id = id;
   v.valid = true;
+  place(v, view, h.instance); // so that it stands to the bit where it stands when carried nowhere
   return v;
 }
 
@@ -283,6 +281,25 @@ void mergeStages(std::vector<StageTime>& stages) {
 
 } // namespace
 
+std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all) {
+  std::vector<uint32_t> carried;
+  std::unordered_map<uint32_t, uint32_t> indexOf;
+  for (uint32_t i = 0; i < view.instances.size(); ++i) indexOf.emplace(view.instances[i].id, i);
+  for (uint32_t slot = 0; slot < set.slots.size(); ++slot) {
+    Vpl& v = set.slots[slot];
+    if (!v.alive) continue;
+    const auto carrier = indexOf.find(v.instance);
+    if (carrier == indexOf.end()) {
+      v.alive = v.valid = false;
+      continue;
+    }
+    if (!all && !view.instances[carrier->second].moved) continue;
+    place(v, view, carrier->second);
+    carried.push_back(slot);
+  }
+  return carried;
+}
+
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress) {
   const SmcSettings& settings = in.settings;
@@ -305,7 +322,15 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
     set.pool.clear();
     set.poolPaths.clear();
   }
-  if (changed.geometry || changed.instances || changed.first) carryAlong(set, in.view, since, moved);
+  if (changed.geometry || changed.instances || changed.first) {
+    moved = carryVpls(set, in.view, changed.first);
+    since.carried.assign(set.slots.size(), 0);
+    for (uint32_t slot : moved) since.carried[slot] = 1;
+    std::unordered_set<uint32_t> still;
+    for (const InstanceView& i : in.view.instances)
+      if (!i.moved) still.insert(i.id);
+    for (Vpl& v : set.pool) v.valid = v.valid && still.contains(v.instance);
+  }
 
   const bool settingsChanged = set.litPaths != settings.paths || set.litBounces != settings.bounces;
   const bool relight = since.lights || since.geometry() || settingsChanged || !settings.cache;

@@ -11,6 +11,15 @@
 
 namespace lambent {
 
+/// Where on an object something stands, whatever the object does.
+struct SurfacePlace {
+  vec3 position{0}, normal{0, 1, 0}, geometricNormal{0, 1, 0}; // object space, of a rigid object
+  // Of a deformed one, as in SurfaceHit:
+  uint32_t primitive = 0, triangle = 0;
+  vec2 barycentric{0};
+  bool back = false; // on the back of the triangle
+};
+
 /// A small diffuse patch that stands for all light reflected around it. World space.
 struct Vpl {
   vec3 position{0};     // on the surface
@@ -24,11 +33,10 @@ struct Vpl {
   uint64_t id = 0;         // seeds its light paths; never reused
   uint32_t bornFrame = 0;
   uint32_t instance = 0; // InstanceView::id of the object that carries it
-  vec3 positionObject{0}, normalObject{0, 1, 0},
-      geometricNormalObject{0, 1, 0}; // in that object's space: VPLs ride on it
-  vec3 mailbox{0};                    // a point seen by both the camera and this VPL, already off its surface
-  bool alive = false;                 // false: empty slot, brings no light
-  bool valid = false;                 // indirectly visible in this frame as far as known
+  SurfacePlace place;    // on that object: VPLs ride on it
+  vec3 mailbox{0};       // a point seen by both the camera and this VPL, already off its surface
+  bool alive = false;    // false: empty slot, brings no light
+  bool valid = false;    // indirectly visible in this frame as far as known
 
   /// Intensity I = L/p up to the factor N (paper 1, eq. 6): radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }

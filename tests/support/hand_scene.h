@@ -66,8 +66,8 @@ class HandScene {
   void reshape(uint32_t index, std::vector<vec3> positions) {
     InstanceView& i = instances[index];
     const Mesh& mesh = assets.meshes[i.mesh];
-    DeformedMesh& shape = shapes_[index];
-    shape = {};
+    const auto made = std::make_shared<DeformedMesh>();
+    DeformedMesh& shape = *made;
     shape.revision = ++lastRevision_;
     shape.positions = std::move(positions);
     shape.normals.assign(shape.positions.size(), vec3(0));
@@ -83,7 +83,7 @@ class HandScene {
     }
     for (vec3& n : shape.normals) n = glm::normalize(n);
     i.reshaped = i.moved = true;
-    i.deformed = &shape;
+    i.deformed = made;
     i.boundsWorldBefore = i.boundsWorld;
     i.boundsWorld = transformed(shape.boundsObject, i.worldFromObject);
   }
