@@ -90,7 +90,6 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   std::string technique = techniqueOf(gi.settings());
   if (choose("technique", techniqueNames(), technique)) applyTechnique(gi.settings(), technique);
   if (choose("preset", presetNames(), model.preset)) applyPreset(gi.settings(), model.preset);
-  ImGui::TextWrapped("plan: %s", stats.plan.c_str());
 
   ImGui::Separator();
   ImGui::Checkbox("paused", &model.paused);
@@ -111,16 +110,37 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
     gi.settings().image.exposure = exposure;
 
   if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) drawStages(stats);
+  if (ImGui::CollapsingHeader("Effects", ImGuiTreeNodeFlags_DefaultOpen)) drawEffects(gi.settings(), stats);
   if (ImGui::CollapsingHeader("Virtual point lights", ImGuiTreeNodeFlags_DefaultOpen)) {
     ImGui::Text("alive %u   kept %u   moved %u", stats.vplsAlive, stats.vplsKept, stats.vplsMoved);
-    ImGui::Text("invalid %u   relit %u   maps drawn %u%s", stats.vplsInvalid, stats.vplsRelit, stats.mapsDrawn,
-                stats.burst ? "   (camera cut)" : "");
+    ImGui::Text("invalid %u   relit %u%s", stats.vplsInvalid, stats.vplsRelit, stats.burst ? "   (camera cut)" : "");
+    ImGui::Text("paths retraced %llu of %llu", (unsigned long long)stats.pathsRetraced,
+                (unsigned long long)stats.pathsHeld);
+    ImGui::Text("maps drawn %u   waiting %u", stats.mapsDrawn, stats.mapsWaiting);
     ImGui::TextWrapped("maps by %s", stats.shadowMaker.empty() ? "nobody yet" : stats.shadowMaker.c_str());
   }
   if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());
   ImGui::TextDisabled("F1: keys   Tab: hide this panel");
   ImGui::PopItemWidth();
   ImGui::End();
+}
+
+/// Each effect with whether it runs and why; a click goes from auto to forced on to forced off.
+void Hud::drawEffects(Settings& settings, const FrameStats& stats) {
+  for (size_t i = 0; i < kEffects; ++i) {
+    const EffectId id = EffectId(i);
+    const EffectRow& row = effectRow(id);
+    const Effect& effect = stats.plan[id];
+    EffectMode& mode = settings.effects[id];
+    bool on = effect.on;
+    ImGui::PushID(int(i));
+    if (ImGui::Checkbox(row.name, &on)) mode = EffectMode((int(mode) + 1) % 3);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s\n%llu %s\nclick: auto, on, off", row.help, (unsigned long long)stats.work[i], row.work);
+    ImGui::PopID();
+    ImGui::SameLine(130);
+    ImGui::TextDisabled("%s", effect.reason.c_str());
+  }
 }
 
 void Hud::drawStages(const FrameStats& stats) {

@@ -45,6 +45,7 @@ class Hud {
  private:
   void drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats);
   void drawStages(const FrameStats& stats);
+  void drawEffects(Settings& settings, const FrameStats& stats);
   void drawSettings(Settings& settings);
   void drawHelp() const;
   void drawMessages();

@@ -1,72 +1,186 @@
 #include "gi/effects.h"
 
+#include "gi/vpl/light_set.h"
+
+#include <cmath>
+#include <utility>
+
 namespace lambent {
 
 namespace {
 
-/// What the scene's materials and instances hold.
-struct SceneFacts {
-  uint32_t emissive = 0, masked = 0, textured = 0, moving = 0;
+constexpr EffectRow kRows[kEffects] = {
+    {"indirect", "light reflected by surfaces: VPLs, their shadow maps, the gather", "rays and draws"},
+    {"bounces", "light paths beyond the first surface that reflects; off: one bounce", "rays"},
+    {"emissive", "light from emissive surfaces; off: they glow and light nothing", "shadow maps and rays"},
+    {"sky", "light from the sky; off: it is seen and lights nothing", "shadow maps and rays"},
+    {"alpha", "cut-out materials let light through their holes", "tests and draws"},
+    {"textures", "light takes the colour of the texel it meets; off: the texture's mean", "lookups"},
+    {"motion", "objects move; off: they stay where they were when it was switched off", "objects placed"},
+    {"mapRefresh", "shadow maps of VPLs follow objects that move", "maps and rays"},
+    {"relight", "VPLs follow lights and geometry that change", "VPLs"},
+    {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
+    {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
+    {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
+    {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
 };
-
-SceneFacts gather(const SceneView& view) {
-  SceneFacts f;
-  for (const InstanceView& i : view.instances) {
-    f.moving += i.moved;
-    for (const Primitive& p : view.assets->meshes[i.mesh].primitives) {
-      const Material& m = view.assets->materials[p.material];
-      f.emissive += m.emits();
-      f.masked += m.alphaMode == AlphaMode::Mask;
-      f.textured += m.baseColorTexture.image != kNone;
-    }
-  }
-  return f;
-}
 
 std::string count(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
+bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
+
+/// Whether light that one surface reflects can reach another that reflects. Certain only where it says no: everything
+/// that is not black lies in one plane. Large scenes are not asked.
+bool reflectorsSeeOneAnother(const SceneView& view) {
+  constexpr uint32_t kAsked = 4096; // triangles
+  const float tolerance = 1e-5f * std::max(1e-6f, view.boundsWorld.diameter());
+  uint32_t triangles = 0;
+  vec3 origin(0), normal(0);
+  for (const InstanceView& i : view.instances) {
+    const Mesh& mesh = view.assets->meshes[i.mesh];
+    for (const Primitive& p : mesh.primitives) {
+      if (!reflects(view.assets->materials[p.material]) || p.triangleCount == 0) continue;
+      triangles += p.triangleCount;
+      if (triangles > kAsked || i.deformed) return true;
+      for (uint32_t t = 0; t < p.triangleCount; ++t) {
+        const uvec3 corners = mesh.triangles[p.firstTriangle + t];
+        vec3 at[3];
+        for (int c = 0; c < 3; ++c) at[c] = vec3(i.worldFromObject * vec4(mesh.positions[corners[c]], 1));
+        if (normal == vec3(0)) {
+          const vec3 n = glm::cross(at[1] - at[0], at[2] - at[0]);
+          if (!(glm::length(n) > 0)) return true;
+          normal = glm::normalize(n);
+          origin = at[0];
+        }
+        for (const vec3& corner : at)
+          if (!(std::abs(glm::dot(corner - origin, normal)) <= tolerance)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// What the scene's lights, materials and instances hold.
+struct SceneFacts {
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, moved = 0;
+  bool emittersMoved = false;
+
+  explicit SceneFacts(const SceneView& view) {
+    for (const LightView& l : view.lights) punctual += luminance(l.intensity) > 0;
+    for (const InstanceView& i : view.instances) {
+      moved += i.moved;
+      for (const Primitive& p : view.assets->meshes[i.mesh].primitives) {
+        const Material& m = view.assets->materials[p.material];
+        emissive += m.emits();
+        emittersMoved |= m.emits() && i.moved;
+        masked += m.alphaMode == AlphaMode::Mask;
+        textured += m.baseColorTexture.image != kNone;
+        reflecting += reflects(m);
+      }
+    }
+  }
+};
+
+using Answer = std::pair<bool, std::string>;
+
 } // namespace
 
-EffectPlan planEffects(const SceneView& view, const Settings& settings) {
-  const SceneFacts facts = gather(view);
+const EffectRow& effectRow(EffectId id) { return kRows[size_t(id)]; }
+
+EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts) {
+  const SceneFacts scene(view);
+  const SceneChanges& changes = view.changes;
+  const SmcSettings& smc = settings.smc;
   EffectPlan plan;
-  const auto decide = [&](bool& flag, const char* name, bool on, std::string reason) {
-    flag = on;
-    plan.effects.push_back({name, on, std::move(reason)});
+  const auto decide = [&](EffectId id, Answer answer) {
+    Effect& e = plan.effects_[size_t(id)];
+    const EffectMode mode = settings.effects[id];
+    e.forced = mode != EffectMode::Auto;
+    e.calledFor = answer.first;
+    e.on = e.forced ? mode == EffectMode::On : answer.first;
+    e.reason = e.forced ? std::string("effects.") + effectRow(id).name + " is " + (e.on ? "on" : "off")
+                        : std::move(answer.second);
+    return e.on;
   };
-  size_t punctual = 0;
-  for (const LightView& l : view.lights) punctual += luminance(l.intensity) > 0;
-  decide(plan.punctualLights, "punctual", punctual > 0,
-         punctual ? count(punctual, "point, spot or directional light") : "no punctual light with power");
-  decide(plan.emissiveSurfaces, "emissive", facts.emissive > 0,
-         facts.emissive ? count(facts.emissive, "emissive surface") : "no material emits");
+  const auto whyNoIndirect = [&](bool light) -> Answer {
+    if (smc.bounces < 1) return {false, "smc.bounces is 0"};
+    if (view.instances.empty()) return {false, "nothing to light"};
+    if (!light) return {false, "no light"};
+    if (scene.reflecting == 0) return {false, "every surface is black"};
+    if (!reflectorsSeeOneAnother(view)) return {false, "all that reflects lies in one plane"};
+    return {true, "light, and surfaces that reflect it to one another"};
+  };
+
+  // What the scene holds.
+  const bool emissive = decide(EffectId::Emissive, {scene.emissive > 0, scene.emissive > 0
+                                                                            ? count(scene.emissive, "emissive surface")
+                                                                            : "no material emits"});
   const bool sky = luminance(view.skyRadiance) > 0;
-  decide(plan.sky, "sky", sky, sky ? "the sky has radiance" : "the sky is black");
-  const bool anyLight = plan.punctualLights || plan.emissiveSurfaces || plan.sky;
-  const bool indirect = anyLight && settings.smc.bounces > 0 && !view.instances.empty();
-  decide(plan.indirect, "indirect", indirect,
-         indirect                    ? "light and surfaces that reflect it"
-         : settings.smc.bounces == 0 ? "smc.bounces is 0"
-         : view.instances.empty()    ? "nothing to light"
-                                     : "no light");
-  decide(plan.moreBounces, "bounces", indirect && settings.smc.bounces > 1,
-         "smc.bounces is " + std::to_string(settings.smc.bounces));
-  decide(plan.alphaTest, "alpha", facts.masked > 0,
-         facts.masked ? count(facts.masked, "alpha-masked surface") : "no alpha mask");
-  decide(plan.textures, "textures", facts.textured > 0,
-         facts.textured ? count(facts.textured, "textured surface") : "no base-colour texture");
-  const bool interleaved =
-      indirect && settings.gather.mode == GatherMode::Interleaved && settings.smc.visibility == VplVisibility::Maps;
-  decide(plan.filter, "filter", interleaved && settings.filter.on,
-         interleaved ? (settings.filter.on ? "interleaved gathering needs it" : "filter.on is off")
-                     : "no interleaved gathering");
+  const bool skyLight = decide(EffectId::Sky, {sky, sky ? "the sky has radiance" : "the sky is black"});
+  decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked surface")
+                                                              : "no material has an alpha mask"});
+  const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
+  const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
+  const Answer none{false, "no indirect light"};
+  const bool apart = indirect && !reflectorsSeeOneAnother(view);
+  decide(EffectId::Bounces, !indirect         ? none
+                            : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
+                            : apart           ? Answer{false, "all that reflects lies in one plane"}
+                                              : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
+  decide(EffectId::Textures, !indirect            ? none
+                             : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
+                                                  : Answer{false, "no base-colour texture"});
+  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0       ? Answer{false, "no emissive surface"}
+                                : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
+                                                                     : Answer{false, "shadow.emitterSamples is 1"});
+  decide(EffectId::Filter, !indirect                                         ? none
+                           : smc.visibility == VplVisibility::Rays           ? Answer{false, "gathered by rays"}
+                           : settings.gather.mode != GatherMode::Interleaved ? Answer{false, "every pixel sees all VPLs"}
+                           : !settings.filter.on ? Answer{false, "filter.on is off"}
+                                                 : Answer{true, "the gather is interleaved"});
+
+  // What changed.
+  const bool geometry = changes.geometry || changes.instances;
+  const std::string movers = !geometry         ? "nothing moved"
+                             : scene.moved > 0 ? count(scene.moved, "object") + " moved"
+                                               : "objects came or went";
+  const bool motion = decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
+  const bool moved = geometry && motion;
+  decide(EffectId::MapRefresh, !indirect               ? none
+                               : moved                 ? Answer{true, movers}
+                               : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
+                                                       : Answer{false, "nothing moved"});
+  const bool placedAnew = settings.vpl.source != VplSource::Smc; // every frame, by photons or chains
+  decide(EffectId::Relight, !indirect             ? none
+                            : placedAnew          ? Answer{true, "the technique lights its VPLs anew in every frame"}
+                            : changes.first       ? Answer{true, "the scene is new"}
+                            : changes.lights      ? Answer{true, "lights changed"}
+                            : moved               ? Answer{true, movers}
+                            : facts.settingsChanged ? Answer{true, "settings changed"}
+                                                  : Answer{false, "neither lights nor objects changed"});
+  const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
+  decide(EffectId::Replace, !indirect             ? none
+                            : placedAnew          ? Answer{true, "the technique places its VPLs anew in every frame"}
+                            : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
+                            : still                  ? Answer{true, "the VPLs have not settled yet"}
+                                                     : Answer{true, "the view or the scene changed"});
+  const Effect& replace = plan[EffectId::Replace];
+  const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
+  decide(EffectId::Redraw, !still                           ? Answer{true, "the view, scene or settings changed"}
+                           : newLight                                      ? Answer{true, "VPLs change"}
+                           : indirect && facts.mapsWaiting > 0             ? Answer{true, "shadow maps are waiting"}
+                                                                           : Answer{false, "nothing changed"});
+  if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
+    redraw.on = true;
+    redraw.reason = "there is no picture yet";
+  }
   return plan;
 }
 
 std::string EffectPlan::oneLine() const {
   std::string line;
-  for (const Effect& e : effects)
-    if (e.on) line += (line.empty() ? "" : "+") + e.name;
+  for (size_t i = 0; i < kEffects; ++i)
+    if (effects_[i].on) line += (line.empty() ? "" : "+") + std::string(effectRow(EffectId(i)).name);
   return line.empty() ? "none" : line;
 }
 

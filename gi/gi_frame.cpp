@@ -9,6 +9,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <future>
+#include <limits>
+#include <utility>
 
 namespace lambent {
 
@@ -36,10 +39,54 @@ Image imageOf(const CameraView& camera, std::vector<vec3> pixels) {
   return image;
 }
 
+/// A view with spans of its own: the scene's live only until its next extraction.
+struct WorldCopy {
+  SceneView view;
+  std::vector<InstanceView> instances;
+  std::vector<LightView> lights;
+  std::vector<Aabb> addedOrRemoved;
+
+  /// With `frozen` the instances stay what and where they were.
+  void take(const SceneView& now, bool frozen) {
+    lights.assign(now.lights.begin(), now.lights.end());
+    const Aabb bounds = view.boundsWorld;
+    view = now;
+    if (frozen) {
+      for (InstanceView& i : instances) {
+        i.moved = i.reshaped = false;
+        i.worldFromObjectBefore = i.worldFromObject;
+        i.boundsWorldBefore = i.boundsWorld;
+      }
+      addedOrRemoved.clear();
+      view.changes.geometry = view.changes.instances = false;
+      view.boundsWorld = bounds;
+    } else {
+      instances.assign(now.instances.begin(), now.instances.end());
+      addedOrRemoved.assign(now.addedOrRemoved.begin(), now.addedOrRemoved.end());
+    }
+    view.instances = instances;
+    view.lights = lights;
+    view.addedOrRemoved = addedOrRemoved;
+  }
+};
+
+/// What an update of the VPLs depends on besides the world.
+struct UpdateTask {
+  SmcSettings smc;
+  VplSettings vpl;
+  VplEffects effects;
+  bool settingsChanged;
+  bool pretended; // done on a copy that is thrown away, because nothing calls for it
+};
+
+constexpr SceneChanges kAllChanged{true, true, true, true, true};
+
+bool anyChange(const SceneChanges& c) { return c.first || c.camera || c.lights || c.geometry || c.instances; }
+
 } // namespace
 
 struct GiFrame::State {
-  Settings settings;
+  Settings settings, settingsBefore;
   uint32_t seed;
 
   gl::ProgramCache programs;
@@ -61,30 +108,53 @@ struct GiFrame::State {
   const SceneAssets* assets = nullptr;
   std::unique_ptr<GpuScene> gpuScene;
   std::unique_ptr<EmbreeQuery> rays;
+  WorldCopy world;
+  LightSet lights;
+  EffectPlan plan;
+  bool settingsChanged = true, shadersChanged = false;
+  bool missed = false; // something changed that VPLs or shadow maps were not told of
+  bool frozen = false; // objects stand where they stood
+
   VplSet vpls;
-  std::vector<VplLight> lights;
+  VplChanges changes;
+  VplUpdateLog log;
+  bool lightArrived = false; // an update ended that no picture shows yet
+
+  std::vector<VplLight> vplLights;
+  std::vector<Vpl> vplsShown; // only for a gather by rays
+  std::vector<MapPose> poses, emitterPoses;
+  std::vector<MapJob> mapJobs;
   MapSchedule mapSchedule;
-  std::vector<MapPose> emitterPoses;
+  bool vplMapsOld = false; // VPLs were shown without maps
   float farDistance = 0;
   Aabb receivers; // see visibleBounds
+  uint64_t testedDraws = 0; // GpuScene's count at the end of the last frame
   bool calibrated = false;
   float exposure = 0;
 
   FrameResults results;
   FrameStats stats;
+  std::future<void> updating; // last: its task uses the others
 
   State(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
 
-  void prepare(const SceneView& view);
-  VplChanges moveVpls(const SceneView& view, const LightSet& lights, const std::function<void(int, int)>& progress);
-  float mapReach(const SceneView& view);
-  std::vector<MapJob> mapsToDraw(const SceneView& view, const VplChanges& changes, std::span<const MapPose> poses);
-  std::vector<MapJob> emitterMapJobs(const SceneView& view, std::span<const MapPose> poses, int resolution);
-  DirectLight drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lights, const GBuffer& gbuffer);
-  IndirectLight drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer);
-  void takeGpuRows() {
-    for (StageTime& row : profiler.takeRows()) stats.stages.push_back(std::move(row));
-  }
+  void begin(const SceneView& given);
+  void planFrame(const SceneView& given);
+  void placeWorld();
+  void updateLight(const std::function<void(int, int)>& progress);
+  UpdateTask updateTask(bool pretended) const;
+  void update(const UpdateTask& task, const std::function<void(int, int)>& progress);
+  void finishUpdate();
+  void showUpdate();
+  float mapReach();
+  void prepareVplMaps(bool beside, const std::vector<uint32_t>& carried);
+  void draw();
+  std::vector<MapJob> emitterMapJobs(std::span<const MapPose> emitters, int resolution);
+  DirectLight drawDirect(const GBuffer& gbuffer);
+  IndirectLight drawIndirect(const GBuffer& gbuffer);
+  void countWork();
+
+  uint64_t& work(EffectId id) { return stats.work[size_t(id)]; }
 };
 
 GiFrame::GiFrame(const Settings& settings, uint32_t seed) : state_(std::make_unique<State>(settings, seed)) {}
@@ -95,46 +165,22 @@ GiFrame::~GiFrame() = default;
 const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(int, int)>& progress) {
   State& s = *state_;
   const auto begin = Clock::now();
-  s.prepare(view);
-
-  const EffectPlan plan = planEffects(view, s.settings);
-  const LightSet lights = collectLights(view);
-  const VplChanges changes = plan.indirect ? s.moveVpls(view, lights, progress) : VplChanges{};
-  const GBuffer gbuffer = s.gbufferPass.run({*s.gpuScene, view.camera});
-  const DirectLight direct = s.drawDirect(view, plan, lights, gbuffer);
-  const IndirectLight indirect = plan.indirect ? s.drawIndirect(view, changes, gbuffer) : IndirectLight{};
-  const Picture picture = s.compositePass.run({gbuffer, direct, indirect, view.skyRadiance});
-  s.takeGpuRows();
-
-  if (s.settings.image.exposure > 0)
-    s.exposure = s.settings.image.exposure;
-  else if (s.exposure <= 0)
-    s.exposure = measureExposure(picture);
-
-  s.results.gbuffer = gbuffer;
-  s.results.direct = direct;
-  s.results.indirect = indirect;
-  s.results.picture = picture;
-  s.results.vpls = &s.vpls;
-  s.results.skyRadiance = view.skyRadiance;
-  s.results.sceneDiameter = s.farDistance;
-  s.stats.vplsKept = changes.kept;
-  s.stats.vplsMoved = uint32_t(changes.movedSlots.size());
-  s.stats.vplsInvalid = changes.invalid;
-  s.stats.vplsAlive = changes.alive;
-  s.stats.burst = changes.burst;
-  s.stats.plan = plan.oneLine();
+  s.finishUpdate();
+  s.begin(view);
+  s.planFrame(view);
+  s.placeWorld();
+  if (s.plan.on(EffectId::Indirect)) s.updateLight(progress);
+  if (s.plan.on(EffectId::Redraw)) s.draw();
+  s.countWork();
   s.stats.wallMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   return s.stats;
 }
 
-/// Takes over what changed in the scene.
-void GiFrame::State::prepare(const SceneView& view) {
-  CHECK(view.assets != nullptr);
+void GiFrame::State::begin(const SceneView& given) {
+  CHECK(given.assets != nullptr);
   const uint32_t frame = stats.frame + (assets ? 1 : 0);
   stats = {};
   stats.frame = frame;
-  results = {};
   if (!calibrated) {
     if (settings.debug.timing == TimingMode::Auto)
       profiler.calibrate();
@@ -143,129 +189,321 @@ void GiFrame::State::prepare(const SceneView& view) {
     calibrated = true;
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
-  {
+  if (assets != given.assets) {
     CpuScope scope(stats.stages, "scene");
-    if (assets != view.assets) {
-      assets = view.assets;
-      gpuScene = std::make_unique<GpuScene>(programs, *assets);
-      rays = std::make_unique<EmbreeQuery>(*assets);
-      vpls = {};
-    }
-    rays->update(view);
-    gpuScene->place(view.instances);
+    assets = given.assets;
+    gpuScene = std::make_unique<GpuScene>(programs, *assets);
+    rays = std::make_unique<EmbreeQuery>(*assets);
+    vpls = {};
+    changes = {};
+    results = {};
+    world = {};
+    frozen = false;
+    missed = true;
   }
 }
 
-VplChanges GiFrame::State::moveVpls(const SceneView& view, const LightSet& lightSet,
-                                    const std::function<void(int, int)>& progress) {
-  VplUpdateLog log;
-  const VplChanges changes =
-      placeVpls(settings.vpl.source, vpls, {view, *rays, lightSet, settings.smc, seed, settings.vpl}, log, progress);
+void GiFrame::State::planFrame(const SceneView& given) {
+  missed |= settingsBefore.effects != settings.effects;
+  settingsChanged = settingsBefore != settings || shadersChanged || !results.picture.radiance;
+  settingsBefore = settings;
+  shadersChanged = false;
+  const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !world.instances.empty();
+  world.take(given, freeze);
+  if (frozen && !freeze) missed = true;
+  frozen = freeze;
+
+  const FrameFacts facts{.first = !results.picture.radiance,
+                         .settingsChanged = settingsChanged,
+                         .settled = vpls.settling.settled(),
+                         .mapsWaiting = uint32_t(mapSchedule.waiting()),
+                         .lightArrived = lightArrived};
+  SceneView& view = world.view;
+  plan = planEffects(view, settings, facts);
+  const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
+  if (missed && everything()) {
+    view.changes = kAllChanged;
+    plan = planEffects(view, settings, facts);
+  }
+  missed = !everything() && (missed || anyChange(view.changes));
+  stats.plan = plan;
+}
+
+void GiFrame::State::placeWorld() {
+  CpuScope scope(stats.stages, "scene");
+  const SceneView& view = world.view;
+  using enum EffectId;
+  const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Masked;
+  rays->setAlphaTest(alpha);
+  gpuScene->setAlphaTest(alpha);
+  rays->setTextures(plan.on(Textures));
+  work(Motion) = rays->update(view, plan.idle(Motion));
+  gpuScene->place(view.instances);
+  lights = collectLights(view);
+  if (!plan.on(Emissive)) {
+    lights.emitters.clear();
+    lights.triangles.clear();
+  }
+  if (!plan.on(Sky)) lights.sky = vec3(0);
+}
+
+// VPLs ----------------------------------------------------------------------------------------------------------------
+
+/// Updates the VPLs, or starts to, and gets ready what the GPU needs of those that this frame shows.
+void GiFrame::State::updateLight(const std::function<void(int, int)>& progress) {
+  using enum EffectId;
+  const auto called = [&](EffectId id) { return plan.on(id) && plan.calledFor(id); };
+  const bool smc = settings.vpl.source == VplSource::Smc;
+  const bool needed = vpls.slots.empty() || called(Replace) || (smc && (called(Relight) || called(Motion)));
+  const bool pretended = !needed && smc && (plan.on(Replace) || plan.on(Relight) || plan.on(Motion));
+  const bool beside = settings.frame.overlap && needed && !vpls.slots.empty();
+  std::vector<uint32_t> carried;
+  if (beside)
+    carried = carryVpls(vpls, world.view, world.view.changes.first);
+  else if (needed || pretended)
+    update(updateTask(pretended), progress);
+  showUpdate();
+  if (plan.on(Redraw)) prepareVplMaps(beside, carried);
+  if (beside) updating = std::async(std::launch::async, [this, task = updateTask(false)] { update(task, {}); });
+}
+
+/// A copy of all that settings decide: they may change while the task runs.
+UpdateTask GiFrame::State::updateTask(bool pretended) const {
+  using enum EffectId;
+  UpdateTask task{settings.smc, settings.vpl, {}, settingsChanged, pretended};
+  if (!plan.on(Bounces)) task.smc.bounces = std::min(task.smc.bounces, 1);
+  task.effects = {.replace = plan.on(Replace),
+                  .relight = plan.on(Relight),
+                  .relightAll = plan.idle(Relight),
+                  .carryAll = plan.idle(Motion),
+                  .lastRays = plan.idle(Emissive) || plan.idle(Sky)};
+  return task;
+}
+
+void GiFrame::State::update(const UpdateTask& task, const std::function<void(int, int)>& progress) {
+  VplUpdate in{world.view, *rays, lights, task.smc, seed, task.vpl, task.effects, task.settingsChanged};
+  log = {};
+  VplSet copy;
+  if (task.pretended) copy = vpls;
+  VplChanges now = placeVpls(task.vpl.source, task.pretended ? copy : vpls, in, log, progress);
+  if (task.pretended) return;
+  const auto join = [](std::vector<uint32_t>& slots, const std::vector<uint32_t>& unshown) {
+    std::vector<uint32_t> all;
+    std::set_union(slots.begin(), slots.end(), unshown.begin(), unshown.end(), std::back_inserter(all));
+    slots = std::move(all);
+  };
+  join(now.movedSlots, changes.movedSlots);
+  join(now.placedSlots, changes.placedSlots);
+  changes = std::move(now);
+}
+
+/// Waits for the update that runs beside the GPU, if one does.
+void GiFrame::State::finishUpdate() {
+  if (!updating.valid()) return;
+  updating.get();
+  lightArrived = true;
+}
+
+/// Takes the figures of the update that this frame's picture shows.
+void GiFrame::State::showUpdate() {
+  lightArrived = false;
   for (StageTime& row : log.stages) stats.stages.push_back(std::move(row));
-  stats.raysPoints = log.points;
+  stats.raysPoints += log.points;
   stats.raysValidation = log.validation;
   stats.raysCandidates = log.candidates;
   stats.raysRadiosity = log.radiosity;
   stats.raysCells = log.cells;
   stats.vplsRelit = log.relit;
-  return changes;
+  stats.vplsKept = changes.kept;
+  stats.vplsMoved = uint32_t(changes.movedSlots.size());
+  stats.vplsInvalid = changes.invalid;
+  stats.vplsAlive = changes.alive;
+  stats.vplsStrong = changes.strong;
+  stats.burst = changes.burst;
+  for (const auto* all : {&vpls.samplerPaths, &vpls.lightPaths, &vpls.poolPaths})
+    for (const KeptPaths& k : *all) stats.pathsHeld += k.lengths.size();
+  stats.pathsTraced = log.paths.traced;
+  stats.pathsRetraced = log.paths.retraced;
+  const auto total = [](const RayCounts& c) { return c.closest + c.occlusion; };
+  using enum EffectId;
+  work(Bounces) = log.paths.bounceRays;
+  work(Relight) = log.relitForChange;
+  work(Replace) = total(log.points) + total(log.validation) + total(log.candidates);
+  work(Indirect) = work(Replace) + total(log.radiosity) + total(log.cells);
+  if (plan.on(Emissive)) work(Emissive) += log.paths.lastRays;
+  if (plan.on(Sky)) work(Sky) += log.paths.lastRays;
+  log = {};
+}
+
+/// Distance that stands for 1 in the maps. All are drawn anew when it changes, so it leaves room to grow.
+float GiFrame::State::mapReach() {
+  const float wanted = world.view.boundsWorld.diameter();
+  if (wanted > farDistance || wanted < 0.5f * farDistance)
+    farDistance = world.view.changes.geometry && farDistance > 0 ? 1.25f * wanted : wanted;
+  return farDistance;
+}
+
+/// Lists the maps of lights that stand elsewhere, and as far as the budget goes of those that see where objects moved.
+void GiFrame::State::prepareVplMaps(bool beside, const std::vector<uint32_t>& carried) {
+  using enum EffectId;
+  const SceneView& view = world.view;
+  vplLights.clear();
+  mapJobs.clear();
+  if (settings.smc.visibility == VplVisibility::Rays) {
+    vplsShown = vpls.slots;
+    vplMapsOld = true;
+    return;
+  }
+  // Those that were carried by the update of the frame before stand where that frame had put them.
+  const std::vector<uint32_t>& moved = beside ? changes.placedSlots : changes.movedSlots;
+  std::vector<uint32_t> elsewhere;
+  std::set_union(moved.begin(), moved.end(), carried.begin(), carried.end(), std::back_inserter(elsewhere));
+  std::erase_if(elsewhere, [&](uint32_t slot) { return slot >= vpls.slots.size(); });
+  changes.movedSlots.clear(); // they have their maps after this frame
+  changes.placedSlots.clear();
+
+  const int resolution = settings.shadow.resolution;
+  std::vector<float> brightness;
+  for (const Vpl& v : vpls.slots) {
+    vplLights.push_back(vplLight(v));
+    // A light that brings nothing now may do so later, so its map is not given up.
+    brightness.push_back(v.alive ? std::max(v.intensity(), 1e-20f) : 0);
+  }
+  poses = mapPoses(vpls);
+  const ParaboloidMapInputs in{*gpuScene, rays.get(), poses, {}, mapReach(), resolution, settings.shadow.maker};
+  if (vplMapPass.drawsAllAnew(in)) {
+    mapSchedule.clear();
+    vplMapsOld = false;
+    return;
+  }
+  int64_t budget = int64_t(settings.shadow.refresh) * resolution * resolution;
+  if (view.changes.first || vplMapsOld) {
+    vplMapsOld = false;
+    mapSchedule.disturbAll(poses.size(), resolution);
+    budget = std::numeric_limits<int64_t>::max();
+  } else if (!plan.on(MapRefresh)) {
+    budget = 0;
+  } else if (plan.idle(MapRefresh)) {
+    mapSchedule.disturbInTurn(poses.size(), size_t(settings.shadow.refresh), resolution);
+  } else if (view.changes.geometry || view.changes.instances) {
+    mapSchedule.disturb(poses, brightness, Disturbance(view), *rays, resolution, settings.shadow.motionRays, seed,
+                        stats.frame, stats.raysMapTests);
+  }
+  mapJobs = mapSchedule.take(elsewhere, brightness, resolution, budget);
+  stats.mapsWaiting = uint32_t(mapSchedule.waiting());
+  work(MapRefresh) = mapJobs.size() - elsewhere.size() + stats.raysMapTests.occlusion;
+  for (const MapJob& job : mapJobs) stats.mapTexelsDrawn += uint64_t(job.texels.area());
+}
+
+// Drawing -------------------------------------------------------------------------------------------------------------
+
+void GiFrame::State::draw() {
+  const SceneView& view = world.view;
+  const uint64_t draws = gl::drawCount();
+  results = {};
+  const GBuffer gbuffer = gbufferPass.run({*gpuScene, view.camera});
+  const DirectLight direct = drawDirect(gbuffer);
+  const IndirectLight indirect = plan.on(EffectId::Indirect) ? drawIndirect(gbuffer) : IndirectLight{};
+  const Picture picture = compositePass.run({gbuffer, direct, indirect, view.skyRadiance});
+  for (StageTime& row : profiler.takeRows()) stats.stages.push_back(std::move(row));
+
+  if (settings.image.exposure > 0)
+    exposure = settings.image.exposure;
+  else if (exposure <= 0)
+    exposure = measureExposure(picture);
+
+  results.gbuffer = gbuffer;
+  results.direct = direct;
+  results.indirect = indirect;
+  results.picture = picture;
+  results.vpls = &vpls;
+  results.skyRadiance = view.skyRadiance;
+  results.sceneDiameter = mapReach();
+  work(EffectId::Redraw) = gl::drawCount() - draws;
 }
 
 /// Lamps that stand elsewhere get a new map, others the part that an object moved through.
-std::vector<MapJob> GiFrame::State::emitterMapJobs(const SceneView& view, std::span<const MapPose> poses,
-                                                   int resolution) {
-  const Disturbance moved(view);
+std::vector<MapJob> GiFrame::State::emitterMapJobs(std::span<const MapPose> emitters, int resolution) {
+  const Disturbance moved(world.view);
   std::vector<MapJob> jobs;
-  for (uint32_t i = 0; i < poses.size(); ++i) {
+  for (uint32_t i = 0; i < emitters.size(); ++i) {
     TexelRect texels;
-    if (view.changes.first || i >= emitterPoses.size() || poses[i] != emitterPoses[i])
+    if (world.view.changes.first || i >= emitterPoses.size() || emitters[i] != emitterPoses[i])
       texels = TexelRect::whole(resolution);
     else
-      for (const Aabb& box : moved.boxes()) texels.add(texelsCovered(poses[i], box, resolution));
+      for (const Aabb& box : moved.boxes()) texels.add(texelsCovered(emitters[i], box, resolution));
     if (!texels.empty()) jobs.push_back({i, texels});
   }
-  emitterPoses.assign(poses.begin(), poses.end());
+  emitterPoses.assign(emitters.begin(), emitters.end());
   return jobs;
 }
 
-DirectLight GiFrame::State::drawDirect(const SceneView& view, const EffectPlan& plan, const LightSet& lightSet,
-                                       const GBuffer& gbuffer) {
+DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
+  using enum EffectId;
+  const SceneView& view = world.view;
   ShadowSettings shadow = settings.shadow;
   const int width = int(std::bit_ceil(unsigned(view.camera.width)));
   if (shadow.sunResolution == 0) shadow.sunResolution = 2 * width;
   if (shadow.pointResolution == 0) shadow.pointResolution = std::max(1, width / 2);
   if (shadow.spotResolution == 0) shadow.spotResolution = width;
-  if (view.changes.first || view.changes.camera || view.changes.geometry || view.changes.instances)
-    receivers = visibleBounds(*rays, view, stats.raysPoints);
-  const LightShadows& shadows =
-      lightShadowPass.run({*gpuScene, view.lights, view.skyRadiance, receivers, view.boundsWorld, view.changes.geometry || view.changes.instances, shadow});
+  const bool geometry = view.changes.geometry || view.changes.instances;
+  if (receivers.empty() || view.changes.camera || geometry) receivers = visibleBounds(*rays, view, stats.raysPoints);
+  const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, plan.on(Sky), lights.sky, receivers,
+                                                     view.boundsWorld, geometry, shadow});
+  stats.lightMapsDrawn = lightShadowPass.mapsDrawn();
+  work(Sky) += lightShadowPass.skyMapsDrawn();
   DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
   VplLights emitters;
   ParaboloidMaps maps;
-  if (plan.emissiveSurfaces) {
+  if (plan.on(Emissive)) {
     std::vector<VplLight> samples;
-    std::vector<MapPose> poses;
-    for (const EmitterPatch& p : emitterPatches(lightSet, shadow.emitterSamples)) {
+    std::vector<MapPose> emitterPlaces;
+    for (const EmitterPatch& p : emitterPatches(lights, plan.on(SoftShadows) ? shadow.emitterSamples : 1)) {
       samples.push_back(emitterLight(p));
-      poses.push_back(emitterPose(p));
+      emitterPlaces.push_back(emitterPose(p));
     }
     emitters = emitterBuffer.run(samples);
-    const std::vector<MapJob> jobs = emitterMapJobs(view, poses, shadow.emitterResolution);
+    const std::vector<MapJob> jobs = emitterMapJobs(emitterPlaces, shadow.emitterResolution);
     maps = emitterMapPass.run(
-        {*gpuScene, rays.get(), poses, jobs, mapReach(view), shadow.emitterResolution, shadow.maker});
+        {*gpuScene, rays.get(), emitterPlaces, jobs, mapReach(), shadow.emitterResolution, shadow.maker});
     in.emitters = &emitters;
     in.emitterMaps = &maps;
     stats.mapsDrawn += emitterMapPass.mapsDrawn();
+    work(Emissive) += emitterMapPass.mapsDrawn();
+    work(SoftShadows) = plan.on(SoftShadows) ? samples.size() : 0;
   }
   return directPass.run(in);
 }
 
-/// Distance that stands for 1 in the maps. All are drawn anew when it changes, so it leaves room to grow.
-float GiFrame::State::mapReach(const SceneView& view) {
-  const float wanted = view.boundsWorld.diameter();
-  if (wanted > farDistance || wanted < 0.5f * farDistance)
-    farDistance = view.changes.geometry && farDistance > 0 ? 1.25f * wanted : wanted;
-  return farDistance;
-}
-
-/// Maps of lights that stand elsewhere, and as far as the budget goes of those that see where objects moved.
-std::vector<MapJob> GiFrame::State::mapsToDraw(const SceneView& view, const VplChanges& changes,
-                                               std::span<const MapPose> poses) {
-  const int resolution = settings.shadow.resolution;
-  std::vector<float> brightness;
-  // A light that brings nothing now may do so later, so its map is not given up.
-  for (const Vpl& v : vpls.slots) brightness.push_back(v.alive ? std::max(v.intensity(), 1e-20f) : 0);
-  if (view.changes.geometry || view.changes.instances)
-    mapSchedule.disturb(poses, brightness, Disturbance(view), *rays, resolution, settings.shadow.motionRays, seed,
-                        stats.frame, stats.raysMapTests);
-  const int64_t texels = int64_t(settings.shadow.refresh) * resolution * resolution;
-  std::vector<MapJob> jobs = mapSchedule.take(changes.movedSlots, brightness, resolution, texels);
-  stats.mapsWaiting = uint32_t(mapSchedule.waiting());
-  return jobs;
-}
-
-IndirectLight GiFrame::State::drawIndirect(const SceneView& view, const VplChanges& changes, const GBuffer& gbuffer) {
+IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
+  const uint64_t draws = gl::drawCount();
   if (settings.smc.visibility == VplVisibility::Rays) {
     CpuScope scope(stats.stages, "gather by rays");
-    return indirectUpload.run(
-        imageOf(view.camera, gatherByRays(*rays, view.camera, vpls.slots, settings.gather, stats.raysGather)));
+    return indirectUpload.run(imageOf(
+        world.view.camera, gatherByRays(*rays, world.view.camera, vplsShown, settings.gather, stats.raysGather)));
   }
-  lights.clear();
-  for (const Vpl& v : vpls.slots) lights.push_back(vplLight(v));
-  const VplLights vplLights = vplBuffer.run(lights);
-  const std::vector<MapPose> poses = mapPoses(vpls);
-  ParaboloidMapInputs in{
-      *gpuScene, rays.get(), poses, {}, mapReach(view), settings.shadow.resolution, settings.shadow.maker};
-  if (vplMapPass.drawsAllAnew(in)) mapSchedule.clear();
-  const std::vector<MapJob> jobs = mapsToDraw(view, changes, poses);
-  in.jobs = jobs;
-  const ParaboloidMaps maps = vplMapPass.run(in);
+  const VplLights shown = vplBuffer.run(vplLights);
+  const ParaboloidMaps maps = vplMapPass.run(
+      {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
   stats.mapsDrawn += vplMapPass.mapsDrawn();
   stats.shadowMaker = vplMapPass.makerReport();
-  const RawIndirect raw = gatherPass.run({gbuffer, vplLights, &maps, settings.shadow.bias, settings.gather});
+  const RawIndirect raw = gatherPass.run({gbuffer, shown, &maps, settings.shadow.bias, settings.gather});
   results.raw = raw;
   results.vplMaps = maps;
-  return filterPass.run({gbuffer, raw, settings.filter});
+  FilterSettings filter = settings.filter;
+  filter.on = filter.on && plan.on(EffectId::Filter);
+  const uint64_t filterDraws = gl::drawCount();
+  const IndirectLight indirect = filterPass.run({gbuffer, raw, filter});
+  if (filter.on) work(EffectId::Filter) = gl::drawCount() - filterDraws;
+  work(EffectId::Indirect) += gl::drawCount() - draws + vplMapPass.mapsDrawn();
+  return indirect;
+}
+
+void GiFrame::State::countWork() {
+  const EmbreeQuery::Work done = rays->takeWork();
+  work(EffectId::Textures) = done.textureLookups;
+  const uint64_t draws = gpuScene->testedDraws();
+  work(EffectId::Alpha) = done.alphaTests + draws - std::exchange(testedDraws, draws);
 }
 
 // Looking at it
@@ -290,11 +528,13 @@ Buffer bufferByName(const std::string& name) {
 Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results); }
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
+  if (buffer == Buffer::Vpls) state_->finishUpdate();
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
   return state_->displayPass.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
+  if (buffer == Buffer::Vpls) state_->finishUpdate();
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
   state_->displayPass.present(framebuffer, width, height);
 }
@@ -302,6 +542,7 @@ void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {
   State& s = *state_;
+  s.finishUpdate();
   const std::vector<MapPose> poses = mapPoses(s.vpls);
   const ParaboloidMapInputs maps{*s.gpuScene,
                                  s.rays.get(),
@@ -313,10 +554,17 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   return measureShadowAgreement(s.vplMapPass, maps, *s.rays, view.camera, s.vpls, s.settings, slots, points, progress);
 }
 
-std::vector<std::string> GiFrame::reloadShaders() { return state_->programs.reloadChanged(); }
+std::vector<std::string> GiFrame::reloadShaders() {
+  std::vector<std::string> messages = state_->programs.reloadChanged();
+  state_->shadersChanged |= !messages.empty();
+  return messages;
+}
 
 Settings& GiFrame::settings() { return state_->settings; }
-const VplSet& GiFrame::vpls() const { return state_->vpls; }
+const VplSet& GiFrame::vpls() const {
+  state_->finishUpdate();
+  return state_->vpls;
+}
 const RayQuery& GiFrame::rays() const { return *state_->rays; }
 float GiFrame::exposure() const { return state_->exposure; }
 

@@ -11,6 +11,7 @@
 #include "gi/settings.h"
 #include "gi/vpl/vpl_set.h"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -36,17 +37,23 @@ enum class Buffer : int {
 Buffer bufferByName(const std::string& name);
 const std::vector<std::string>& bufferNames();
 
-/// Figures of one frame: a line of frames.csv and the HUD's table.
+/// Figures of one frame: a line of frames.csv and the HUD's table. With frame.overlap, what concerns the update of the
+/// VPLs is of the update that ended before this frame's picture: that of the frame before.
 struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages; // CPU and GPU, in order, milliseconds
   double wallMs = 0;
-  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather, raysMapTests;
-  uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0;
-  uint32_t mapsDrawn = 0;   // paraboloid maps, in part or whole
-  uint32_t mapsWaiting = 0; // that show where a moved object was, and had to wait for later frames
+  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
+      raysMapTests;
+  uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
+  uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
+  uint32_t mapsDrawn = 0;      // paraboloid maps, in part or whole
+  uint64_t mapTexelsDrawn = 0; // of VPLs' maps
+  uint32_t mapsWaiting = 0;    // that show where a moved object was, and had to wait for later frames
+  uint32_t lightMapsDrawn = 0; // of punctual lights and of the sky
   bool burst = false;
-  std::string plan; // the effect plan in one line
+  EffectPlan plan;
+  std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
   std::string shadowMaker, timing;
 };
 
@@ -58,7 +65,9 @@ class GiFrame {
 
   Settings& settings(); // may be changed between frames; takes effect at the next one
 
-  /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up.
+  /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up. Where nothing
+  /// changed and the VPLs have settled, nothing is computed and the last picture stays. With frame.overlap the VPLs of
+  /// this view are still being updated when it returns.
   /// `progress` (may be empty) is called during the warm-up with done and total iterations.
   const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {});
 

@@ -2,7 +2,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "gi/effects.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -92,6 +94,9 @@ class Table {
          "deviation from the pixel's plane, share of its view distance");
     real("image.exposure", &Settings::image, &ImageSettings::exposure, 0, big,
          "factor on radiance before Reinhard; 0 = measured at the first picture");
+    flag("frame.overlap", &Settings::frame, &FrameSettings::overlap,
+         "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");
+    for (size_t i = 0; i < kEffects; ++i) effect(EffectId(i));
     flag("debug.nan", &Settings::debug, &DebugSettings::nan, "paint NaN magenta and infinity cyan");
     choice("debug.timing", &Settings::debug, &DebugSettings::timing, {"auto", "queries", "finish"},
            "GPU times by timer queries, or by finishing each pass");
@@ -150,22 +155,34 @@ class Table {
   void choice(const char* name, Group Settings::*group, Enum Group::*value, std::vector<std::string> names,
               const char* help) {
     const auto at = member(group, value);
+    named(
+        name, help, std::move(names), [=](Settings& s, size_t i) { at(s) = Enum(i); },
+        [=](const Settings& s) { return size_t(at(s)); });
+  }
+
+  void effect(EffectId id) {
+    const EffectRow& row = effectRow(id);
+    named(
+        "effects." + std::string(row.name), row.help, {"auto", "on", "off"},
+        [id](Settings& s, size_t i) { s.effects[id] = EffectMode(i); },
+        [id](const Settings& s) { return size_t(s.effects[id]); });
+  }
+
+  void named(const std::string& name, const char* help, std::vector<std::string> names,
+             std::function<void(Settings&, size_t)> set, std::function<size_t(const Settings&)> get) {
     std::string range;
     for (const std::string& n : names) range += (range.empty() ? "" : "|") + n;
     add(
         name, help, range,
-        [=](Settings& s, std::string_view text) {
-          for (size_t i = 0; i < names.size(); ++i)
-            if (text == names[i]) {
-              at(s) = Enum(i);
-              return true;
-            }
-          return false;
+        [names, set](Settings& s, std::string_view text) {
+          const auto found = std::find(names.begin(), names.end(), text);
+          if (found != names.end()) set(s, size_t(found - names.begin()));
+          return found != names.end();
         },
-        [=](const Settings& s) { return names[size_t(at(s))]; });
+        [names, get](const Settings& s) { return names[get(s)]; });
   }
 
-  void add(const char* name, const char* help, std::string range, std::function<bool(Settings&, std::string_view)> set,
+  void add(const std::string& name, const char* help, std::string range, std::function<bool(Settings&, std::string_view)> set,
            std::function<std::string(const Settings&)> get) {
     const std::string defaultText = get(Settings{});
     entries.push_back({{name, help, defaultText, std::move(range)}, std::move(set), std::move(get)});

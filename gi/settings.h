@@ -18,12 +18,39 @@ enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid map
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
 enum class FilterKernel : int { Separable, Whole };    // rows then columns | all 49 taps at once
+enum class EffectMode : int { Auto, On, Off };          // as the plan says (gi/effects.h) | forced, for comparison
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
+
+/// Parts of the work that a scene or a frame may do without: see gi/effects.h.
+enum class EffectId : int {
+  Indirect,
+  Bounces,
+  Emissive,
+  Sky,
+  Alpha,
+  Textures,
+  Motion,
+  MapRefresh,
+  Relight,
+  Replace,
+  Filter,
+  SoftShadows,
+  Redraw,
+};
+inline constexpr size_t kEffects = size_t(EffectId::Redraw) + 1;
+
+struct EffectSettings {
+  EffectMode modes[kEffects] = {};
+  EffectMode& operator[](EffectId id) { return modes[size_t(id)]; }
+  EffectMode operator[](EffectId id) const { return modes[size_t(id)]; }
+  bool operator==(const EffectSettings&) const = default;
+};
 
 struct VplSettings {
   VplSource source = VplSource::Smc;
   int mirCandidates = 256; // mir: paths per VPL slot to choose from (paper 1, 5.1: 256:1)
   int tcasIterations = 16; // tcas: Metropolis–Hastings iterations per VPL and frame (paper 1, 5.1)
+  bool operator==(const VplSettings&) const = default;
 };
 
 struct SmcSettings {
@@ -40,6 +67,7 @@ struct SmcSettings {
   bool cache = true;       // keep light paths until geometry that they touch moves; same results
   DensityEstimator density = DensityEstimator::Cells;
   VplVisibility visibility = VplVisibility::Maps;
+  bool operator==(const SmcSettings&) const = default;
 };
 
 struct ShadowSettings {
@@ -56,12 +84,14 @@ struct ShadowSettings {
   int emitterResolution = 256;
   int skyMaps = 32; // directions that stand for the sky in direct light
   int skyResolution = 256;
+  bool operator==(const ShadowSettings&) const = default;
 };
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  bool operator==(const GatherSettings&) const = default;
 };
 
 struct FilterSettings {
@@ -69,15 +99,23 @@ struct FilterSettings {
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
   float normalPower = 16;                        // weight = max(0, n·n')^power
   float distance = 0.02f; // standard deviation of the plane distance, share of the pixel's view distance
+  bool operator==(const FilterSettings&) const = default;
 };
 
 struct ImageSettings {
   float exposure = 0; // factor on radiance before Reinhard; 0 = measured once when the first picture is drawn
+  bool operator==(const ImageSettings&) const = default;
+};
+
+struct FrameSettings {
+  bool overlap = false; // VPLs of this frame are updated while the GPU draws the last ones: their light is a frame late
+  bool operator==(const FrameSettings&) const = default;
 };
 
 struct DebugSettings {
   bool nan = true; // paint NaN magenta and infinity cyan
   TimingMode timing = TimingMode::Auto;
+  bool operator==(const DebugSettings&) const = default;
 };
 
 struct Settings {
@@ -87,7 +125,10 @@ struct Settings {
   GatherSettings gather;
   FilterSettings filter;
   ImageSettings image;
+  FrameSettings frame;
+  EffectSettings effects;
   DebugSettings debug;
+  bool operator==(const Settings&) const = default;
 };
 
 /// One row: how a setting is named, what it may be, and what it costs.

@@ -219,6 +219,13 @@ void drawFullscreen() {
   glBindVertexArray(empty.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);
+  countDraws(1);
 }
+
+namespace {
+uint64_t drawsSoFar = 0; // contexts are used from one thread
+}
+uint64_t drawCount() { return drawsSoFar; }
+void countDraws(uint32_t n) { drawsSoFar += n; }
 
 } // namespace lambent::gl

@@ -136,4 +136,8 @@ struct PipelineState {
 /// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
 void drawFullscreen();
 
+/// Draw calls of this process so far, and how those that call GL themselves report theirs.
+uint64_t drawCount();
+void countDraws(uint32_t n);
+
 } // namespace lambent::gl

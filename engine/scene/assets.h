@@ -12,6 +12,8 @@ inline constexpr uint32_t kNone = 0xffffffffu;
 
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 enum class AlphaMode : uint8_t { Opaque, Mask };
+/// Which surfaces' alpha is tested: none (masks count as solid), masked ones, or all, which lets the others pass.
+enum class AlphaTest : uint8_t { None, Masked, All };
 
 /// 8-bit RGBA image; row 0 is the row at v = 0 (glTF: the top row of the file). `srgb`: colours are sRGB-encoded,
 /// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w).

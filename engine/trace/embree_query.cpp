@@ -9,7 +9,9 @@
 #endif
 
 #include <array>
+#include <atomic>
 #include <cstring>
+#include <utility>
 
 namespace lambent {
 
@@ -39,13 +41,20 @@ vec2 uvOf(const Mesh& mesh, const Corner& c, const TextureRef& ref) {
   return uv.empty() ? vec2(0) : c.interpolate(uv);
 }
 
-vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const Corner& c) {
+/// `mean` (may be null) stands in for the texture.
+vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const Corner& c,
+                  const vec4* mean = nullptr) {
   vec4 colour(material.baseColor, material.alpha);
-  if (material.baseColorTexture.image != kNone)
+  if (mean)
+    colour *= *mean;
+  else if (material.baseColorTexture.image != kNone)
     colour *= sampleTexture(assets, material.baseColorTexture, uvOf(mesh, c, material.baseColorTexture));
   if (!mesh.colors.empty()) colour *= c.interpolate(mesh.colors);
   return colour;
 }
+
+/// Of this thread, since they were last added up.
+thread_local uint64_t alphaTests = 0;
 
 /// Lets rays through where an alpha-masked material is cut out.
 void alphaFilter(const RTCFilterFunctionNArguments* args) {
@@ -55,6 +64,8 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
   const Material& material = data.assets->materials[primitive.material];
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
+    ++alphaTests;
+    if (material.alphaMode != AlphaMode::Mask) continue;
     const Corner c = cornerOf(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
                               RTCHitN_v(args->hit, args->N, i));
     if (baseColourAt(*data.assets, mesh, material, c).w < material.alphaCutoff) args->valid[i] = 0;
@@ -138,13 +149,30 @@ struct EmbreeQuery::State {
   RTCScene top = nullptr;
   std::vector<Instance> instances; // index = Embree instance id = index into SceneView::instances
 
+  AlphaTest alphaTest = AlphaTest::Masked;
+  bool textures = true;
+  mutable std::atomic<uint64_t> alphaTests{0}, textureLookups{0};
+
   explicit State(const SceneAssets& a) : assets(a) {}
 
+  void applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t primitive);
+  void countAlphaTests() const {
+    if (lambent::alphaTests > 0) alphaTests += std::exchange(lambent::alphaTests, 0);
+  }
   BottomLevel build(uint32_t mesh, const std::vector<vec3>& positions, bool refits);
   void place(uint32_t index, const InstanceView& in);
   void remove(uint32_t index);
   void reshape(Instance& out, const DeformedMesh& deformed);
 };
+
+void EmbreeQuery::State::applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t p) {
+  const Material& material = assets.materials[assets.meshes[mesh].primitives[p].material];
+  const bool tested =
+      alphaTest == AlphaTest::All || (alphaTest == AlphaTest::Masked && material.alphaMode == AlphaMode::Mask);
+  rtcSetGeometryUserData(g, &geometryData[mesh][p]);
+  rtcSetGeometryIntersectFilterFunction(g, tested ? alphaFilter : nullptr);
+  rtcSetGeometryOccludedFilterFunction(g, tested ? alphaFilter : nullptr);
+}
 
 /// `refits`: the vertices will move. The hierarchy is then built once and only its boxes follow, which costs about a
 /// tenth of building it; it stays exact, but gets slower to trace the farther the shape departs from the one it was
@@ -171,11 +199,7 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
     rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(vec3), positions.size());
     rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices,
                          primitive.firstTriangle * sizeof(uvec3), sizeof(uvec3), primitive.triangleCount);
-    if (assets.materials[primitive.material].alphaMode == AlphaMode::Mask) {
-      rtcSetGeometryUserData(g, &geometryData[meshIndex][p]);
-      rtcSetGeometryIntersectFilterFunction(g, alphaFilter);
-      rtcSetGeometryOccludedFilterFunction(g, alphaFilter);
-    }
+    applyAlphaTest(g, meshIndex, p);
     rtcCommitGeometry(g);
     rtcAttachGeometryByID(out.scene, g, p);
     rtcReleaseGeometry(g);
@@ -259,27 +283,56 @@ EmbreeQuery::~EmbreeQuery() {
   rtcReleaseDevice(s.device);
 }
 
-void EmbreeQuery::update(const SceneView& view) {
+uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
   State& s = *state_;
   const size_t before = s.instances.size(), now = view.instances.size();
-  bool dirty = before != now;
+  uint32_t placed = 0;
   for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));
   s.instances.resize(now);
   for (uint32_t i = 0; i < now; ++i) {
     const InstanceView& in = view.instances[i];
     const State::Instance& out = s.instances[i];
     const bool other = out.mesh != in.mesh || out.revision != (in.deformed ? in.deformed->revision : 0);
-    if (!other && !in.moved && !view.changes.instances && !view.changes.first) continue;
-    dirty = true;
+    if (!other && !in.moved && !view.changes.instances && !view.changes.first && !all) continue;
     s.place(i, in);
+    ++placed;
   }
-  if (dirty) rtcCommitScene(s.top);
+  if (placed > 0 || before != now) rtcCommitScene(s.top);
+  return placed;
+}
+
+void EmbreeQuery::setAlphaTest(AlphaTest test) {
+  State& s = *state_;
+  if (s.alphaTest == test) return;
+  s.alphaTest = test;
+  const auto apply = [&](RTCScene scene, uint32_t mesh) {
+    if (!scene) return;
+    for (uint32_t p = 0; p < s.assets.meshes[mesh].primitives.size(); ++p) {
+      if (s.assets.meshes[mesh].primitives[p].triangleCount == 0) continue;
+      RTCGeometry g = rtcGetGeometry(scene, p);
+      s.applyAlphaTest(g, mesh, p);
+      rtcCommitGeometry(g);
+    }
+    rtcCommitScene(scene);
+  };
+  for (uint32_t m = 0; m < s.meshes.size(); ++m) apply(s.meshes[m], m);
+  for (const State::Instance& i : s.instances) apply(i.own.scene, i.mesh);
+  for (const State::Instance& i : s.instances)
+    if (i.geometry) rtcCommitGeometry(i.geometry);
+  rtcCommitScene(s.top);
+}
+
+void EmbreeQuery::setTextures(bool on) { state_->textures = on; }
+
+EmbreeQuery::Work EmbreeQuery::takeWork() const {
+  return {state_->alphaTests.exchange(0), state_->textureLookups.exchange(0)};
 }
 
 void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const {
   CHECK_EQ(rays.size(), hits.size());
   const State& s = *state_;
   TraceArguments arguments;
+  uint64_t lookups = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     SurfaceHit& hit = hits[i] = {};
     if (!traceable(rays[i])) continue;
@@ -310,7 +363,10 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     // A shading normal that looks away from the ray would light the surface from behind.
     hit.normal =
         shadingLength > 0 && glm::dot(shading, rays[i].direction) < 0 ? shading / shadingLength : hit.geometricNormal;
-    hit.albedo = glm::clamp(vec3(baseColourAt(s.assets, mesh, material, c)), 0.0f, 1.0f);
+    const bool textured = material.baseColorTexture.image != kNone;
+    const vec4* mean = textured && !s.textures ? &s.assets.images[material.baseColorTexture.image].averageLinear : nullptr;
+    lookups += textured && !mean;
+    hit.albedo = glm::clamp(vec3(baseColourAt(s.assets, mesh, material, c, mean)), 0.0f, 1.0f);
     if (material.emits() && (fromFront || material.doubleSided))
       hit.emission = material.emission *
                      vec3(sampleTexture(s.assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
@@ -319,6 +375,8 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     hit.triangle = rh.hit.primID;
     hit.barycentric = {rh.hit.u, rh.hit.v};
   }
+  if (lookups > 0) s.textureLookups += lookups;
+  s.countAlphaTests();
 }
 
 void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const {
@@ -348,6 +406,7 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
     for (size_t j = 0; j < count; ++j)
       t[first + j] = valid[j] && packet.hit.geomID[j] != RTC_INVALID_GEOMETRY_ID ? packet.ray.tfar[j] : kInfinity;
   }
+  state_->countAlphaTests();
 }
 
 void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
@@ -361,6 +420,7 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
     occluded1(state_->top, arguments, &ray);
     blocked[i] = ray.tfar < 0;
   }
+  state_->countAlphaTests();
 }
 
 std::string EmbreeQuery::version() { return RTC_VERSION_STRING; }

@@ -13,8 +13,19 @@ class EmbreeQuery final : public RayQuery {
   ~EmbreeQuery() override;
 
   /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went, and refits the
-  /// bottom level of what was reshaped.
-  void update(const SceneView& view);
+  /// bottom level of what was reshaped. With `all` every instance is placed anew. Returns how many were.
+  uint32_t update(const SceneView& view, bool all = false);
+
+  /// Masked at the start.
+  void setAlphaTest(AlphaTest test);
+  /// Whether a hit's albedo has the texel's colour, as at the start, or the texture's mean.
+  void setTextures(bool on);
+
+  /// Work since the last call, of all threads.
+  struct Work {
+    uint64_t alphaTests = 0, textureLookups = 0;
+  };
+  Work takeWork() const;
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
   void distances(std::span<const Ray> rays, std::span<float> t) const override;

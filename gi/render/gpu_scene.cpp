@@ -65,8 +65,8 @@ void GpuScene::place(std::span<const InstanceView> instances) {
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
   gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth ? "depth.frag" : "gbuffer.frag"};
   if (kind == DrawKind::Depth) desc.defines.push_back("DEPTH_ONLY");
-  if (material.masked) desc.defines.push_back("ALPHA_MASK");
-  if (material.baseTexture && (kind == DrawKind::GBuffer || material.masked)) desc.defines.push_back("BASE_TEXTURE");
+  if (tested(material)) desc.defines.push_back("ALPHA_MASK");
+  if (material.baseTexture && (kind == DrawKind::GBuffer || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && kind == DrawKind::GBuffer) desc.defines.push_back("EMISSIVE_TEXTURE");
   return programs_.get(desc);
 }
@@ -98,7 +98,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
         program->set("clipFromWorld", clipFromWorld);
         program->set("eye", eye);
       }
-      if (kind == DrawKind::GBuffer || material.masked) bindMaterial(item.range.material);
+      if (kind == DrawKind::GBuffer || tested(material)) bindMaterial(item.range.material);
       bound = item.range.material;
     }
     if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
@@ -108,10 +108,12 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
         reinterpret_cast<const void*>(uintptr_t(item.range.firstIndex) * sizeof(uint32_t)), 1,
         GLint(item.range.baseVertex), item.instance);
     ++draws;
+    testedDraws_ += tested(material);
   }
   glBindSampler(2, 0);
   glBindSampler(3, 0);
   glBindVertexArray(0);
+  gl::countDraws(draws);
   return draws;
 }
 

@@ -39,6 +39,10 @@ class GpuScene {
   /// and gives the eye. Returns the number of draws.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0)) const;
 
+  /// Masked at the start.
+  void setAlphaTest(AlphaTest test) { alphaTest_ = test; }
+
+  uint64_t testedDraws() const { return testedDraws_; } // so far, of materials whose alpha is tested
   uint32_t triangleCount() const { return triangleCount_; } // of all placed instances
   const Aabb& bounds() const { return bounds_; }            // world space
 
@@ -87,6 +91,9 @@ class GpuScene {
   void uploadMaterials(const SceneAssets& assets);
   uint32_t samplerFor(const TextureRef& ref);
   void bindMaterial(uint32_t index) const;
+  bool tested(const MaterialDraw& material) const {
+    return alphaTest_ == AlphaTest::All || (alphaTest_ == AlphaTest::Masked && material.masked);
+  }
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
   gl::ProgramCache& programs_;
@@ -102,6 +109,8 @@ class GpuScene {
   std::vector<Item> items_; // sorted by material
   Aabb bounds_;
   uint32_t triangleCount_ = 0;
+  AlphaTest alphaTest_ = AlphaTest::Masked;
+  mutable uint64_t testedDraws_ = 0;
 };
 
 } // namespace lambent

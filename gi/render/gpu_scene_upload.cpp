@@ -30,7 +30,7 @@ vec4 uvRow(const TextureRef& ref, int row, float w) {
 MaterialBlock blockOf(const Material& m) {
   return {
       .baseColor = vec4(m.baseColor, m.alpha),
-      .emission = vec4(m.emission, m.alphaCutoff),
+      .emission = vec4(m.emission, m.alphaMode == AlphaMode::Mask ? m.alphaCutoff : 0),
       .baseUvU = uvRow(m.baseColorTexture, 0, float(m.baseColorTexture.uvSet)),
       .baseUvV = uvRow(m.baseColorTexture, 1, m.doubleSided ? 1.0f : 0.0f),
       .emissiveUvU = uvRow(m.emissiveTexture, 0, float(m.emissiveTexture.uvSet)),

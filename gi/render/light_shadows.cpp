@@ -112,7 +112,7 @@ struct LightShadowState {
   gl::Framebuffer framebuffer;
   LightShadows shadows;
   std::vector<SunFit> sunFits, skyFits;
-  uint32_t mapsDrawn = 0;
+  uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
 
   void fill(size_t& block, MapKind kind, int resolution, std::vector<LitMap>& maps, const LightShadowInputs& in);
   void drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
@@ -179,6 +179,7 @@ void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& ma
 LightShadowPass::LightShadowPass(PassContext context) : state_(std::make_unique<LightShadowState>(context)) {}
 LightShadowPass::~LightShadowPass() = default;
 uint32_t LightShadowPass::mapsDrawn() const { return state_->mapsDrawn; }
+uint32_t LightShadowPass::skyMapsDrawn() const { return state_->skyMapsDrawn; }
 
 const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
@@ -227,11 +228,13 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
     irradiances.push_back(light->intensity);
   }
   fitted(s.sunFits, directions, irradiances, in.shadow.sunResolution);
-  if (maxComponent(in.skyRadiance) > 0) {
+  const uint32_t punctualMaps = s.mapsDrawn;
+  if (in.sky) {
     directions = skyDirections(in.shadow.skyMaps);
     irradiances.assign(directions.size(), in.skyRadiance * (4 * kPi / float(directions.size())));
     fitted(s.skyFits, directions, irradiances, in.shadow.skyResolution);
   }
+  s.skyMapsDrawn = s.mapsDrawn - punctualMaps;
   s.shadows.blocks.resize(block);
   return s.shadows;
 }

@@ -86,6 +86,11 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
   for (const RayCounts& c : perBlock) counts += c;
 }
 
+void MapSchedule::disturbInTurn(size_t slots, size_t count, int resolution) {
+  stale_.resize(slots);
+  for (size_t i = 0; i < std::min(count, slots); ++i) stale_[turn_++ % slots].texels = TexelRect::whole(resolution);
+}
+
 void MapSchedule::disturbAll(size_t slots, int resolution) {
   stale_.resize(slots);
   for (Stale& s : stale_) s.texels = TexelRect::whole(resolution);

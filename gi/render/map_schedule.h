@@ -15,6 +15,8 @@ class MapSchedule {
   /// brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
   void disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
                const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
+  /// Queues the maps of `count` slots, going on where the last call stopped.
+  void disturbInTurn(size_t slots, size_t count, int resolution);
   /// Queues every map as a whole.
   void disturbAll(size_t slots, int resolution);
 
@@ -32,6 +34,7 @@ class MapSchedule {
     uint32_t frames = 0; // waited
   };
   std::vector<Stale> stale_; // by slot
+  size_t turn_ = 0;
 };
 
 /// Texels of a map that the box can cover, with a margin of one; empty when it lies behind the light.

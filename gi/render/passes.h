@@ -168,7 +168,8 @@ struct LightShadows;
 struct LightShadowInputs {
   const GpuScene& scene;
   std::span<const LightView> lights;
-  vec3 skyRadiance{0}; // black: no sky maps
+  bool sky = false;    // draw the sky's maps
+  vec3 skyRadiance{0};
   Aabb receivers;      // everything the camera sees; sun and sky maps are fitted to it
   Aabb casters;        // box of the whole scene
   bool geometryChanged = false;
@@ -182,7 +183,8 @@ class LightShadowPass {
   ~LightShadowPass();
   /// Draws only maps whose light, fit or casters changed.
   const LightShadows& run(const LightShadowInputs& in);
-  uint32_t mapsDrawn() const; // in the last run
+  uint32_t mapsDrawn() const;    // in the last run
+  uint32_t skyMapsDrawn() const; // of these
 
  private:
   std::unique_ptr<LightShadowState> state_;

@@ -63,6 +63,7 @@ class VplEstimator {
     const bool doubtful = findStale(kept, anew);
     if (!stale_.empty()) trace(kept, id, counts);
     counts.traced += stale_.size();
+    if (!anew) counts.retraced += stale_.size();
     if (stale_.empty() && !doubtful && !update_.lightsChanged) return false;
     radiance = light(kept, id, counts) / float(paths_);
     return true;
@@ -157,6 +158,7 @@ class VplEstimator {
       hits_.resize(segments_.size());
       rays_.closest(segments_, hits_);
       counts.rays.closest += segments_.size();
+      (last ? counts.lastRays : counts.bounceRays) += segments_.size();
       for (size_t j = 0; j < owners_.size(); ++j) {
         const uint32_t index = uint32_t(depth * paths_ + owners_[j]);
         KeptVertex& v = kept.vertices[index];
@@ -187,7 +189,8 @@ class VplEstimator {
         const KeptVertex& v = kept.vertices[depth * paths_ + path];
         if (v.distance == kInfinity) sum += v.weight * lights_.sky;
         if (!v.metEmitter) continue;
-        sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
+        if (!lights_.emitters.empty()) // else emissive surfaces are left out of the lights (gi/effects.h)
+          sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
         ++emitter;
       }
     }

@@ -99,11 +99,14 @@ struct RadianceJob {
 };
 
 struct PathCounts {
-  uint64_t paths = 0, traced = 0; // light paths asked for, and those traced anew
+  uint64_t paths = 0, traced = 0; // light paths asked for, and those traced
+  uint64_t retraced = 0;          // of these, paths that had been traced before: their start or what they touch moved
   uint64_t lit = 0;               // VPLs and candidates whose light was added up again
+  uint64_t bounceRays = 0;        // rays that looked for vertices beyond the first
+  uint64_t lastRays = 0;          // rays of last vertices, which look for emitters and sky only
   RayCounts rays;
   PathCounts& operator+=(const PathCounts& o) {
-    paths += o.paths, traced += o.traced, lit += o.lit;
+    paths += o.paths, traced += o.traced, retraced += o.retraced, lit += o.lit, bounceRays += o.bounceRays, lastRays += o.lastRays;
     rays += o.rays;
     return *this;
   }
@@ -162,6 +165,15 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
 /// Candidates that were taken are marked alive.
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
 
+/// Parts of an update that may be left out or forced (gi/effects.h). As they stand, all is done that changes call for.
+struct VplEffects {
+  bool replace = true;     // false: slots once filled keep their VPLs, and no candidates are looked for
+  bool relight = true;     // false: only VPLs that are new are lit
+  bool relightAll = false; // all are lit as if the lights had changed
+  bool carryAll = false;   // all are placed as if their objects had moved
+  bool lastRays = false;   // see RadianceUpdate
+};
+
 /// What one update needs besides the set.
 struct VplUpdate {
   const SceneView& view;
@@ -170,6 +182,8 @@ struct VplUpdate {
   const SmcSettings& settings;
   uint32_t seed = 1;
   VplSettings vpl = {}; // of the comparators (gi/vpl/sources.h)
+  VplEffects effects = {};
+  bool settingsChanged = false; // since the last update: of lights or of anything above
 };
 
 /// Times and rays of one update, for the frame log.
@@ -178,6 +192,7 @@ struct VplUpdateLog {
   RayCounts points, validation, candidates, radiosity, cells;
   PathCounts paths;   // of VPLs and candidates
   uint32_t relit = 0; // VPLs whose radiance was added up again
+  uint32_t relitForChange = 0; // of these, because lights or geometry changed
 };
 
 /// All stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on replacements
@@ -187,7 +202,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});
 
 /// Moves the VPLs of `view`'s moved objects (of all, if so asked) to their places there, and gives up those whose object
-/// is gone. Returns the slots that were placed anew, ascending. updateVpls does it too; placing twice changes nothing.
+/// is gone. Returns the slots that now stand elsewhere, ascending. updateVpls does it too; a second time changes nothing.
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
 /// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -

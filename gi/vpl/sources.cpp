@@ -90,7 +90,8 @@ VplChanges adoptVpls(VplSet& set, std::span<const PlacedVpl> placed, const VplUp
     v.radiance = v.samplerRadiance = p.power / v.area;
     ++changes.alive;
   }
-  log.relit = changes.alive;
+  changes.placedSlots = changes.movedSlots;
+  log.relit = log.relitForChange = changes.alive;
   changes.kept = changes.alive - uint32_t(changes.movedSlots.size());
   return changes;
 }

@@ -110,6 +110,7 @@ RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceU
   update.moved = &since.moved;
   update.lightsChanged = since.lights;
   update.instancesChanged = since.instances;
+  update.lastRays = in.effects.lastRays;
   return update;
 }
 
@@ -151,6 +152,7 @@ void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::sp
       jobs.push_back(
           {&set.slots[slot], cells ? &set.cells[slot] : nullptr, settings.cache ? &set.lightPaths[slot] : nullptr});
   light(jobs, in, since, RadianceUse::Rendering, log);
+  if (all) log.relitForChange = log.relit;
 }
 
 /// Drops candidates that the camera no longer sees by their mailbox, and makes room for those of this frame. Returns
@@ -213,6 +215,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
     VplChanges none;
     for (const Vpl& v : set.slots) none.alive += v.alive;
     none.kept = none.alive;
+    set.settling.observe(0, 0, settings.vpls, now.moves);
     return none;
   }
   if (anyOpen) {
@@ -260,8 +263,10 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
     const bool burst = now.mayBurst && invalid * 2 > alive;
     changes = replaceVpls(set, set.pool, burst ? settings.vpls : now.moves, settings.density);
     changes.burst = burst;
-    handOverPaths(set, changes.movedSlots);
+    changes.placedSlots = std::move(changes.movedSlots);
+    handOverPaths(set, changes.placedSlots);
     estimateSamplerDensities(set, settings);
+    set.settling.observe(changes.strong, changes.invalid, settings.vpls, now.moves);
   }
   return changes;
 }
@@ -294,8 +299,9 @@ std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all) {
       continue;
     }
     if (!all && !view.instances[carrier->second].moved) continue;
+    const vec3 position = v.position, normal = v.normal, geometricNormal = v.geometricNormal;
     place(v, view, carrier->second);
-    carried.push_back(slot);
+    if (v.position != position || v.normal != normal || v.geometricNormal != geometricNormal) carried.push_back(slot);
   }
   return carried;
 }
@@ -304,6 +310,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress) {
   const SmcSettings& settings = in.settings;
   const SceneChanges& changed = in.view.changes;
+  const VplEffects& effects = in.effects;
   const bool start = set.slots.empty();
   std::vector<uint32_t> moved;
   set.slots.resize(settings.vpls);
@@ -311,50 +318,67 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   set.lightPaths.resize(set.slots.size());
   Since since;
   since.camera = changed.camera;
-  since.lights = changed.lights || changed.first || emittersChanged(in);
+  since.lights = effects.relightAll ||
+                 (effects.relight && (changed.lights || changed.first || in.settingsChanged || emittersChanged(in)));
   since.instances = changed.instances;
   since.moved = Disturbance(in.view);
-  if (changed.first || !settings.cache)
+  const bool still = !changed.first && !changed.camera && !changed.lights && !since.geometry() && !in.settingsChanged;
+  if (changed.first || !settings.cache || (!effects.relight && since.geometry()))
     for (auto* all : {&set.samplerPaths, &set.lightPaths, &set.poolPaths})
       for (KeptPaths& k : *all) k.clear();
-  if (changed.first) { // or frames were missed: nothing else can be relied on either
-    set.cells.clear();
+  if (changed.first || (effects.replace && set.sampledLate)) { // nothing of the sampler can be relied on
     set.pool.clear();
     set.poolPaths.clear();
+    for (KeptPaths& k : set.samplerPaths) k.clear();
   }
-  if (changed.geometry || changed.instances || changed.first) {
-    moved = carryVpls(set, in.view, changed.first);
+  if (changed.first) set.cells.clear();
+  if (changed.geometry || changed.instances || changed.first || effects.carryAll) {
+    moved = carryVpls(set, in.view, changed.first || effects.carryAll);
     since.carried.assign(set.slots.size(), 0);
     for (uint32_t slot : moved) since.carried[slot] = 1;
-    std::unordered_set<uint32_t> still;
+    std::unordered_set<uint32_t> stayed;
     for (const InstanceView& i : in.view.instances)
-      if (!i.moved) still.insert(i.id);
-    for (Vpl& v : set.pool) v.valid = v.valid && still.contains(v.instance);
+      if (!i.moved) stayed.insert(i.id);
+    for (Vpl& v : set.pool) v.valid = v.valid && stayed.contains(v.instance);
   }
 
   const bool settingsChanged = set.litPaths != settings.paths || set.litBounces != settings.bounces;
-  const bool relight = since.lights || since.geometry() || settingsChanged || !settings.cache;
+  const bool relight = since.lights || (effects.relight && (since.geometry() || settingsChanged || !settings.cache));
   const bool estimatorChanged = set.cells.empty() == (settings.density == DensityEstimator::Cells);
   set.litPaths = settings.paths;
   set.litBounces = settings.bounces;
+  if (!still) set.settling.restart();
 
-  VplChanges all = iterate(set, in, since, {settings.moves, relight, changed.camera && !start}, log);
-  moved.insert(moved.end(), all.movedSlots.begin(), all.movedSlots.end());
-  // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the picture.
-  constexpr int kBurstIterations = 3;
-  const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
-  const Iteration again{start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false};
-  for (int i = 0; i < more; ++i) {
-    if (progress) progress(i, more);
-    const VplChanges next = iterate(set, in, {}, again, log);
-    moved.insert(moved.end(), next.movedSlots.begin(), next.movedSlots.end());
-    all.invalid = next.invalid;
-    all.alive = next.alive;
-    all.strong = next.strong;
+  VplChanges all;
+  if (effects.replace || start) {
+    Since sampled = since;
+    sampled.camera |= set.sampledLate;
+    Iteration now{settings.moves, relight || set.sampledLate, changed.camera && !start};
+    set.sampledLate = false;
+    all = iterate(set, in, sampled, now, log);
+    // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the picture.
+    constexpr int kBurstIterations = 3;
+    const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
+    now = {start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false};
+    for (int i = 0; i < more; ++i) {
+      if (progress) progress(i, more);
+      VplChanges next = iterate(set, in, {}, now, log);
+      next.burst = all.burst;
+      next.placedSlots.insert(next.placedSlots.end(), all.placedSlots.begin(), all.placedSlots.end());
+      all = std::move(next);
+    }
+    if (progress && more) progress(more, more);
+  } else {
+    set.sampledLate |= !still || relight;
+    for (const Vpl& v : set.slots) all.alive += v.alive;
   }
-  if (progress && more) progress(more, more);
-  std::sort(moved.begin(), moved.end());
-  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  const auto ascending = [](std::vector<uint32_t>& slots) {
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+  };
+  ascending(all.placedSlots);
+  moved.insert(moved.end(), all.placedSlots.begin(), all.placedSlots.end());
+  ascending(moved);
   estimateLight(set, in, since, moved, relight || estimatorChanged, log);
   all.movedSlots = std::move(moved);
   all.kept = all.alive - std::min<uint32_t>(all.alive, uint32_t(all.movedSlots.size()));

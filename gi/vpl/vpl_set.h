@@ -5,6 +5,7 @@
 #include "engine/core/math.h"
 #include "gi/settings.h"
 #include "gi/vpl/kept_paths.h"
+#include "gi/vpl/settling.h"
 
 #include <cstdint>
 #include <vector>
@@ -69,11 +70,14 @@ struct VplSet {
   uint32_t frame = 0;               // iterations so far
   float visibleArea = 0;            // m², running estimate of the indirectly visible surface
   int litPaths = 0, litBounces = 0; // settings that the present radiances were estimated with
+  Settling settling;
+  bool sampledLate = false; // something changed while the sampler was left out
 };
 
 /// What one update did: which slots need a new shadow map, and figures for the frame log.
 struct VplChanges {
-  std::vector<uint32_t> movedSlots; // ascending
+  std::vector<uint32_t> movedSlots;  // that hold another VPL or one that stands elsewhere, ascending
+  std::vector<uint32_t> placedSlots; // of these, the ones with another VPL
   uint32_t kept = 0, invalid = 0, candidates = 0, strong = 0, alive = 0;
   bool burst = false; // camera cut: the M_max bound was lifted
 };

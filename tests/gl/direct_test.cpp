@@ -27,7 +27,7 @@ class DirectTest : public GlTest {
     ParaboloidMapPass mapPass(passes, "emitter maps");
     const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
     const LightShadows& shadows =
-        shadowPass.run({gpu, view.lights, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, settings});
+        shadowPass.run({gpu, view.lights, maxComponent(view.skyRadiance) > 0, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, settings});
     std::vector<VplLight> lights;
     std::vector<MapPose> poses;
     for (const EmitterPatch& sample : emitters) {
@@ -183,7 +183,7 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
   LightShadowPass pass(passes);
   Aabb receivers{vec3(-0.2f), vec3(0.2f)};
   const auto draws = [&](bool geometryChanged) {
-    pass.run({gpu, room.scene.lights, vec3(0), receivers, view.boundsWorld, geometryChanged, settings});
+    pass.run({gpu, room.scene.lights, false, vec3(0), receivers, view.boundsWorld, geometryChanged, settings});
     return pass.mapsDrawn();
   };
   EXPECT_EQ(draws(true), 2u) << "first frame";

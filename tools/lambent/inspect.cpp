@@ -27,7 +27,6 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   uint64_t texels = 0;
   for (const TextureImage& i : assets.images) texels += i.texels.size();
   const LightSet lights = collectLights(view);
-  const EffectPlan plan = planEffects(view, stage->settings);
   const vec3 size = view.boundsWorld.size();
 
   nlohmann::json j;
@@ -56,7 +55,13 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   j["cameras"] = nlohmann::json::array();
   for (const NamedCamera& c : sceneCameras(stage->scene)) j["cameras"].push_back(c.name);
   j["effects"] = nlohmann::json::array();
-  for (const Effect& e : plan.effects) j["effects"].push_back({{"name", e.name}, {"on", e.on}, {"reason", e.reason}});
+  // Of a frame some time after the start, so that what moves by itself shows.
+  const EffectPlan plan =
+      planEffects(stage->at(1.0 / 30), stage->settings, {.first = false, .settingsChanged = false, .settled = true});
+  for (size_t i = 0; i < kEffects; ++i) {
+    const Effect& e = plan[EffectId(i)];
+    j["effects"].push_back({{"name", effectRow(EffectId(i)).name}, {"on", e.on}, {"reason", e.reason}});
+  }
   j["warnings"] = stage->scene.warnings;
   j["notes"] = stage->notes;
   writeJson(output.json, j);
@@ -76,9 +81,10 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   for (const Emitter& e : lights.emitters)
     std::printf("  emitter    %u triangles, %.3g W/sr%s\n", e.triangleCount, double(e.power),
                 e.doubleSided ? " on each side" : "");
-  std::printf("effects\n");
-  for (const Effect& e : plan.effects)
-    std::printf("  %-10s %-3s  %s\n", e.name.c_str(), e.on ? "on" : "off", e.reason.c_str());
+  std::printf("effects, with the VPLs settled\n");
+  for (const auto& e : j["effects"])
+    std::printf("  %-11s %-3s  %s\n", e["name"].get<std::string>().c_str(), e["on"].get<bool>() ? "on" : "off",
+                e["reason"].get<std::string>().c_str());
   for (const std::string& w : stage->scene.warnings) std::printf("warning: %s\n", w.c_str());
   for (const std::string& n : stage->notes) std::printf("note: %s\n", n.c_str());
 }

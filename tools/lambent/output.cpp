@@ -47,6 +47,12 @@ nlohmann::json figuresOf(const FrameStats& s) {
   };
   nlohmann::json stages = nlohmann::json::array();
   for (const StageTime& t : s.stages) stages.push_back({{"name", t.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
+  nlohmann::json effects = nlohmann::json::array();
+  for (size_t i = 0; i < kEffects; ++i) {
+    const Effect& e = s.plan[EffectId(i)];
+    const EffectRow& row = effectRow(EffectId(i));
+    effects.push_back({{"name", row.name}, {"on", e.on}, {"reason", e.reason}, {row.work, s.work[i]}});
+  }
   return {{"frame", s.frame},
           {"wall_ms", s.wallMs},
           {"stages", stages},
@@ -56,6 +62,7 @@ nlohmann::json figuresOf(const FrameStats& s) {
             {"candidates", rays(s.raysCandidates)},
             {"radiosity", rays(s.raysRadiosity)},
             {"cells", rays(s.raysCells)},
+            {"map_tests", rays(s.raysMapTests)},
             {"gather", rays(s.raysGather)}}},
           {"vpls",
            {{"alive", s.vplsAlive},
@@ -63,9 +70,12 @@ nlohmann::json figuresOf(const FrameStats& s) {
             {"moved", s.vplsMoved},
             {"invalid", s.vplsInvalid},
             {"relit", s.vplsRelit}}},
+          {"paths", {{"held", s.pathsHeld}, {"traced", s.pathsTraced}, {"retraced", s.pathsRetraced}}},
           {"maps_drawn", s.mapsDrawn},
+          {"maps_waiting", s.mapsWaiting},
+          {"light_maps_drawn", s.lightMapsDrawn},
           {"burst", s.burst},
-          {"plan", s.plan},
+          {"effects", effects},
           {"shadow_maker", s.shadowMaker},
           {"timing", s.timing}};
 }

@@ -1,0 +1,157 @@
+// When a set of VPLs in a still world is taken to have settled: not too early, and at all.
+#include "engine/trace/embree_query.h"
+#include "gi/vpl/smc.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lambent::test {
+
+namespace {
+
+/// A room with a block and a narrow spot on one wall: light that a new set does not find at once.
+struct LitRoom {
+  HandScene scene;
+  std::unique_ptr<EmbreeQuery> rays;
+  SceneView view;
+  LightSet lights;
+  std::vector<SurfaceHit> seen;
+
+  LitRoom() {
+    const uint32_t grey = scene.material(vec3(0.6f));
+    scene.box({-2, 0, -2}, {2, 2.5f, 2}, grey, true);
+    scene.box({-0.5f, 0, -0.8f}, {0.4f, 1.2f, 0}, grey, false);
+    LightView spot;
+    spot.type = LightType::Spot;
+    spot.position = {0.5f, 2.3f, 1};
+    spot.direction = glm::normalize(vec3(-1, -0.9f, -0.4f));
+    spot.innerConeCos = 0.97f;
+    spot.outerConeCos = 0.93f;
+    spot.intensity = vec3(20);
+    scene.lights.push_back(spot);
+    scene.camera.worldFromView[3] = vec4(0.8f, 1.2f, 1.9f, 1);
+    scene.camera.fovY = 1.1f;
+    rays = std::make_unique<EmbreeQuery>(scene.assets);
+    view = scene.view();
+    rays->update(view);
+    lights = collectLights(view);
+    std::vector<vec2> points;
+    for (int i = 0; i < 12; ++i)
+      for (int j = 0; j < 16; ++j) points.push_back((vec2(j, i) + 0.5f) / vec2(16, 12));
+    seen = surfacesAt(*rays, view.camera, points);
+  }
+
+  void update(VplSet& set, const SmcSettings& settings, uint32_t seed) {
+    SceneView now = view;
+    if (set.frame > 0) now.changes = {false, false, false, false, false};
+    VplUpdateLog log;
+    updateVpls(set, {now, *rays, lights, settings, seed}, log);
+  }
+
+  std::vector<vec3> irradiance(const VplSet& set) {
+    RayCounts counts;
+    return irradianceByRays(*rays, seen, set.slots, {}, counts);
+  }
+};
+
+double relativeError(const std::vector<vec3>& a, const std::vector<vec3>& truth) {
+  double difference = 0, whole = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const vec3 d = a[i] - truth[i];
+    difference += double(glm::dot(d, d));
+    whole += double(glm::dot(truth[i], truth[i]));
+  }
+  return std::sqrt(difference / whole);
+}
+
+} // namespace
+
+TEST(Settling, WaitsForTheFallToEnd) {
+  Settling s;
+  // A number that falls by 3 % per window, with noise, is no rest: down to where it stays.
+  double level = 500;
+  int settledAt = -1;
+  for (int frame = 0; frame < 6000 && settledAt < 0; ++frame) {
+    if (frame % 32 == 0 && frame < 3200) level *= 0.97;
+    const double noise = 0.05 * level * std::sin(1.7 * frame);
+    s.observe(uint32_t(level + noise), 0, 2048, 16);
+    if (s.settled()) settledAt = frame;
+  }
+  EXPECT_GE(settledAt, 3200);
+  EXPECT_LT(settledAt, 3200 + 10 * 32);
+}
+
+TEST(Settling, SlowReplacementIsWatchedLonger) {
+  // One replacement per frame turns a quarter of 2048 over in 512 frames.
+  Settling s;
+  int frame = 0;
+  for (; frame < 10000 && !s.settled(); ++frame) s.observe(100, 0, 2048, 1);
+  EXPECT_EQ(frame, 512 * (1 + int(Settling::kPatience)));
+}
+
+TEST(Settling, NotWhileAVplIsUnverified) {
+  Settling s;
+  for (int frame = 0; frame < 1000; ++frame) s.observe(0, 1, 64, 16);
+  EXPECT_FALSE(s.settled());
+  s.observe(0, 0, 64, 16);
+  EXPECT_TRUE(s.settled());
+  s.restart();
+  EXPECT_FALSE(s.settled());
+}
+
+TEST(Settling, SettledSetsAreNoWorseThanAThousandFramesLater) {
+  LitRoom room;
+  SmcSettings many;
+  many.vpls = 4096;
+  many.paths = 64;
+  many.warmup = 40;
+  VplSet best;
+  room.update(best, many, 77);
+  const std::vector<vec3> truth = room.irradiance(best);
+
+  SmcSettings few;
+  few.vpls = 64;
+  few.points = 128;
+  few.moves = 2;
+  few.warmup = 0;
+  constexpr int kSeeds = 16;
+  double atFirst = 0, atRest = 0, later = 0, differences2 = 0;
+  int frames = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    VplSet set;
+    room.update(set, few, uint32_t(seed));
+    const double first = relativeError(room.irradiance(set), truth);
+    int frame = 1;
+    for (; frame < 5000 && !set.settling.settled(); ++frame) room.update(set, few, uint32_t(seed));
+    ASSERT_LT(frame, 5000);
+    // The settled set is one of many that the churn would go through, so both are means over some of them.
+    const auto meanError = [&](int every) {
+      double sum = 0;
+      for (int i = 0; i < 5; ++i) {
+        sum += relativeError(room.irradiance(set), truth) / 5;
+        for (int j = 0; j < every; ++j) room.update(set, few, uint32_t(seed));
+      }
+      return sum;
+    };
+    const double rest = meanError(2);
+    for (int i = 0; i < 1000; ++i) room.update(set, few, uint32_t(seed));
+    const double end = meanError(2);
+    atFirst += first / kSeeds;
+    atRest += rest / kSeeds;
+    later += end / kSeeds;
+    differences2 += (rest - end) * (rest - end);
+    frames += frame;
+  }
+  const double mean = atRest - later;
+  const double deviation =
+      std::sqrt(std::max(0.0, differences2 / kSeeds - mean * mean) / (kSeeds - 1)); // of the mean difference
+  std::printf("settled after %d frames on average; relative RMSE at first %.3f, settled %.3f, 1000 frames later %.3f "
+              "(difference %.4f +- %.4f)\n",
+              frames / kSeeds, atFirst, atRest, later, mean, deviation);
+  EXPECT_GT(atFirst, 1.2 * later) << "else this cannot fail";
+  EXPECT_LT(mean, 2.6 * deviation + 0.01 * later); // 99.5 %, one-sided
+}
+
+} // namespace lambent::test

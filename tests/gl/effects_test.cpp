@@ -1,0 +1,404 @@
+// The effect plan. For each effect: a scene without it, where its work is not done at all (counted) and the picture is,
+// byte for byte, the one with everything forced on; and a scene with it, where leaving it out changes the picture.
+#include "gi/gi_frame.h"
+#include "gl_fixture.h"
+#include "tests/support/images.h"
+
+#include <cstring>
+
+namespace lambent::test {
+
+using enum EffectId;
+
+class EffectsTest : public GlTest {
+ protected:
+  /// A grey room, open to +z, with a red wall and a block, lit by a small lamp.
+  struct World {
+    HandScene scene;
+    uint32_t block = 0, lamp = 0;
+
+    World() {
+      const uint32_t grey = scene.material(vec3(0.6f));
+      scene.quad({-1.5f, 0, -1.5f}, {0, 0, 3}, {3, 0, 0}, grey);
+      scene.quad({-1.5f, 0, -1.5f}, {3, 0, 0}, {0, 2.5f, 0}, grey);
+      scene.quad({-1.5f, 0, -1.5f}, {0, 2.5f, 0}, {0, 0, 3}, scene.material({0.7f, 0.1f, 0.1f}));
+      block = uint32_t(scene.instances.size());
+      scene.box({-0.4f, 0, -0.5f}, {0.4f, 0.9f, 0.2f}, grey, false);
+      LightView point;
+      point.position = {0.9f, 2, 0.5f};
+      point.intensity = vec3(5);
+      scene.lights.push_back(point);
+      scene.camera.worldFromView[3] = vec4(0.2f, 1.1f, 2.6f, 1);
+      scene.camera.width = 64;
+      scene.camera.height = 48;
+      scene.camera.fovY = 1;
+    }
+
+    /// What a frame in which these things changed shows.
+    SceneView view(const SceneChanges& changes) {
+      for (InstanceView& i : scene.instances) i.moved = false;
+      SceneView v = scene.view();
+      v.changes = changes;
+      return v;
+    }
+    SceneView first() { return view({true, true, true, true, true}); }
+    SceneView still() { return view({false, false, false, false, false}); }
+    /// All boxes' faces from `block` on go by `by`.
+    SceneView moveBlock(const vec3& by) {
+      for (InstanceView& i : scene.instances) i.moved = false;
+      for (uint32_t k = block; k < scene.instances.size(); ++k) {
+        InstanceView& i = scene.instances[k];
+        i.worldFromObjectBefore = i.worldFromObject;
+        i.boundsWorldBefore = i.boundsWorld;
+        i.worldFromObject[3] += vec4(by, 0);
+        i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
+        i.moved = true;
+      }
+      SceneView v = scene.view();
+      v.changes = {false, false, false, true, false};
+      return v;
+    }
+    void emissive(const vec3& radiance) {
+      const uint32_t glow = scene.material(vec3(0));
+      scene.assets.materials[glow].emission = radiance;
+      scene.quad({0.3f, 2.9f, 0.2f}, {0.8f, 0, 0}, {0, 0, 0.8f}, glow); // out of the picture
+    }
+    /// A quad in the light's way whose texture is a chequer: green and half of it cut out, or green and blue.
+    void textured(AlphaMode alpha) {
+      TextureImage image;
+      image.width = image.height = 2;
+      const u8vec4 green(20, 200, 20, 255), other = alpha == AlphaMode::Mask ? u8vec4(0) : u8vec4(20, 20, 220, 255);
+      image.texels = {green, other, other, green};
+      for (const u8vec4& t : image.texels) image.averageLinear += 0.25f * (vec4(t) / 255.0f);
+      image.averageLinear -= vec4(1);
+      scene.assets.images.push_back(image);
+      const uint32_t m = scene.material(vec3(1));
+      scene.assets.materials[m].alphaMode = alpha;
+      scene.assets.materials[m].baseColorTexture.image = 0;
+      scene.assets.materials[m].baseColorTexture.nearest = true;
+      const uint32_t q = scene.quad({-0.2f, 1.3f, -0.6f}, {0, 0, 1.6f}, {1.4f, 0, 0}, m);
+      scene.assets.meshes[scene.instances[q].mesh].uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    }
+  };
+
+  static Settings quick() {
+    Settings s;
+    s.smc.vpls = 128;
+    s.smc.points = 256;
+    s.smc.moves = 8;
+    s.smc.warmup = 5;
+    s.shadow.resolution = 32;
+    s.shadow.emitterResolution = 64;
+    s.shadow.skyMaps = 8;
+    s.shadow.skyResolution = 64;
+    s.shadow.maker = ShadowMaker::Rays;
+    s.debug.timing = TimingMode::Finish;
+    s.image.exposure = 1;
+    return s;
+  }
+  static Settings withAll(EffectMode mode) {
+    Settings s = quick();
+    for (size_t i = 0; i < kEffects; ++i) s.effects[EffectId(i)] = mode;
+    return s;
+  }
+  static Settings with(EffectId id, EffectMode mode) {
+    Settings s = quick();
+    s.effects[id] = mode;
+    return s;
+  }
+
+  static bool same(const Image& a, const Image& b) {
+    return a.pixels.size() == b.pixels.size() &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
+  }
+
+  /// Runs the frames that `views` yields until it yields none; the effect must do no work in those after the first
+  /// `skip`, and the pictures must be those with everything forced on, where it must do some unless `hollow`.
+  template <class Views>
+  void withoutIt(EffectId id, Settings settings, const Views& viewsOf, int skip = 0, bool hollow = false) {
+    Settings forced = settings;
+    for (size_t i = 0; i < kEffects; ++i) forced.effects[EffectId(i)] = EffectMode::On;
+    GiFrame plain(settings), all(forced);
+    World a, b;
+    uint64_t forcedWork = 0;
+    for (int frame = 0;; ++frame) {
+      const auto viewA = viewsOf(a, frame), viewB = viewsOf(b, frame);
+      if (!viewA) break;
+      const FrameStats& stats = plain.run(*viewA);
+      const FrameStats& forcedStats = all.run(*viewB);
+      if (frame >= skip) {
+        EXPECT_FALSE(stats.plan.on(id)) << stats.plan[id].reason;
+        EXPECT_EQ(stats.work[size_t(id)], 0u) << "frame " << frame;
+        forcedWork += forcedStats.work[size_t(id)];
+      }
+      for (const Buffer buffer : {Buffer::Beauty, Buffer::Irradiance})
+        ASSERT_TRUE(same(plain.read(buffer), all.read(buffer))) << "frame " << frame << ", plan "
+                                                                << stats.plan.oneLine();
+    }
+    EXPECT_EQ(forcedWork == 0, hollow) << "forced on it must really run";
+  }
+
+  /// How far the last of the frames is from that with the effect left out, relative RMSE; the effect must work in some.
+  template <class Views> double lossWithout(EffectId id, const Settings& settings, const Views& viewsOf) {
+    Settings off = settings;
+    off.effects[id] = EffectMode::Off;
+    GiFrame plain(settings), without(off);
+    World a, b;
+    uint64_t work = 0;
+    for (int frame = 0;; ++frame) {
+      const auto viewA = viewsOf(a, frame), viewB = viewsOf(b, frame);
+      if (!viewA) break;
+      const FrameStats& stats = plain.run(*viewA);
+      work += stats.plan.on(id) ? stats.work[size_t(id)] : 0;
+      const FrameStats& offStats = without.run(*viewB);
+      EXPECT_TRUE(frame == 0 || offStats.work[size_t(id)] == 0) << "frame " << frame; // the first fills the set
+    }
+    EXPECT_GT(work, 0u);
+    return relativeRmse(without.read(Buffer::Beauty), plain.read(Buffer::Beauty));
+  }
+
+  using View = std::optional<SceneView>;
+  /// Two frames of a world that `arrange` has arranged.
+  template <class Arrange> static auto stillWorld(const Arrange& arrange, int frames = 2) {
+    return [arrange, frames](World& w, int frame) -> View {
+      if (frame == 0) arrange(w);
+      return frame >= frames ? View() : frame == 0 ? w.first() : w.still();
+    };
+  }
+  static auto asItIs(int frames = 2) {
+    return stillWorld([](World&) {}, frames);
+  }
+};
+
+// Every effect has both a scene without it and one with it below ----------------------------------------------------------
+
+TEST_F(EffectsTest, IndirectNeedsLight) {
+  const auto dark = stillWorld([](World& w) { w.scene.lights.clear(); });
+  withoutIt(Indirect, quick(), dark);
+  EXPECT_GT(lossWithout(Indirect, quick(), asItIs()), 0.05);
+}
+
+TEST_F(EffectsTest, IndirectNeedsSurfacesThatReflectToOneAnother) {
+  const auto flat = [](World& w) {
+    w.scene.instances.resize(1);
+    w.block = 1;
+  };
+  withoutIt(Indirect, quick(), stillWorld(flat));
+  const auto black = [](World& w) {
+    for (Material& m : w.scene.assets.materials) m.baseColor = vec3(0);
+  };
+  withoutIt(Indirect, quick(), stillWorld(black));
+}
+
+TEST_F(EffectsTest, BouncesNeedSurfacesThatReflectToOneAnother) {
+  Settings settings = quick();
+  settings.effects[Indirect] = EffectMode::On;
+  // A black wall stops the paths, so that none but the first vertex reflects.
+  const auto flat = [](World& w) {
+    for (uint32_t i = 1; i < w.scene.instances.size(); ++i)
+      for (Primitive& p : w.scene.assets.meshes[w.scene.instances[i].mesh].primitives)
+        w.scene.assets.materials[p.material].baseColor = vec3(0);
+    const uint32_t floor = w.scene.material(vec3(0.6f));
+    w.scene.assets.meshes[w.scene.instances[0].mesh].primitives[0].material = floor;
+  };
+  withoutIt(Bounces, settings, stillWorld(flat));
+  EXPECT_GT(lossWithout(Bounces, quick(), asItIs()), 0.01);
+}
+
+TEST_F(EffectsTest, EmissiveAndSoftShadowsNeedALamp) {
+  withoutIt(Emissive, quick(), asItIs());
+  withoutIt(SoftShadows, quick(), asItIs(), 0, true); // no lamp, no samples
+  const auto lamp = stillWorld([](World& w) { w.emissive(vec3(60)); });
+  EXPECT_GT(lossWithout(Emissive, quick(), lamp), 0.1);
+  EXPECT_GT(lossWithout(SoftShadows, quick(), lamp), 0.02);
+}
+
+TEST_F(EffectsTest, SkyNeedsRadiance) {
+  withoutIt(Sky, quick(), asItIs());
+  EXPECT_GT(lossWithout(Sky, quick(), stillWorld([](World& w) { w.scene.sky = vec3(1); })), 0.1);
+}
+
+TEST_F(EffectsTest, AlphaNeedsAMask) {
+  withoutIt(Alpha, quick(), asItIs());
+  withoutIt(Alpha, quick(), stillWorld([](World& w) { w.textured(AlphaMode::Opaque); }));
+  EXPECT_GT(lossWithout(Alpha, quick(), stillWorld([](World& w) { w.textured(AlphaMode::Mask); })), 0.02);
+}
+
+TEST_F(EffectsTest, TexturesNeedATexture) {
+  withoutIt(Textures, quick(), asItIs(), 0, true); // no texture, no lookups
+  EXPECT_GT(lossWithout(Textures, quick(), stillWorld([](World& w) { w.textured(AlphaMode::Opaque); })), 1e-3);
+}
+
+TEST_F(EffectsTest, MotionAndMapRefreshNeedAMover) {
+  // The first frame places every object.
+  withoutIt(Motion, quick(), asItIs(4), 1);
+  withoutIt(MapRefresh, quick(), asItIs(4), 1);
+  const auto moving = [](World& w, int frame) -> View {
+    return frame > 4 ? View() : frame == 0 ? w.first() : w.moveBlock({0.15f, 0, 0.05f});
+  };
+  EXPECT_GT(lossWithout(Motion, quick(), moving), 0.05);
+  Settings settings = quick();
+  settings.shadow.refresh = 128;
+  EXPECT_GT(lossWithout(MapRefresh, settings, moving), 2e-3);
+}
+
+TEST_F(EffectsTest, RelightNeedsAChangeOfLight) {
+  withoutIt(Relight, quick(), asItIs(4), 1);
+  const auto dimmed = [](World& w, int frame) -> View {
+    if (frame > 1) return {};
+    if (frame == 0) return w.first();
+    w.scene.lights[0].intensity = vec3(1);
+    return w.view({false, false, true, false, false});
+  };
+  EXPECT_GT(lossWithout(Relight, quick(), dimmed), 0.05);
+}
+
+TEST_F(EffectsTest, FilterNeedsAnInterleavedGather) {
+  const auto dark = stillWorld([](World& w) { w.scene.lights.clear(); });
+  withoutIt(Filter, quick(), dark);
+  Settings full = quick();
+  full.gather.mode = GatherMode::Full;
+  withoutIt(Filter, full, asItIs(), 0, true); // nothing to mix
+  EXPECT_GT(lossWithout(Filter, quick(), asItIs()), 0.01);
+}
+
+// A still world ---------------------------------------------------------------------------------------------------------
+
+/// Frames until nothing is done any more.
+int framesToSettle(GiFrame& gi, const SceneView& still, int most) {
+  int frames = 0;
+  while (frames < most && gi.run(still).plan.on(Redraw)) ++frames;
+  return frames;
+}
+
+TEST_F(EffectsTest, AStillWorldSettlesAndSleeps) {
+  World w;
+  GiFrame gi(quick());
+  gi.run(w.first());
+  const int frames = framesToSettle(gi, w.still(), 2000);
+  std::printf("settled after %d frames, %u strong candidates\n", frames, gi.run(w.still()).vplsStrong);
+  EXPECT_GE(frames, 32 * 4 - 5) << "too early: less than four windows were watched";
+  ASSERT_LT(frames, 2000);
+  const Image before = gi.read(Buffer::Beauty);
+  for (int i = 0; i < 20; ++i) {
+    const FrameStats& s = gi.run(w.still());
+    for (const RayCounts& r : {s.raysPoints, s.raysValidation, s.raysCandidates, s.raysRadiosity, s.raysCells,
+                               s.raysShadowMaps, s.raysGather, s.raysMapTests})
+      EXPECT_EQ(r.closest + r.occlusion, 0u);
+    EXPECT_EQ(s.mapsDrawn + s.lightMapsDrawn, 0u);
+    for (size_t e = 0; e < kEffects; ++e) EXPECT_EQ(s.work[e], 0u) << effectRow(EffectId(e)).name;
+  }
+  EXPECT_TRUE(same(gi.read(Buffer::Beauty), before));
+
+  // Whatever is forced on works and changes nothing.
+  for (size_t i = 0; i < kEffects; ++i) gi.settings().effects[EffectId(i)] = EffectMode::On;
+  gi.run(w.still()); // a change of settings wakes
+  GiFrame settled(quick()), forced(withAll(EffectMode::On));
+  World a, b;
+  settled.run(a.first()), forced.run(b.first());
+  for (int i = 0; i < frames + 10; ++i) {
+    settled.run(a.still());
+    const FrameStats& s = forced.run(b.still());
+    if (i < frames + 2) continue;
+    EXPECT_GT(s.work[size_t(Replace)], 0u);
+    EXPECT_GT(s.work[size_t(Relight)], 0u);
+    EXPECT_GT(s.work[size_t(MapRefresh)], 0u);
+    EXPECT_GT(s.work[size_t(Redraw)], 0u);
+    EXPECT_TRUE(same(settled.read(Buffer::Beauty), forced.read(Buffer::Beauty)));
+  }
+}
+
+TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
+  const auto wakes = [&](const char* what, const auto& change) {
+    World w;
+    Settings settings = quick();
+    settings.smc.moves = 0; // settles at once
+    GiFrame gi(settings);
+    gi.run(w.first());
+    ASSERT_LT(framesToSettle(gi, w.still(), 20), 20) << what;
+    const Image before = gi.read(Buffer::Beauty);
+    const SceneView view = change(w, gi);
+    EXPECT_TRUE(gi.run(view).plan.on(Redraw)) << what;
+    EXPECT_FALSE(same(gi.read(Buffer::Beauty), before)) << what;
+  };
+  wakes("camera", [](World& w, GiFrame&) {
+    w.scene.camera.worldFromView[3].x += 0.1f;
+    return w.view({false, true, false, false, false});
+  });
+  wakes("size", [](World& w, GiFrame&) {
+    w.scene.camera.width = 80;
+    return w.view({false, true, false, false, false});
+  });
+  wakes("light", [](World& w, GiFrame&) {
+    w.scene.lights[0].intensity *= 2;
+    return w.view({false, false, true, false, false});
+  });
+  wakes("object", [](World& w, GiFrame&) { return w.moveBlock({0.2f, 0, 0}); });
+  wakes("setting", [](World& w, GiFrame& gi) {
+    gi.settings().gather.disk = 0;
+    return w.still();
+  });
+}
+
+TEST_F(EffectsTest, ReplaceAndRedrawNeedAChange) {
+  Settings settings = quick();
+  settings.smc.moves = 0; // settles at once
+  withoutIt(Replace, settings, asItIs(6), 3);
+  withoutIt(Redraw, settings, asItIs(6), 3);
+  const auto turned = [](World& w, int frame) -> View {
+    if (frame > 6) return {};
+    if (frame == 0) { // a second place, far from the first
+      const uint32_t grey = w.scene.material(vec3(0.6f));
+      w.scene.quad({18.5f, 0, -1.5f}, {0, 0, 3}, {3, 0, 0}, grey);
+      w.scene.quad({18.5f, 0, -1.5f}, {3, 0, 0}, {0, 2.5f, 0}, grey);
+      w.scene.lights.push_back(w.scene.lights[0]);
+      w.scene.lights[1].position.x += 20;
+      return w.first();
+    }
+    w.scene.camera.worldFromView[3].x = 20.2f;
+    return w.view({false, frame == 1, false, false, false});
+  };
+  EXPECT_GT(lossWithout(Replace, quick(), turned), 0.01);
+  EXPECT_GT(lossWithout(Redraw, quick(), turned), 0.05);
+}
+
+// Beside the GPU ----------------------------------------------------------------------------------------------------------
+
+TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
+  Settings beside = quick();
+  beside.frame.overlap = true;
+  GiFrame plain(quick()), overlapped(beside);
+  World a, b;
+  const auto viewOf = [](World& w, int frame) {
+    if (frame == 0) return w.first();
+    if (frame % 5 == 1) return w.moveBlock({0.1f, 0, 0});
+    if (frame % 5 == 3) {
+      w.scene.lights[0].position.x -= 0.1f;
+      return w.view({false, false, true, false, false});
+    }
+    if (frame % 5 == 4) {
+      w.scene.camera.worldFromView[3].x += 0.02f;
+      return w.view({false, true, false, false, false});
+    }
+    return w.still();
+  };
+  for (int frame = 0; frame < 30; ++frame) {
+    plain.run(viewOf(a, frame));
+    overlapped.run(viewOf(b, frame));
+    const std::vector<Vpl>&p = plain.vpls().slots, &o = overlapped.vpls().slots;
+    ASSERT_EQ(p.size(), o.size());
+    for (size_t i = 0; i < p.size(); ++i) {
+      ASSERT_EQ(p[i].id, o[i].id) << "frame " << frame << ", slot " << i;
+      ASSERT_EQ(p[i].position, o[i].position);
+      ASSERT_EQ(p[i].radiance, o[i].radiance);
+      ASSERT_EQ(p[i].area, o[i].area);
+      ASSERT_EQ(p[i].alive, o[i].alive);
+    }
+  }
+  // At rest they show the same.
+  for (int i = 0; i < 2000 && plain.run(a.still()).plan.on(Redraw); ++i) overlapped.run(b.still());
+  for (int i = 0; i < 3; ++i) overlapped.run(b.still());
+  EXPECT_TRUE(same(overlapped.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)));
+}
+
+} // namespace lambent::test
