@@ -151,14 +151,16 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
                                                        : Answer{false, "nothing moved"});
   const bool placedAnew = settings.vpl.source != VplSource::Smc; // every frame, by photons or chains
+  const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
   decide(EffectId::Relight, !indirect             ? none
                             : placedAnew          ? Answer{true, "the technique lights its VPLs anew in every frame"}
                             : changes.first       ? Answer{true, "the scene is new"}
                             : changes.lights      ? Answer{true, "lights changed"}
                             : moved               ? Answer{true, movers}
                             : facts.settingsChanged ? Answer{true, "settings changed"}
-                                                  : Answer{false, "neither lights nor objects changed"});
-  const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
+                            : !smc.cache && !(still && facts.settled)
+                                ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
+                                : Answer{false, "neither lights nor objects changed"});
   decide(EffectId::Replace, !indirect             ? none
                             : placedAnew          ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}

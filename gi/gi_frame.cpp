@@ -285,7 +285,9 @@ void GiFrame::State::update(const UpdateTask& task, const std::function<void(int
   log = {};
   VplSet copy;
   if (task.pretended) copy = vpls;
+  const auto begin = Clock::now();
   VplChanges now = placeVpls(task.vpl.source, task.pretended ? copy : vpls, in, log, progress);
+  log.ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   if (task.pretended) return;
   const auto join = [](std::vector<uint32_t>& slots, const std::vector<uint32_t>& unshown) {
     std::vector<uint32_t> all;
@@ -308,6 +310,7 @@ void GiFrame::State::finishUpdate() {
 void GiFrame::State::showUpdate() {
   lightArrived = false;
   for (StageTime& row : log.stages) stats.stages.push_back(std::move(row));
+  stats.updateMs = log.ms;
   stats.raysPoints += log.points;
   stats.raysValidation = log.validation;
   stats.raysCandidates = log.candidates;
@@ -448,8 +451,9 @@ DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
   if (shadow.spotResolution == 0) shadow.spotResolution = width;
   const bool geometry = view.changes.geometry || view.changes.instances;
   if (receivers.empty() || view.changes.camera || geometry) receivers = visibleBounds(*rays, view, stats.raysPoints);
+  const Disturbance moved(view);
   const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, plan.on(Sky), lights.sky, receivers,
-                                                     view.boundsWorld, geometry, shadow});
+                                                     view.boundsWorld, view.changes.first, moved.boxes(), shadow});
   stats.lightMapsDrawn = lightShadowPass.mapsDrawn();
   work(Sky) += lightShadowPass.skyMapsDrawn();
   DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};

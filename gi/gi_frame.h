@@ -42,7 +42,7 @@ const std::vector<std::string>& bufferNames();
 struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages; // CPU and GPU, in order, milliseconds
-  double wallMs = 0;
+  double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
       raysMapTests;
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;

@@ -1,7 +1,8 @@
-// Shadow maps of punctual lights and of the sky. A map is drawn when what it shows may differ from what is stored: its
-// view changed, or the geometry did.
+// Shadow maps of punctual lights and of the sky. A map, or a face of a cube, is drawn when what it shows may differ from what
+// is stored: its view changed, or something moved within it.
 #include "gi/render/light_shadows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -161,18 +162,23 @@ void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& ma
   const int resolution = block.maps.width();
   for (int layer = 0; layer < block.count; ++layer) {
     const LitMap& map = maps[first + layer];
-    if (!in.geometryChanged && block.drawn[layer] == map.clipFromWorld[0]) continue;
+    const bool whole = in.allChanged || block.drawn[layer] != map.clipFromWorld[0];
     block.drawn[layer] = map.clipFromWorld[0];
-    ++mapsDrawn;
-    framebuffer.bind();
-    gl::PipelineState{.depthTest = true, .depthWrite = true, .width = resolution, .height = resolution}.apply();
     const int faces = int(map.clipFromWorld.size());
+    bool drawn = false;
     for (int face = 0; face < faces; ++face) {
+      const Frustum frustum = Frustum::ofClip(map.clipFromWorld[face]);
+      const auto shows = [&](const Aabb& box) { return frustum.mayShow(box); };
+      if (!whole && std::none_of(in.moved.begin(), in.moved.end(), shows)) continue;
+      framebuffer.bind();
+      gl::PipelineState{.depthTest = true, .depthWrite = true, .width = resolution, .height = resolution}.apply();
       framebuffer.attachDepthLayer(block.maps, layer * faces + face);
       const float nothing = 0;
       glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
       in.scene.draw(DrawKind::Depth, map.clipFromWorld[face]);
+      drawn = true;
     }
+    mapsDrawn += drawn;
   }
 }
 

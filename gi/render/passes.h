@@ -172,7 +172,8 @@ struct LightShadowInputs {
   vec3 skyRadiance{0};
   Aabb receivers;      // everything the camera sees; sun and sky maps are fitted to it
   Aabb casters;        // box of the whole scene
-  bool geometryChanged = false;
+  bool allChanged = false;             // draw every map
+  std::span<const Aabb> moved;         // where geometry changed: maps that show none of it stay
   const ShadowSettings& shadow;
 };
 
@@ -181,7 +182,7 @@ class LightShadowPass {
  public:
   explicit LightShadowPass(PassContext context);
   ~LightShadowPass();
-  /// Draws only maps whose light, fit or casters changed.
+  /// Draws only maps whose light, fit or casters changed, and of cubes only the faces.
   const LightShadows& run(const LightShadowInputs& in);
   uint32_t mapsDrawn() const;    // in the last run
   uint32_t skyMapsDrawn() const; // of these

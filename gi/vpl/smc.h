@@ -189,6 +189,7 @@ struct VplUpdate {
 /// Times and rays of one update, for the frame log.
 struct VplUpdateLog {
   std::vector<StageTime> stages;
+  double ms = 0; // of the whole update
   RayCounts points, validation, candidates, radiosity, cells;
   PathCounts paths;   // of VPLs and candidates
   uint32_t relit = 0; // VPLs whose radiance was added up again

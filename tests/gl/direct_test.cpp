@@ -27,7 +27,7 @@ class DirectTest : public GlTest {
     ParaboloidMapPass mapPass(passes, "emitter maps");
     const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
     const LightShadows& shadows =
-        shadowPass.run({gpu, view.lights, maxComponent(view.skyRadiance) > 0, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, settings});
+        shadowPass.run({gpu, view.lights, maxComponent(view.skyRadiance) > 0, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, {}, settings});
     std::vector<VplLight> lights;
     std::vector<MapPose> poses;
     for (const EmitterPatch& sample : emitters) {
@@ -182,8 +182,9 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
   gpu.place(view.instances);
   LightShadowPass pass(passes);
   Aabb receivers{vec3(-0.2f), vec3(0.2f)};
+  std::vector<Aabb> moved;
   const auto draws = [&](bool geometryChanged) {
-    pass.run({gpu, room.scene.lights, false, vec3(0), receivers, view.boundsWorld, geometryChanged, settings});
+    pass.run({gpu, room.scene.lights, false, vec3(0), receivers, view.boundsWorld, geometryChanged, moved, settings});
     return pass.mapsDrawn();
   };
   EXPECT_EQ(draws(true), 2u) << "first frame";
@@ -199,6 +200,11 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
   room.scene.lights[1].position.x = 0.1f;
   EXPECT_EQ(draws(false), 1u) << "the point light moved";
   EXPECT_EQ(draws(true), 2u) << "geometry changed";
+  moved = {{vec3(0.8f), vec3(0.9f)}};
+  EXPECT_EQ(draws(false), 1u) << "something moved that the sun's map does not show, as no receiver is there";
+  moved = {{vec3(-0.05f), vec3(0.05f)}};
+  EXPECT_EQ(draws(false), 2u) << "something moved in the middle";
+  moved.clear();
   receivers = {};
   EXPECT_EQ(draws(false), 0u) << "the camera sees nothing: keep what there is";
 }

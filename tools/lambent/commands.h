@@ -27,6 +27,7 @@ void declareAccuracy(CLI::App& app);
 void declareReference(CLI::App& app);
 void declareCompare(CLI::App& app);
 void declareStability(CLI::App& app);
+void declareBench(CLI::App& app);
 void declareContent(CLI::App& app);
 void declareSettings(CLI::App& app);
 

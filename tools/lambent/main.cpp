@@ -21,6 +21,7 @@ int runProgram(int argc, char** argv) {
   declareReference(app);
   declareCompare(app);
   declareStability(app);
+  declareBench(app);
   declareContent(app);
   declareSettings(app);
   try {
