@@ -175,8 +175,8 @@ bool isWithin(const vec3& world, const test::RandomWorld::Solid& solid) {
 /// Lights inside solids that the camera is not in. They can bring no light to what it sees and must make way. How soon:
 /// in a frame in which candidates with light are left over, min(M_max, unverified) unverified lights were replaced,
 /// weakest first. So even the last of a set that was lost as a whole is gone after N / M_max such frames, here 32,
-/// unless others are lost meanwhile that are weaker. Inside a solid it is mostly dark, so few are: 12 was the longest
-/// of six runs with other seeds.
+/// unless others are lost meanwhile that are weaker. Inside a solid it is mostly dark, so few are: over seven seeds the
+/// longest was 12.
 class Enclosed {
  public:
   void look(const Motion& m, const SceneView& view, int frame) {
@@ -263,13 +263,13 @@ TEST(RandomMotion, LightsStayOnSurfacesInTheOpenAndMemoryFlat) {
   EXPECT_GT(double(carried) * perFrame, 2);
   EXPECT_GT(enclosed.seen, uint64_t(kFrames / 50));
   if (!kCountsHeap) return;
-  // A byte per frame and light would be 60 % of the set by the end. The heap is also Embree's and the world's.
+  // Three bytes lost per frame are a tenth of the set by the end. The heap is also Embree's and the world's.
   for (const size_t thousand : {size_t(4), size_t(9)}) {
     const Footprint &early = footprints[0], &late = footprints[thousand];
     std::printf("after %zu frames: set %.3f MB (%+.1f %%), heap %.3f MB (%+.1f %%)\n", 1000 * (thousand + 1),
                 1e-6 * double(late.set), 100.0 * (double(late.set) / double(early.set) - 1), 1e-6 * double(late.heap),
                 100.0 * (double(late.heap) / double(early.heap) - 1));
-    EXPECT_LT(double(late.set), 1.05 * double(early.set));
+    EXPECT_LT(double(late.set), 1.1 * double(early.set));
     EXPECT_LT(double(late.heap), 1.1 * double(early.heap));
   }
 }
