@@ -39,7 +39,7 @@ TEST(PathCache, EqualsTracingAllPathsThroughRandomEdits) {
   anew.cache = false;
   VplSet a, b;
   uint64_t traced = 0, all = 0;
-  constexpr int kFrames = 3000;
+  constexpr int kFrames = test::kSanitized ? 500 : 3000;
   for (int frame = 0; frame < kFrames; ++frame) {
     const SceneView& view = world.step(frame % 4);
     const LightSet lights = collectLights(view);

@@ -14,6 +14,12 @@
 
 namespace lambent::test {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitized = true; // everything takes ten times as long: fewer frames do
+#else
+constexpr bool kSanitized = false;
+#endif
+
 /// A closed room of 6×3×6 m. In it boxes (the first a lamp, the last one morphed), sheets (the second one morphed, the
 /// third skinned), a lamp, a spot and a sun that is out at first. Objects overlap, touch and pass through each other
 /// and the walls.
