@@ -79,8 +79,7 @@ class CellSampler {
 
   /// `viewers` see what is around here.
   void draw(const Vpl& vpl, float radius, std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
-    cell.points.clear();
-    cell.radius = radius;
+    points_.clear();
     chords(vpl, radius);
     for (int round = 0; round < kHitsPerChord && !rays_now_.empty(); ++round) {
       hits_.resize(rays_now_.size());
@@ -91,14 +90,17 @@ class CellSampler {
         const Ray ray = rays_now_[i];
         const SurfaceHit& h = hits_[i];
         if (!h.valid()) continue;
-        addSides(vpl, radius, h, cell);
+        addSides(vpl, radius, h);
         const float step = h.t + 2e-4f * ray.tMax;
         if (step < ray.tMax) rays_now_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
       }
       rays_now_.resize(alive);
     }
-    keepConnected(vpl, cell, counts);
-    weighByVisibility(vpl, viewers, cell, counts);
+    keepConnected(vpl, counts);
+    weighByVisibility(vpl, viewers, counts);
+    // Room for just these: cells that kept the most that they ever had would grow for as long as objects move.
+    cell.points = std::vector<CellPoint>(points_.begin(), points_.end());
+    cell.radius = radius;
   }
 
  private:
@@ -125,7 +127,7 @@ class CellSampler {
   }
 
   /// Both sides of the surface met, where they may belong to the VPL's.
-  void addSides(const Vpl& vpl, float radius, const SurfaceHit& h, VplCell& cell) {
+  void addSides(const Vpl& vpl, float radius, const SurfaceHit& h) {
     if (!isFinite(h.position) || !isFinite(h.normal)) return;
     const vec3 d = h.position - vpl.position;
     const float d2 = glm::dot(d, d);
@@ -133,17 +135,17 @@ class CellSampler {
     if (density <= 0) return;
     for (const float side : {1.0f, -1.0f})
       if (sameSide(side * h.normal, vpl.normal))
-        cell.points.push_back({h.position, side * h.normal, side * h.geometricNormal, h.albedo, 1 / density, d2});
+        points_.push_back({h.position, side * h.normal, side * h.geometricNormal, h.albedo, 1 / density, d2});
   }
 
-  void keepConnected(const Vpl& vpl, VplCell& cell, RayCounts& counts) {
-    open_.assign(cell.points.size(), 0);
+  void keepConnected(const Vpl& vpl, RayCounts& counts) {
+    open_.assign(points_.size(), 0);
     for (const bool lifted : {false, true}) {
       rays_now_.clear();
       which_.clear();
-      for (uint32_t i = 0; i < cell.points.size(); ++i) {
+      for (uint32_t i = 0; i < points_.size(); ++i) {
         if (open_[i]) continue;
-        const CellPoint& p = cell.points[i];
+        const CellPoint& p = points_[i];
         if (const auto ray = lifted ? Connection::lifted(vpl, p, std::sqrt(p.own2)) : Connection::close(vpl, p)) {
           rays_now_.push_back(*ray);
           which_.push_back(i);
@@ -151,15 +153,15 @@ class CellSampler {
       }
       test(counts);
     }
-    keepOpen(cell);
+    keepOpen();
   }
 
   /// Light leaves a cell from the place of its VPL, so a point counts by how well it is seen compared with that place:
   /// the number of viewers, points that the camera sees, that see it over the number that see the VPL, two at most.
   /// What none sees counts nothing: the sunlit outside of a wall beside a window.
-  void weighByVisibility(const Vpl& vpl, std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
-    std::vector<uint16_t> seen(cell.points.size(), 0);
-    open_.assign(cell.points.size(), 0);
+  void weighByVisibility(const Vpl& vpl, std::span<const vec3> viewers, RayCounts& counts) {
+    std::vector<uint16_t> seen(points_.size(), 0);
+    open_.assign(points_.size(), 0);
     float seenVpl = 0;
     for (const vec3& from : viewers) {
       rays_now_.clear();
@@ -168,24 +170,23 @@ class CellSampler {
         ++counts.occlusion;
         seenVpl += !rays_.occluded(segment(from, offsetPoint(vpl.position, vpl.geometricNormal)));
       }
-      for (uint32_t i = 0; i < cell.points.size(); ++i) {
-        const CellPoint& p = cell.points[i];
+      for (uint32_t i = 0; i < points_.size(); ++i) {
+        const CellPoint& p = points_[i];
         if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
         rays_now_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal)));
         which_.push_back(i);
       }
-      open_.assign(cell.points.size(), 0);
+      open_.assign(points_.size(), 0);
       test(counts);
       for (size_t i = 0; i < open_.size(); ++i) seen[i] += open_[i];
     }
     const bool own = viewers.size() == 1 && viewers[0] == vpl.mailbox;
-    if (seenVpl == 0 && !own)
-      return weighByVisibility(vpl, {&vpl.mailbox, 1}, cell, counts); // looked at from there only
-    for (size_t i = 0; i < cell.points.size(); ++i) {
+    if (seenVpl == 0 && !own) return weighByVisibility(vpl, {&vpl.mailbox, 1}, counts); // looked at from there only
+    for (size_t i = 0; i < points_.size(); ++i) {
       open_[i] = seen[i] > 0;
-      cell.points[i].area *= seenVpl > 0 ? std::min(2.0f, float(seen[i]) / seenVpl) : 1.0f;
+      points_[i].area *= seenVpl > 0 ? std::min(2.0f, float(seen[i]) / seenVpl) : 1.0f;
     }
-    keepOpen(cell);
+    keepOpen();
   }
 
   /// Opens what the segments reach.
@@ -196,15 +197,16 @@ class CellSampler {
     for (size_t j = 0; j < which_.size(); ++j) open_[which_[j]] = !blocked_[j];
   }
 
-  void keepOpen(VplCell& cell) {
+  void keepOpen() {
     size_t kept = 0;
-    for (size_t i = 0; i < cell.points.size(); ++i)
-      if (open_[i]) cell.points[kept++] = cell.points[i];
-    cell.points.resize(kept);
+    for (size_t i = 0; i < points_.size(); ++i)
+      if (open_[i]) points_[kept++] = points_[i];
+    points_.resize(kept);
   }
 
   const RayQuery& rays_;
   const uint32_t seed_;
+  std::vector<CellPoint> points_;
   std::vector<Ray> rays_now_;
   std::vector<SurfaceHit> hits_;
   std::vector<uint8_t> open_, blocked_;

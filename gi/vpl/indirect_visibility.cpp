@@ -22,11 +22,15 @@ bool inFrustum(const CameraView& camera, const mat4& viewFromWorld, const vec3& 
   return -v.z > camera.near && std::abs(v.y) <= half && std::abs(v.x) <= half * camera.aspect();
 }
 
+/// From one point off a surface to another, all the way: `segment` stops a ten-thousandth short, so over some metres it
+/// would miss the surface that the other point lies behind, and see the back of a thin wall from the front.
+Ray allTheWay(const vec3& a, const vec3& b) { return {a, b - a, 1}; }
+
 /// From the camera to a point off a surface.
 Ray cameraSegment(const CameraView& camera, const mat4& viewFromWorld, const vec3& p) {
-  if (camera.orthoHalfHeight <= 0) return segment(camera.position(), p);
+  if (camera.orthoHalfHeight <= 0) return allTheWay(camera.position(), p);
   const vec3 v = vec3(viewFromWorld * vec4(p, 1));
-  return segment(vec3(camera.worldFromView * vec4(v.x, v.y, 0, 1)), p);
+  return allTheWay(vec3(camera.worldFromView * vec4(v.x, v.y, 0, 1)), p);
 }
 
 vec3 offPosition(const Vpl& v) { return offsetPoint(v.position, v.geometricNormal); }
@@ -44,10 +48,13 @@ void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView
     for (size_t i = begin; i < end; ++i) {
       Vpl& v = vpls[i];
       if (!v.valid) continue;
+      const bool carried = !update.carried.empty() && update.carried[i];
       v.valid = inFrustum(camera, viewFromWorld, v.mailbox) && !update.moved->touches(v.mailbox, 0);
+      // It may have turned its back; where the carrier is a speck or a thread, rays miss it.
+      if (carried) v.valid = v.valid && glm::dot(v.mailbox - v.position, v.geometricNormal) > 0;
       if (!v.valid) continue;
-      const Ray towards[2] = {cameraSegment(camera, viewFromWorld, v.mailbox), segment(v.mailbox, offPosition(v))};
-      const bool doubtful[2] = {update.camera, !update.carried.empty() && update.carried[i]};
+      const Ray towards[2] = {cameraSegment(camera, viewFromWorld, v.mailbox), allTheWay(v.mailbox, offPosition(v))};
+      const bool doubtful[2] = {update.camera, carried};
       for (int k = 0; k < 2; ++k) {
         if (!doubtful[k] && !update.moved->touches(towards[k])) continue;
         block.push_back(towards[k]);
@@ -89,7 +96,7 @@ void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePo
             const Vpl& v = set.slots[slot];
             const vec3 d = offPosition(v) - x.position;
             if (glm::dot(d, x.normal) <= 0 || glm::dot(d, v.geometricNormal) >= 0) continue;
-            block.push_back(segment(x.position, offPosition(v)));
+            block.push_back(allTheWay(x.position, offPosition(v)));
             place.push_back(p * tries + k);
             found[place.back()] = slot;
           }

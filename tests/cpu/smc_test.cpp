@@ -50,6 +50,53 @@ struct Room {
   }
 };
 
+TEST(Mailboxes, LoseALightWhoseCarrierTurnedItAway) {
+  const AnalyticQuery rays; // the carrier is too small to be met
+  const CameraView camera = cameraAt({0, 0, 6}, {0, 0, -1});
+  for (const float side : {1.0f, -1.0f}) {
+    Vpl v;
+    v.normal = v.geometricNormal = {0, 0, side};
+    v.mailbox = {0, 0, 5};
+    v.alive = v.valid = true;
+    RayCounts counts;
+    const uint8_t carried[] = {1};
+    verifyMailboxes({&v, 1}, rays, camera, {false, &kNothingMoved, carried}, counts);
+    EXPECT_EQ(v.valid, side > 0);
+  }
+}
+
+TEST(Mailboxes, AreNotSeenThroughThinWalls) {
+  AnalyticQuery rays;
+  rays.addPlane({0, 0, 0}, {0, 0, 1}, {});
+  rays.addPlane({0, 0, -3}, {0, 0, 1}, {});
+  for (const float eye : {6.0f, -2.0f}) { // before the wall and behind it
+    Vpl v;                                // behind it
+    v.position = {1, 0, -3};
+    v.normal = v.geometricNormal = {0, 0, 1};
+    v.mailbox = offsetPoint({0, 0, 0}, {0, 0, -1});
+    v.alive = v.valid = true;
+    RayCounts counts;
+    verifyMailboxes({&v, 1}, rays, cameraAt({0, 0, eye}, {0, 0, -eye}), {true}, counts);
+    EXPECT_EQ(v.valid, eye < 0);
+  }
+}
+
+TEST(Visibility, LightsAreNotFoundThroughThinWalls) {
+  AnalyticQuery rays;
+  rays.addPlane({0, 0, 0}, {0, 0, 1}, {});
+  VplSet set;
+  set.slots.resize(1);
+  Vpl& v = set.slots[0];
+  v.position = {0, 0, -1e-4f}; // on something that touches the wall from behind, or nearly
+  v.geometricNormal = glm::normalize(vec3(1, 0, 0.1f));
+  v.alive = true;
+  const VisiblePoint x{{4, 0, 3}, {-1, 0, 0}};
+  RayCounts counts;
+  verifyByPoints(set, rays, {&x, 1}, 1, 1, counts);
+  EXPECT_EQ(counts.occlusion, 2u) << "they face each other";
+  EXPECT_FALSE(v.valid);
+}
+
 TEST(Smc, FillsTheSetOnSurfaces) {
   Room room;
   const VplChanges c = room.update();

@@ -4,7 +4,6 @@
 #include "engine/scene/scene_view.h"
 
 #include <cmath>
-#include <map>
 #include <vector>
 
 namespace lambent::test {
@@ -106,7 +105,6 @@ class HandScene {
   CameraView camera;
 
  private:
-  std::map<uint32_t, DeformedMesh> shapes_; // by instance; addresses stay
   uint64_t lastRevision_ = 0;
 };
 
@@ -126,6 +124,27 @@ inline Mesh sheet(uint32_t n, uint32_t material) {
     }
   for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
   mesh.primitives.push_back({0, uint32_t(mesh.triangles.size()), material, mesh.boundsObject});
+  return mesh;
+}
+
+/// A closed box around the origin, front sides out, each face with vertices of its own.
+inline Mesh block(const vec3& halfSize, uint32_t material) {
+  Mesh mesh;
+  for (int face = 0; face < 6; ++face) {
+    vec3 out(0), s(0), t(0);
+    const int a = face / 2;
+    out[a] = face % 2 ? 1.0f : -1.0f;
+    s[(a + 1) % 3] = 1;
+    t = glm::cross(out, s);
+    const uint32_t first = uint32_t(mesh.positions.size());
+    for (const vec3& p : {out - s - t, out + s - t, out + s + t, out - s + t}) mesh.positions.push_back(p * halfSize);
+    mesh.normals.insert(mesh.normals.end(), 4, out);
+    mesh.uv0.insert(mesh.uv0.end(), {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    mesh.triangles.insert(mesh.triangles.end(),
+                          {uvec3(first, first + 1, first + 2), uvec3(first, first + 2, first + 3)});
+  }
+  mesh.boundsObject = {-halfSize, halfSize};
+  mesh.primitives.push_back({0, 12, material, mesh.boundsObject, true});
   return mesh;
 }
 
