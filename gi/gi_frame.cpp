@@ -243,6 +243,7 @@ void GiFrame::State::placeWorld() {
   if (!plan.on(Emissive)) {
     lights.emitters.clear();
     lights.triangles.clear();
+    lights.emission = false;
   }
   if (!plan.on(Sky)) lights.sky = vec3(0);
 }
@@ -258,9 +259,9 @@ void GiFrame::State::updateLight(const std::function<void(int, int)>& progress) 
   const bool pretended = !needed && smc && (plan.on(Replace) || plan.on(Relight) || plan.on(Motion));
   const bool beside = settings.frame.overlap && needed && !vpls.slots.empty();
   std::vector<uint32_t> carried;
-  if (beside)
+  if (beside && smc) // other sources place theirs anew
     carried = carryVpls(vpls, world.view, world.view.changes.first);
-  else if (needed || pretended)
+  else if (!beside && (needed || pretended))
     update(updateTask(pretended), progress);
   showUpdate();
   if (plan.on(Redraw)) prepareVplMaps(beside, carried);

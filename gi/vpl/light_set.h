@@ -33,6 +33,7 @@ struct LightSet {
   std::vector<Emitter> emitters;
   std::vector<EmitterTriangle> triangles;
   vec3 sky{0};
+  bool emission = true;            // false: what glows is not a light, and has no emitters
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
   bool empty() const { return punctual.empty() && emitters.empty() && luminance(sky) <= 0; }

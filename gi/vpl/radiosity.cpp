@@ -189,7 +189,7 @@ class VplEstimator {
         const KeptVertex& v = kept.vertices[depth * paths_ + path];
         if (v.distance == kInfinity) sum += v.weight * lights_.sky;
         if (!v.metEmitter) continue;
-        if (!lights_.emitters.empty()) // else emissive surfaces are left out of the lights (gi/effects.h)
+        if (lights_.emission)
           sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
         ++emitter;
       }

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace lambent {
 
@@ -35,7 +34,7 @@ bool emittersChanged(const VplUpdate& in) {
 void place(Vpl& v, const SceneView& view, uint32_t instanceIndex) {
   const InstanceView& carrier = view.instances[instanceIndex];
   const SurfacePlace& on = v.place;
-  if (carrier.deformed) {
+  if (view.assets) {
     const SurfacePoint p = surfacePoint(view, instanceIndex, on.primitive, on.triangle, on.barycentric);
     const float side = on.back ? -1.0f : 1.0f;
     v.position = p.position;
@@ -62,10 +61,11 @@ Vpl candidateAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
   v.place = {vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1)),
              glm::normalize(normalFromWorld * h.normal),
              glm::normalize(normalFromWorld * h.geometricNormal),
+             carrier.mesh,
              h.primitive,
              h.triangle,
              h.barycentric};
-  if (carrier.deformed) {
+  if (view.assets) {
     const SurfacePoint p = surfacePoint(view, h.instance, h.primitive, h.triangle, h.barycentric);
     v.place.back = glm::dot(p.geometricNormal, h.geometricNormal) < 0;
   }
@@ -294,7 +294,7 @@ std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all) {
     Vpl& v = set.slots[slot];
     if (!v.alive) continue;
     const auto carrier = indexOf.find(v.instance);
-    if (carrier == indexOf.end()) {
+    if (carrier == indexOf.end() || view.instances[carrier->second].mesh != v.place.mesh) {
       v.alive = v.valid = false;
       continue;
     }
@@ -336,10 +336,13 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
     moved = carryVpls(set, in.view, changed.first || effects.carryAll);
     since.carried.assign(set.slots.size(), 0);
     for (uint32_t slot : moved) since.carried[slot] = 1;
-    std::unordered_set<uint32_t> stayed;
+    std::unordered_map<uint32_t, uint32_t> stayed; // meshes by object
     for (const InstanceView& i : in.view.instances)
-      if (!i.moved) stayed.insert(i.id);
-    for (Vpl& v : set.pool) v.valid = v.valid && stayed.contains(v.instance);
+      if (!i.moved) stayed.emplace(i.id, i.mesh);
+    for (Vpl& v : set.pool) {
+      const auto carrier = stayed.find(v.instance);
+      v.valid = v.valid && carrier != stayed.end() && carrier->second == v.place.mesh;
+    }
   }
 
   const bool settingsChanged = set.litPaths != settings.paths || set.litBounces != settings.bounces;

@@ -14,8 +14,9 @@ namespace lambent {
 
 /// Where on an object something stands, whatever the object does.
 struct SurfacePlace {
-  vec3 position{0}, normal{0, 1, 0}, geometricNormal{0, 1, 0}; // object space, of a rigid object
-  // Of a deformed one, as in SurfaceHit:
+  vec3 position{0}, normal{0, 1, 0}, geometricNormal{0, 1, 0}; // object space; for shapes without a mesh
+  // As in SurfaceHit. Exact whatever size the object had when this place was found, and on its surface in any shape.
+  uint32_t mesh = 0; // index into SceneAssets::meshes: with another mesh the place is gone
   uint32_t primitive = 0, triangle = 0;
   vec2 barycentric{0};
   bool back = false; // on the back of the triangle
