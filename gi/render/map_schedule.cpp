@@ -30,6 +30,22 @@ bool seesPlace(const vec3& origin, const vec3& normal, const Aabb& box, const Ra
   return false;
 }
 
+/// Share of a diffuse light's flux per texel, on the mean over some texels of the rectangle: towards the horizon texels
+/// are smaller and carry less. Up to a constant factor.
+float fluxPerTexel(const TexelRect& texels, int resolution) {
+  constexpr int kSamples = 4; // per side
+  float sum = 0;
+  for (int i = 0; i < kSamples * kSamples; ++i) {
+    const vec2 at = (vec2(i % kSamples, i / kSamples) + 0.5f) / float(kSamples);
+    const vec2 texel = glm::mix(vec2(texels.x0, texels.y0), vec2(texels.x1, texels.y1), at);
+    const vec2 p = 2.0f * texel / float(resolution) - 1.0f;
+    const float r2 = glm::dot(p, p);
+    // cos = (1 - r²) / (1 + r²), solid angle ∝ 1 / (1 + r²)²
+    sum += std::max(0.0f, 1 - r2) / ((1 + r2) * (1 + r2) * (1 + r2));
+  }
+  return sum / float(kSamples * kSamples);
+}
+
 } // namespace
 
 void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
@@ -75,26 +91,26 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
     jobs.push_back({slot, TexelRect::whole(resolution)});
     stale_[slot] = {};
   }
-  // The error of a map grows with its light and with the frames it has waited, so the mean error of all is least when
-  // light b waits for frames in proportion to 1/√b, whatever the area: the one with most b · frames² is next (as in
-  // Kadota et al. 2018, "Scheduling policies for minimizing age of information", where it is Whittle's index). Light
-  // below a share of the mean counts as that share, so that no map waits for ever.
+  // The error of a map grows with the light that its stale texels carry and with the frames it has waited, so the mean
+  // error of all is least when texels of light b each wait for frames in proportion to 1/√b: the map with most b ·
+  // frames² is next (as in Kadota et al. 2018, "Scheduling policies for minimizing age of information", where it is
+  // Whittle's index). Lights below a share of the mean count as that share, so that no map waits for ever.
   constexpr double kLeastShare = 1.0 / 256;
-  double sum = 0;
-  size_t lights = 0;
-  for (const float b : brightness)
-    if (b > 0) sum += b, ++lights;
-  const float least = lights ? float(kLeastShare * sum / double(lights)) : 0;
-  const auto urgency = [&](uint32_t slot) {
-    return std::max(brightness[slot], least) * float(stale_[slot].frames) * float(stale_[slot].frames);
-  };
+  std::vector<float> perTexel(stale_.size(), 0);
   std::vector<uint32_t> order;
+  double sum = 0;
   for (uint32_t i = 0; i < stale_.size(); ++i) {
     if (brightness[i] <= 0) stale_[i] = {}; // an empty slot
     if (stale_[i].texels.empty()) continue;
     ++stale_[i].frames;
     order.push_back(i);
+    perTexel[i] = brightness[i] * fluxPerTexel(stale_[i].texels, resolution);
+    sum += perTexel[i];
   }
+  const float least = float(kLeastShare * sum / double(std::max<size_t>(1, order.size())));
+  const auto urgency = [&](uint32_t slot) {
+    return std::max(perTexel[slot], least) * float(stale_[slot].frames) * float(stale_[slot].frames);
+  };
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return urgency(a) > urgency(b); });
   for (uint32_t slot : order) {
     if (texels <= 0) break;

@@ -19,8 +19,8 @@ class MapSchedule {
   void disturbAll(size_t slots, int resolution);
 
   /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that stand elsewhere) whole and for certain,
-  /// others in order of brightness times the square of frames waited until `texels` are spent (the last map may exceed
-  /// them). By slot, ascending.
+  /// others in order of light per texel times the square of frames waited until `texels` are spent (the last map may
+  /// exceed them). By slot, ascending.
   std::vector<MapJob> take(std::span<const uint32_t> first, std::span<const float> brightness, int resolution,
                            int64_t texels);
 

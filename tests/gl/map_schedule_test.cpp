@@ -301,6 +301,22 @@ TEST(MapSchedule, PartsAddUpUntilTheyAreDrawn) {
   EXPECT_LT(jobs[0].texels.area(), kMap);
 }
 
+TEST(MapSchedule, TexelsThatCarryMoreLightComeFirst) {
+  // The mover is by the horizon of the first light and straight ahead of the second.
+  const AnalyticQuery nothing;
+  const MapPose poses[] = {{{-4, 0, 0}, {0, 1, 0}, {0, 1, 0}}, {{0, -4, 0}, {0, 1, 0}, {0, 1, 0}}};
+  const Aabb box = boxAround({0, 0.6f, 0}, vec3(0.8f));
+  const float equal[] = {1, 1}, muchBrighter[] = {100, 1};
+  for (const auto& brightness : {equal, muchBrighter}) {
+    MapSchedule schedule;
+    RayCounts counts;
+    schedule.disturb(poses, {brightness, 2}, Disturbance(std::span(&box, 1)), nothing, kResolution, 0, 1, 0, counts);
+    ASSERT_EQ(schedule.waiting(), 2u);
+    EXPECT_EQ(slotsOf(schedule.take({}, {brightness, 2}, kResolution, 1)),
+              std::vector<uint32_t>{brightness == equal ? 1u : 0u});
+  }
+}
+
 TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
   constexpr size_t kSlots = 64;
   constexpr int64_t kBudget = 8 * kMap;
