@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lambent {
 
@@ -55,6 +56,12 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
   constexpr size_t kGrain = 64;
   // With many movers rays would take longer than the maps; a light that has tried so many counts as seeing the rest.
   constexpr int kBoxesTested = 8;
+  // A map that is stale for the most part is drawn whole: among hundreds of movers looking on would take longer.
+  // Neighbours lie together in the list, so it is gone through in strides, which fill the map sooner.
+  constexpr float kMost = 0.75f;
+  const std::span<const Aabb> boxes = moved.boxes();
+  size_t stride = std::max<size_t>(1, size_t(0.618 * double(boxes.size())));
+  while (std::gcd(stride, boxes.size()) > 1) ++stride;
   std::vector<RayCounts> perBlock((poses.size() + kGrain - 1) / kGrain);
   parallelFor(poses.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -62,8 +69,12 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
       const vec3 origin = offsetPoint(poses[i].position, poses[i].geometricNormal);
       Rng rng(seed, Stream::MapTests, uint32_t(i), frame);
       int tested = 0;
-      for (const Aabb& box : moved.boxes()) {
-        if (stale_[i].texels == TexelRect::whole(resolution)) break;
+      for (size_t j = 0; j < boxes.size(); ++j) {
+        const Aabb& box = boxes[j * stride % boxes.size()];
+        if (stale_[i].texels.area() > kMost * float(resolution * resolution)) {
+          stale_[i].texels = TexelRect::whole(resolution);
+          break;
+        }
         const TexelRect texels = texelsCovered(poses[i], box, resolution);
         TexelRect all = stale_[i].texels;
         all.add(texels);

@@ -67,23 +67,22 @@ TexelRect texelsCovered(const MapPose& pose, const Aabb& box, int resolution) {
   const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
   const float margin = 1e-5f * std::max(1.0f, std::max(maxComponent(glm::abs(origin)), box.diameter()));
   const Aabb grown{box.lo - margin, box.hi + margin};
+  // Texels are drawn down to a cosine of -2 / resolution (castMap, map_resample.frag), and so see nothing below this.
+  const vec3 toCentre = grown.centre() - origin, half = 0.5f * grown.size();
+  const float floor = -2.1f / float(resolution) * (glm::length(toCentre) + glm::length(half));
+  if (glm::dot(toCentre, pose.normal) + glm::dot(half, glm::abs(pose.normal)) < floor) return {};
+  // In the box, or so close above it that what is left of it surrounds the map.
+  if (crosses(Ray{origin, -pose.normal, -floor}, grown)) return TexelRect::whole(resolution);
+
   vec3 tangent, bitangent;
   basisAround(pose.normal, tangent, bitangent);
   std::array<vec3, 8> corners; // bits of the index: on the far side in x, y, z
-  float top = -kInfinity, farthest = 0;
   for (int i = 0; i < 8; ++i) {
     const vec3 d =
         vec3(i & 1 ? grown.hi.x : grown.lo.x, i & 2 ? grown.hi.y : grown.lo.y, i & 4 ? grown.hi.z : grown.lo.z) -
         origin;
     corners[i] = vec3(glm::dot(d, tangent), glm::dot(d, bitangent), glm::dot(d, pose.normal));
-    top = std::max(top, corners[i].z);
-    farthest = std::max(farthest, glm::length(d));
   }
-  // Texels are drawn down to a cosine of -2 / resolution (castMap, map_resample.frag), and so see nothing below this.
-  const float floor = -2.1f / float(resolution) * farthest;
-  if (top < floor) return {};
-  // In the box, or so close above it that what is left of it surrounds the map.
-  if (crosses(Ray{origin, -pose.normal, -floor}, grown)) return TexelRect::whole(resolution);
 
   Bounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
