@@ -9,11 +9,15 @@ namespace lambent {
 
 namespace {
 
+/// Linear, and to the bit what both share: what stands still between two keys must not seem to move.
+template <class Value> Value between(const Value& from, const Value& to, float u) { return from + (to - from) * u; }
+
 /// wxyz order is glm's constructor, xyzw glTF's storage.
 quat quatFromXyzw(const vec4& v) { return {v.w, v.x, v.y, v.z}; }
 
 vec4 slerpShorter(const vec4& a, vec4 b, float u) {
   if (glm::dot(a, b) < 0) b = -b;
+  if (a == b) return a; // slerp would round
   const quat q = glm::slerp(quatFromXyzw(a), quatFromXyzw(b), u);
   return {q.x, q.y, q.z, q.w};
 }
@@ -57,7 +61,7 @@ Between findKeys(const std::vector<float>& times, Interpolation interpolation, f
 /// Hermite spline; tangents are per second, hence the span.
 template <class V> V hermite(const Between& at, const V& from, const V& leaving, const V& arriving, const V& to) {
   const float u = at.u, u2 = u * u, u3 = u2 * u;
-  return (2 * u3 - 3 * u2 + 1) * from + (u3 - 2 * u2 + u) * (at.span * leaving) + (3 * u2 - 2 * u3) * to +
+  return between(from, to, 3 * u2 - 2 * u3) + (u3 - 2 * u2 + u) * (at.span * leaving) +
          (u3 - u2) * (at.span * arriving);
 }
 
@@ -94,7 +98,7 @@ vec4 sampleChannel(const AnimationChannel& channel, float time) {
   if (at.after == at.key) return finish(value(at.key));
   if (!cubic)
     return rotation ? finish(slerpShorter(value(at.key), value(at.after), at.u))
-                    : glm::mix(value(at.key), value(at.after), at.u);
+                    : between(value(at.key), value(at.after), at.u);
   return finish(
       hermite(at, value(at.key), channel.values[3 * at.key + 2], channel.values[3 * at.after], value(at.after)));
 }
@@ -113,7 +117,7 @@ void sampleChannel(const WeightsChannel& channel, float time, std::vector<float>
       weights[i] =
           hermite(at, value(at.key, i), number(3 * at.key + 2, i), number(3 * at.after, i), value(at.after, i));
     else
-      weights[i] = glm::mix(value(at.key, i), value(at.after, i), at.u);
+      weights[i] = between(value(at.key, i), value(at.after, i), at.u);
   }
 }
 

@@ -10,6 +10,9 @@ namespace lambent {
 
 namespace {
 
+/// Linear, and to the bit what both share: what stands still between two keys must not seem to move.
+template <class Value> Value between(const Value& from, const Value& to, float u) { return from + (to - from) * u; }
+
 /// Catmull-Rom through keys at uneven times: cubic Hermite whose tangents are the slopes between the neighbours,
 /// one-sided at the ends, where it also holds.
 template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
@@ -24,8 +27,8 @@ template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t,
   };
   const auto span = float(keys[i + 1].t - keys[i].t), u = float((t - keys[i].t) / (keys[i + 1].t - keys[i].t));
   const float u2 = u * u, u3 = u2 * u;
-  return (2 * u3 - 3 * u2 + 1) * value(keys[i]) + (u3 - 2 * u2 + u) * span * slope(i) +
-         (3 * u2 - 2 * u3) * value(keys[i + 1]) + (u3 - u2) * span * slope(i + 1);
+  return between(value(keys[i]), value(keys[i + 1]), 3 * u2 - 2 * u3) + (u3 - 2 * u2 + u) * span * slope(i) +
+         (u3 - u2) * span * slope(i + 1);
 }
 
 float linearFov(const std::vector<CameraKey>& keys, double t) {
@@ -34,7 +37,7 @@ float linearFov(const std::vector<CameraKey>& keys, double t) {
   if (after == keys.begin()) return keys.front().fovY;
   if (after == keys.end()) return keys.back().fovY;
   const auto before = after - 1;
-  return glm::mix(before->fovY, after->fovY, float((t - before->t) / (after->t - before->t)));
+  return between(before->fovY, after->fovY, float((t - before->t) / (after->t - before->t)));
 }
 
 struct Between {
@@ -58,7 +61,7 @@ std::optional<Between> around(const std::vector<NodeKey>& keys, std::optional<ve
 
 std::optional<vec3> linear(const std::vector<NodeKey>& keys, std::optional<vec3> NodeKey::*field, double t) {
   const auto b = around(keys, field, t);
-  return b ? std::optional(glm::mix(b->from, b->to, b->u)) : std::nullopt;
+  return b ? std::optional(between(b->from, b->to, b->u)) : std::nullopt;
 }
 
 /// Angles are mixed, not orientations, so that a turn of 360 degrees between two keys is one.

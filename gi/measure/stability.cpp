@@ -72,4 +72,15 @@ Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::s
   return out;
 }
 
+bool jumped(const InstanceView& instance, const Aabb& boundsObject) {
+  if (!instance.moved || boundsObject.empty()) return false;
+  float farthest = 0;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner = glm::mix(boundsObject.lo, boundsObject.hi, vec3(i & 1, i >> 1 & 1, i >> 2 & 1));
+    const vec3 now = vec3(instance.worldFromObject * vec4(corner, 1));
+    farthest = std::max(farthest, glm::length(now - vec3(instance.worldFromObjectBefore * vec4(corner, 1))));
+  }
+  return farthest > 0 && farthest >= 0.25f * instance.boundsWorld.diameter();
+}
+
 } // namespace lambent

@@ -1,7 +1,7 @@
 // Errors of a technique over time at tracked pixels (paper 1, 5.2 and eq. 10). Pure functions of recorded series.
 #pragma once
 
-#include "engine/core/math.h"
+#include "engine/scene/scene_view.h"
 
 #include <cstdint>
 #include <span>
@@ -39,5 +39,9 @@ struct Latency {
 /// `steps`: frames in which the scene differs from the frame before by a step, ascending.
 Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::span<const uint32_t> pixels,
                   std::span<const size_t> steps, float least = 0.02f);
+
+/// Whether an object moved so far since the frame before that the light may follow it by a step: some corner of its
+/// bounds by a quarter of their diagonal in world space or more. `boundsObject` are those of its mesh.
+bool jumped(const InstanceView& instance, const Aabb& boundsObject);
 
 } // namespace lambent

@@ -2,47 +2,23 @@
 
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
-#include "shaders/shared/paraboloid.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lambent {
 
-// The paraboloid map is a stereographic projection: uv of polar angle t lies at tan(t/2)/2 from the centre, and circles
-// on the sphere are circles in the map. So the sphere around a box covers a disc, found from its nearest and farthest
-// polar angle.
-TexelRect texelsCovered(const MapPose& pose, const Aabb& box, int resolution) {
-  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
-  const vec3 d = box.centre() - origin;
-  const float radius = 0.5f * box.diameter(), distance = glm::length(d);
-  if (!(distance > radius * 1.001f)) return TexelRect::whole(resolution);
-  vec3 tangent, bitangent;
-  basisAround(pose.normal, tangent, bitangent);
-  const vec3 local = vec3(glm::dot(d, tangent), glm::dot(d, bitangent), glm::dot(d, pose.normal)) / distance;
-  const float polar = std::acos(glm::clamp(local.z, -1.0f, 1.0f)), half = std::asin(radius / distance);
-  constexpr float kHorizon = 0.5f * kPi + 0.05f; // texels reach a little below it
-  if (polar - half > kHorizon) return {};
-  const float outer = std::min(polar + half, 0.95f * kPi); // beyond the map long before
-  const float r0 = 0.5f * std::tan(0.5f * (polar - half)), r1 = 0.5f * std::tan(0.5f * outer);
-  const vec2 flat(local.x, local.y);
-  const float length = glm::length(flat);
-  const vec2 along = length > 1e-6f ? flat / length : vec2(1, 0);
-  const vec2 centre = 0.5f + along * (0.5f * (r0 + r1));
-  const float discRadius = 0.5f * (r1 - r0);
-  const vec2 lo = (centre - discRadius) * float(resolution), hi = (centre + discRadius) * float(resolution);
-  const auto bound = [resolution](float v) { return int(glm::clamp(v, 0.0f, float(resolution))); };
-  return {bound(std::floor(lo.x) - 1), bound(std::floor(lo.y) - 1), bound(std::ceil(hi.x) + 1),
-          bound(std::ceil(hi.y) + 1)};
-}
-
 namespace {
 
-/// Whether some of up to `tries` random points of the box are in sight, as far as the place where the ray enters it.
+/// Whether some of up to `tries` points of the box are in sight, as far as the place where the ray enters it. The
+/// points are spread evenly (Roberts' R3 sequence, randomly shifted), so that a part in sight is found though it is
+/// small.
 bool seesPlace(const vec3& origin, const vec3& normal, const Aabb& box, const RayQuery& rays, Rng& rng, int tries,
                RayCounts& counts) {
+  const vec3 shift(rng.next(), rng.next(), rng.next());
   for (int i = 0; i < tries; ++i) {
-    const vec3 to = box.lo + box.size() * vec3(rng.next(), rng.next(), rng.next());
+    const vec3 to = box.lo + box.size() * glm::fract(shift + float(i) * vec3(0.8191725f, 0.6710436f, 0.5497005f));
     const vec3 d = to - origin;
     if (glm::dot(d, normal) <= 0) continue;
     float enter = 0;
@@ -55,6 +31,22 @@ bool seesPlace(const vec3& origin, const vec3& normal, const Aabb& box, const Ra
   return false;
 }
 
+/// Share of a diffuse light's flux per texel, on the mean over some texels of the rectangle: towards the horizon texels
+/// are smaller and carry less. Up to a constant factor.
+float fluxPerTexel(const TexelRect& texels, int resolution) {
+  constexpr int kSamples = 4; // per side
+  float sum = 0;
+  for (int i = 0; i < kSamples * kSamples; ++i) {
+    const vec2 at = (vec2(i % kSamples, i / kSamples) + 0.5f) / float(kSamples);
+    const vec2 texel = glm::mix(vec2(texels.x0, texels.y0), vec2(texels.x1, texels.y1), at);
+    const vec2 p = 2.0f * texel / float(resolution) - 1.0f;
+    const float r2 = glm::dot(p, p);
+    // cos = (1 - r²) / (1 + r²), solid angle ∝ 1 / (1 + r²)²
+    sum += std::max(0.0f, 1 - r2) / ((1 + r2) * (1 + r2) * (1 + r2));
+  }
+  return sum / float(kSamples * kSamples);
+}
+
 } // namespace
 
 void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
@@ -64,6 +56,12 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
   constexpr size_t kGrain = 64;
   // With many movers rays would take longer than the maps; a light that has tried so many counts as seeing the rest.
   constexpr int kBoxesTested = 8;
+  // A map that is stale for the most part is drawn whole: among hundreds of movers looking on would take longer.
+  // Neighbours lie together in the list, so it is gone through in strides, which fill the map sooner.
+  constexpr float kMost = 0.75f;
+  const std::span<const Aabb> boxes = moved.boxes();
+  size_t stride = std::max<size_t>(1, size_t(0.618 * double(boxes.size())));
+  while (std::gcd(stride, boxes.size()) > 1) ++stride;
   std::vector<RayCounts> perBlock((poses.size() + kGrain - 1) / kGrain);
   parallelFor(poses.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -71,7 +69,12 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
       const vec3 origin = offsetPoint(poses[i].position, poses[i].geometricNormal);
       Rng rng(seed, Stream::MapTests, uint32_t(i), frame);
       int tested = 0;
-      for (const Aabb& box : moved.boxes()) {
+      for (size_t j = 0; j < boxes.size(); ++j) {
+        const Aabb& box = boxes[j * stride % boxes.size()];
+        if (stale_[i].texels.area() > kMost * float(resolution * resolution)) {
+          stale_[i].texels = TexelRect::whole(resolution);
+          break;
+        }
         const TexelRect texels = texelsCovered(poses[i], box, resolution);
         TexelRect all = stale_[i].texels;
         all.add(texels);
@@ -104,16 +107,27 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
     jobs.push_back({slot, TexelRect::whole(resolution)});
     stale_[slot] = {};
   }
+  // The error of a map grows with the light that its stale texels carry and with the frames it has waited, so the mean
+  // error of all is least when texels of light b each wait for frames in proportion to 1/√b: the map with most b ·
+  // frames² is next (as in Kadota et al. 2018, "Scheduling policies for minimizing age of information", where it is
+  // Whittle's index). Lights below a share of the mean count as that share, so that no map waits for ever.
+  constexpr double kLeastShare = 1.0 / 256;
+  std::vector<float> perTexel(stale_.size(), 0);
   std::vector<uint32_t> order;
+  double sum = 0;
   for (uint32_t i = 0; i < stale_.size(); ++i) {
     if (brightness[i] <= 0) stale_[i] = {}; // an empty slot
     if (stale_[i].texels.empty()) continue;
     ++stale_[i].frames;
     order.push_back(i);
+    perTexel[i] = brightness[i] * fluxPerTexel(stale_[i].texels, resolution);
+    sum += perTexel[i];
   }
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return brightness[a] * float(stale_[a].frames) > brightness[b] * float(stale_[b].frames);
-  });
+  const float least = float(kLeastShare * sum / double(std::max<size_t>(1, order.size())));
+  const auto urgency = [&](uint32_t slot) {
+    return std::max(perTexel[slot], least) * float(stale_[slot].frames) * float(stale_[slot].frames);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return urgency(a) > urgency(b); });
   for (uint32_t slot : order) {
     if (texels <= 0) break;
     texels -= stale_[slot].texels.area();

@@ -11,8 +11,8 @@ namespace lambent {
 
 class MapSchedule {
  public:
-  /// Queues the texels of each map in which something that moved is seen or was. `poses` and `brightness` (what the light
-  /// brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
+  /// Queues the texels of each map in which something that moved is seen or was. `poses` and `brightness` (what the
+  /// light brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
   void disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
                const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
   /// Queues the maps of `count` slots, going on where the last call stopped.
@@ -21,7 +21,8 @@ class MapSchedule {
   void disturbAll(size_t slots, int resolution);
 
   /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that stand elsewhere) whole and for certain,
-  /// others in order of brightness times frames waited until `texels` are spent. By slot, ascending.
+  /// others in order of light per texel times the square of frames waited until `texels` are spent (the last map may
+  /// exceed them). By slot, ascending.
   std::vector<MapJob> take(std::span<const uint32_t> first, std::span<const float> brightness, int resolution,
                            int64_t texels);
 
@@ -37,7 +38,7 @@ class MapSchedule {
   size_t turn_ = 0;
 };
 
-/// Texels of a map that the box can cover, with a margin of one; empty when it lies behind the light.
+/// The smallest rectangle of texels whose rays can meet the box, widened for rounding; empty when none can.
 TexelRect texelsCovered(const MapPose& pose, const Aabb& box, int resolution);
 
 } // namespace lambent

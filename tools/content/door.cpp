@@ -14,8 +14,9 @@ constexpr double kHalfWidth = 2.4, kDark = 4.6, kBright = 4.2, kHeight = 2.6; //
 constexpr double kDivider = 0.2, kOuterWall = 0.3;
 constexpr double kSunk = 0.05; // walls reach that far into floor, ceiling and each other
 constexpr double kDoorHalf = 0.45, kDoorHeight = 2.1;
-// The leaf covers the doorway like a lid, 5 mm before the wall, so that hardly any light passes it when it is shut.
-constexpr double kOverlap = 0.08, kGap = 0.005, kLeaf = 0.06;
+// The leaf covers the doorway like a lid, sunk 4 mm into the wall and the floor, so that no light passes it when it is
+// shut.
+constexpr double kOverlap = 0.08, kSeal = 0.004, kLeaf = 0.06;
 constexpr uint32_t kDetail = 12; // segments of round things
 
 Geometry moved(const Geometry& part, const dvec3& by) {
@@ -46,9 +47,9 @@ GeneratedScene writeDoor(const std::filesystem::path& folder) {
           wallWithOpening({-x - kSunk, lo, -kDivider}, {x + kSunk, hi, 0}, {-kDoorHalf, lo}, {kDoorHalf, kDoorHeight}),
           white);
 
-  Geometry leaf = box({-2 * (kDoorHalf + kOverlap), kGap, 0}, {0, kDoorHeight + kOverlap, kLeaf});
+  Geometry leaf = box({-2 * (kDoorHalf + kOverlap), -kSeal, 0}, {0, kDoorHeight + kOverlap, kLeaf});
   leaf.add(box({-1.0, 1.0, kLeaf - 0.01}, {-0.88, 1.03, kLeaf + 0.04})); // handle
-  s.place("door leaf", leaf, wood, {kDoorHalf + kOverlap, 0, kGap});
+  s.place("door leaf", leaf, wood, {kDoorHalf + kOverlap, 0, -kSeal});
 
   // The dark room: a shelf beside the door, a table with a chair at the east wall, a chest in the south-east corner.
   s.place("shelf", moved(shelf(1.0, 1.9, 0.32, 5), {-1.75, 0, 0.17}), wood);

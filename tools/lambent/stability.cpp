@@ -84,25 +84,12 @@ class Follower {
   std::vector<double> placeMs_;
 };
 
-/// A corner of its bounds moved by a quarter of their diagonal or more.
-bool jumped(const InstanceView& instance, const SceneAssets& assets) {
-  if (!instance.moved) return false;
-  const Aabb& b = assets.meshes[instance.mesh].boundsObject;
-  float farthest = 0;
-  for (int i = 0; i < 8; ++i) {
-    const vec4 corner(i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z, 1);
-    farthest =
-        std::max(farthest, glm::length(vec3((instance.worldFromObject - instance.worldFromObjectBefore) * corner)));
-  }
-  return farthest > 0 && farthest >= 0.25f * instance.boundsWorld.diameter();
-}
-
 /// Frames in which some light differs from the frame before by half or more, or some object jumps.
 class StepFinder {
  public:
   bool step(const SceneView& view) {
     bool found = false;
-    for (const InstanceView& i : view.instances) found |= jumped(i, *view.assets);
+    for (const InstanceView& i : view.instances) found |= jumped(i, view.assets->meshes[i.mesh].boundsObject);
     std::vector<float> now;
     for (const LightView& l : view.lights) now.push_back(luminance(l.intensity));
     for (size_t i = 0; i < now.size() && now.size() == before_.size(); ++i)

@@ -88,6 +88,59 @@ TEST(Stability, LatencyOfAStepDownAndOfOneThatIsMissed) {
   EXPECT_EQ(latency90(technique, truth, both, {}).count, 0u);
 }
 
+/// A box of `size` with its corner at the object's origin, carried from one place to another.
+InstanceView carried(const vec3& size, const mat4& before, const mat4& now) {
+  InstanceView i;
+  i.worldFromObjectBefore = before;
+  i.worldFromObject = now;
+  i.boundsWorldBefore = transformed({vec3(0), size}, before);
+  i.boundsWorld = transformed({vec3(0), size}, now);
+  i.moved = before != now;
+  return i;
+}
+
+mat4 turned(float degrees) { return glm::mat4_cast(glm::angleAxis(glm::radians(degrees), vec3(0, 1, 0))); }
+
+mat4 at(const vec3& place) {
+  mat4 m(1);
+  m[3] = vec4(place, 1);
+  return m;
+}
+
+TEST(Jumped, ALeafThatTurnsWidely) {
+  // 1 m × 2 m: its free edge moves by 2 sin(a/2), a quarter of the diagonal (0.56 to 0.61 m) at about 34 degrees.
+  const vec3 leaf(1, 2, 0.05f);
+  EXPECT_FALSE(jumped(carried(leaf, turned(0), turned(0)), {vec3(0), leaf}));
+  EXPECT_FALSE(jumped(carried(leaf, turned(0), turned(2)), {vec3(0), leaf}));
+  EXPECT_FALSE(jumped(carried(leaf, turned(20), turned(45)), {vec3(0), leaf}));
+  EXPECT_TRUE(jumped(carried(leaf, turned(20), turned(60)), {vec3(0), leaf}));
+  EXPECT_TRUE(jumped(carried(leaf, turned(75), turned(20)), {vec3(0), leaf}));
+  EXPECT_TRUE(jumped(carried(leaf, turned(0), turned(180)), {vec3(0), leaf})); // its bounds hardly differ
+}
+
+TEST(Jumped, ASmallBoxCarriedFast) {
+  const vec3 box(0.3f); // diagonal 0.52 m
+  EXPECT_FALSE(jumped(carried(box, at({5, 1, 2}), at({5.12f, 1, 2})), {vec3(0), box}));
+  EXPECT_TRUE(jumped(carried(box, at({5, 1, 2}), at({5.14f, 1, 2})), {vec3(0), box}));
+  const vec3 large(3); // the same way is short for a larger one
+  EXPECT_FALSE(jumped(carried(large, at({5, 1, 2}), at({5.14f, 1, 2})), {vec3(0), large}));
+  const mat4 scaled = at({5, 1, 2}) * glm::mat4_cast(glm::angleAxis(0.1f, vec3(1, 0, 0))) * mat4(mat3(10));
+  mat4 there = scaled; // in world space a metre, its object's space ten times smaller
+  there[3].x += 0.8f;
+  EXPECT_FALSE(jumped(carried(box, scaled, there), {vec3(0), box}));
+}
+
+TEST(Jumped, ALiftThatSteps) {
+  const vec3 cabin(1.6f, 2.3f, 1.6f); // diagonal 3.2 m
+  EXPECT_FALSE(jumped(carried(cabin, at({0, 0.15f, 0}), at({0, 0.15f + 2.2f / 30, 0})), {vec3(0), cabin}));
+  EXPECT_TRUE(jumped(carried(cabin, at({0, 0.15f, 0}), at({0, 3.2f, 0})), {vec3(0), cabin}));
+  EXPECT_TRUE(jumped(carried(cabin, at({0, 3.2f, 0}), at({0, 0.15f, 0})), {vec3(0), cabin}));
+  InstanceView still = carried(cabin, at({0, 0, 0}), at({0, 3, 0}));
+  still.moved = false; // as for an instance seen for the first time
+  EXPECT_FALSE(jumped(still, {vec3(0), cabin}));
+  EXPECT_FALSE(jumped(carried(cabin, at({0, 0, 0}), at({0, 3, 0})), Aabb{})); // a mesh without triangles
+}
+
 TEST(TrackedPixels, AgreeWithThePictureAtPixelCentres) {
   test::HandScene scene;
   scene.box({0, 0, 0}, {2, 1, 3}, scene.material(vec3(0.6f, 0.5f, 0.4f)), true);

@@ -54,6 +54,24 @@ TEST(SampleChannel, RotationsTakeTheShorterArcAndStayUnit) {
   EXPECT_NEAR(glm::length(sampleChannel(channel, 1)), 1, 1e-5f);
 }
 
+TEST(SampleChannel, EqualKeysHoldToTheBit) {
+  const vec4 place(5.2f, 0.9f, -0.4f, 0), turn = glm::normalize(vec4(0.3f, -0.2f, 0.7f, 0.4f)), none(0);
+  const AnimationChannel channels[] = {
+      translation(Interpolation::Linear, {0, 3}, {place, place}),
+      translation(Interpolation::CubicSpline, {0, 3}, {none, place, none, none, place, none}),
+      {Entity(0, 0), ChannelPath::Rotation, Interpolation::Linear, {0, 3}, {turn, turn}},
+      {Entity(0, 0), ChannelPath::Rotation, Interpolation::Linear, {0, 3}, {turn, -turn}}}; // the same rotation
+  for (const AnimationChannel& channel : channels)
+    for (int frame = 0; frame < 90; ++frame)
+      EXPECT_EQ(sampleChannel(channel, float(frame) / 30), sampleChannel(channel, 0)) << frame;
+  const WeightsChannel weights{Entity(0, 0), Interpolation::Linear, 1, {0, 3}, {0.37f, 0.37f}};
+  std::vector<float> now;
+  for (int frame = 0; frame < 90; ++frame) {
+    sampleChannel(weights, float(frame) / 30, now);
+    EXPECT_EQ(now, std::vector<float>{0.37f}) << frame;
+  }
+}
+
 TEST(SampleChannel, EqualTimesJump) {
   const auto channel = translation(Interpolation::Linear, {0, 1, 1, 2}, {vec4(0), vec4(1), vec4(5), vec4(6)});
   expectNear(vec3(sampleChannel(channel, 0.5f)), vec3(0.5f));

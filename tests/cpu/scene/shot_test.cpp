@@ -163,5 +163,26 @@ TEST(PoseShot, MovesNodesLinearlyAndNamesThoseItLacks) {
   EXPECT_NE(inputErrorOf([&] { poseShot(scene, shot, 0); }).find("no light called 'door'"), std::string::npos);
 }
 
+TEST(PoseShot, WhatEqualKeysHoldDoesNotMove) {
+  Scene scene;
+  Registry& registry = scene.registry;
+  const Entity box = registry.create();
+  registry.emplace<Name>(box, "box");
+  registry.emplace<Transform>(box);
+  const vec3 place(5.2f, 0.9f, -0.4f), turn(13.7f, 75.3f, -8.1f);
+  Shot shot;
+  shot.objects["box"] = {{0, place, turn, {}, {}}, {1, place, turn, {}, {}}, {3, place, turn, {}, {}}};
+  for (const double t : {0.0, 1.0, 3.0}) shot.camera.push_back({t, place, turn, 1.1f});
+  poseShot(scene, shot, 0);
+  const mat4 before = registry.get<WorldTransform>(box).worldFromNode;
+  const CameraView camera = shotCamera(shot, 0);
+  for (int frame = 1; frame < 100; ++frame) {
+    poseShot(scene, shot, frame / 30.0);
+    EXPECT_EQ(registry.get<WorldTransform>(box).worldFromNode, before) << frame;
+    EXPECT_EQ(shotCamera(shot, frame / 30.0).worldFromView, camera.worldFromView) << frame;
+    EXPECT_EQ(shotCamera(shot, frame / 30.0).fovY, camera.fovY) << frame;
+  }
+}
+
 } // namespace
 } // namespace lambent

@@ -1,0 +1,383 @@
+// Which maps are drawn again where objects moved: the texels a box covers, a part drawn anew against the whole, who
+// sees a mover, and the order of the queue.
+#include "engine/core/parallel.h"
+#include "engine/core/rng.h"
+#include "engine/core/sampling.h"
+#include "engine/trace/embree_query.h"
+#include "gi/render/map_schedule.h"
+#include "gl_fixture.h"
+#include "shaders/shared/paraboloid.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lambent::test {
+namespace {
+
+/// The direction that a texel looks in, world space; nothing for those that see nothing (as castMap).
+std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolution) {
+  const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(resolution));
+  if (d.z < -2.0f / float(resolution)) return {};
+  vec3 tangent, bitangent;
+  basisAround(pose.normal, tangent, bitangent);
+  return d.x * tangent + d.y * bitangent + d.z * pose.normal;
+}
+
+/// Bounding rectangle of the texels whose rays meet the box, by looking at each.
+TexelRect texelsMet(const MapPose& pose, const Aabb& box, int resolution) {
+  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  TexelRect met;
+  for (int y = 0; y < resolution; ++y)
+    for (int x = 0; x < resolution; ++x)
+      if (const auto d = texelDirection(pose, x, y, resolution); d && crosses(Ray{origin, *d}, box))
+        met.add({x, y, x + 1, y + 1});
+  return met;
+}
+
+bool holds(const TexelRect& outer, const TexelRect& inner) {
+  TexelRect both = outer;
+  both.add(inner);
+  return both == outer;
+}
+
+MapPose randomPose(Rng& rng) {
+  MapPose pose;
+  pose.position = 4.0f * vec3(rng.next(), rng.next(), rng.next()) - 2.0f;
+  pose.geometricNormal = sampleSphere(rng.next2());
+  pose.normal = glm::normalize(pose.geometricNormal + 0.4f * sampleSphere(rng.next2()));
+  return pose;
+}
+
+Aabb boxAround(const vec3& centre, const vec3& size) { return {centre - 0.5f * size, centre + 0.5f * size}; }
+
+TEST(TexelsCovered, HoldEveryTexelWhoseRayMeetsTheBox) {
+  Rng rng(1, Stream::Test, 0);
+  int met = 0, partlyBehind = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const int resolution = i % 3 == 0 ? 16 : i % 3 == 1 ? 33 : 64;
+    const MapPose pose = randomPose(rng);
+    // Far and near, large and small, flat and long; some hold the light or begin right at it.
+    const float scale = std::exp2(-5 + 7 * rng.next());
+    const vec3 size = scale * vec3(std::exp2(-6 * rng.next()), std::exp2(-6 * rng.next()), std::exp2(-6 * rng.next()));
+    const float distance = scale * std::exp2(-4 + 6 * rng.next());
+    const Aabb box = boxAround(pose.position + distance * sampleSphere(rng.next2()), size);
+    const TexelRect truth = texelsMet(pose, box, resolution), bound = texelsCovered(pose, box, resolution);
+    ASSERT_TRUE(holds(bound, truth)) << "case " << i << ": [" << bound.x0 << ',' << bound.x1 << ")x[" << bound.y0 << ','
+                                     << bound.y1 << ") lacks some of [" << truth.x0 << ',' << truth.x1 << ")x["
+                                     << truth.y0 << ',' << truth.y1 << ')';
+    ASSERT_TRUE(holds(TexelRect::whole(resolution), bound)) << "case " << i;
+    met += !truth.empty();
+    const float above = glm::dot(box.centre() - pose.position, pose.normal);
+    partlyBehind += !truth.empty() && above < 0.5f * glm::dot(size, glm::abs(pose.normal));
+  }
+  EXPECT_GT(met, 2000);
+  EXPECT_GT(partlyBehind, 500);
+}
+
+TEST(TexelsCovered, AreFewMoreThanNeeded) {
+  constexpr int kResolution = 128;
+  Rng rng(2, Stream::Test, 0);
+  double bound = 0, needed = 0;
+  int cases = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const MapPose pose = randomPose(rng);
+    const vec3 size = vec3(0.05f) + vec3(rng.next(), rng.next(), rng.next());
+    const Aabb box = boxAround(pose.position + (2 + 3 * rng.next()) * sampleSphere(rng.next2()), size);
+    const TexelRect truth = texelsMet(pose, box, kResolution), covered = texelsCovered(pose, box, kResolution);
+    if (truth.empty()) {
+      // One that lies by the horizon may be met by no texel's centre.
+      EXPECT_LT(covered.area(), 0.05 * kResolution * kResolution) << "case " << i;
+      continue;
+    }
+    bound += covered.area();
+    needed += truth.area();
+    ++cases;
+  }
+  EXPECT_GT(cases, 500);
+  std::printf("texels in rectangles over those needed: %.3f\n", bound / needed);
+  EXPECT_LT(bound / needed, 1.15);
+}
+
+TEST(TexelsCovered, NothingBehindTheLightAndAllAroundIt) {
+  const MapPose pose{{1, 2, 3}, {0, 1, 0}, {0, 1, 0}};
+  EXPECT_TRUE(texelsCovered(pose, boxAround({1, 0.5f, 3}, vec3(0.8f)), 128).empty());
+  EXPECT_TRUE(texelsCovered(pose, boxAround({4, 1.4f, 3}, vec3(0.4f)), 128).empty());
+  EXPECT_TRUE(texelsCovered(pose, Aabb{}, 128).empty());
+  EXPECT_EQ(texelsCovered(pose, boxAround(pose.position, vec3(0.5f)), 128), TexelRect::whole(128));
+  EXPECT_EQ(texelsCovered(pose, boxAround({1, 2.25f, 3}, vec3(0.5f)), 128), TexelRect::whole(128));
+  const TexelRect overhead = texelsCovered(pose, boxAround({1, 12, 3}, vec3(0.5f)), 128);
+  EXPECT_FALSE(overhead.empty());
+  EXPECT_LT(overhead.area(), 100);
+  EXPECT_TRUE(holds(overhead, {64, 64, 65, 65}));
+}
+
+/// A closed room with a block in it that can be carried about.
+struct RoomWithBlock {
+  HandScene scene;
+  uint32_t block = 0;
+
+  RoomWithBlock() {
+    const uint32_t white = scene.material(vec3(0.7f));
+    scene.box(vec3(-1), vec3(1), white, true);
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i) mesh.positions.push_back(0.2f * vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    mesh.normals.assign(8, vec3(0, 1, 0));
+    mesh.uv0.assign(8, vec2(0));
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
+    mesh.primitives.push_back({0, 12, white, mesh.boundsObject});
+    scene.assets.meshes.push_back(std::move(mesh));
+    block = scene.instance(uint32_t(scene.assets.meshes.size() - 1), mat4(1));
+  }
+
+  /// Carries the block and returns the view that tells of it.
+  SceneView carry(const vec3& to, float turn) {
+    InstanceView& i = scene.instances[block];
+    i.worldFromObjectBefore = i.worldFromObject;
+    i.boundsWorldBefore = i.boundsWorld;
+    const float c = std::cos(turn), s = std::sin(turn);
+    i.worldFromObject = mat4(vec4(c, 0, -s, 0), vec4(0, 1, 0, 0), vec4(s, 0, c, 0), vec4(to, 1));
+    i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
+    i.moved = true;
+    SceneView view = scene.view();
+    view.changes.geometry = true;
+    return view;
+  }
+};
+
+using MapScheduleTest = GlTest;
+
+TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
+  RoomWithBlock room;
+  EmbreeQuery rays(room.scene.assets);
+  rays.update(room.carry(vec3(0), 0.3f));
+  GpuScene gpu(programs, room.scene.assets);
+  Rng rng(3, Stream::Test, 0);
+  std::vector<MapPose> poses;
+  for (int i = 0; i < 96; ++i) { // on the walls
+    const int axis = i % 3;
+    vec3 p = 1.8f * vec3(rng.next(), rng.next(), rng.next()) - 0.9f, n(0);
+    p[axis] = i % 2 ? 1.0f : -1.0f;
+    n[axis] = -p[axis];
+    poses.push_back({p, glm::normalize(n + 0.3f * sampleSphere(rng.next2())), n});
+  }
+  const std::vector<float> brightness(poses.size(), 1.0f);
+  ParaboloidMapInputs in{.scene = gpu,
+                         .rays = &rays,
+                         .poses = poses,
+                         .jobs = {},
+                         .farDistance = 4,
+                         .resolution = 64,
+                         .maker = ShadowMaker::Rays};
+  ParaboloidMapPass parts(passes, "in part");
+  parts.run(in);
+  MapSchedule schedule;
+  int odd = 0;
+  size_t changed = 0;
+  for (uint32_t frame = 0; frame < 4; ++frame) {
+    const vec3 to[] = {{0.1f, 0, 0.05f}, {0.45f, -0.3f, 0.1f}, {-0.5f, 0.35f, -0.4f}, {-0.5f, 0.35f, -0.35f}};
+    const SceneView view = room.carry(to[frame], 0.3f + 0.4f * float(frame));
+    rays.update(view);
+    gpu.place(view.instances);
+    RayCounts counts;
+    schedule.disturb(poses, brightness, Disturbance(view), rays, 64, 0, 1, frame, counts);
+    const std::vector<MapJob> jobs = schedule.take({}, brightness, 64, 1 << 30);
+    int64_t texels = 0;
+    for (const MapJob& job : jobs) {
+      texels += job.texels.area();
+      odd += (job.texels.x1 - job.texels.x0) % 2;
+    }
+    EXPECT_LT(double(texels), 0.7 * double(poses.size()) * 64 * 64) << "frame " << frame;
+    std::vector<std::vector<float>> before;
+    for (uint32_t i = 0; i < poses.size(); ++i) before.push_back(parts.readLayer(i));
+    in.jobs = jobs;
+    parts.run(in);
+    ParaboloidMapPass whole(passes, "whole");
+    in.jobs = {};
+    whole.run(in);
+    for (uint32_t i = 0; i < poses.size(); ++i) {
+      const std::vector<float> part = parts.readLayer(i);
+      EXPECT_EQ(part, whole.readLayer(i)) << "frame " << frame << ", map " << i;
+      changed += part != before[i];
+    }
+  }
+  EXPECT_GT(odd, 50);
+  EXPECT_GT(changed, 200u);
+}
+
+// The queue ----------------------------------------------------------------------------------------------------------
+
+constexpr int kResolution = 32, kMap = kResolution * kResolution;
+
+std::vector<uint32_t> slotsOf(const std::vector<MapJob>& jobs) {
+  std::vector<uint32_t> slots;
+  for (const MapJob& job : jobs) slots.push_back(job.slot);
+  return slots;
+}
+
+TEST(MapSchedule, OnlyMapsThatSeeTheMoverWait) {
+  // A wall at x = 0 that reaches far; the mover is on its right side.
+  AnalyticQuery rays;
+  rays.addBox({-0.1f, -50, -50}, {0.1f, 50, 50}, {});
+  const Aabb box = boxAround({2, 0, 0}, vec3(0.5f));
+  const Disturbance moved(std::span(&box, 1));
+  const MapPose poses[] = {
+      {{-2, 0, 0}, {1, 0, 0}, {1, 0, 0}},   // behind the wall, turned towards the mover
+      {{5, 0, 0}, {-1, 0, 0}, {-1, 0, 0}},  // in sight
+      {{5, 0, 0}, {1, 0, 0}, {1, 0, 0}},    // turned away
+      {{4, 1, 1}, {-1, 0, 0}, {-1, 0, 0}},  // in sight, but dark
+      {{2, 0, 0.1f}, {0, 1, 0}, {0, 1, 0}}, // inside it
+  };
+  const float brightness[] = {1, 1, 1, 0, 1};
+  for (const int raysPerBox : {16, 0}) {
+    MapSchedule schedule;
+    RayCounts counts;
+    schedule.disturb(poses, brightness, moved, rays, kResolution, raysPerBox, 1, 0, counts);
+    EXPECT_EQ(schedule.waiting(), raysPerBox ? 2u : 3u);
+    const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, 100 * kMap);
+    EXPECT_EQ(slotsOf(jobs), raysPerBox ? (std::vector<uint32_t>{1, 4}) : (std::vector<uint32_t>{0, 1, 4}));
+    EXPECT_EQ(jobs.back().texels, TexelRect::whole(kResolution));
+    const auto inSight = std::find_if(jobs.begin(), jobs.end(), [](const MapJob& job) { return job.slot == 1; });
+    EXPECT_EQ(inSight->texels, texelsCovered(poses[1], moved.boxes()[0], kResolution));
+    EXPECT_EQ(counts.occlusion > 0, raysPerBox > 0);
+    EXPECT_EQ(schedule.waiting(), 0u);
+  }
+}
+
+TEST(MapSchedule, APlaceSeenThroughASmallHoleIsFound) {
+  // Screens that leave an eighth of the mover in sight: the light sees it in nearly every frame.
+  AnalyticQuery rays;
+  rays.addBox({1, -50, -50}, {1.1f, 50, 0.18f}, {}); // hides z < 0.189 of [-0.25, 0.25]
+  const Aabb box = boxAround({2.25f, 0, 0}, vec3(0.5f));
+  const Disturbance moved(std::span(&box, 1));
+  const MapPose pose{{-20, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  const float brightness[] = {1};
+  int found = 0;
+  for (uint32_t frame = 0; frame < 200; ++frame) {
+    MapSchedule schedule;
+    RayCounts counts;
+    schedule.disturb({&pose, 1}, brightness, moved, rays, 2048, 16, 1, frame, counts);
+    found += schedule.waiting() == 1;
+  }
+  EXPECT_GT(found, 196); // 0.875^16 = 12 % would be missed by independent points
+}
+
+TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
+  MapSchedule schedule;
+  const std::vector<float> brightness{0.1f, 5, 0, 3, 4, 0.2f, 2, 1};
+  schedule.disturbAll(brightness.size(), kResolution);
+  EXPECT_EQ(schedule.waiting(), 8u);
+  const uint32_t first[] = {0, 5};
+  // Two moved lights whatever the budget, then the brightest as long as something is left of it.
+  const std::vector<MapJob> jobs = schedule.take(first, brightness, kResolution, kMap + 1);
+  EXPECT_EQ(slotsOf(jobs), (std::vector<uint32_t>{0, 1, 4, 5}));
+  for (const MapJob& job : jobs) EXPECT_EQ(job.texels, TexelRect::whole(kResolution));
+  EXPECT_EQ(schedule.waiting(), 3u) << "3, 6, 7; the empty slot needs no map";
+  EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, 0)), std::vector<uint32_t>{});
+  EXPECT_EQ(schedule.waiting(), 3u);
+  EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, kMap)), std::vector<uint32_t>{3});
+  EXPECT_EQ(slotsOf(schedule.take(first, brightness, kResolution, 0)), (std::vector<uint32_t>{0, 5}));
+  schedule.clear();
+  EXPECT_EQ(schedule.waiting(), 0u);
+  EXPECT_TRUE(schedule.take({}, brightness, kResolution, 100 * kMap).empty());
+}
+
+TEST(MapSchedule, PartsAddUpUntilTheyAreDrawn) {
+  const AnalyticQuery nothing;
+  const MapPose pose{{0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
+  const float brightness[] = {1};
+  const Aabb left = boxAround({-3, 4, 0}, vec3(0.5f)), right = boxAround({3, 4, 0}, vec3(0.5f));
+  MapSchedule schedule;
+  RayCounts counts;
+  schedule.disturb({&pose, 1}, brightness, Disturbance(std::span(&left, 1)), nothing, kResolution, 4, 1, 0, counts);
+  EXPECT_TRUE(schedule.take({}, brightness, kResolution, 0).empty());
+  schedule.disturb({&pose, 1}, brightness, Disturbance(std::span(&right, 1)), nothing, kResolution, 4, 1, 1, counts);
+  EXPECT_EQ(schedule.waiting(), 1u);
+  const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, 1);
+  ASSERT_EQ(jobs.size(), 1u);
+  EXPECT_TRUE(holds(jobs[0].texels, texelsCovered(pose, left, kResolution)));
+  EXPECT_TRUE(holds(jobs[0].texels, texelsCovered(pose, right, kResolution)));
+  EXPECT_LT(jobs[0].texels.area(), kMap);
+}
+
+TEST(MapSchedule, TexelsThatCarryMoreLightComeFirst) {
+  // The mover is by the horizon of the first light and straight ahead of the second.
+  const AnalyticQuery nothing;
+  const MapPose poses[] = {{{-4, 0, 0}, {0, 1, 0}, {0, 1, 0}}, {{0, -4, 0}, {0, 1, 0}, {0, 1, 0}}};
+  const Aabb box = boxAround({0, 0.6f, 0}, vec3(0.8f));
+  const float equal[] = {1, 1}, muchBrighter[] = {100, 1};
+  for (const auto& brightness : {equal, muchBrighter}) {
+    MapSchedule schedule;
+    RayCounts counts;
+    schedule.disturb(poses, {brightness, 2}, Disturbance(std::span(&box, 1)), nothing, kResolution, 0, 1, 0, counts);
+    ASSERT_EQ(schedule.waiting(), 2u);
+    EXPECT_EQ(slotsOf(schedule.take({}, {brightness, 2}, kResolution, 1)),
+              std::vector<uint32_t>{brightness == equal ? 1u : 0u});
+  }
+}
+
+TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
+  constexpr size_t kSlots = 64;
+  constexpr int64_t kBudget = 8 * kMap;
+  std::vector<float> brightness; // over ten decades, and some that bring next to nothing
+  for (size_t i = 0; i < kSlots; ++i) brightness.push_back(i % 8 == 7 ? 1e-20f : std::pow(10.0f, -float(i % 11)));
+  MapSchedule schedule;
+  std::vector<int> drawn(kSlots, 0), since(kSlots, 0);
+  int longest = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    schedule.disturbAll(kSlots, kResolution);
+    const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, kBudget);
+    int64_t texels = 0;
+    for (int& s : since) ++s;
+    for (const MapJob& job : jobs) {
+      texels += job.texels.area();
+      ++drawn[job.slot];
+      longest = std::max(longest, since[job.slot]);
+      since[job.slot] = 0;
+    }
+    EXPECT_GE(texels, kBudget);
+    EXPECT_LT(texels, kBudget + kMap);
+    EXPECT_EQ(schedule.waiting(), kSlots - jobs.size());
+  }
+  EXPECT_GE(*std::min_element(drawn.begin(), drawn.end()), 2);
+  EXPECT_LE(longest, 100);
+  // Frames between turns go with 1/√brightness: of the lights of 1, 0.1 and 0.01.
+  const auto turns = [&](size_t decade) {
+    double sum = 0;
+    int count = 0;
+    for (size_t i = 0; i < kSlots; ++i)
+      if (i % 8 != 7 && i % 11 == decade) sum += drawn[i], ++count;
+    return sum / count;
+  };
+  EXPECT_GT(turns(0), 2 * turns(1));
+  EXPECT_GT(turns(1), 1.5 * turns(2));
+}
+
+TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
+  const AnalyticQuery nothing;
+  Rng rng(5, Stream::Test, 0);
+  std::vector<MapPose> poses;
+  for (int i = 0; i < 300; ++i) poses.push_back(randomPose(rng));
+  const std::vector<float> brightness(poses.size(), 1.0f);
+  std::vector<Aabb> boxes;
+  for (int i = 0; i < 20; ++i) boxes.push_back(boxAround(4.0f * sampleSphere(rng.next2()), vec3(0.4f)));
+  const auto run = [&] {
+    MapSchedule schedule;
+    RayCounts counts;
+    schedule.disturb(poses, brightness, Disturbance(boxes), nothing, kResolution, 8, 1, 0, counts);
+    return schedule.take({}, brightness, kResolution, 100 * kMap);
+  };
+  const std::vector<MapJob> many = run();
+  setThreadCount(1);
+  const std::vector<MapJob> one = run();
+  setThreadCount(0);
+  ASSERT_EQ(many.size(), one.size());
+  for (size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(many[i].slot, one[i].slot);
+    EXPECT_EQ(many[i].texels, one[i].texels);
+  }
+}
+
+} // namespace
+} // namespace lambent::test
