@@ -396,7 +396,7 @@ void GiFrame::State::prepareVplMaps(bool beside, const std::vector<uint32_t>& ca
   mapJobs = mapSchedule.take(elsewhere, brightness, resolution, budget);
   stats.mapsWaiting = uint32_t(mapSchedule.waiting());
   work(MapRefresh) = mapJobs.size() - elsewhere.size() + stats.raysMapTests.occlusion;
-  for (const MapJob& job : mapJobs) stats.mapTexelsDrawn += uint64_t(job.texels.area());
+  for (const MapJob& job : mapJobs) stats.mapTexelsDrawn += uint64_t(texelsTraced(job.texels, job.coarse));
 }
 
 // Drawing -------------------------------------------------------------------------------------------------------------

@@ -117,10 +117,11 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
   double sum = 0;
   for (uint32_t i = 0; i < stale_.size(); ++i) {
     if (brightness[i] <= 0) stale_[i] = {}; // an empty slot
-    if (stale_[i].texels.empty()) continue;
+    const TexelRect& wanted = stale_[i].texels.empty() ? stale_[i].rough : stale_[i].texels;
+    if (wanted.empty()) continue;
     ++stale_[i].frames;
     order.push_back(i);
-    perTexel[i] = brightness[i] * fluxPerTexel(stale_[i].texels, resolution);
+    perTexel[i] = brightness[i] * fluxPerTexel(wanted, resolution);
     sum += perTexel[i];
   }
   const float least = float(kLeastShare * sum / double(std::max<size_t>(1, order.size())));
@@ -128,18 +129,37 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
     return std::max(perTexel[slot], least) * float(stale_[slot].frames) * float(stale_[slot].frames);
   };
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return urgency(a) > urgency(b); });
+  // Stale maps come before rough ones. All coarse first, then as many finely as the rest allows, the most urgent ones.
+  std::stable_partition(order.begin(), order.end(), [&](uint32_t slot) { return !stale_[slot].texels.empty(); });
+  int64_t rest = texels;
+  for (uint32_t slot : order) rest -= texelsTraced(stale_[slot].texels, true);
   for (uint32_t slot : order) {
     if (texels <= 0) break;
-    texels -= stale_[slot].texels.area();
-    jobs.push_back({slot, stale_[slot].texels});
-    stale_[slot] = {};
+    Stale& s = stale_[slot];
+    TexelRect fine = s.texels;
+    fine.add(s.rough);
+    const int64_t more = texelsTraced(fine, false) - texelsTraced(s.texels, true);
+    const bool coarse = rest < more && !s.texels.empty();
+    if (rest < more && !coarse && rest < texels) break; // what is left is for stale maps
+    if (coarse) {
+      jobs.push_back({slot, s.texels, true});
+      texels -= texelsTraced(s.texels, true);
+      s.texels = {};
+      s.rough = fine;
+      s.frames = 0;
+    } else {
+      jobs.push_back({slot, fine});
+      texels -= texelsTraced(fine, false);
+      rest -= more;
+      s = {};
+    }
   }
   std::sort(jobs.begin(), jobs.end(), [](const MapJob& a, const MapJob& b) { return a.slot < b.slot; });
   return jobs;
 }
 
 size_t MapSchedule::waiting() const {
-  return size_t(std::count_if(stale_.begin(), stale_.end(), [](const Stale& s) { return !s.texels.empty(); }));
+  return size_t(std::count_if(stale_.begin(), stale_.end(), [](const Stale& s) { return !s.texels.empty() || !s.rough.empty(); }));
 }
 
 } // namespace lambent

@@ -21,17 +21,19 @@ class MapSchedule {
   void disturbAll(size_t slots, int resolution);
 
   /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that stand elsewhere) whole and for certain,
-  /// others in order of light per texel times the square of frames waited until `texels` are spent (the last map may
-  /// exceed them). By slot, ascending.
+  /// others in order of light per texel times the square of frames waited until `texels` have been traced (the last map
+  /// may exceed them). Where they do not suffice for all, maps are drawn coarsely, as many as need be, and stay in the
+  /// queue until nothing else waits. By slot, ascending.
   std::vector<MapJob> take(std::span<const uint32_t> first, std::span<const float> brightness, int resolution,
                            int64_t texels);
 
-  size_t waiting() const; // maps with texels in the queue
+  size_t waiting() const; // maps with texels in the queue, coarse ones too
   void clear() { stale_.clear(); }
 
  private:
   struct Stale {
-    TexelRect texels;
+    TexelRect texels;    // that show where something was
+    TexelRect rough;     // drawn coarsely since
     uint32_t frames = 0; // waited
   };
   std::vector<Stale> stale_; // by slot

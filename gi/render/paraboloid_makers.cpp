@@ -84,30 +84,56 @@ void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<cons
 
 // Rays ---------------------------------------------------------------------------------------------------------------
 
-std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels) {
-  const int n = in.resolution;
+namespace {
+
+/// Gives texels in odd columns or rows of a rectangle a distance, from those beside them that have one.
+void fillBetween(std::vector<float>& distances, int width, int height) {
+  const auto between = [](float a, float b) { // one surface changes little from texel to texel
+    constexpr float kStep = 1.05f;
+    return std::max(a, b) < kStep * std::min(a, b) ? 0.5f * (a + b) : a;
+  };
+  for (int y = 0; y < height; y += 2)
+    for (int x = 1; x < width; x += 2) {
+      float* at = &distances[size_t(y) * width + x];
+      *at = between(at[-1], at[x + 1 < width ? 1 : -1]);
+    }
+  for (int y = 1; y < height; y += 2)
+    for (int x = 0; x < width; ++x) {
+      float* at = &distances[size_t(y) * width + x];
+      *at = between(at[-width], at[y + 1 < height ? width : -width]);
+    }
+}
+
+} // namespace
+
+std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels,
+                              bool coarse) {
+  const int n = in.resolution, step = coarse ? 2 : 1, width = texels.x1 - texels.x0;
   const mat3 worldFromLight = frameOf(pose);
   const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
   std::vector<Ray> rays;
   std::vector<uint32_t> texelOfRay;
-  rays.reserve(size_t(texels.area()));
-  texelOfRay.reserve(size_t(texels.area()));
+  rays.reserve(size_t(texelsTraced(texels, coarse)));
+  texelOfRay.reserve(size_t(texelsTraced(texels, coarse)));
   // 8×8 blocks keep neighbouring rays neighbours in memory, for the ray tracer's packets.
-  for (int by = texels.y0; by < texels.y1; by += 8)
-    for (int bx = texels.x0; bx < texels.x1; bx += 8)
-      for (int y = by; y < std::min(by + 8, texels.y1); ++y)
-        for (int x = bx; x < std::min(bx + 8, texels.x1); ++x) {
+  const int block = 8 * step;
+  for (int by = texels.y0; by < texels.y1; by += block)
+    for (int bx = texels.x0; bx < texels.x1; bx += block)
+      for (int y = by; y < std::min(by + block, texels.y1); y += step)
+        for (int x = bx; x < std::min(bx + block, texels.x1); x += step) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
           if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
           rays.push_back({origin, worldFromLight * d, in.farDistance});
-          texelOfRay.push_back(uint32_t((y - texels.y0) * (texels.x1 - texels.x0) + x - texels.x0));
+          texelOfRay.push_back(uint32_t((y - texels.y0) * width + x - texels.x0));
         }
-  std::vector<float> distances(rays.size());
-  in.rays->distances(rays, distances);
-  std::vector<uint16_t> values(size_t(texels.area()), 65535);
-  for (size_t i = 0; i < rays.size(); ++i)
-    if (distances[i] < in.farDistance)
-      values[texelOfRay[i]] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
+  std::vector<float> met(rays.size());
+  in.rays->distances(rays, met);
+  std::vector<float> distances(size_t(texels.area()), kInfinity);
+  for (size_t i = 0; i < rays.size(); ++i) distances[texelOfRay[i]] = met[i];
+  if (coarse) fillBetween(distances, width, texels.y1 - texels.y0);
+  std::vector<uint16_t> values(distances.size(), 65535);
+  for (size_t i = 0; i < distances.size(); ++i)
+    if (distances[i] < in.farDistance) values[i] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
   return values;
 }
 
@@ -119,10 +145,10 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
     const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels);
+      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].coarse);
     });
     for (size_t i = 0; i < batch.size(); ++i) {
-      const auto& [slot, t] = batch[i];
+      const auto& [slot, t, coarse] = batch[i];
       glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, t.x0, t.y0, int(slot % kLayersPerArray),
                           t.x1 - t.x0, t.y1 - t.y0, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
     }

@@ -156,9 +156,11 @@ void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::sp
 }
 
 /// Drops candidates that the camera no longer sees by their mailbox, and makes room for those of this frame. Returns
-/// how many are to be drawn.
+/// how many are to be drawn: a share of N, and as many as there are empty slots, which only new places with light fill.
 int makeRoomInPool(VplSet& set, const SmcSettings& settings) {
-  const int share = (settings.vpls + settings.poolFrames - 1) / settings.poolFrames;
+  const auto isEmpty = [](const Vpl& v) { return !v.alive; };
+  const int empty = int(std::count_if(set.slots.begin(), set.slots.end(), isEmpty));
+  const int share = std::max((settings.vpls + settings.poolFrames - 1) / settings.poolFrames, empty);
   size_t kept = 0;
   for (size_t i = 0; i < set.pool.size(); ++i) {
     if (!set.pool[i].valid || set.pool[i].alive) continue; // lost, or taken
