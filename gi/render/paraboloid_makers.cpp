@@ -88,9 +88,10 @@ namespace {
 
 /// Gives texels in odd columns or rows of a rectangle a distance, from those beside them that have one.
 void fillBetween(std::vector<float>& distances, int width, int height) {
-  const auto between = [](float a, float b) { // one surface changes little from texel to texel
-    constexpr float kStep = 1.05f;
-    return std::max(a, b) < kStep * std::min(a, b) ? 0.5f * (a + b) : a;
+  // Along a plane 1/distance is nearly linear; where it jumps, two surfaces meet.
+  const auto between = [](float a, float b) {
+    constexpr float kJump = 1.5f;
+    return std::max(a, b) < kJump * std::min(a, b) ? 2 * a * b / (a + b) : a;
   };
   for (int y = 0; y < height; y += 2)
     for (int x = 1; x < width; x += 2) {

@@ -148,20 +148,25 @@ struct RoomWithBlock {
 
 using MapScheduleTest = GlTest;
 
-TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
-  RoomWithBlock room;
-  EmbreeQuery rays(room.scene.assets);
-  rays.update(room.carry(vec3(0), 0.3f));
-  GpuScene gpu(programs, room.scene.assets);
+std::vector<MapPose> posesOnWalls() {
   Rng rng(3, Stream::Test, 0);
   std::vector<MapPose> poses;
-  for (int i = 0; i < 96; ++i) { // on the walls
+  for (int i = 0; i < 96; ++i) {
     const int axis = i % 3;
     vec3 p = 1.8f * vec3(rng.next(), rng.next(), rng.next()) - 0.9f, n(0);
     p[axis] = i % 2 ? 1.0f : -1.0f;
     n[axis] = -p[axis];
     poses.push_back({p, glm::normalize(n + 0.3f * sampleSphere(rng.next2())), n});
   }
+  return poses;
+}
+
+TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
+  RoomWithBlock room;
+  EmbreeQuery rays(room.scene.assets);
+  rays.update(room.carry(vec3(0), 0.3f));
+  GpuScene gpu(programs, room.scene.assets);
+  const std::vector<MapPose> poses = posesOnWalls();
   const std::vector<float> brightness(poses.size(), 1.0f);
   ParaboloidMapInputs in{.scene = gpu,
                          .rays = &rays,
@@ -185,7 +190,7 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
     const std::vector<MapJob> jobs = schedule.take({}, brightness, 64, 1 << 30);
     int64_t texels = 0;
     for (const MapJob& job : jobs) {
-      texels += job.texels.area();
+      texels += texelsTraced(job.texels, job.coarse);
       odd += (job.texels.x1 - job.texels.x0) % 2;
     }
     EXPECT_LT(double(texels), 0.7 * double(poses.size()) * 64 * 64) << "frame " << frame;
@@ -204,6 +209,60 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
   }
   EXPECT_GT(odd, 50);
   EXPECT_GT(changed, 200u);
+}
+
+TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
+  RoomWithBlock room;
+  EmbreeQuery rays(room.scene.assets);
+  rays.update(room.carry(vec3(0), 0.3f));
+  GpuScene gpu(programs, room.scene.assets);
+  const std::vector<MapPose> poses = posesOnWalls();
+  const std::vector<float> brightness(poses.size(), 1.0f);
+  ParaboloidMapInputs in{.scene = gpu,
+                         .rays = &rays,
+                         .poses = poses,
+                         .jobs = {},
+                         .farDistance = 4,
+                         .resolution = 64,
+                         .maker = ShadowMaker::Rays};
+  ParaboloidMapPass parts(passes, "in part");
+  parts.run(in);
+  const SceneView view = room.carry({0.45f, -0.3f, 0.1f}, 0.7f);
+  rays.update(view);
+  ParaboloidMapPass whole(passes, "whole");
+  whole.run(in);
+  const auto wrong = [&] { // share of texels whose distance is off by more than 2 %
+    size_t differing = 0, all = 0;
+    for (uint32_t i = 0; i < poses.size(); ++i) {
+      const std::vector<float> a = parts.readLayer(i), b = whole.readLayer(i);
+      for (size_t k = 0; k < a.size(); ++k)
+        if (b[k] < kInfinity) ++all, differing += !(std::abs(a[k] - b[k]) <= 0.02f * b[k]);
+    }
+    return double(differing) / double(all);
+  };
+  const double stale = wrong();
+  MapSchedule schedule;
+  RayCounts counts;
+  schedule.disturb(poses, brightness, Disturbance(view), rays, 64, 0, 1, 0, counts);
+  int64_t cost = 0;
+  for (const MapJob& job : MapSchedule(schedule).take({}, brightness, 64, 1 << 30)) cost += job.texels.area();
+  std::vector<MapJob> jobs = schedule.take({}, brightness, 64, cost / 3);
+  EXPECT_EQ(jobs.size(), MapSchedule(schedule).waiting() + std::count_if(jobs.begin(), jobs.end(), [](const MapJob& j) {
+                           return !j.coarse;
+                         }));
+  in.jobs = jobs;
+  parts.run(in);
+  const double coarse = wrong();
+  std::printf("texels off by 2 %%: stale %.1f %%, coarse %.2f %%\n", 100 * stale, 100 * coarse);
+  EXPECT_GT(stale, 0.02);
+  EXPECT_LT(coarse, 0.5 * stale); // what is left lies along silhouettes
+  for (int frame = 0; frame < 10 && schedule.waiting() > 0; ++frame) {
+    jobs = schedule.take({}, brightness, 64, cost / 3);
+    in.jobs = jobs;
+    parts.run(in);
+  }
+  EXPECT_EQ(schedule.waiting(), 0u);
+  for (uint32_t i = 0; i < poses.size(); ++i) EXPECT_EQ(parts.readLayer(i), whole.readLayer(i)) << "map " << i;
 }
 
 // The queue ----------------------------------------------------------------------------------------------------------
@@ -269,15 +328,30 @@ TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
   schedule.disturbAll(brightness.size(), kResolution);
   EXPECT_EQ(schedule.waiting(), 8u);
   const uint32_t first[] = {0, 5};
-  // Two moved lights whatever the budget, then the brightest as long as something is left of it.
-  const std::vector<MapJob> jobs = schedule.take(first, brightness, kResolution, kMap + 1);
+  // Two moved lights whatever the budget, then the brightest, coarsely, as long as something is left of it.
+  const std::vector<MapJob> jobs = schedule.take(first, brightness, kResolution, kMap / 4 + 1);
   EXPECT_EQ(slotsOf(jobs), (std::vector<uint32_t>{0, 1, 4, 5}));
-  for (const MapJob& job : jobs) EXPECT_EQ(job.texels, TexelRect::whole(kResolution));
-  EXPECT_EQ(schedule.waiting(), 3u) << "3, 6, 7; the empty slot needs no map";
+  for (const MapJob& job : jobs) {
+    EXPECT_EQ(job.texels, TexelRect::whole(kResolution));
+    EXPECT_EQ(job.coarse, job.slot == 1 || job.slot == 4);
+  }
+  EXPECT_EQ(schedule.waiting(), 5u) << "3, 6, 7, and 1 and 4 to be drawn finely; the empty slot needs no map";
   EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, 0)), std::vector<uint32_t>{});
-  EXPECT_EQ(schedule.waiting(), 3u);
-  EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, kMap)), std::vector<uint32_t>{3});
+  EXPECT_EQ(schedule.waiting(), 5u);
+  EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, kMap / 4)), std::vector<uint32_t>{3});
   EXPECT_EQ(slotsOf(schedule.take(first, brightness, kResolution, 0)), (std::vector<uint32_t>{0, 5}));
+  // Enough for both that are stale, one of them finely, and not for the rough ones.
+  const std::vector<MapJob> fine = schedule.take({}, brightness, kResolution, kMap + kMap / 4);
+  EXPECT_EQ(slotsOf(fine), (std::vector<uint32_t>{6, 7}));
+  EXPECT_FALSE(fine[0].coarse);
+  EXPECT_TRUE(fine[1].coarse);
+  // With nothing stale the rough ones follow, the brightest first.
+  EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, kMap)), std::vector<uint32_t>{1});
+  const std::vector<MapJob> last = schedule.take({}, brightness, kResolution, 100 * kMap);
+  EXPECT_EQ(slotsOf(last), (std::vector<uint32_t>{3, 4, 7}));
+  for (const MapJob& job : last) EXPECT_FALSE(job.coarse);
+  EXPECT_EQ(schedule.waiting(), 0u);
+  schedule.disturbAll(brightness.size(), kResolution);
   schedule.clear();
   EXPECT_EQ(schedule.waiting(), 0u);
   EXPECT_TRUE(schedule.take({}, brightness, kResolution, 100 * kMap).empty());
@@ -319,7 +393,7 @@ TEST(MapSchedule, TexelsThatCarryMoreLightComeFirst) {
 
 TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
   constexpr size_t kSlots = 64;
-  constexpr int64_t kBudget = 8 * kMap;
+  constexpr int64_t kBudget = 2 * kMap; // 8 coarse maps
   std::vector<float> brightness; // over ten decades, and some that bring next to nothing
   for (size_t i = 0; i < kSlots; ++i) brightness.push_back(i % 8 == 7 ? 1e-20f : std::pow(10.0f, -float(i % 11)));
   MapSchedule schedule;
@@ -331,14 +405,14 @@ TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
     int64_t texels = 0;
     for (int& s : since) ++s;
     for (const MapJob& job : jobs) {
-      texels += job.texels.area();
+      texels += texelsTraced(job.texels, job.coarse);
       ++drawn[job.slot];
       longest = std::max(longest, since[job.slot]);
       since[job.slot] = 0;
     }
     EXPECT_GE(texels, kBudget);
     EXPECT_LT(texels, kBudget + kMap);
-    EXPECT_EQ(schedule.waiting(), kSlots - jobs.size());
+    EXPECT_EQ(schedule.waiting(), kSlots) << "all were drawn coarsely at best";
   }
   EXPECT_GE(*std::min_element(drawn.begin(), drawn.end()), 2);
   EXPECT_LE(longest, 100);
