@@ -73,8 +73,8 @@ class Walkthrough {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Lowers the picture's scale once, after the first frames, when this machine cannot keep up (software Mesa in a large
-  /// window). Only the picture changes; the window and the slider stay the person's.
+  /// Lowers the picture's scale once, after the first frames, when this machine cannot keep up (software Mesa in a
+  /// large window). Only the picture changes; the window and the slider stay the person's.
   void keepUp(int frame, double seconds) {
     constexpr int kFirst = 4, kLast = 8; // the frames before prepare shaders and maps
     constexpr double kTooSlow = 0.25, kGoal = 0.15;

@@ -112,9 +112,9 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   };
 
   // What the scene holds.
-  const bool emissive = decide(EffectId::Emissive, {scene.emissive > 0, scene.emissive > 0
-                                                                            ? count(scene.emissive, "emissive surface")
-                                                                            : "no material emits"});
+  const bool emissive =
+      decide(EffectId::Emissive, {scene.emissive > 0, scene.emissive > 0 ? count(scene.emissive, "emissive surface")
+                                                                         : "no material emits"});
   const bool sky = luminance(view.skyRadiance) > 0;
   const bool skyLight = decide(EffectId::Sky, {sky, sky ? "the sky has radiance" : "the sky is black"});
   decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked surface")
@@ -130,12 +130,13 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   decide(EffectId::Textures, !indirect            ? none
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
-  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0       ? Answer{false, "no emissive surface"}
+  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
                                 : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
                                                                      : Answer{false, "shadow.emitterSamples is 1"});
-  decide(EffectId::Filter, !indirect                                         ? none
-                           : smc.visibility == VplVisibility::Rays           ? Answer{false, "gathered by rays"}
-                           : settings.gather.mode != GatherMode::Interleaved ? Answer{false, "every pixel sees all VPLs"}
+  decide(EffectId::Filter, !indirect                               ? none
+                           : smc.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
+                           : settings.gather.mode != GatherMode::Interleaved
+                               ? Answer{false, "every pixel sees all VPLs"}
                            : !settings.filter.on ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});
 
@@ -144,7 +145,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const std::string movers = !geometry         ? "nothing moved"
                              : scene.moved > 0 ? count(scene.moved, "object") + " moved"
                                                : "objects came or went";
-  const bool motion = decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
+  const bool motion =
+      decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
   const bool moved = geometry && motion;
   decide(EffectId::MapRefresh, !indirect               ? none
                                : moved                 ? Answer{true, movers}
@@ -152,26 +154,26 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                        : Answer{false, "nothing moved"});
   const bool placedAnew = settings.vpl.source != VplSource::Smc; // every frame, by photons or chains
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
-  decide(EffectId::Relight, !indirect             ? none
-                            : placedAnew          ? Answer{true, "the technique lights its VPLs anew in every frame"}
-                            : changes.first       ? Answer{true, "the scene is new"}
-                            : changes.lights      ? Answer{true, "lights changed"}
-                            : moved               ? Answer{true, movers}
+  decide(EffectId::Relight, !indirect               ? none
+                            : placedAnew            ? Answer{true, "the technique lights its VPLs anew in every frame"}
+                            : changes.first         ? Answer{true, "the scene is new"}
+                            : changes.lights        ? Answer{true, "lights changed"}
+                            : moved                 ? Answer{true, movers}
                             : facts.settingsChanged ? Answer{true, "settings changed"}
                             : !smc.cache && !(still && facts.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
-  decide(EffectId::Replace, !indirect             ? none
-                            : placedAnew          ? Answer{true, "the technique places its VPLs anew in every frame"}
+  decide(EffectId::Replace, !indirect                ? none
+                            : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}
                                                      : Answer{true, "the view or the scene changed"});
   const Effect& replace = plan[EffectId::Replace];
   const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
-  decide(EffectId::Redraw, !still                           ? Answer{true, "the view, scene or settings changed"}
-                           : newLight                                      ? Answer{true, "VPLs change"}
-                           : indirect && facts.mapsWaiting > 0             ? Answer{true, "shadow maps are waiting"}
-                                                                           : Answer{false, "nothing changed"});
+  decide(EffectId::Redraw, !still                              ? Answer{true, "the view, scene or settings changed"}
+                           : newLight                          ? Answer{true, "VPLs change"}
+                           : indirect && facts.mapsWaiting > 0 ? Answer{true, "shadow maps are waiting"}
+                                                               : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no picture yet";

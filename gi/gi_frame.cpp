@@ -127,7 +127,7 @@ struct GiFrame::State {
   MapSchedule mapSchedule;
   bool vplMapsOld = false; // VPLs were shown without maps
   float farDistance = 0;
-  Aabb receivers; // see visibleBounds
+  Aabb receivers;           // see visibleBounds
   uint64_t testedDraws = 0; // GpuScene's count at the end of the last frame
   bool calibrated = false;
   float exposure = 0;

@@ -41,14 +41,14 @@ const std::vector<std::string>& bufferNames();
 /// VPLs is of the update that ended before this frame's picture: that of the frame before.
 struct FrameStats {
   uint32_t frame = 0;
-  std::vector<StageTime> stages; // CPU and GPU, in order, milliseconds
+  std::vector<StageTime> stages;   // CPU and GPU, in order, milliseconds
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
       raysMapTests;
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
-  uint32_t mapsDrawn = 0;      // paraboloid maps, in part or whole
-  uint64_t mapTexelsDrawn = 0; // of VPLs' maps, a ray or a texel drawn each
+  uint32_t mapsDrawn = 0;                                     // paraboloid maps, in part or whole
+  uint64_t mapTexelsDrawn = 0;                                // of VPLs' maps, a ray or a texel drawn each
   uint32_t mapsWaiting = 0;    // that show where a moved object was, and had to wait for later frames
   uint32_t lightMapsDrawn = 0; // of punctual lights and of the sky
   bool burst = false;

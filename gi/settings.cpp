@@ -41,7 +41,8 @@ class Table {
           "M_max, VPLs replaced per frame; each costs a shadow map");
     whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "rays per candidate drawn");
     whole("smc.poolFrames", &Settings::smc, &SmcSettings::poolFrames, 1, 64,
-          "frames that a candidate is kept, so that N/poolFrames are drawn per frame; 1 = all, as paper 1");
+          "frames that a candidate is kept, so that N/poolFrames are drawn per frame, twice that in motion; 1 = all, "
+          "as paper 1");
     flag("smc.cache", &Settings::smc, &SmcSettings::cache,
          "keep light paths until something that they touch moves; same results, 0.5 kB per path");
     whole("smc.paths", &Settings::smc, &SmcSettings::paths, 1, 4096, "light paths per VPL and candidate");
@@ -182,8 +183,8 @@ class Table {
         [names, get](const Settings& s) { return names[get(s)]; });
   }
 
-  void add(const std::string& name, const char* help, std::string range, std::function<bool(Settings&, std::string_view)> set,
-           std::function<std::string(const Settings&)> get) {
+  void add(const std::string& name, const char* help, std::string range,
+           std::function<bool(Settings&, std::string_view)> set, std::function<std::string(const Settings&)> get) {
     const std::string defaultText = get(Settings{});
     entries.push_back({{name, help, defaultText, std::move(range)}, std::move(set), std::move(get)});
   }
@@ -263,9 +264,9 @@ void applyTechnique(Settings& settings, const std::string& name) {
     return;
   }
   const std::string near = nearestName(name, techniqueNames());
-  throw InputError("--technique " + name,
-                   "no such technique (" + (near.empty() ? "smc, ir, mir or tcas" : "did you mean " + near + "?") +
-                       ")");
+  throw InputError("--technique " + name, "no such technique (" +
+                                              (near.empty() ? "smc, ir, mir or tcas" : "did you mean " + near + "?") +
+                                              ")");
 }
 
 const std::string& techniqueOf(const Settings& settings) { return techniqueNames()[size_t(settings.vpl.source)]; }

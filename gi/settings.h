@@ -18,7 +18,7 @@ enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid map
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
 enum class FilterKernel : int { Separable, Whole };    // rows then columns | all 49 taps at once
-enum class EffectMode : int { Auto, On, Off };          // as the plan says (gi/effects.h) | forced, for comparison
+enum class EffectMode : int { Auto, On, Off };         // as the plan says (gi/effects.h) | forced, for comparison
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
 
 /// Parts of the work that a scene or a frame may do without: see gi/effects.h.
@@ -57,7 +57,7 @@ struct SmcSettings {
   int vpls = 2048;         // slots N
   int moves = 16;          // M_max, replacements per frame
   int candidateRays = 16;  // candidate rays per candidate drawn (16:1 resampling)
-  int poolFrames = 8;      // frames that a candidate is kept; 1 = all drawn anew in every frame (paper 1)
+  int poolFrames = 16;     // frames that a candidate is kept at most; 1 = all drawn anew in every frame (paper 1)
   int paths = 16;          // light paths per VPL radiosity estimate
   int bounces = 3;         // B: B=1 is light → VPL → pixel
   int points = 2048;       // directly visible points X
@@ -73,8 +73,8 @@ struct SmcSettings {
 struct ShadowSettings {
   int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
-  float bias = 1.0f; // in texels of the map at the receiver
-  int refresh = 16;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  float bias = 1.0f;   // in texels of the map at the receiver
+  int refresh = 32;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
   int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w

@@ -25,9 +25,9 @@ struct InstanceView {
   uint32_t id = 0;
   uint32_t mesh = 0; // index into SceneAssets::meshes
   mat4 worldFromObject{1};
-  mat4 worldFromObjectBefore{1};          // of the previous extraction; equal when it did not move
-  bool moved = false;                     // placed or shaped otherwise than in the previous extraction
-  bool reshaped = false;                  // its vertices, in object space, are not those of the previous extraction
+  mat4 worldFromObjectBefore{1}; // of the previous extraction; equal when it did not move
+  bool moved = false;            // placed or shaped otherwise than in the previous extraction
+  bool reshaped = false;         // its vertices, in object space, are not those of the previous extraction
   std::shared_ptr<const DeformedMesh> deformed; // null: rigid, the mesh's own vertices; never written again
   Aabb boundsWorld;
   Aabb boundsWorldBefore; // of the previous extraction; equal when it did not move
@@ -72,7 +72,7 @@ struct SceneView {
   std::span<const InstanceView> instances;
   std::span<const LightView> lights;
   std::span<const Aabb> addedOrRemoved; // world bounds of instances that came or went since the previous extraction
-  vec3 skyRadiance{0}; // constant over the sphere
+  vec3 skyRadiance{0};                  // constant over the sphere
   CameraView camera;
   Aabb boundsWorld; // of all instances
   SceneChanges changes;

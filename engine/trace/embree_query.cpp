@@ -364,7 +364,8 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
     hit.normal =
         shadingLength > 0 && glm::dot(shading, rays[i].direction) < 0 ? shading / shadingLength : hit.geometricNormal;
     const bool textured = material.baseColorTexture.image != kNone;
-    const vec4* mean = textured && !s.textures ? &s.assets.images[material.baseColorTexture.image].averageLinear : nullptr;
+    const vec4* mean =
+        textured && !s.textures ? &s.assets.images[material.baseColorTexture.image].averageLinear : nullptr;
     lookups += textured && !mean;
     hit.albedo = glm::clamp(vec3(baseColourAt(s.assets, mesh, material, c, mean)), 0.0f, 1.0f);
     if (material.emits() && (fromFront || material.doubleSided))

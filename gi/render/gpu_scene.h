@@ -42,7 +42,7 @@ class GpuScene {
   /// Masked at the start.
   void setAlphaTest(AlphaTest test) { alphaTest_ = test; }
 
-  uint64_t testedDraws() const { return testedDraws_; } // so far, of materials whose alpha is tested
+  uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
   uint32_t triangleCount() const { return triangleCount_; } // of all placed instances
   const Aabb& bounds() const { return bounds_; }            // world space
 

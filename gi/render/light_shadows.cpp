@@ -1,5 +1,5 @@
-// Shadow maps of punctual lights and of the sky. A map, or a face of a cube, is drawn when what it shows may differ from what
-// is stored: its view changed, or something moved within it.
+// Shadow maps of punctual lights and of the sky. A map, or a face of a cube, is drawn when what it shows may differ
+// from what is stored: its view changed, or something moved within it.
 #include "gi/render/light_shadows.h"
 
 #include <algorithm>

@@ -9,8 +9,8 @@ namespace lambent {
 
 /// Where a light stands. World space; the map covers the hemisphere around `normal`.
 struct MapPose {
-  vec3 position{0}; // on the surface
-  vec3 normal{0, 1, 0}; // shading normal, unit
+  vec3 position{0};              // on the surface
+  vec3 normal{0, 1, 0};          // shading normal, unit
   vec3 geometricNormal{0, 1, 0}; // unit; the map's origin lies off the surface on this side
   bool operator==(const MapPose&) const = default;
 };

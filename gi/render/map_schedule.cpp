@@ -159,7 +159,8 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
 }
 
 size_t MapSchedule::waiting() const {
-  return size_t(std::count_if(stale_.begin(), stale_.end(), [](const Stale& s) { return !s.texels.empty() || !s.rough.empty(); }));
+  return size_t(std::count_if(stale_.begin(), stale_.end(),
+                              [](const Stale& s) { return !s.texels.empty() || !s.rough.empty(); }));
 }
 
 } // namespace lambent

@@ -146,7 +146,8 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
     const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].coarse);
+      for (size_t i = from; i < to; ++i)
+        maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].coarse);
     });
     for (size_t i = 0; i < batch.size(); ++i) {
       const auto& [slot, t, coarse] = batch[i];

@@ -88,8 +88,9 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
   drawRays(in, std::span(sample).first(1));
   const double rasterMs = secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
   const double raysMs = secondsOf([&] { drawRays(in, sample); }) * 1e3 / double(sample.size());
-  // Rays unless raster is twice as fast: the two differ in a few texels, so a machine's noise must not decide which picture
-  // it is. Software Mesa is 2 to 12 times on the one side; a GPU with a slow CPU beside it is as far on the other.
+  // Rays unless raster is twice as fast: the two differ in a few texels, so a machine's noise must not decide which
+  // picture it is. Software Mesa is 2 to 12 times on the one side; a GPU with a slow CPU beside it is as far on the
+  // other.
   measuredMaker_ = 2 * rasterMs < raysMs ? ShadowMaker::Raster : ShadowMaker::Rays;
   makerReport_ = measuredMaker_ == ShadowMaker::Rays
                      ? fmt::format("rays ({:.2f} ms a map, raster {:.2f} ms)", raysMs, rasterMs)

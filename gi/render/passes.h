@@ -83,11 +83,11 @@ struct ParaboloidMaps {
 
 struct ParaboloidMapInputs {
   const GpuScene& scene;
-  const RayQuery* rays = nullptr;       // null: raster only
-  std::span<const MapPose> poses;       // all slots
-  std::span<const MapJob> jobs;         // what to draw anew; the rest keeps its texels. By slot, one each
-  float farDistance = 1;                // scene diameter, metres
-  int resolution = 128;                 // every slot is drawn anew when it, farDistance or the number of slots changes
+  const RayQuery* rays = nullptr; // null: raster only
+  std::span<const MapPose> poses; // all slots
+  std::span<const MapJob> jobs;   // what to draw anew; the rest keeps its texels. By slot, one each
+  float farDistance = 1;          // scene diameter, metres
+  int resolution = 128;           // every slot is drawn anew when it, farDistance or the number of slots changes
   ShadowMaker maker = ShadowMaker::Auto;
 };
 
@@ -168,12 +168,12 @@ struct LightShadows;
 struct LightShadowInputs {
   const GpuScene& scene;
   std::span<const LightView> lights;
-  bool sky = false;    // draw the sky's maps
+  bool sky = false; // draw the sky's maps
   vec3 skyRadiance{0};
-  Aabb receivers;      // everything the camera sees; sun and sky maps are fitted to it
-  Aabb casters;        // box of the whole scene
-  bool allChanged = false;             // draw every map
-  std::span<const Aabb> moved;         // where geometry changed: maps that show none of it stay
+  Aabb receivers;              // everything the camera sees; sun and sky maps are fitted to it
+  Aabb casters;                // box of the whole scene
+  bool allChanged = false;     // draw every map
+  std::span<const Aabb> moved; // where geometry changed: maps that show none of it stay
   const ShadowSettings& shadow;
 };
 

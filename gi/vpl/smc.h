@@ -106,7 +106,8 @@ struct PathCounts {
   uint64_t lastRays = 0;          // rays of last vertices, which look for emitters and sky only
   RayCounts rays;
   PathCounts& operator+=(const PathCounts& o) {
-    paths += o.paths, traced += o.traced, retraced += o.retraced, lit += o.lit, bounceRays += o.bounceRays, lastRays += o.lastRays;
+    paths += o.paths, traced += o.traced, retraced += o.retraced, lit += o.lit, bounceRays += o.bounceRays,
+        lastRays += o.lastRays;
     rays += o.rays;
     return *this;
   }
@@ -191,8 +192,8 @@ struct VplUpdateLog {
   std::vector<StageTime> stages;
   double ms = 0; // of the whole update
   RayCounts points, validation, candidates, radiosity, cells;
-  PathCounts paths;   // of VPLs and candidates
-  uint32_t relit = 0; // VPLs whose radiance was added up again
+  PathCounts paths;            // of VPLs and candidates
+  uint32_t relit = 0;          // VPLs whose radiance was added up again
   uint32_t relitForChange = 0; // of these, because lights or geometry changed
 };
 
@@ -202,8 +203,9 @@ struct VplUpdateLog {
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});
 
-/// Moves the VPLs of `view`'s moved objects (of all, if so asked) to their places there, and gives up those whose object
-/// is gone. Returns the slots that now stand elsewhere, ascending. updateVpls does it too; a second time changes nothing.
+/// Moves the VPLs of `view`'s moved objects (of all, if so asked) to their places there, and gives up those whose
+/// object is gone. Returns the slots that now stand elsewhere, ascending. updateVpls does it too; a second time changes
+/// nothing.
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
 /// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -

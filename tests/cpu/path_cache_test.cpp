@@ -72,8 +72,9 @@ TEST(PathCache, LightsThatMoveTraceNoPath) {
   moved.punctual[0].position += vec3(0.3f, 0, 0.1f);
   log = {};
   updateVpls(set, {view, world.rays(), moved, settings, 1}, log);
-  // Only the candidates drawn in this frame.
-  EXPECT_EQ(log.paths.traced, uint64_t(settings.vpls / settings.poolFrames) * (settings.paths / 2));
+  // Only the candidates drawn in this frame, twice as many as in a frame without a change.
+  EXPECT_EQ(log.paths.retraced, 0u);
+  EXPECT_EQ(log.paths.traced, uint64_t(2 * settings.vpls / settings.poolFrames) * (settings.paths / 2));
   EXPECT_EQ(log.relit, 64u);
   EXPECT_GT(log.radiosity.occlusion, 1000u);
 }

@@ -26,8 +26,15 @@ class DirectTest : public GlTest {
     VplLightBuffer lightBuffer(passes, "emitters");
     ParaboloidMapPass mapPass(passes, "emitter maps");
     const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
-    const LightShadows& shadows =
-        shadowPass.run({gpu, view.lights, maxComponent(view.skyRadiance) > 0, view.skyRadiance, view.boundsWorld, view.boundsWorld, true, {}, settings});
+    const LightShadows& shadows = shadowPass.run({gpu,
+                                                  view.lights,
+                                                  maxComponent(view.skyRadiance) > 0,
+                                                  view.skyRadiance,
+                                                  view.boundsWorld,
+                                                  view.boundsWorld,
+                                                  true,
+                                                  {},
+                                                  settings});
     std::vector<VplLight> lights;
     std::vector<MapPose> poses;
     for (const EmitterPatch& sample : emitters) {

@@ -132,8 +132,8 @@ class EffectsTest : public GlTest {
         forcedWork += forcedStats.work[size_t(id)];
       }
       for (const Buffer buffer : {Buffer::Beauty, Buffer::Irradiance})
-        ASSERT_TRUE(same(plain.read(buffer), all.read(buffer))) << "frame " << frame << ", plan "
-                                                                << stats.plan.oneLine();
+        ASSERT_TRUE(same(plain.read(buffer), all.read(buffer)))
+            << "frame " << frame << ", plan " << stats.plan.oneLine();
     }
     EXPECT_EQ(forcedWork == 0, hollow) << "forced on it must really run";
   }
@@ -170,7 +170,8 @@ class EffectsTest : public GlTest {
   }
 };
 
-// Every effect has both a scene without it and one with it below ----------------------------------------------------------
+// Every effect has both a scene without it and one with it below
+// ----------------------------------------------------------
 
 TEST_F(EffectsTest, IndirectNeedsLight) {
   const auto dark = stillWorld([](World& w) { w.scene.lights.clear(); });
@@ -262,7 +263,8 @@ TEST_F(EffectsTest, FilterNeedsAnInterleavedGather) {
   EXPECT_GT(lossWithout(Filter, quick(), asItIs()), 0.01);
 }
 
-// A still world ---------------------------------------------------------------------------------------------------------
+// A still world
+// ---------------------------------------------------------------------------------------------------------
 
 /// Frames until nothing is done any more.
 int framesToSettle(GiFrame& gi, const SceneView& still, int most) {
@@ -362,7 +364,8 @@ TEST_F(EffectsTest, ReplaceAndRedrawNeedAChange) {
   EXPECT_GT(lossWithout(Redraw, quick(), turned), 0.05);
 }
 
-// Beside the GPU ----------------------------------------------------------------------------------------------------------
+// Beside the GPU
+// ----------------------------------------------------------------------------------------------------------
 
 TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
   Settings beside = quick();

@@ -247,9 +247,8 @@ TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
   int64_t cost = 0;
   for (const MapJob& job : MapSchedule(schedule).take({}, brightness, 64, 1 << 30)) cost += job.texels.area();
   std::vector<MapJob> jobs = schedule.take({}, brightness, 64, cost / 3);
-  EXPECT_EQ(jobs.size(), MapSchedule(schedule).waiting() + std::count_if(jobs.begin(), jobs.end(), [](const MapJob& j) {
-                           return !j.coarse;
-                         }));
+  EXPECT_EQ(jobs.size(), MapSchedule(schedule).waiting() +
+                             std::count_if(jobs.begin(), jobs.end(), [](const MapJob& j) { return !j.coarse; }));
   in.jobs = jobs;
   parts.run(in);
   const double coarse = wrong();
@@ -394,7 +393,7 @@ TEST(MapSchedule, TexelsThatCarryMoreLightComeFirst) {
 TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
   constexpr size_t kSlots = 64;
   constexpr int64_t kBudget = 2 * kMap; // 8 coarse maps
-  std::vector<float> brightness; // over ten decades, and some that bring next to nothing
+  std::vector<float> brightness;        // over ten decades, and some that bring next to nothing
   for (size_t i = 0; i < kSlots; ++i) brightness.push_back(i % 8 == 7 ? 1e-20f : std::pow(10.0f, -float(i % 11)));
   MapSchedule schedule;
   std::vector<int> drawn(kSlots, 0), since(kSlots, 0);

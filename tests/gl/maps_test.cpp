@@ -9,8 +9,7 @@ class MapsTest : public GlTest {
   ParaboloidMapInputs inputs(const Room& room) {
     gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
     gpu->place(room.scene.instances);
-    return {
-        .scene = *gpu, .rays = &room.rays, .poses = poses, .jobs = jobs, .farDistance = 3.5f, .resolution = 64};
+    return {.scene = *gpu, .rays = &room.rays, .poses = poses, .jobs = jobs, .farDistance = 3.5f, .resolution = 64};
   }
 
   std::unique_ptr<GpuScene> gpu;

@@ -40,7 +40,8 @@ class FrameLog {
     writeAtomically(file, [&](const fs::path& temporary) {
       std::ofstream out(temporary);
       out << "frame,time_s,rays_points,rays_validation,rays_candidates,rays_radiosity_closest,rays_radiosity_occlusion,"
-             "rays_cells,rays_map_tests,rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,paths_held,paths_traced,paths_retraced,maps_drawn,maps_waiting,light_maps_drawn,burst,shadow_"
+             "rays_cells,rays_map_tests,rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,paths_held,"
+             "paths_traced,paths_retraced,maps_drawn,maps_waiting,light_maps_drawn,burst,shadow_"
              "maker,plan,"
              "timing,wall_ms,write_ms";
       for (const std::string& s : stages_) out << ',' << columnName(s);
@@ -52,10 +53,11 @@ class FrameLog {
         std::snprintf(time, sizeof time, "%.6f", r.time);
         out << s.frame << ',' << time << ',' << all(s.raysPoints) << ',' << all(s.raysValidation) << ','
             << all(s.raysCandidates) << ',' << s.raysRadiosity.closest << ',' << s.raysRadiosity.occlusion << ','
-            << all(s.raysCells) << ',' << all(s.raysMapTests) << ',' << all(s.raysGather) << ',' << s.vplsAlive << ',' << s.vplsKept << ','
-            << s.vplsMoved << ',' << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.pathsHeld << ',' << s.pathsTraced << ',' << s.pathsRetraced << ',' << s.mapsDrawn << ',' << s.mapsWaiting << ',' << s.lightMapsDrawn << ',' << s.burst << ','
-            << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ',' << s.plan.oneLine() << ',' << s.timing << ','
-            << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
+            << all(s.raysCells) << ',' << all(s.raysMapTests) << ',' << all(s.raysGather) << ',' << s.vplsAlive << ','
+            << s.vplsKept << ',' << s.vplsMoved << ',' << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.pathsHeld
+            << ',' << s.pathsTraced << ',' << s.pathsRetraced << ',' << s.mapsDrawn << ',' << s.mapsWaiting << ','
+            << s.lightMapsDrawn << ',' << s.burst << ',' << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ','
+            << s.plan.oneLine() << ',' << s.timing << ',' << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
         for (const std::string& name : stages_) {
           double ms = 0;
           for (const StageTime& t : s.stages)
