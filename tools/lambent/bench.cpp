@@ -99,6 +99,8 @@ void bench(const BenchOptions& options) {
     applySetting(settings[1], assignment.substr(0, equals), assignment.substr(equals + 1));
     sides[1].name += (sides[1].name.empty() ? "" : " ") + assignment;
   }
+  for (Settings& s : settings) // timer queries that lag would give one side's times to the other
+    if (s.debug.timing == TimingMode::Auto) s.debug.timing = TimingMode::Finish;
   for (size_t i = 0; i < sides.size(); ++i) sides[i].gi = std::make_unique<GiFrame>(settings[i], stage->seed);
 
   const double fps = stage->shot ? stage->shot->fps : 30;

@@ -1,0 +1,136 @@
+// The passes of a frame: picture of the world as placed, with the VPLs that gi_frame_light.cpp made ready.
+#include "gi/gi_frame_state.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lambent {
+
+namespace {
+
+/// Box of everything the camera sees: what sun and sky maps must cover. From a fixed grid of camera rays, so it is the
+/// same every time; grown by a tenth for what lies between the rays.
+Aabb visibleBounds(const RayQuery& rays, const SceneView& view, RayCounts& counts) {
+  Aabb box;
+  for (const VisiblePoint& p : findVisiblePoints(rays, view.camera, 1024, 0, 0, counts)) box.add(p.position);
+  if (box.empty()) return view.boundsWorld;
+  const vec3 margin = 0.05f * box.size() + 0.02f * box.diameter();
+  box.lo = glm::max(box.lo - margin, view.boundsWorld.lo);
+  box.hi = glm::min(box.hi + margin, view.boundsWorld.hi);
+  return box;
+}
+
+Image imageOf(const CameraView& camera, std::vector<vec3> pixels) {
+  Image image;
+  image.width = camera.width;
+  image.height = camera.height;
+  image.pixels = std::move(pixels);
+  return image;
+}
+
+} // namespace
+
+void GiFrame::State::draw() {
+  const SceneView& view = world.view;
+  const uint64_t draws = gl::drawCount();
+  results = {};
+  const GBuffer gbuffer = gbufferPass.run({*gpuScene, view.camera});
+  const DirectLight direct = drawDirect(gbuffer);
+  const IndirectLight indirect = plan.on(EffectId::Indirect) ? drawIndirect(gbuffer) : IndirectLight{};
+  const Picture picture = compositePass.run({gbuffer, direct, indirect, view.skyRadiance});
+  for (StageTime& row : profiler.takeRows()) stats.stages.push_back(std::move(row));
+
+  if (settings.image.exposure > 0)
+    exposure = settings.image.exposure;
+  else if (exposure <= 0)
+    exposure = measureExposure(picture);
+
+  results.gbuffer = gbuffer;
+  results.direct = direct;
+  results.indirect = indirect;
+  results.picture = picture;
+  results.vpls = &vpls;
+  results.skyRadiance = view.skyRadiance;
+  results.sceneDiameter = mapReach();
+  work(EffectId::Redraw) = gl::drawCount() - draws;
+}
+
+/// Lamps that stand elsewhere get a new map, others the part that an object moved through.
+std::vector<MapJob> GiFrame::State::emitterMapJobs(std::span<const MapPose> emitters, int resolution) {
+  const Disturbance moved(world.view);
+  std::vector<MapJob> jobs;
+  for (uint32_t i = 0; i < emitters.size(); ++i) {
+    TexelRect texels;
+    if (world.view.changes.first || i >= emitterPoses.size() || emitters[i] != emitterPoses[i])
+      texels = TexelRect::whole(resolution);
+    else
+      for (const Aabb& box : moved.boxes()) texels.add(texelsCovered(emitters[i], box, resolution));
+    if (!texels.empty()) jobs.push_back({i, texels});
+  }
+  emitterPoses.assign(emitters.begin(), emitters.end());
+  return jobs;
+}
+
+DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
+  using enum EffectId;
+  const SceneView& view = world.view;
+  ShadowSettings shadow = settings.shadow;
+  const int width = int(std::bit_ceil(unsigned(view.camera.width)));
+  if (shadow.sunResolution == 0) shadow.sunResolution = 2 * width;
+  if (shadow.pointResolution == 0) shadow.pointResolution = std::max(1, width / 2);
+  if (shadow.spotResolution == 0) shadow.spotResolution = width;
+  const bool geometry = view.changes.geometry || view.changes.instances;
+  if (receivers.empty() || view.changes.camera || geometry) receivers = visibleBounds(*rays, view, stats.raysPoints);
+  const Disturbance moved(view);
+  const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, plan.on(Sky), lights.sky, receivers,
+                                                     view.boundsWorld, view.changes.first, moved.boxes(), shadow});
+  stats.lightMapsDrawn = lightShadowPass.mapsDrawn();
+  work(Sky) += lightShadowPass.skyMapsDrawn();
+  DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
+  VplLights emitters;
+  ParaboloidMaps maps;
+  if (plan.on(Emissive)) {
+    std::vector<VplLight> samples;
+    std::vector<MapPose> emitterPlaces;
+    for (const EmitterPatch& p : emitterPatches(lights, plan.on(SoftShadows) ? shadow.emitterSamples : 1)) {
+      samples.push_back(emitterLight(p));
+      emitterPlaces.push_back(emitterPose(p));
+    }
+    emitters = emitterBuffer.run(samples);
+    const std::vector<MapJob> jobs = emitterMapJobs(emitterPlaces, shadow.emitterResolution);
+    maps = emitterMapPass.run(
+        {*gpuScene, rays.get(), emitterPlaces, jobs, mapReach(), shadow.emitterResolution, shadow.maker});
+    in.emitters = &emitters;
+    in.emitterMaps = &maps;
+    stats.mapsDrawn += emitterMapPass.mapsDrawn();
+    work(Emissive) += emitterMapPass.mapsDrawn();
+    work(SoftShadows) = plan.on(SoftShadows) ? samples.size() : 0;
+  }
+  return directPass.run(in);
+}
+
+IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
+  const uint64_t draws = gl::drawCount();
+  if (settings.smc.visibility == VplVisibility::Rays) {
+    CpuScope scope(stats.stages, "gather by rays");
+    return indirectUpload.run(imageOf(
+        world.view.camera, gatherByRays(*rays, world.view.camera, vplsShown, settings.gather, stats.raysGather)));
+  }
+  const VplLights shown = vplBuffer.run(vplLights);
+  const ParaboloidMaps maps = vplMapPass.run(
+      {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
+  stats.mapsDrawn += vplMapPass.mapsDrawn();
+  stats.shadowMaker = vplMapPass.makerReport();
+  const RawIndirect raw = gatherPass.run({gbuffer, shown, &maps, settings.shadow.bias, settings.gather});
+  results.raw = raw;
+  results.vplMaps = maps;
+  FilterSettings filter = settings.filter;
+  filter.on = filter.on && plan.on(EffectId::Filter);
+  const uint64_t filterDraws = gl::drawCount();
+  const IndirectLight indirect = filterPass.run({gbuffer, raw, filter});
+  if (filter.on) work(EffectId::Filter) = gl::drawCount() - filterDraws;
+  work(EffectId::Indirect) += gl::drawCount() - draws + vplMapPass.mapsDrawn();
+  return indirect;
+}
+
+} // namespace lambent
