@@ -139,7 +139,9 @@ void Hud::drawEffects(Settings& settings, const FrameStats& stats) {
       ImGui::SetTooltip("%s\n%llu %s\nclick: auto, on, off", row.help, (unsigned long long)stats.work[i], row.work);
     ImGui::PopID();
     ImGui::SameLine(130);
+    ImGui::PushTextWrapPos(0);
     ImGui::TextDisabled("%s", effect.reason.c_str());
+    ImGui::PopTextWrapPos();
   }
 }
 

@@ -170,7 +170,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                      : Answer{true, "the view or the scene changed"});
   const Effect& replace = plan[EffectId::Replace];
   const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
-  decide(EffectId::Redraw, !still                              ? Answer{true, "the view, scene or settings changed"}
+  decide(EffectId::Redraw, !still                              ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged              ? Answer{true, "settings or shaders changed"}
                            : newLight                          ? Answer{true, "VPLs change"}
                            : indirect && facts.mapsWaiting > 0 ? Answer{true, "shadow maps are waiting"}
                                                                : Answer{false, "nothing changed"});

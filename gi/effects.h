@@ -30,7 +30,8 @@ struct Effect {
 /// What a plan depends on besides the scene and the settings.
 struct FrameFacts {
   bool first = true;           // no picture was drawn yet
-  bool settingsChanged = true; // or the shaders
+  bool settingsChanged = true; // of VPLs or effects
+  bool drawingChanged = true;  // other settings, or the shaders
   bool settled = false;        // no better set of VPLs is in reach, see gi/vpl/settling.h
   uint32_t mapsWaiting = 0;    // maps that show where a moved object was
   bool lightArrived = false;   // VPLs were updated beside the last picture and are not in it

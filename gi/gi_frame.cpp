@@ -63,7 +63,9 @@ void GiFrame::State::begin(const SceneView& given) {
 
 void GiFrame::State::planFrame(const SceneView& given) {
   missed |= settingsBefore.effects != settings.effects;
-  settingsChanged = settingsBefore != settings || shadersChanged || !results.picture.radiance;
+  const bool drawingChanged = settingsBefore != settings || shadersChanged;
+  settingsChanged = settingsBefore.smc != settings.smc || settingsBefore.vpl != settings.vpl ||
+                    settingsBefore.effects != settings.effects || !results.picture.radiance;
   settingsBefore = settings;
   shadersChanged = false;
   const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !world.instances.empty();
@@ -73,6 +75,7 @@ void GiFrame::State::planFrame(const SceneView& given) {
 
   const FrameFacts facts{.first = !results.picture.radiance,
                          .settingsChanged = settingsChanged,
+                         .drawingChanged = drawingChanged,
                          .settled = vpls.settling.settled(),
                          .mapsWaiting = uint32_t(mapSchedule.waiting()),
                          .lightArrived = lightArrived};

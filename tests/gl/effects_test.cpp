@@ -336,8 +336,12 @@ TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
     return w.view({false, false, true, false, false});
   });
   wakes("object", [](World& w, GiFrame&) { return w.moveBlock({0.2f, 0, 0}); });
-  wakes("setting", [](World& w, GiFrame& gi) {
+  wakes("setting of drawing", [](World& w, GiFrame& gi) {
     gi.settings().gather.disk = 0;
+    return w.still();
+  });
+  wakes("setting of light", [](World& w, GiFrame& gi) {
+    gi.settings().smc.bounces = 1;
     return w.still();
   });
 }

@@ -57,7 +57,8 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   j["effects"] = nlohmann::json::array();
   // Of a frame some time after the start, so that what moves by itself shows.
   const EffectPlan plan =
-      planEffects(stage->at(1.0 / 30), stage->settings, {.first = false, .settingsChanged = false, .settled = true});
+      planEffects(stage->at(1.0 / 30), stage->settings,
+                  {.first = false, .settingsChanged = false, .drawingChanged = false, .settled = true});
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = plan[EffectId(i)];
     j["effects"].push_back({{"name", effectRow(EffectId(i)).name}, {"on", e.on}, {"reason", e.reason}});
