@@ -89,6 +89,7 @@ const EffectRow& effectRow(EffectId id) { return kRows[size_t(id)]; }
 
 EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts) {
   const SceneFacts scene(view);
+  const bool seeOneAnother = reflectorsSeeOneAnother(view);
   const SceneChanges& changes = view.changes;
   const SmcSettings& smc = settings.smc;
   EffectPlan plan;
@@ -107,7 +108,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
     if (view.instances.empty()) return {false, "nothing to light"};
     if (!light) return {false, "no light"};
     if (scene.reflecting == 0) return {false, "every surface is black"};
-    if (!reflectorsSeeOneAnother(view)) return {false, "all that reflects lies in one plane"};
+    if (!seeOneAnother) return {false, "all that reflects lies in one plane"};
     return {true, "light, and surfaces that reflect it to one another"};
   };
 
@@ -122,10 +123,9 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
   const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
   const Answer none{false, "no indirect light"};
-  const bool apart = indirect && !reflectorsSeeOneAnother(view);
   decide(EffectId::Bounces, !indirect         ? none
                             : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
-                            : apart           ? Answer{false, "all that reflects lies in one plane"}
+                            : !seeOneAnother  ? Answer{false, "all that reflects lies in one plane"}
                                               : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
   decide(EffectId::Textures, !indirect            ? none
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}

@@ -100,6 +100,7 @@ void GiFrame::State::placeWorld() {
   rays->setTextures(plan.on(Textures));
   work(Motion) = rays->update(view, plan.idle(Motion));
   gpuScene->place(view.instances);
+  disturbance = Disturbance(view);
   lights = collectLights(view);
   if (!plan.on(Emissive)) {
     lights.emitters.clear();

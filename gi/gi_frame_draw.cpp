@@ -57,14 +57,13 @@ void GiFrame::State::draw() {
 
 /// Lamps that stand elsewhere get a new map, others the part that an object moved through.
 std::vector<MapJob> GiFrame::State::emitterMapJobs(std::span<const MapPose> emitters, int resolution) {
-  const Disturbance moved(world.view);
   std::vector<MapJob> jobs;
   for (uint32_t i = 0; i < emitters.size(); ++i) {
     TexelRect texels;
     if (world.view.changes.first || i >= emitterPoses.size() || emitters[i] != emitterPoses[i])
       texels = TexelRect::whole(resolution);
     else
-      for (const Aabb& box : moved.boxes()) texels.add(texelsCovered(emitters[i], box, resolution));
+      for (const Aabb& box : disturbance.boxes()) texels.add(texelsCovered(emitters[i], box, resolution));
     if (!texels.empty()) jobs.push_back({i, texels});
   }
   emitterPoses.assign(emitters.begin(), emitters.end());
@@ -81,9 +80,9 @@ DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
   if (shadow.spotResolution == 0) shadow.spotResolution = width;
   const bool geometry = view.changes.geometry || view.changes.instances;
   if (receivers.empty() || view.changes.camera || geometry) receivers = visibleBounds(*rays, view, stats.raysPoints);
-  const Disturbance moved(view);
-  const LightShadows& shadows = lightShadowPass.run({*gpuScene, view.lights, plan.on(Sky), lights.sky, receivers,
-                                                     view.boundsWorld, view.changes.first, moved.boxes(), shadow});
+  const LightShadows& shadows =
+      lightShadowPass.run({*gpuScene, view.lights, plan.on(Sky), lights.sky, receivers, view.boundsWorld,
+                           view.changes.first, disturbance.boxes(), shadow});
   stats.lightMapsDrawn = lightShadowPass.mapsDrawn();
   work(Sky) += lightShadowPass.skyMapsDrawn();
   DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};

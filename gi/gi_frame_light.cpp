@@ -147,7 +147,7 @@ void GiFrame::State::prepareVplMaps(bool beside, const std::vector<uint32_t>& ca
   } else if (plan.idle(MapRefresh)) {
     mapSchedule.disturbInTurn(poses.size(), size_t(settings.shadow.refresh), resolution);
   } else if (view.changes.geometry || view.changes.instances) {
-    mapSchedule.disturb(poses, brightness, Disturbance(view), *rays, resolution, settings.shadow.motionRays, seed,
+    mapSchedule.disturb(poses, brightness, disturbance, *rays, resolution, settings.shadow.motionRays, seed,
                         stats.frame, stats.raysMapTests);
   }
   mapJobs = mapSchedule.take(elsewhere, brightness, resolution, budget);

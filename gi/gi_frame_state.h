@@ -77,6 +77,7 @@ struct GiFrame::State {
   std::unique_ptr<GpuScene> gpuScene;
   std::unique_ptr<EmbreeQuery> rays;
   WorldCopy world;
+  Disturbance disturbance; // where this frame's world moved
   LightSet lights;
   EffectPlan plan;
   bool settingsChanged = true, shadersChanged = false;

@@ -140,7 +140,6 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
     fine.add(s.rough);
     const int64_t more = texelsTraced(fine, false) - texelsTraced(s.texels, true);
     const bool coarse = rest < more && !s.texels.empty();
-    if (rest < more && !coarse && rest < texels) break; // what is left is for stale maps
     if (coarse) {
       jobs.push_back({slot, s.texels, true});
       texels -= texelsTraced(s.texels, true);

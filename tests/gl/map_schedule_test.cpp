@@ -146,28 +146,29 @@ struct RoomWithBlock {
   }
 };
 
-using MapScheduleTest = GlTest;
+class MapScheduleTest : public GlTest {
+ protected:
+  MapScheduleTest() { rays.update(room.carry(vec3(0), 0.3f)); }
 
-std::vector<MapPose> posesOnWalls() {
-  Rng rng(3, Stream::Test, 0);
-  std::vector<MapPose> poses;
-  for (int i = 0; i < 96; ++i) {
-    const int axis = i % 3;
-    vec3 p = 1.8f * vec3(rng.next(), rng.next(), rng.next()) - 0.9f, n(0);
-    p[axis] = i % 2 ? 1.0f : -1.0f;
-    n[axis] = -p[axis];
-    poses.push_back({p, glm::normalize(n + 0.3f * sampleSphere(rng.next2())), n});
+  static std::vector<MapPose> posesOnWalls() {
+    Rng rng(3, Stream::Test, 0);
+    std::vector<MapPose> poses;
+    for (int i = 0; i < 96; ++i) {
+      const int axis = i % 3;
+      vec3 p = 1.8f * vec3(rng.next(), rng.next(), rng.next()) - 0.9f, n(0);
+      p[axis] = i % 2 ? 1.0f : -1.0f;
+      n[axis] = -p[axis];
+      poses.push_back({p, glm::normalize(n + 0.3f * sampleSphere(rng.next2())), n});
+    }
+    return poses;
   }
-  return poses;
-}
 
-TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
+  GlContext& current = context(); // what follows needs one before SetUp
   RoomWithBlock room;
-  EmbreeQuery rays(room.scene.assets);
-  rays.update(room.carry(vec3(0), 0.3f));
-  GpuScene gpu(programs, room.scene.assets);
+  EmbreeQuery rays{room.scene.assets};
+  GpuScene gpu{programs, room.scene.assets};
   const std::vector<MapPose> poses = posesOnWalls();
-  const std::vector<float> brightness(poses.size(), 1.0f);
+  const std::vector<float> brightness = std::vector<float>(poses.size(), 1.0f);
   ParaboloidMapInputs in{.scene = gpu,
                          .rays = &rays,
                          .poses = poses,
@@ -175,6 +176,9 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
                          .farDistance = 4,
                          .resolution = 64,
                          .maker = ShadowMaker::Rays};
+};
+
+TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
   ParaboloidMapPass parts(passes, "in part");
   parts.run(in);
   MapSchedule schedule;
@@ -212,19 +216,6 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
 }
 
 TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
-  RoomWithBlock room;
-  EmbreeQuery rays(room.scene.assets);
-  rays.update(room.carry(vec3(0), 0.3f));
-  GpuScene gpu(programs, room.scene.assets);
-  const std::vector<MapPose> poses = posesOnWalls();
-  const std::vector<float> brightness(poses.size(), 1.0f);
-  ParaboloidMapInputs in{.scene = gpu,
-                         .rays = &rays,
-                         .poses = poses,
-                         .jobs = {},
-                         .farDistance = 4,
-                         .resolution = 64,
-                         .maker = ShadowMaker::Rays};
   ParaboloidMapPass parts(passes, "in part");
   parts.run(in);
   const SceneView view = room.carry({0.45f, -0.3f, 0.1f}, 0.7f);
