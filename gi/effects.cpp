@@ -134,8 +134,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                 : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
                                                                      : Answer{false, "shadow.emitterSamples is 1"});
   decide(EffectId::Filter, !indirect                               ? none
-                           : smc.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
-                           : settings.gather.mode != GatherMode::Interleaved
+                           : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
+                           : !interleaved(settings.gather.mode)
                                ? Answer{false, "every pixel sees all VPLs"}
                            : !settings.filter.on ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});

@@ -110,25 +110,34 @@ DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
 
 IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   const uint64_t draws = gl::drawCount();
-  if (settings.smc.visibility == VplVisibility::Rays) {
+  if (settings.vpl.visibility == VplVisibility::Rays) {
     CpuScope scope(stats.stages, "gather by rays");
     return indirectUpload.run(imageOf(
         world.view.camera, gatherByRays(*rays, world.view.camera, vplsShown, settings.gather, stats.raysGather)));
   }
   const VplLights shown = vplBuffer.run(vplLights);
-  const ParaboloidMaps maps = vplMapPass.run(
-      {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
-  stats.mapsDrawn += vplMapPass.mapsDrawn();
-  stats.shadowMaker = vplMapPass.makerReport();
-  const RawIndirect raw = gatherPass.run({gbuffer, shown, &maps, settings.shadow.bias, settings.gather});
+  uint32_t mapsDrawn = 0;
+  const bool shadowed = settings.vpl.visibility == VplVisibility::Maps;
+  if (shadowed) {
+    results.vplMaps = vplMapPass.run(
+        {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
+    mapsDrawn = vplMapPass.mapsDrawn();
+    stats.mapsDrawn += mapsDrawn;
+    stats.shadowMaker = vplMapPass.makerReport();
+  }
+  const ParaboloidMaps* maps = shadowed ? &results.vplMaps : nullptr;
+  const float bias = settings.shadow.bias;
+  const RawIndirect raw =
+      multiresolution(settings.gather.mode)
+          ? multiresPass.run({gbuffer, shown, maps, bias, settings.gather, settings.multires, settings.filter})
+          : gatherPass.run({gbuffer, shown, maps, bias, settings.gather});
   results.raw = raw;
-  results.vplMaps = maps;
   FilterSettings filter = settings.filter;
   filter.on = filter.on && plan.on(EffectId::Filter);
   const uint64_t filterDraws = gl::drawCount();
   const IndirectLight indirect = filterPass.run({gbuffer, raw, filter});
   if (filter.on) work(EffectId::Filter) = gl::drawCount() - filterDraws;
-  work(EffectId::Indirect) += gl::drawCount() - draws + vplMapPass.mapsDrawn();
+  work(EffectId::Indirect) += gl::drawCount() - draws + mapsDrawn;
   return indirect;
 }
 

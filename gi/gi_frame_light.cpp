@@ -110,7 +110,7 @@ void GiFrame::State::prepareVplMaps(bool beside, const std::vector<uint32_t>& ca
   const SceneView& view = world.view;
   vplLights.clear();
   mapJobs.clear();
-  if (settings.smc.visibility == VplVisibility::Rays) {
+  if (settings.vpl.visibility == VplVisibility::Rays) {
     vplsShown = vpls.slots;
     vplMapsOld = true;
     return;
@@ -123,10 +123,14 @@ void GiFrame::State::prepareVplMaps(bool beside, const std::vector<uint32_t>& ca
   changes.movedSlots.clear(); // they have their maps after this frame
   changes.placedSlots.clear();
 
+  for (const Vpl& v : vpls.slots) vplLights.push_back(vplLight(v));
+  if (settings.vpl.visibility == VplVisibility::None) {
+    vplMapsOld = true;
+    return;
+  }
   const int resolution = settings.shadow.resolution;
   std::vector<float> brightness;
   for (const Vpl& v : vpls.slots) {
-    vplLights.push_back(vplLight(v));
     // A light that brings nothing now may do so later, so its map is not given up.
     brightness.push_back(v.alive ? std::max(v.intensity(), 1e-20f) : 0);
   }

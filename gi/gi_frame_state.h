@@ -5,6 +5,7 @@
 #include "engine/trace/embree_query.h"
 #include "gi/gi_frame.h"
 #include "gi/render/map_schedule.h"
+#include "gi/render/multires.h"
 #include "gi/render/passes.h"
 #include "gi/vpl/sources.h"
 
@@ -68,6 +69,7 @@ struct GiFrame::State {
   ParaboloidMapPass vplMapPass{context, "vpl maps"};
   VplLightBuffer vplBuffer{context, "vpls"};
   GatherPass gatherPass{context};
+  MultiresPass multiresPass{context};
   FilterPass filterPass{context};
   IndirectUpload indirectUpload{context};
   CompositePass compositePass{context};

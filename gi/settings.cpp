@@ -30,8 +30,10 @@ class Table {
  public:
   Table() {
     constexpr float big = 1e30f;
-    choice("vpl.source", &Settings::vpl, &VplSettings::source, {"smc", "ir", "mir", "tcas"},
+    choice("vpl.source", &Settings::vpl, &VplSettings::source, {"smc", "ir", "mir", "tcas", "rsm", "isr", "hisr"},
            "who places virtual lights; named techniques set it");
+    choice("vpl.visibility", &Settings::vpl, &VplSettings::visibility, {"maps", "rays", "none"},
+           "who tests VPLs against pixels: shadow maps, a ray for every pair (seconds per frame), or nobody");
     whole("vpl.mirCandidates", &Settings::vpl, &VplSettings::mirCandidates, 1, 1024,
           "mir: light paths per VPL slot to choose from; its time and memory grow with it");
     whole("vpl.tcasIterations", &Settings::vpl, &VplSettings::tcasIterations, 0, 1024,
@@ -55,8 +57,6 @@ class Table {
           "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
     choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"},
            "what a VPL stands for: paper 1's density, the same by neighbours on its side, or the cell around it");
-    choice("smc.visibility", &Settings::smc, &SmcSettings::visibility, {"maps", "rays"},
-           "who tests VPLs against pixels: shadow maps, or a ray for every pair (seconds per frame)");
     whole("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, 16, 2048,
           "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
     choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"},
@@ -81,12 +81,40 @@ class Table {
           "directions of the sky in direct light");
     whole("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, 16, 2048,
           "texels per side of their maps");
-    choice("gather.mode", &Settings::gather, &GatherSettings::mode, {"interleaved", "full"},
-           "4x4 subsets and filter, or every VPL at every pixel (16 times the time)");
+    choice("gather.mode", &Settings::gather, &GatherSettings::mode,
+           {"interleaved", "full", "multires", "multires-interleaved", "splat", "splat-per-vpl"},
+           "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the picture; "
+           "patches of each subset; VPLs splatted into patches, or each into patches of its own");
     real("gather.disk", &Settings::gather, &GatherSettings::disk, 0, 1000,
          "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    whole("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, 1, 1024,
+          "patches along the picture's longer side at the coarsest level");
+    real("multires.depth", &Settings::multires, &MultiresSettings::depth, 0, big,
+         "deviation from its plane that splits a patch, share of the view distance; 0 = every pixel is gathered");
+    real("multires.normal", &Settings::multires, &MultiresSettings::normal, 0, big,
+         "range of a component of the normal, 0 to 2, that splits a patch");
+    flag("multires.balance", &Settings::multires, &MultiresSettings::balance,
+         "patches side by side differ by one level at most");
+    real("multires.detail", &Settings::multires, &MultiresSettings::detail, 0, 1,
+         "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");
+    whole("rsm.resolution", &Settings::rsm, &RsmSettings::resolution, 16, 4096,
+          "texels per side of a light's reflective shadow map, of each face of a point light's");
+    whole("rsm.vpls", &Settings::rsm, &RsmSettings::vpls, 1, 1 << 20,
+          "rsm: VPLs on a regular grid over all maps, about so many");
+    flag("rsm.exact", &Settings::rsm, &RsmSettings::exact,
+         "every texel's own solid angle, instead of a map's mean (the papers')");
+    whole("rsm.coarsest", &Settings::rsm, &RsmSettings::coarsest, 1, 256,
+          "isr, hisr: patches per side of a map at the coarsest level, a power of two");
+    whole("rsm.finest", &Settings::rsm, &RsmSettings::finest, 1, 1024,
+          "isr, hisr: patches per side of a map at the finest level, a power of two");
+    real("rsm.depth", &Settings::rsm, &RsmSettings::depth, 0, big,
+         "isr: deviation from its plane that splits a patch of a map, share of the distance; 0 splits all");
+    real("rsm.normal", &Settings::rsm, &RsmSettings::normal, 0, big,
+         "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
+    real("rsm.tau", &Settings::rsm, &RsmSettings::tau, 0, 1,
+         "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
     flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"},
            "7x7 filter along rows then columns, or all 49 taps at once");
@@ -252,23 +280,57 @@ void applyPreset(Settings& settings, const std::string& name) {
   throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
 }
 
+namespace {
+
+/// Choices that belong together: a row of the table of techniques.
+struct Technique {
+  VplSource source;
+  GatherMode mode;
+};
+constexpr Technique kTechniques[] = {
+    {VplSource::Smc, GatherMode::Interleaved},  {VplSource::Ir, GatherMode::Interleaved},
+    {VplSource::Mir, GatherMode::Interleaved},  {VplSource::Tcas, GatherMode::Interleaved},
+    {VplSource::Rsm, GatherMode::Full},         {VplSource::Rsm, GatherMode::Splat},
+    {VplSource::Rsm, GatherMode::Multires},     {VplSource::Isr, GatherMode::Multires},
+    {VplSource::Hisr, GatherMode::Multires},
+};
+
+} // namespace
+
 const std::vector<std::string>& techniqueNames() {
-  static const std::vector<std::string> names{"smc", "ir", "mir", "tcas"}; // in the order of VplSource
+  static const std::vector<std::string> names{"smc", "ir",  "mir", "tcas", "rsm", "multires-splat", "multires-gather",
+                                              "isr", "hisr"}; // as kTechniques
   return names;
 }
 
 void applyTechnique(Settings& settings, const std::string& name) {
   for (size_t i = 0; i < techniqueNames().size(); ++i) {
     if (techniqueNames()[i] != name) continue;
-    settings.vpl.source = VplSource(i);
+    const Technique& t = kTechniques[i];
+    // The first four share visibility and gather, whatever these are; those from reflective maps have their own.
+    const bool own = fromReflectiveMaps(t.source);
+    if (own || fromReflectiveMaps(settings.vpl.source)) {
+      settings.vpl.visibility = own ? VplVisibility::None : VplVisibility::Maps;
+      settings.gather.mode = t.mode;
+    }
+    settings.vpl.source = t.source;
     return;
   }
   const std::string near = nearestName(name, techniqueNames());
-  throw InputError("--technique " + name, "no such technique (" +
-                                              (near.empty() ? "smc, ir, mir or tcas" : "did you mean " + near + "?") +
-                                              ")");
+  std::string all;
+  for (const std::string& n : techniqueNames()) all += (all.empty() ? "" : ", ") + n;
+  throw InputError("--technique " + name,
+                   "no such technique (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
 }
 
-const std::string& techniqueOf(const Settings& settings) { return techniqueNames()[size_t(settings.vpl.source)]; }
+const std::string& techniqueOf(const Settings& settings) {
+  size_t first = std::size(kTechniques); // row of this source
+  for (size_t i = std::size(kTechniques); i-- > 0;) {
+    if (kTechniques[i].source != settings.vpl.source) continue;
+    first = i;
+    if (kTechniques[i].mode == settings.gather.mode) break;
+  }
+  return techniqueNames()[first];
+}
 
 } // namespace lambent

@@ -11,9 +11,18 @@
 
 namespace lambent {
 
-enum class VplSource : int { Smc, Ir, Mir, Tcas };   // who places the virtual lights: see gi/vpl/sources.h
-enum class VplVisibility : int { Maps, Rays };       // paraboloid shadow maps | exhaustive ray casts (paper 1, fig. 8)
-enum class GatherMode : int { Interleaved, Full };   // 4×4 interleaved subsets + filter | every VPL at every pixel
+/// Who places the virtual lights: gi/vpl/sources.h, and from reflective shadow maps a regular grid, clusters, or a tree
+/// that every fragment cuts for itself (gi/render/reflective_maps.h).
+enum class VplSource : int { Smc, Ir, Mir, Tcas, Rsm, Isr, Hisr };
+inline bool fromReflectiveMaps(VplSource source) { return source >= VplSource::Rsm; }
+enum class VplVisibility : int { Maps, Rays, None }; // paraboloid maps | exhaustive ray casts (paper 1, fig. 8) | all
+/// 4×4 interleaved subsets + filter | every VPL at every pixel | every VPL at every patch of the multiresolution buffer |
+/// patches of each of the 16 subsets + filter | VPLs splatted into the patches | each VPL into patches of its own.
+enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl };
+inline bool interleaved(GatherMode mode) {
+  return mode == GatherMode::Interleaved || mode == GatherMode::MultiresInterleaved;
+}
+inline bool multiresolution(GatherMode mode) { return mode >= GatherMode::Multires; }
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
@@ -48,6 +57,7 @@ struct EffectSettings {
 
 struct VplSettings {
   VplSource source = VplSource::Smc;
+  VplVisibility visibility = VplVisibility::Maps;
   int mirCandidates = 256; // mir: paths per VPL slot to choose from (paper 1, 5.1: 256:1)
   int tcasIterations = 16; // tcas: Metropolis–Hastings iterations per VPL and frame (paper 1, 5.1)
   bool operator==(const VplSettings&) const = default;
@@ -66,7 +76,6 @@ struct SmcSettings {
   int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
   bool cache = true;       // keep light paths until geometry that they touch moves; same results
   DensityEstimator density = DensityEstimator::Cells;
-  VplVisibility visibility = VplVisibility::Maps;
   bool operator==(const SmcSettings&) const = default;
 };
 
@@ -92,6 +101,29 @@ struct GatherSettings {
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
   bool operator==(const GatherSettings&) const = default;
+};
+
+/// Patches of the picture that gather as one (papers 2 and 3).
+struct MultiresSettings {
+  int coarsest = 16;     // patches along the picture's longer side at the coarsest level
+  float depth = 0.02f;   // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
+  float normal = 0.3f;   // range of a component of the normal that splits it
+  bool balance = true;   // neighbours differ by one level at most
+  float detail = 0;      // α of paper 2's surface detail
+  bool operator==(const MultiresSettings&) const = default;
+};
+
+/// Lights from reflective shadow maps (papers 2 and 3).
+struct RsmSettings {
+  int resolution = 256; // texels per side of a light's map, of each face of a point light's
+  int vpls = 256;       // rsm: about as many on a regular grid over all maps
+  bool exact = true;    // solid angle of every texel; off: all of a map the same, as the papers
+  int coarsest = 16;    // isr, hisr: patches per side of a map at the coarsest level
+  int finest = 64;      // and at the finest
+  float depth = 0.05f;  // isr: as MultiresSettings::depth, seen from the light
+  float normal = 0.5f;  // isr: as MultiresSettings::normal
+  float tau = 0.02f;    // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
+  bool operator==(const RsmSettings&) const = default;
 };
 
 struct FilterSettings {
@@ -123,6 +155,8 @@ struct Settings {
   SmcSettings smc;
   ShadowSettings shadow;
   GatherSettings gather;
+  MultiresSettings multires;
+  RsmSettings rsm;
   FilterSettings filter;
   ImageSettings image;
   FrameSettings frame;

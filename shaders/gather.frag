@@ -1,8 +1,10 @@
 #version 450
 // Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + a/π)·V.
 // One draw covers one 4×4 subset of the pixels, which lie side by side, or all pixels (stride 1).
-// Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison).
+// Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison), PATCHES (fragments are patches of one level
+// of the multiresolution buffer, those that the stencil marks).
 #include "lib/gbuffer.glsl"
+#include "shared/patches.h"
 #include "shared/shadow_lookup.h"
 #include "shared/vpl_light.h"
 
@@ -16,6 +18,7 @@ layout(binding = 2) uniform sampler2DArray maps;
 uniform ivec2 tileOrigin;   // of this draw's sub-image, pixels
 uniform ivec2 subset;       // (x mod 4, y mod 4) of its pixels
 uniform int stride;         // 4, or 1 for all pixels
+uniform int level;          // of the patches
 uniform int firstClass;     // in the block
 uniform int classCount;
 uniform int blockClass;     // class that the block starts with
@@ -27,6 +30,9 @@ uniform float farDistance;  // metres at map value 1
 uniform float mapResolution;  // texels
 uniform float biasTexels;     // ShadowSettings::bias
 layout(location = 0) out vec4 outIrradiance;
+#ifdef PATCHES
+layout(early_fragment_tests) in;
+#endif
 
 #ifdef SHADOWS
 /// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame).
@@ -45,7 +51,11 @@ float visibility(int layer, vec3 d, float distance, float cosine) {
 #endif
 
 void main() {
+#ifdef PATCHES
+  ivec2 pixel = patchPixel(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset, ivec2(camera.size.xy));
+#else
   ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
+#endif
   outIrradiance = vec4(0.0);
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   float depth = texelFetch(gbufferDepth, pixel, 0).r;

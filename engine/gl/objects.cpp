@@ -76,6 +76,7 @@ int texelBytes(GLenum format) {
   case GL_RGBA8:
   case GL_SRGB8_ALPHA8:
   case GL_R32F:
+  case GL_DEPTH24_STENCIL8:
   case GL_DEPTH_COMPONENT32F:
     return 4;
   case GL_RGBA16F:
@@ -144,6 +145,11 @@ Texture::Texture(const std::string& label, const TextureDesc& desc)
 
 void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
 
+void Texture::limitLevels(int first, int last) const {
+  glTextureParameteri(name(), GL_TEXTURE_BASE_LEVEL, first);
+  glTextureParameteri(name(), GL_TEXTURE_MAX_LEVEL, last);
+}
+
 void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
 
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
@@ -164,14 +170,19 @@ void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
 Framebuffer::Framebuffer(const std::string& label)
     : Object(GL_FRAMEBUFFER, make([](GLsizei n, GLuint* names) { glCreateFramebuffers(n, names); }), label, 0) {}
 
-Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth)
+Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth,
+                         int level)
     : Framebuffer(label) {
   std::vector<GLenum> targets;
   for (const Texture* color : colors) {
     targets.push_back(GLenum(GL_COLOR_ATTACHMENT0 + targets.size()));
-    glNamedFramebufferTexture(name(), targets.back(), color->name(), 0);
+    glNamedFramebufferTexture(name(), targets.back(), color->name(), level);
   }
-  if (depth) glNamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, depth->name(), 0);
+  if (depth) {
+    const bool stencil = depth->desc().format == GL_DEPTH24_STENCIL8;
+    glNamedFramebufferTexture(name(), stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth->name(),
+                              level);
+  }
   glNamedFramebufferDrawBuffers(name(), GLsizei(targets.size()), targets.data());
   CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
 }
@@ -204,7 +215,10 @@ void PipelineState::apply() const {
   else
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDisable(GL_CULL_FACE);
-  glDisable(GL_STENCIL_TEST);
+  set(GL_STENCIL_TEST, stencil != Stencil::Off);
+  glStencilMask(stencil == Stencil::Mark ? 0xffu : 0u);
+  glStencilFunc(stencil == Stencil::Mark ? GL_ALWAYS : GL_EQUAL, 1, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, stencil == Stencil::Mark ? GL_REPLACE : GL_KEEP);
   glDisable(GL_FRAMEBUFFER_SRGB);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glViewport(x, y, width, height);

@@ -69,6 +69,8 @@ class Texture : public detail::Object {
   void bind(int unit) const;
   /// All texels of level 0 to zero. Colour formats only.
   void clear() const;
+  /// Samplers see only these levels, numbered from `first`: while another one is drawn into, reading is well defined.
+  void limitLevels(int first, int last) const;
 
  private:
   TextureDesc desc_;
@@ -95,8 +97,10 @@ class Framebuffer : public detail::Object {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const std::string& label);
-  /// Whole textures as attachments. Aborts when incomplete: formats are ours, so that is a bug.
-  Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
+  /// Whole textures, or one mip level of each, as attachments. A depth format with stencil is attached as both. Aborts
+  /// when incomplete: formats are ours, so that is a bug.
+  Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr,
+              int level = 0);
 
   /// Attaches one layer (cube face: 6·cube + face) as depth.
   void attachDepthLayer(const Texture& texture, int layer) const;
@@ -121,6 +125,9 @@ class Query : public detail::Object {
   explicit Query(GLenum target);
 };
 
+/// Mark: every fragment that is kept sets the stencil to 1. Marked: only where it is 1.
+enum class Stencil { Off, Mark, Marked };
+
 /// All fixed-function state a pass depends on; `apply` sets every field, so nothing leaks from pass to pass.
 struct PipelineState {
   bool depthTest = false;
@@ -128,6 +135,7 @@ struct PipelineState {
   GLenum depthFunc = GL_GREATER;
   bool add = false;                        // destination + source
   bool blendAlpha = false;                 // source over
+  Stencil stencil = Stencil::Off;
   bool depthClamp = false;                 // casters outside the depth range are kept at its ends
   int x = 0, y = 0, width = 0, height = 0; // viewport and scissor
   void apply() const;

@@ -37,7 +37,7 @@ GLuint compile(GLenum stage, const ShaderText& source) {
 } // namespace
 
 std::string ProgramDesc::key() const {
-  std::string key = vertex + '|' + fragment;
+  std::string key = vertex + '|' + geometry + '|' + fragment;
   for (const std::string& define : defines) key += '|' + define;
   return key;
 }
@@ -75,26 +75,30 @@ const Program& ProgramCache::get(const ProgramDesc& desc) {
 }
 
 void ProgramCache::build(Program& program) const {
-  const ShaderText vertex = loadShader(folder_, program.desc_.vertex, program.desc_.defines);
-  const ShaderText fragment = loadShader(folder_, program.desc_.fragment, program.desc_.defines);
+  const ProgramDesc& desc = program.desc_;
+  const std::pair<GLenum, const std::string*> stages[] = {
+      {GL_VERTEX_SHADER, &desc.vertex}, {GL_GEOMETRY_SHADER, &desc.geometry}, {GL_FRAGMENT_SHADER, &desc.fragment}};
+  std::vector<std::pair<GLenum, ShaderText>> sources;
+  for (const auto& [stage, file] : stages)
+    if (!file->empty()) sources.emplace_back(stage, loadShader(folder_, *file, desc.defines));
   program.files_.clear();
-  for (const ShaderText* source : {&vertex, &fragment})
-    for (const fs::path& file : source->files) program.files_.push_back({file, fs::last_write_time(file)});
-
-  const GLuint vertexShader = compile(GL_VERTEX_SHADER, vertex);
-  GLuint fragmentShader = 0;
+  for (const auto& [stage, source] : sources)
+    for (const fs::path& file : source.files) program.files_.push_back({file, fs::last_write_time(file)});
+  std::vector<GLuint> shaders;
   try {
-    fragmentShader = compile(GL_FRAGMENT_SHADER, fragment);
+    for (const auto& [stage, source] : sources) shaders.push_back(compile(stage, source));
   } catch (...) {
-    glDeleteShader(vertexShader);
+    for (const GLuint shader : shaders) glDeleteShader(shader);
     throw;
   }
   const GLuint name = glCreateProgram();
-  glAttachShader(name, vertexShader);
-  glAttachShader(name, fragmentShader);
+  for (const GLuint shader : shaders) glAttachShader(name, shader);
+  std::vector<const char*> captured;
+  for (const std::string& output : desc.captured) captured.push_back(output.c_str());
+  if (!captured.empty())
+    glTransformFeedbackVaryings(name, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(name);
-  glDeleteShader(vertexShader);
-  glDeleteShader(fragmentShader);
+  for (const GLuint shader : shaders) glDeleteShader(shader);
   GLint ok = 0, length = 0;
   glGetProgramiv(name, GL_LINK_STATUS, &ok);
   if (!ok) {
@@ -125,7 +129,8 @@ std::vector<std::string> ProgramCache::reloadChanged() {
     if (!changed) continue;
     try {
       build(*program);
-      messages.push_back("reloaded " + program->desc_.fragment);
+      const ProgramDesc& desc = program->desc_;
+      messages.push_back("reloaded " + (desc.fragment.empty() ? desc.vertex : desc.fragment));
     } catch (const RunError& error) {
       messages.push_back(error.what());
     }

@@ -45,7 +45,9 @@ DirectLight DirectPass::run(const DirectInputs& in) {
                 .lights = *in.emitters,
                 .maps = in.emitterMaps,
                 .smoothShadows = &compareSampler_,
-                .deinterleaved = false,
+                .areas = gatherAreas(in.gbuffer, 1),
+                .grid = 1,
+                .patches = false,
                 .addToTarget = true,
                 // Bilinear comparison reaches half a texel farther.
                 .biasTexels = 1.5f * in.shadow.bias,

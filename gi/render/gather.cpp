@@ -11,8 +11,20 @@ namespace lambent {
 
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid) {
+  if (grid == 1) return {{.origin = {0, 0}, .size = {gbuffer.width, gbuffer.height}}};
+  std::vector<GatherArea> areas;
+  const glm::ivec2 tile = tileSize(gbuffer);
+  for (int c = 0; c < kLightClasses; ++c) {
+    const glm::ivec2 subset(c % grid, c / grid);
+    areas.push_back({.origin = subset * tile, .size = tile, .subset = subset});
+  }
+  return areas;
+}
+
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
   gl::ProgramDesc desc{.fragment = "gather.frag"};
+  if (in.patches) desc.defines.push_back("PATCHES");
   if (in.maps) desc.defines.push_back("SHADOWS");
   if (in.maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
   const gl::Program& program = programs.get(desc);
@@ -24,17 +36,16 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
     program.set("mapResolution", float(in.maps->resolution));
     program.set("biasTexels", in.biasTexels);
   }
-  program.set("stride", in.deinterleaved ? 4 : 1);
-  const int classesPerDraw = in.deinterleaved ? 1 : kClassesPerLightBlock;
-  program.set("classCount", classesPerDraw);
-  program.set("scale", in.deinterleaved ? float(kLightClasses) : 1.0f);
+  const bool subsets = in.grid > 1;
+  program.set("stride", in.grid);
+  program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
+  program.set("scale", subsets ? float(kLightClasses) : 1.0f);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
   target.bind();
   glBindSampler(2, in.smoothShadows ? in.smoothShadows->name() : 0);
 
-  const glm::ivec2 tile = tileSize(in.gbuffer);
   constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
   constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
   const uint32_t chunks = std::max(1u, (in.lights.count + kChunk - 1) / kChunk);
@@ -45,19 +56,25 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
       CHECK_LT(chunk, in.maps->arrays.size());
       in.maps->arrays[chunk].bind(2);
     }
-    for (int c = 0; c < kLightClasses; c += classesPerDraw) {
-      const int block = c / kClassesPerLightBlock;
-      const bool add = in.addToTarget || chunk > 0 || (!in.deinterleaved && block > 0);
-      const glm::ivec2 subset = in.deinterleaved ? glm::ivec2(c % 4, c / 4) : glm::ivec2(0);
-      const glm::ivec2 size = in.deinterleaved ? tile : glm::ivec2(in.gbuffer.width, in.gbuffer.height);
-      const glm::ivec2 origin = subset * tile;
+    for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
       in.lights.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
       program.set("blockClass", block * kClassesPerLightBlock);
-      program.set("firstClass", c % kClassesPerLightBlock);
-      program.set("subset", subset);
-      program.set("tileOrigin", origin);
-      gl::PipelineState{.add = add, .x = origin.x, .y = origin.y, .width = size.x, .height = size.y}.apply();
-      gl::drawFullscreen();
+      for (const GatherArea& area : in.areas) {
+        const int lightClass = area.subset.x + 4 * area.subset.y;
+        if (subsets && lightClass / kClassesPerLightBlock != block) continue;
+        program.set("firstClass", subsets ? lightClass % kClassesPerLightBlock : 0);
+        program.set("subset", area.subset);
+        program.set("tileOrigin", area.origin);
+        program.set("level", area.level);
+        gl::PipelineState{.add = in.addToTarget || chunk > 0 || (!subsets && block > 0),
+                          .stencil = in.patches ? gl::Stencil::Marked : gl::Stencil::Off,
+                          .x = area.origin.x,
+                          .y = area.origin.y,
+                          .width = area.size.x,
+                          .height = area.size.y}
+            .apply();
+        gl::drawFullscreen();
+      }
     }
   }
   glBindSampler(2, 0);
@@ -65,7 +82,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
 
 RawIndirect GatherPass::run(const GatherInputs& in) {
   const gl::PassScope scope(context_.profiler, "gather");
-  const bool deinterleaved = in.gather.mode == GatherMode::Interleaved;
+  const bool deinterleaved = interleaved(in.gather.mode);
   const glm::ivec2 tile = tileSize(in.gbuffer);
   const glm::ivec2 size = deinterleaved ? 4 * tile : glm::ivec2(in.gbuffer.width, in.gbuffer.height);
   if (!irradiance_ || irradiance_.width() != size.x || irradiance_.height() != size.y) {
@@ -77,7 +94,9 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .lights = in.lights,
               .maps = in.maps,
               .smoothShadows = nullptr,
-              .deinterleaved = deinterleaved,
+              .areas = gatherAreas(in.gbuffer, deinterleaved ? 4 : 1),
+              .grid = deinterleaved ? 4 : 1,
+              .patches = false,
               .addToTarget = false,
               .biasTexels = in.bias,
               .diskFactor = in.gather.disk / kPi,

@@ -5,13 +5,22 @@
 
 namespace lambent {
 
+/// A rectangle of the target whose fragments are the pixels of one sub-image, or patches of it.
+struct GatherArea {
+  glm::ivec2 origin, size;  // texels of the target
+  glm::ivec2 subset{0};     // which sub-image, and of which class of lights; (0, 0) and every light if there is one only
+  int level = 0;            // of the patches: see shaders/shared/patches.h
+};
+
 struct GatherDraw {
   const GBuffer& gbuffer;
   const VplLights& lights;
   const ParaboloidMaps* maps;       // null: no visibility
   const gl::Sampler* smoothShadows; // bilinear depth comparison; null: nearest texel
-  bool deinterleaved;               // 16 draws, one per class, into their tiles
-  bool addToTarget;                 // instead of overwriting it
+  std::span<const GatherArea> areas;
+  int grid;         // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
+  bool patches;     // fragments are patches; only those that the stencil marks are drawn
+  bool addToTarget; // instead of overwriting it
   float biasTexels;
   float diskFactor; // GatherSettings::disk / π
   float largestG;   // 1/m², kInfinity for none
@@ -20,7 +29,10 @@ struct GatherDraw {
 /// Size of one of the 16 sub-images of a de-interleaved picture.
 glm::ivec2 tileSize(const GBuffer& gbuffer);
 
-/// Gathers into the framebuffer, which covers the whole picture (or all tiles).
+/// Pixels of the picture as they are, or as 16 tiles.
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid);
+
+/// Gathers into the areas of the framebuffer.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
 } // namespace lambent

@@ -270,7 +270,7 @@ class FilterPass {
   gl::Framebuffer framebuffer_, rowsFramebuffer_;
 };
 
-/// Irradiance that was computed on the CPU (smc.visibility = rays), in place of gather and filter.
+/// Irradiance that was computed on the CPU (vpl.visibility = rays), in place of gather and filter.
 class IndirectUpload {
  public:
   explicit IndirectUpload(PassContext context) : context_(context) {}

@@ -53,7 +53,7 @@ TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
   gi.settings().gather.mode = GatherMode::Full;
   gi.run(still(scene));
   const Image full = gi.read(Buffer::Irradiance);
-  gi.settings().smc.visibility = VplVisibility::Rays;
+  gi.settings().vpl.visibility = VplVisibility::Rays;
   gi.run(still(scene));
   const Image rays = gi.read(Buffer::Irradiance);
   EXPECT_GT(meanLuminance(rays), 0.1);

@@ -35,7 +35,7 @@ class Follower {
   Follower(const Stage& stage, const std::string& name, uint32_t seed) : settings_(stage.settings), seed_(seed) {
     run.name = name;
     applyTechnique(settings_, name);
-    if (settings_.smc.visibility == VplVisibility::Maps) gi_.emplace(settings_, seed_);
+    if (settings_.vpl.visibility == VplVisibility::Maps) gi_.emplace(settings_, seed_);
   }
 
   /// Radiance of indirect light at the tracked points of this frame.
@@ -144,12 +144,12 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   LaunchOptions launch = options.launch;
   launch.scene = file;
   // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
-  launch.set.insert(launch.set.begin(), "smc.visibility=rays");
+  launch.set.insert(launch.set.begin(), "vpl.visibility=rays");
   const auto stage = openStage(launch);
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   say(*stage, options.output.quiet);
 
-  if (stage->settings.smc.visibility == VplVisibility::Maps && !context) context.emplace(GlContext::headless());
+  if (stage->settings.vpl.visibility == VplVisibility::Maps && !context) context.emplace(GlContext::headless());
 
   const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
   const std::vector<vec2>& points = tracked.points;

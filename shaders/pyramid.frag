@@ -1,0 +1,121 @@
+#version 450
+// One level of the pyramid of patches, from the level below; FIRST: from pixels. A patch keeps the plane that fits it, as
+// inverse depth over the picture (affine for every plane, however steep), a bound of how far its pixels lie from that
+// plane, and the range of their normals. It is split where these pass the thresholds, and where a patch beside it is split
+// twice over (2:1 balance). Serves the camera's picture, and light maps that lie side by side (cells).
+layout(binding = 0) uniform sampler2D depthMap;  // FIRST: reversed depth, 0 where nothing is seen
+layout(binding = 1) uniform sampler2D normalMap; // FIRST
+layout(binding = 0) uniform sampler2D planes;    // else: the level below
+layout(binding = 1) uniform sampler2D normalsLo;
+layout(binding = 2) uniform sampler2D normalsHi;
+uniform ivec2 size;           // of the picture, pixels
+uniform ivec2 cell;           // of one map, children; patches never span two
+uniform int childPixels;      // 2^(level − 1)
+uniform float depthThreshold;  // MultiresSettings::depth
+uniform float normalThreshold; // MultiresSettings::normal
+uniform float orthoScale;     // 0: perspective; else depth range over half the width: depths are not inverse there
+uniform int balance;
+layout(location = 0) out vec4 outPlane;    // inverse depth at the centre (0: background, −1: outside), slope per pixel,
+                                           // largest deviation
+layout(location = 1) out vec4 outNormalLo; // a: 1 = to be split
+layout(location = 2) out vec4 outNormalHi;
+
+const float kSplit = 1e30;
+
+struct Child {
+  float centre;
+  vec2 slope;
+  float deviation;
+  vec3 lo, hi;
+};
+
+#ifdef FIRST
+/// Difference to the neighbour that continues the surface better: the smaller of both, none if they disagree.
+float slopeOf(float before, float here, float after) {
+  if (before <= 0.0) return after <= 0.0 ? 0.0 : after - here;
+  if (after <= 0.0) return here - before;
+  float a = here - before, b = after - here;
+  return a * b <= 0.0 ? 0.0 : abs(a) < abs(b) ? a : b;
+}
+
+/// Depth of a pixel of the same map; −1 outside.
+float depthAt(ivec2 pixel, ivec2 origin) {
+  ivec2 within = pixel - origin;
+  if (any(lessThan(within, ivec2(0))) || any(greaterThanEqual(within, cell)) || any(greaterThanEqual(pixel, size)))
+    return -1.0;
+  return texelFetch(depthMap, pixel, 0).r;
+}
+
+Child childAt(ivec2 pixel) {
+  ivec2 origin = pixel / cell * cell;
+  Child c = Child(depthAt(pixel, origin), vec2(0.0), 0.0, vec3(0.0), vec3(0.0));
+  if (c.centre <= 0.0) return c;
+  c.slope = vec2(slopeOf(depthAt(pixel - ivec2(1, 0), origin), c.centre, depthAt(pixel + ivec2(1, 0), origin)),
+                 slopeOf(depthAt(pixel - ivec2(0, 1), origin), c.centre, depthAt(pixel + ivec2(0, 1), origin)));
+  c.lo = c.hi = texelFetch(normalMap, pixel, 0).xyz;
+  return c;
+}
+#else
+Child childAt(ivec2 texel) {
+  vec4 plane = texelFetch(planes, texel, 0);
+  return Child(plane.x, plane.yz, plane.w, texelFetch(normalsLo, texel, 0).xyz, texelFetch(normalsHi, texel, 0).xyz);
+}
+#endif
+
+void main() {
+  ivec2 first = ivec2(gl_FragCoord.xy) * 2;
+  Child children[4];
+  int surfaces = 0, inside = 0;
+  vec2 slope = vec2(0.0);
+  vec3 lo = vec3(2.0), hi = vec3(-2.0);
+  for (int i = 0; i < 4; ++i) {
+    children[i] = childAt(first + ivec2(i & 1, i >> 1));
+    inside += children[i].centre >= 0.0 ? 1 : 0;
+    if (!(children[i].centre > 0.0)) continue;
+    ++surfaces;
+    slope += children[i].slope;
+    lo = min(lo, children[i].lo);
+    hi = max(hi, children[i].hi);
+  }
+  outPlane = vec4(inside > 0 ? 0.0 : -1.0, 0.0, 0.0, 0.0);
+  outNormalLo = outNormalHi = vec4(0.0);
+  if (surfaces > 0) {
+    slope /= float(surfaces);
+    float centre = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      if (!(children[i].centre > 0.0)) continue;
+      vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
+      centre += children[i].centre - dot(slope, offset);
+    }
+    centre /= float(surfaces);
+    // Pixel centres of a child lie within half of its pixels less one of its centre.
+    float reach = 0.5 * float(childPixels - 1);
+    float deviation = surfaces < inside || !(centre > 0.0) ? kSplit : 0.0;
+    for (int i = 0; i < 4; ++i) {
+      if (!(children[i].centre > 0.0)) continue;
+      vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
+      vec2 turn = abs(children[i].slope - slope);
+      deviation = max(deviation, children[i].deviation + abs(children[i].centre - centre - dot(slope, offset)) +
+                                     (turn.x + turn.y) * reach);
+    }
+    outPlane = vec4(max(centre, 1e-30), slope, deviation);
+    float relative = deviation * (orthoScale > 0.0 ? orthoScale : 1.0 / outPlane.x);
+    vec3 range = hi - lo;
+    bool split = relative >= depthThreshold || max(max(range.x, range.y), range.z) >= normalThreshold;
+    outNormalLo.xyz = lo;
+    outNormalHi.xyz = hi;
+    outNormalLo.a = split ? 1.0 : 0.0;
+  }
+#ifndef FIRST
+  // A split child makes this one split; so does, for balance, one beside the children.
+  ivec2 origin = first / cell * cell;
+  int ring = balance;
+  for (int y = -ring; y < 2 + ring; ++y) {
+    for (int x = -ring; x < 2 + ring; ++x) {
+      ivec2 texel = first + ivec2(x, y), within = texel - origin;
+      if (any(lessThan(within, ivec2(0))) || any(greaterThanEqual(within, cell))) continue;
+      outNormalLo.a = max(outNormalLo.a, texelFetch(normalsLo, texel, 0).a);
+    }
+  }
+#endif
+}
