@@ -103,8 +103,10 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                         : std::move(answer.second);
     return e.on;
   };
+  const bool reflective = fromReflectiveMaps(settings.vpl.source);
   const auto whyNoIndirect = [&](bool light) -> Answer {
     if (smc.bounces < 1) return {false, "smc.bounces is 0"};
+    if (reflective && scene.punctual == 0) return {false, "no punctual light, so no reflective shadow map"};
     if (view.instances.empty()) return {false, "nothing to light"};
     if (!light) return {false, "no light"};
     if (scene.reflecting == 0) return {false, "every surface is black"};
@@ -123,11 +125,14 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
   const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
   const Answer none{false, "no indirect light"};
+  const Answer oneBounce{false, "reflective shadow maps show one bounce"};
   decide(EffectId::Bounces, !indirect         ? none
+                            : reflective      ? oneBounce
                             : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
                             : !seeOneAnother  ? Answer{false, "all that reflects lies in one plane"}
                                               : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
   decide(EffectId::Textures, !indirect            ? none
+                             : reflective         ? Answer{false, "no light path is traced"}
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
   decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
@@ -149,12 +154,15 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
       decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
   const bool moved = geometry && motion;
   decide(EffectId::MapRefresh, !indirect               ? none
+                               : reflective            ? Answer{false, "maps are drawn with the VPLs"}
                                : moved                 ? Answer{true, movers}
                                : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
                                                        : Answer{false, "nothing moved"});
-  const bool placedAnew = settings.vpl.source != VplSource::Smc; // every frame, by photons or chains
+  const bool placedAnew = settings.vpl.source != VplSource::Smc && !reflective; // every frame, by photons or chains
+  const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
   decide(EffectId::Relight, !indirect               ? none
+                            : reflective            ? fromMaps
                             : placedAnew            ? Answer{true, "the technique lights its VPLs anew in every frame"}
                             : changes.first         ? Answer{true, "the scene is new"}
                             : changes.lights        ? Answer{true, "lights changed"}
@@ -164,6 +172,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
   decide(EffectId::Replace, !indirect                ? none
+                            : reflective             ? fromMaps
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}

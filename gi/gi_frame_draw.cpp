@@ -108,16 +108,64 @@ DirectLight GiFrame::State::drawDirect(const GBuffer& gbuffer) {
   return directPass.run(in);
 }
 
+/// VPLs of the reflective maps; with visibility, where their shadow maps stand.
+VplLights GiFrame::State::reflectiveLights(const ReflectiveMaps& sheet) {
+  const VplSource source = settings.vpl.source;
+  if (source == VplSource::Hisr) {
+    stats.vplsAlive = 0;
+    return vplBuffer.run({});
+  }
+  const VplLights shown = reflectiveLightPass.run(sheet, settings.rsm, source);
+  stats.vplsAlive = shown.count;
+  if (settings.vpl.visibility == VplVisibility::None) return shown;
+  const std::vector<VplLight> lights = reflectiveLightPass.read();
+  if (settings.vpl.visibility == VplVisibility::Rays) {
+    vplsShown.clear();
+    for (const VplLight& light : lights) vplsShown.push_back(vplOf(light));
+    vplMapsOld = true;
+    return shown;
+  }
+  mapJobs.clear();
+  std::vector<MapPose> now;
+  const int resolution = settings.shadow.resolution;
+  const bool all = world.view.changes.first || vplMapsOld;
+  for (const VplLight& light : lights) {
+    const Vpl vpl = vplOf(light);
+    now.push_back(vpl.alive ? MapPose{vpl.position, vpl.normal, vpl.normal} : MapPose{});
+    const uint32_t slot = uint32_t(now.size() - 1);
+    TexelRect texels;
+    if (all || slot >= poses.size() || poses[slot] != now[slot])
+      texels = TexelRect::whole(resolution);
+    else
+      for (const Aabb& box : disturbance.boxes()) texels.add(texelsCovered(now[slot], box, resolution));
+    if (vpl.alive && !texels.empty()) mapJobs.push_back({slot, texels});
+  }
+  poses = std::move(now);
+  vplMapsOld = false;
+  return shown;
+}
+
 IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   const uint64_t draws = gl::drawCount();
-  if (settings.vpl.visibility == VplVisibility::Rays) {
+  const bool reflective = fromReflectiveMaps(settings.vpl.source);
+  ReflectiveMaps sheet;
+  VplLights shown;
+  if (reflective) {
+    sheet = reflectiveMapPass.run({*gpuScene, world.view.lights, world.view.boundsWorld, world.view.changes.first,
+                                   disturbance.boxes(), settings.rsm, settings.vpl.source});
+    shown = reflectiveLights(sheet);
+  }
+  const bool tree = settings.vpl.source == VplSource::Hisr; // has no visibility
+  if (settings.vpl.visibility == VplVisibility::Rays && !tree) {
     CpuScope scope(stats.stages, "gather by rays");
     return indirectUpload.run(imageOf(
         world.view.camera, gatherByRays(*rays, world.view.camera, vplsShown, settings.gather, stats.raysGather)));
   }
-  const VplLights shown = vplBuffer.run(vplLights);
+  if (!reflective) shown = vplBuffer.run(vplLights);
+  const LightTrees trees{sheet, settings.rsm};
+  const LightTrees* cut = tree ? &trees : nullptr;
   uint32_t mapsDrawn = 0;
-  const bool shadowed = settings.vpl.visibility == VplVisibility::Maps;
+  const bool shadowed = settings.vpl.visibility == VplVisibility::Maps && !tree;
   if (shadowed) {
     results.vplMaps = vplMapPass.run(
         {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
@@ -129,8 +177,8 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   const float bias = settings.shadow.bias;
   const RawIndirect raw =
       multiresolution(settings.gather.mode)
-          ? multiresPass.run({gbuffer, shown, maps, bias, settings.gather, settings.multires, settings.filter})
-          : gatherPass.run({gbuffer, shown, maps, bias, settings.gather});
+          ? multiresPass.run({gbuffer, shown, maps, bias, settings.gather, settings.multires, settings.filter, cut})
+          : gatherPass.run({gbuffer, shown, maps, bias, settings.gather, cut});
   results.raw = raw;
   FilterSettings filter = settings.filter;
   filter.on = filter.on && plan.on(EffectId::Filter);

@@ -10,6 +10,13 @@ namespace lambent {
 /// Updates the VPLs, or starts to, and gets ready what the GPU needs of those that this frame shows.
 void GiFrame::State::updateLight(const std::function<void(int, int)>& progress) {
   using enum EffectId;
+  if (fromReflectiveMaps(settings.vpl.source)) { // the GPU makes its VPLs when it draws
+    finishUpdate();
+    vpls = {};
+    changes = {};
+    mapSchedule.clear();
+    return;
+  }
   const auto called = [&](EffectId id) { return plan.on(id) && plan.calledFor(id); };
   const bool smc = settings.vpl.source == VplSource::Smc;
   const bool needed = vpls.slots.empty() || called(Replace) || (smc && (called(Relight) || called(Motion)));

@@ -5,7 +5,7 @@
 #include "engine/trace/embree_query.h"
 #include "gi/gi_frame.h"
 #include "gi/render/map_schedule.h"
-#include "gi/render/multires.h"
+#include "gi/render/reflective_maps.h"
 #include "gi/render/passes.h"
 #include "gi/vpl/sources.h"
 
@@ -70,6 +70,8 @@ struct GiFrame::State {
   VplLightBuffer vplBuffer{context, "vpls"};
   GatherPass gatherPass{context};
   MultiresPass multiresPass{context};
+  ReflectiveMapPass reflectiveMapPass{context};
+  ReflectiveLightPass reflectiveLightPass{context};
   FilterPass filterPass{context};
   IndirectUpload indirectUpload{context};
   CompositePass compositePass{context};
@@ -123,6 +125,7 @@ struct GiFrame::State {
   std::vector<MapJob> emitterMapJobs(std::span<const MapPose> emitters, int resolution);
   DirectLight drawDirect(const GBuffer& gbuffer);
   IndirectLight drawIndirect(const GBuffer& gbuffer);
+  VplLights reflectiveLights(const ReflectiveMaps& sheet);
   void countWork();
 
   uint64_t& work(EffectId id) { return stats.work[size_t(id)]; }

@@ -13,7 +13,9 @@ uniform ivec2 cell;           // of one map, children; patches never span two
 uniform int childPixels;      // 2^(level − 1)
 uniform float depthThreshold;  // MultiresSettings::depth
 uniform float normalThreshold; // MultiresSettings::normal
-uniform float orthoScale;     // 0: perspective; else depth range over half the width: depths are not inverse there
+uniform float orthoScale;      // depth range over half the width, of maps by parallel rays: depths are not inverse there
+uniform int orthoFrom;         // the first of these, row by row
+uniform int columns;           // of maps
 uniform int balance;
 layout(location = 0) out vec4 outPlane;    // inverse depth at the centre (0: background, −1: outside), slope per pixel,
                                            // largest deviation
@@ -99,7 +101,8 @@ void main() {
                                      (turn.x + turn.y) * reach);
     }
     outPlane = vec4(max(centre, 1e-30), slope, deviation);
-    float relative = deviation * (orthoScale > 0.0 ? orthoScale : 1.0 / outPlane.x);
+    ivec2 map = first / cell;
+    float relative = deviation * (map.x + map.y * columns >= orthoFrom ? orthoScale : 1.0 / outPlane.x);
     vec3 range = hi - lo;
     bool split = relative >= depthThreshold || max(max(range.x, range.y), range.z) >= normalThreshold;
     outNormalLo.xyz = lo;

@@ -143,6 +143,12 @@ void Object::swap(Object& other) noexcept {
 Texture::Texture(const std::string& label, const TextureDesc& desc)
     : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
 
+Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer& buffer) {
+  Texture texture(make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }), label);
+  glTextureBuffer(texture.name(), format, buffer.name());
+  return texture;
+}
+
 void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
 
 void Texture::limitLevels(int first, int last) const {

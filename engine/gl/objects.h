@@ -58,10 +58,14 @@ struct TextureDesc {
   bool compareGreater = false;
 };
 
+class Buffer;
+
 class Texture : public detail::Object {
  public:
   Texture() = default;
   Texture(const std::string& label, const TextureDesc& desc);
+  /// Reads the texels of a buffer, which must outlive it.
+  static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 
   const TextureDesc& desc() const { return desc_; }
   int width() const { return desc_.width; }
@@ -73,6 +77,8 @@ class Texture : public detail::Object {
   void limitLevels(int first, int last) const;
 
  private:
+  Texture(GLuint name, const std::string& label) : Object(GL_TEXTURE, name, label, 0) {}
+
   TextureDesc desc_;
 };
 

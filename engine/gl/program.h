@@ -14,7 +14,7 @@ namespace lambent::gl {
 /// Files relative to the shader folder, and macros ("NAME" or "NAME value") that select the variant.
 struct ProgramDesc {
   std::string vertex = "fullscreen.vert";
-  std::string fragment;
+  std::string fragment = {};
   std::vector<std::string> defines = {};
   std::string geometry = {};               // none if empty
   std::vector<std::string> captured = {};  // outputs for transform feedback, interleaved; then `fragment` may be empty

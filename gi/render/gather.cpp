@@ -23,6 +23,10 @@ std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid) {
 }
 
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
+  if (in.trees) {
+    drawTreeGather(programs, target, in);
+    return;
+  }
   gl::ProgramDesc desc{.fragment = "gather.frag"};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (in.maps) desc.defines.push_back("SHADOWS");
@@ -100,7 +104,8 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .addToTarget = false,
               .biasTexels = in.bias,
               .diskFactor = in.gather.disk / kPi,
-              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity});
+              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
+              .trees = in.trees});
   return {&irradiance_, deinterleaved};
 }
 

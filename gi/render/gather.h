@@ -24,6 +24,7 @@ struct GatherDraw {
   float biasTexels;
   float diskFactor; // GatherSettings::disk / π
   float largestG;   // 1/m², kInfinity for none
+  const LightTrees* trees = nullptr; // in place of `lights`
 };
 
 /// Size of one of the 16 sub-images of a de-interleaved picture.
@@ -34,5 +35,8 @@ std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid);
 
 /// Gathers into the areas of the framebuffer.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
+
+/// The same from trees. Patches must be black before.
+void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
 } // namespace lambent

@@ -19,7 +19,9 @@ float orthoFarFor(const CameraView& camera, const Aabb& scene) {
   return farthest * 1.01f;
 }
 
-CameraBlock blockOf(const CameraView& camera, float orthoFar) {
+} // namespace
+
+CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
   const bool ortho = camera.orthoHalfHeight > 0;
   const float halfHeight = ortho ? camera.orthoHalfHeight : std::tan(0.5f * camera.fovY);
   return {
@@ -29,8 +31,6 @@ CameraBlock blockOf(const CameraView& camera, float orthoFar) {
       .size = vec4(camera.width, camera.height, 1.0f / float(camera.width), 1.0f / float(camera.height)),
   };
 }
-
-} // namespace
 
 GBuffer GBufferPass::run(const GBufferInputs& in) {
   const gl::PassScope scope(context_.profiler, "g-buffer");
@@ -46,7 +46,7 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
     framebuffer_ = gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
     camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
   }
-  const CameraBlock block = blockOf(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
+  const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
   camera_.write(0, sizeof block, &block);
   camera_.bindUniform(0);
 

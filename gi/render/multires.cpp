@@ -35,6 +35,7 @@ RawIndirect MultiresPass::run(const MultiresInputs& in) {
                              .cell = {g.width, g.height},
                              .levels = levels,
                              .orthoScale = ortho ? (g.block.lens.w - g.block.lens.z) / g.block.lens.y : 0,
+                             .orthoFrom = ortho ? 0 : 1,
                              .depthThreshold = in.multires.depth,
                              .normalThreshold = in.multires.normal,
                              .balance = in.multires.balance});
@@ -118,7 +119,8 @@ void MultiresPass::gather(const MultiresInputs& in) {
               .addToTarget = true,
               .biasTexels = in.bias,
               .diskFactor = in.gather.disk / kPi,
-              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity});
+              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
+              .trees = in.trees});
 }
 
 void MultiresPass::upsample(const MultiresInputs& in) {

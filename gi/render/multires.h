@@ -25,7 +25,8 @@ struct PatchInputs {
   glm::ivec2 size;           // pixels
   glm::ivec2 cell;           // of one map; `size` for a picture
   int levels = 0;
-  float orthoScale = 0; // depth range over half the width for parallel views, 0 for a perspective
+  float orthoScale = 0;  // depth range over half the width of maps by parallel rays
+  int orthoFrom = 1 << 20; // the first of these, row by row; all before it have a perspective
   float depthThreshold, normalThreshold;
   bool balance = true;
 };
@@ -61,6 +62,7 @@ struct MultiresInputs {
   const GatherSettings& gather;
   const MultiresSettings& multires;
   const FilterSettings& filter; // weights of the upsampling
+  const LightTrees* trees = nullptr; // gathered in place of `lights`
 };
 
 class MultiresPass {

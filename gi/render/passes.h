@@ -56,6 +56,9 @@ struct GBufferInputs {
   const CameraView& camera;
 };
 
+/// The block of a camera; `orthoFar` is the far plane of an orthographic one, metres.
+CameraBlock cameraBlock(const CameraView& camera, float orthoFar);
+
 class GBufferPass {
  public:
   explicit GBufferPass(PassContext context) : context_(context) {}
@@ -135,8 +138,13 @@ class ParaboloidMapPass {
 
 // 3. VPLs as the gather reads them ------------------------------------------------------------------------------------
 
+/// Place of a slot in VplLights::buffer.
+uint32_t lightOrder(uint32_t slot);
+
 /// The light of a slot; empty (a = 0) when it is not alive or brings nothing.
 VplLight vplLight(const Vpl& vpl);
+/// What of a VPL its light tells: all that rendering needs.
+Vpl vplOf(const VplLight& light);
 
 /// Lights in chunks of 2048, as many as a map array has layers. Within chunk k, class c (slot mod 16) is contiguous:
 /// light k·2048 + c·128 + (slot mod 2048)/16, so that 8 classes are one uniform block of 64 KiB.
@@ -228,12 +236,15 @@ struct RawIndirect {
   bool deinterleaved = false;
 };
 
+struct LightTrees; // gi/render/reflective_maps.h
+
 struct GatherInputs {
   const GBuffer& gbuffer;
   const VplLights& lights;
   const ParaboloidMaps* maps = nullptr; // null: no visibility
   float bias = 1;                       // ShadowSettings::bias, texels
   const GatherSettings& gather;
+  const LightTrees* trees = nullptr; // gathered in place of `lights`, without visibility
 };
 
 class GatherPass {

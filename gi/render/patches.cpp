@@ -34,6 +34,8 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
     program.set("depthThreshold", in.depthThreshold);
     program.set("normalThreshold", in.normalThreshold);
     program.set("orthoScale", in.orthoScale);
+    program.set("orthoFrom", in.orthoFrom);
+    program.set("columns", in.size.x / in.cell.x);
     program.set("balance", in.balance ? 1 : 0);
     if (i == 0) {
       in.depth.bind(0);

@@ -12,10 +12,6 @@ namespace {
 const VplLight kNoLight{vec4(0), vec4(0), vec4(0), vec4(0)};
 constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 
-uint32_t orderOf(uint32_t slot) {
-  return slot / kChunk * kChunk + slot % kLightClasses * kLightsPerClass + slot % kChunk / kLightClasses;
-}
-
 VplLight packLight(const vec3& position, const vec3& normal, const vec3& radiance, float area) {
   const vec3 power = radiance * area;
   // A light that is empty, black or not a number must not reach the loop: one NaN there blackens a whole subset.
@@ -28,8 +24,23 @@ VplLight packLight(const vec3& position, const vec3& normal, const vec3& radianc
 
 } // namespace
 
+uint32_t lightOrder(uint32_t slot) {
+  return slot / kChunk * kChunk + slot % kLightClasses * kLightsPerClass + slot % kChunk / kLightClasses;
+}
+
 VplLight vplLight(const Vpl& vpl) {
   return packLight(vpl.position, vpl.normal, vpl.radiance, vpl.alive ? vpl.area : 0.0f);
+}
+
+Vpl vplOf(const VplLight& light) {
+  Vpl vpl;
+  if (!(light.positionArea.w > 0)) return vpl;
+  vpl.position = vec3(light.positionArea);
+  vpl.normal = vpl.geometricNormal = vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w);
+  vpl.area = light.positionArea.w;
+  vpl.radiance = vec3(light.powerNormalX) / vpl.area;
+  vpl.alive = vpl.valid = true;
+  return vpl;
 }
 
 VplLight emitterLight(const EmitterPatch& patch) {
@@ -46,7 +57,7 @@ VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
   uploaded_ = 0;
   std::vector<bool> dirtyChunks(chunks, fresh);
   const auto put = [&](uint32_t slot, const VplLight& light) {
-    VplLight& held = mirror_[orderOf(slot)];
+    VplLight& held = mirror_[lightOrder(slot)];
     if (std::memcmp(&held, &light, sizeof light) == 0) return;
     held = light;
     dirtyChunks[slot / kChunk] = true;

@@ -6,6 +6,7 @@
 #define SHARED_INLINE inline
 #define SHARED_OUT(T) T&
 namespace lambent {
+using glm::atan;
 using glm::dot;
 using glm::ivec2;
 using glm::max;

@@ -1,0 +1,34 @@
+#version 450
+// Clusters of 2 × 2 of the level below: flux and area add up, position and normal are means weighted by flux (by area where
+// there is none), the squared distance from the light is the largest.
+layout(binding = 0) uniform sampler2D positions; // see ReflectiveMaps
+layout(binding = 1) uniform sampler2D normals;
+layout(binding = 2) uniform sampler2D fluxes;
+layout(location = 0) out vec4 outPosition;
+layout(location = 1) out vec4 outNormal;
+layout(location = 2) out vec4 outFlux;
+
+void main() {
+  ivec2 first = ivec2(gl_FragCoord.xy) * 2;
+  outPosition = outNormal = outFlux = vec4(0.0);
+  float weights = 0.0, largest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 child = first + ivec2(i & 1, i >> 1);
+    outFlux += texelFetch(fluxes, child, 0);
+    largest = max(largest, texelFetch(positions, child, 0).a);
+  }
+  bool dark = !(dot(outFlux.rgb, vec3(1.0)) > 0.0);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 child = first + ivec2(i & 1, i >> 1);
+    vec4 flux = texelFetch(fluxes, child, 0);
+    float weight = dark ? flux.a : dot(flux.rgb, vec3(1.0));
+    outPosition.xyz += weight * texelFetch(positions, child, 0).xyz;
+    outNormal.xyz += weight * texelFetch(normals, child, 0).xyz;
+    weights += weight;
+  }
+  if (weights > 0.0) {
+    outPosition.xyz /= weights;
+    outNormal.xyz /= weights;
+  }
+  outPosition.a = largest;
+}

@@ -1,0 +1,80 @@
+#version 450
+// Irradiance from the trees over reflective shadow maps, each fragment with clusters of its own choice (hierarchical
+// image-space radiosity, paper 3, section 3.5). The tree of a map is walked in Morton order without a stack: below a
+// cluster that is refined come its four parts, after one that is taken the next of its size or larger.
+// Variant PATCHES as in gather.frag.
+#include "lib/gbuffer.glsl"
+#include "shared/patches.h"
+
+layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
+layout(binding = 3) uniform sampler2D normals;
+layout(binding = 4) uniform sampler2D fluxes;
+uniform ivec2 origin;    // of the map, texels
+uniform float threshold; // T of a texel, see tree_gather.cpp
+uniform int coarsest; // mip levels
+uniform int finest;
+uniform ivec2 tileOrigin;
+uniform ivec2 subset;
+uniform int stride;
+uniform int level;
+uniform int firstRoot; // of the map's coarsest clusters this draw starts from
+uniform int endRoot;
+uniform int rootStep;
+uniform float diskFactor;
+uniform float largestG;
+layout(location = 0) out vec4 outIrradiance;
+#ifdef PATCHES
+layout(early_fragment_tests) in;
+#endif
+
+/// Every second bit of m, as a number.
+int evenBits(int m) {
+  m &= 0x55555555;
+  m = (m | (m >> 1)) & 0x33333333;
+  m = (m | (m >> 2)) & 0x0f0f0f0f;
+  m = (m | (m >> 4)) & 0x00ff00ff;
+  return (m | (m >> 8)) & 0xffff;
+}
+
+void main() {
+#ifdef PATCHES
+  ivec2 pixel = patchPixel(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset, ivec2(camera.size.xy));
+#else
+  ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
+#endif
+  outIrradiance = vec4(0.0);
+  if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  if (depth == 0.0) return;
+  vec3 position = positionFromDepth(pixel, depth);
+  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  vec3 irradiance = vec3(0.0);
+  int depthOfTree = coarsest - finest;
+  for (int root = firstRoot; root < endRoot; root += rootStep) {
+    int m = root << (2 * depthOfTree), end = (root + 1) << (2 * depthOfTree); // in units of the finest clusters
+    int at = coarsest;
+    while (m < end) {
+      int shift = at - finest;
+      ivec2 cluster = (origin >> at) + ivec2(evenBits(m >> (2 * shift)), evenBits(m >> (2 * shift + 1)));
+      vec4 place = texelFetch(positions, cluster, at);
+      vec3 fromLight = position - place.xyz;
+      float distance2 = max(dot(fromLight, fromLight), 1e-12);
+      // r² ≤ T |V|² with R of this level: T grows fourfold with each.
+      if (place.a > 0.0 && at > finest && distance2 <= threshold * float(1 << (2 * at)) * place.a) {
+        --at;
+        continue;
+      }
+      if (place.a > 0.0) {
+        vec4 flux = texelFetch(fluxes, cluster, at);
+        vec3 direction = fromLight * inversesqrt(distance2);
+        vec3 n = texelFetch(normals, cluster, at).xyz;
+        float cosineLight = dot(n, direction) * inversesqrt(max(dot(n, n), 1e-12));
+        float g = max(-dot(normal, direction), 0.0) * max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
+        irradiance += flux.rgb * (0.318309886 * min(g, largestG));
+      }
+      m += 1 << (2 * shift);
+      at = min(coarsest, finest + findLSB(m | (1 << (2 * depthOfTree))) / 2);
+    }
+  }
+  outIrradiance = vec4(irradiance * float(rootStep), 1.0);
+}
