@@ -74,6 +74,7 @@ int texelBytes(GLenum format) {
   case GL_DEPTH_COMPONENT16:
     return 2;
   case GL_RGBA8:
+  case GL_RG16:
   case GL_SRGB8_ALPHA8:
   case GL_R32F:
   case GL_DEPTH_COMPONENT32F:
