@@ -87,6 +87,8 @@ class Table {
          "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    flag("gather.glossy", &Settings::gather, &GatherSettings::glossy,
+         "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"},
            "7x7 filter along rows then columns, or all 49 taps at once");

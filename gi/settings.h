@@ -34,6 +34,7 @@ enum class EffectId : int {
   Relight,
   Replace,
   Filter,
+  Glossy,
   SoftShadows,
   Redraw,
 };
@@ -91,6 +92,7 @@ struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   bool operator==(const GatherSettings&) const = default;
 };
 

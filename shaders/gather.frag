@@ -1,8 +1,11 @@
 #version 450
 // Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + a/π)·V.
 // One draw covers one 4×4 subset of the pixels, which lie side by side, or all pixels (stride 1).
-// Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison).
+// Variants: SHADOWS (paraboloid maps), SMOOTH_SHADOWS (bilinear comparison), GLOSSY (the receivers' lobes too).
 #include "lib/gbuffer.glsl"
+#ifdef GLOSSY
+#include "lib/receiver.glsl"
+#endif
 #include "shared/shadow_lookup.h"
 #include "shared/vpl_light.h"
 
@@ -27,6 +30,9 @@ uniform float farDistance;  // metres at map value 1
 uniform float mapResolution;  // texels
 uniform float biasTexels;     // ShadowSettings::bias
 layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+#endif
 
 #ifdef SHADOWS
 /// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame).
@@ -47,12 +53,19 @@ float visibility(int layer, vec3 d, float distance, float cosine) {
 void main() {
   ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
   outIrradiance = vec4(0.0);
+#ifdef GLOSSY
+  outGlossy = vec4(0.0);
+#endif
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
 
+#ifdef GLOSSY
+  Receiver receiver = receiverAt(pixel, position, normal);
+  vec3 glossy = vec3(0.0);
+#endif
   // No branches inside: pixels of a group disagree nearly always, and software Mesa pays for every mask. An empty slot
   // has no power.
   vec3 irradiance = vec3(0.0);
@@ -72,7 +85,13 @@ void main() {
       g *= visibility(i * kLightClasses + blockClass + c, d, distance2 * inverseDistance, cosineReceiver);
 #endif
       irradiance += light.powerNormalX.rgb * g;
+#ifdef GLOSSY
+      glossy += light.powerNormalX.rgb * (g * glossyReflectance(receiver, -direction));
+#endif
     }
   }
   outIrradiance = vec4(irradiance * scale, 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(glossy * scale / glossyTint(receiver), 1.0);
+#endif
 }

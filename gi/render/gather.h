@@ -20,7 +20,22 @@ struct GatherDraw {
 /// Size of one of the 16 sub-images of a de-interleaved picture.
 glm::ivec2 tileSize(const GBuffer& gbuffer);
 
-/// Gathers into the framebuffer, which covers the whole picture (or all tiles).
+/// Binds what shaders/lib/receiver.glsl reads. Gives the defines of a variant: "GLOSSY" when the G-buffer has finishes,
+/// else none.
+std::vector<std::string> bindReceivers(const GBuffer& gbuffer);
+
+/// Makes `texture` one more target of RGBA32F of that size if the G-buffer has finishes, else empties it. Says whether
+/// it changed.
+bool fitGlossy(gl::Texture& texture, const char* label, const GBuffer& gbuffer, const glm::ivec2& size);
+
+/// Framebuffer of one or, when `glossy` is there, two targets.
+gl::Framebuffer framebufferOf(const char* label, const gl::Texture& irradiance, const gl::Texture& glossy);
+
+/// The texture, null when it is empty.
+const gl::Texture* orNull(const gl::Texture& texture);
+
+/// Gathers into the framebuffer, which covers the whole picture (or all tiles). Its second target, wanted when the
+/// G-buffer has finishes, gets the glossy light.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
 } // namespace lambent
