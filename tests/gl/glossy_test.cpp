@@ -1,8 +1,12 @@
 // Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
+#include "engine/trace/embree_query.h"
+#include "gi/reference/path_tracer.h"
 #include "gi/render/light_shadows.h"
 #include "gl_fixture.h"
 #include "shaders/shared/ggx.h"
 #include "tests/support/images.h"
+#include "tests/support/spread_lights.h"
+#include "tests/support/statistics.h"
 
 namespace lambent::test {
 
@@ -200,6 +204,52 @@ TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
     ASSERT_NEAR(t.y, 0.5f * 102 / 255, 1e-4f);
   }
   EXPECT_EQ(surfaces(floor.scene, false).finish, nullptr);
+}
+
+TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
+  // One bounce in an empty box, where every light sees every point.
+  const vec3 size(2, 1, 3), albedo(0.6f, 0.5f, 0.4f);
+  for (const Finish& f : {Finish{albedo, 0.35f, 1}, Finish{albedo, 0.5f, 0}}) {
+    HandScene scene;
+    const uint32_t m = scene.material(albedo);
+    scene.assets.materials[m].roughness = f.roughness;
+    scene.assets.materials[m].metalness = f.metalness;
+    scene.box(vec3(0), size, m, true);
+    LightView point;
+    point.position = {1.6f, 0.4f, 2.5f};
+    scene.lights.push_back(point);
+    scene.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.4f, 3}, 1, 24, 16);
+    const SceneView view = scene.view();
+    EmbreeQuery rays(scene.assets);
+    rays.update(view);
+    const LightSet lights = collectLights(view);
+    RayCounts counts;
+    const GBuffer gbuffer = surfaces(scene);
+    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3};
+    std::vector<double> means;
+    for (uint32_t set = 0; set < 32; ++set) {
+      std::vector<Vpl> vpls = spreadOverBox(size, albedo, 2000, set);
+      std::vector<VplLight> shown;
+      for (Vpl& v : vpls) {
+        v.radiance = albedo / kPi * punctualIrradiance(point, v.position, v.normal).irradiance;
+        shown.push_back(vplLight(v));
+      }
+      const VplLights uploaded = lightBuffer.run(shown);
+      const RawIndirect raw = gatherPass.run({gbuffer, uploaded, nullptr, 1, settings});
+      means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
+    }
+    const ReferenceInputs in{rays, lights, view.camera, 1, settings.clamp, 1, &view};
+    ReferenceSums sums(24, 16);
+    addSamples(sums, in, 2000, counts);
+    const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Indirect);
+    const double truth = meanLuminance(picture.mean);
+    const Mean mean = meanOf(means);
+    // 5e-4: the G-buffer's normals and albedos are half floats.
+    EXPECT_LT(std::abs(mean.mean - truth),
+              kDeviateLimit * std::hypot(mean.error, truth * picture.relativeErrorOfMean) + 5e-4 * truth)
+        << mean.mean << " against " << truth << ", roughness " << f.roughness;
+    EXPECT_LT(std::hypot(mean.error, truth * picture.relativeErrorOfMean), 0.015 * truth) << "too noisy to tell";
+  }
 }
 
 /// A lit room with a metal block, by frames.
