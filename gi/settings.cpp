@@ -89,6 +89,8 @@ class Table {
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     flag("gather.glossy", &Settings::gather, &GatherSettings::glossy,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
+    real("gather.spread", &Settings::gather, &GatherSettings::spread, 0, 1000,
+         "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"},
            "7x7 filter along rows then columns, or all 49 taps at once");

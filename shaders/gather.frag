@@ -26,6 +26,7 @@ uniform int perClass;       // lights in each class
 uniform float scale;        // 16 for one class of 16, 1 for all
 uniform float diskFactor;   // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;     // 1/m²
+uniform float spread;       // GLOSSY: GatherSettings::spread
 uniform float farDistance;  // metres at map value 1
 uniform float mapResolution;  // texels
 uniform float biasTexels;     // ShadowSettings::bias
@@ -86,7 +87,7 @@ void main() {
 #endif
       irradiance += light.powerNormalX.rgb * g;
 #ifdef GLOSSY
-      glossy += light.powerNormalX.rgb * (g * glossyReflectance(receiver, -direction));
+      glossy += light.powerNormalX.rgb * (g * glossyReflectance(receiver, -direction, lobeSpread(spread, light.positionArea.w, d.z, distance2)));
 #endif
     }
   }

@@ -43,6 +43,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.use();
   program.set("diskFactor", in.diskFactor);
   program.set("largestG", in.largestG);
+  program.set("spread", in.spread);
   if (in.maps) {
     program.set("farDistance", in.maps->farDistance);
     program.set("mapResolution", float(in.maps->resolution));
@@ -107,7 +108,8 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .addToTarget = false,
               .biasTexels = in.bias,
               .diskFactor = in.gather.disk / kPi,
-              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity});
+              .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
+              .spread = in.gather.spread});
   return {&irradiance_, deinterleaved, orNull(glossy_)};
 }
 

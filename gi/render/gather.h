@@ -15,6 +15,7 @@ struct GatherDraw {
   float biasTexels;
   float diskFactor; // GatherSettings::disk / π
   float largestG;   // 1/m², kInfinity for none
+  float spread;     // GatherSettings::spread
 };
 
 /// Size of one of the 16 sub-images of a de-interleaved picture.

@@ -95,7 +95,8 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
             radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
         const Receiver receiver = floor.receiverAt(x, y);
         const vec3 lambert = irradiance * receiver.diffuse / kPi;
-        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight);
+        const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
+        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
         for (int c = 0; c < 3; ++c) {
           const float wanted = lambert[c] + lobe[c];
           ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f)
@@ -176,14 +177,15 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
       for (int x = 0; x < image.width; ++x) {
         const Receiver receiver = floor.receiverAt(x, y);
         const vec3 at = floor.at(x, y);
-        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight) {
-          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight));
+        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
+          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
         };
         const vec3 d = position - at, e = vec3(0.5f, 1, -1) - at;
         const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
         const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
                             reflected(sun * -sunDirection.y, -sunDirection) +
-                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e));
+                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
+                                      lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
         for (int c = 0; c < 3; ++c)
           ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
       }
@@ -225,7 +227,7 @@ TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
     const LightSet lights = collectLights(view);
     RayCounts counts;
     const GBuffer gbuffer = surfaces(scene);
-    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3};
+    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0};
     std::vector<double> means;
     for (uint32_t set = 0; set < 32; ++set) {
       std::vector<Vpl> vpls = spreadOverBox(size, albedo, 2000, set);

@@ -67,7 +67,7 @@ TEST(GlossyReference, PlateUnderAPointLight) {
     const float r2 = glm::dot(lamp.position, lamp.position);
     const vec3 towards = lamp.position / std::sqrt(r2);
     const Receiver receiver = plate.receiver();
-    const float wanted = 3 / r2 * towards.z * (receiver.diffuse.y / kPi + glossyReflectance(receiver, towards).y);
+    const float wanted = 3 / r2 * towards.z * (receiver.diffuse.y / kPi + glossyReflectance(receiver, towards, 0).y);
     const test::Mean m = plate.direct(1); // one light is always the one chosen
     EXPECT_NEAR(m.mean, wanted, 1e-3 * wanted) << finish.roughness;
     EXPECT_GT(m.mean, 1.2 * 3 / r2 * towards.z * receiver.diffuse.y / kPi) << "the lobe matters";
@@ -134,7 +134,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     rays.update(view);
     const LightSet lights = collectLights(view);
     GatherSettings gather;
-    gather.disk = 0;
+    gather.disk = gather.spread = 0;
     gather.clamp = kClamp;
     RayCounts counts;
     std::vector<vec2> centres;
