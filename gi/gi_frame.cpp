@@ -121,9 +121,9 @@ void GiFrame::State::countWork() {
 // ---------------------------------------------------------------------------------------------------------
 
 namespace {
-const std::vector<std::string> kBufferNames = {"beauty",     "direct", "indirect",    "irradiance",
-                                               "albedo",     "normal", "depth",       "emission",
-                                               "unfiltered", "vpls",   "shadow-maps", "nan"};
+const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect", "irradiance", "albedo",
+                                               "normal",      "depth",   "emission", "unfiltered", "vpls",
+                                               "shadow-maps", "patches", "nan"};
 }
 
 const std::vector<std::string>& bufferNames() { return kBufferNames; }

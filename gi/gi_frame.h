@@ -31,7 +31,8 @@ enum class Buffer : int {
   Unfiltered, // irradiance before the cross-bilateral filter: shows the 4×4 subsets
   Vpls,       // beauty with the VPLs drawn in: colour = intensity, ring = age
   ShadowMaps, // the first paraboloid maps as a contact sheet
-  Nan,        // NaN magenta, infinity cyan, else grey beauty
+  Patches, // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
+  Nan,     // NaN magenta, infinity cyan, else grey beauty
 };
 /// Throws InputError with the nearest name.
 Buffer bufferByName(const std::string& name);

@@ -187,6 +187,10 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
           ? multiresPass.run({gbuffer, shown, maps, bias, settings.gather, settings.multires, settings.filter, cut})
           : gatherPass.run({gbuffer, shown, maps, bias, settings.gather, cut});
   results.raw = raw;
+  if (multiresolution(settings.gather.mode)) {
+    results.patches = multiresPass.patches().normalLo;
+    results.patchLevels = multiresPass.patches().levels;
+  }
   FilterSettings filter = settings.filter;
   filter.on = filter.on && plan.on(EffectId::Filter);
   const uint64_t filterDraws = gl::drawCount();

@@ -339,4 +339,14 @@ const std::string& techniqueOf(const Settings& settings) {
   return techniqueNames()[first];
 }
 
+void checkSettings(const Settings& settings) {
+  if (settings.vpl.source != VplSource::Hisr) return;
+  if (settings.vpl.visibility != VplVisibility::None)
+    throw InputError("vpl.visibility " + settingText(settings, "vpl.visibility"),
+                     "hisr has clusters of all sizes, and no shadow maps of them (none)");
+  if (settings.gather.mode == GatherMode::Splat || settings.gather.mode == GatherMode::SplatPerVpl)
+    throw InputError("gather.mode " + settingText(settings, "gather.mode"),
+                     "hisr's clusters are chosen by who gathers (multires, multires-interleaved, interleaved or full)");
+}
+
 } // namespace lambent

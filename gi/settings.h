@@ -194,6 +194,9 @@ void applyTechnique(Settings& settings, const std::string& name);
 /// The technique that the settings amount to.
 const std::string& techniqueOf(const Settings& settings);
 
+/// Throws InputError where settings contradict each other.
+void checkSettings(const Settings& settings);
+
 /// Text of the present value.
 std::string settingText(const Settings& settings, std::string_view name);
 

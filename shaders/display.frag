@@ -1,7 +1,8 @@
 #version 450
 // One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1]
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
-// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, GLOSSY (REFLECTED: with the receivers' lobes).
+// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
+// patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes).
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 layout(binding = 8) uniform sampler2D glossy; // radiance over glossyTint
@@ -17,6 +18,12 @@ uniform vec3 skyRadiance; // EMITTED
 uniform ivec2 tileSize;   // DEINTERLEAVED
 uniform int markNan;
 layout(location = 0) out vec4 outColor;
+
+#ifdef PATCHES
+layout(binding = 5) uniform sampler2D patchNormals; // PatchPyramid::normalLo
+uniform int patchLevels;
+uniform int finestPatch; // level
+#endif
 
 const float kInversePi = 0.318309886;
 
@@ -57,6 +64,16 @@ void main() {
   }
   value = max(value * factor, 0.0);
   value /= 1.0 + dot(value, vec3(0.2126, 0.7152, 0.0722));
+#ifdef PATCHES
+  int level = finestPatch;
+  for (int i = finestPatch + 1; i <= patchLevels; ++i)
+    if (texelFetch(patchNormals, pixel >> i, i - 1).a < 0.5) level = i;
+  float coarse = float(level - finestPatch) / float(max(1, patchLevels - finestPatch));
+  vec3 tint = mix(mix(vec3(1.0, 0.1, 0.1), vec3(0.2, 1.0, 0.2), min(2.0 * coarse, 1.0)), vec3(0.2, 0.3, 1.0),
+                  max(2.0 * coarse - 1.0, 0.0));
+  bool outline = level > finestPatch && any(equal(pixel & ((1 << level) - 1), ivec2(0)));
+  if (depth > 0.0) value = outline ? tint * 0.7 : mix(value, tint, 0.25);
+#endif
 #ifdef GREY
   value = vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)));
 #endif

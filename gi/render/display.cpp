@@ -38,6 +38,9 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
     return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
   case Buffer::Emission:
     return {{"MODE 0"}, frame.gbuffer.emission, exposure};
+  case Buffer::Patches:
+    if (!frame.patches) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
+    return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Nan:
     return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
   case Buffer::Beauty:
@@ -117,6 +120,11 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   program.set("skyRadiance", frame.skyRadiance);
   program.set("tileSize", tileSize(frame.gbuffer));
   program.set("markNan", markNan || buffer == Buffer::Nan ? 1 : 0);
+  if (frame.patches) {
+    program.set("patchLevels", frame.patchLevels);
+    program.set("finestPatch", frame.raw.deinterleaved ? 2 : 0);
+    frame.patches->bind(5);
+  }
   (view.source ? view.source : &black_)->bind(2);
   frame.gbuffer.albedo->bind(3);
   frame.gbuffer.emission->bind(4);

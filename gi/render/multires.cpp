@@ -44,7 +44,7 @@ RawIndirect MultiresPass::run(const MultiresInputs& in) {
   const int multiple = std::max(1 << levels, shape.grid);
   shape.base = (glm::ivec2(g.width, g.height) + multiple - 1) / multiple * multiple;
   allocate(shape, subsets ? 4 * tileSize(g) : glm::ivec2(g.width, g.height));
-  switch (in.gather.mode) {
+  switch (in.trees ? GatherMode::Multires : in.gather.mode) { // a tree has no list of lights to splat
   case GatherMode::SplatPerVpl:
     splatEach(in);
     break;

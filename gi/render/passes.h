@@ -339,6 +339,8 @@ struct FrameResults {
   IndirectLight indirect;
   Picture picture;
   ParaboloidMaps vplMaps;
+  const gl::Texture* patches = nullptr; // PatchPyramid::normalLo of the picture
+  int patchLevels = 0;
   const VplSet* vpls = nullptr;
   vec3 skyRadiance{0};
   float sceneDiameter = 1; // metres; scales the depth view

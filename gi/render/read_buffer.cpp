@@ -101,6 +101,7 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   case Buffer::Beauty:
   case Buffer::Vpls:
   case Buffer::ShadowMaps:
+  case Buffer::Patches:
   case Buffer::Nan:
     break;
   }

@@ -26,9 +26,9 @@ struct ReflectiveMaps {
   std::span<const ReflectiveMap> maps;
   const gl::Texture* position = nullptr; // RGBA32F: world; a: largest squared distance from the light, m² (1 for a
                                          // sun), 0 where the map meets nothing
-  const gl::Texture* normal = nullptr; // RGBA32F: on the lit side; unit at level 0, at others as long as the mean
-  const gl::Texture* flux = nullptr;   // RGBA32F: reflected flux, W; a: area facing the light, m²
-  const gl::Texture* depth = nullptr;  // reversed, level 0 only
+  const gl::Texture* normal = nullptr;   // RGBA32F: on the lit side; unit at level 0, at others as long as the mean
+  const gl::Texture* flux = nullptr;     // RGBA32F: reflected flux, W; a: area facing the light, m²
+  const gl::Texture* depth = nullptr;    // reversed, level 0 only
   int resolution = 0, columns = 1, levels = 1;
   PatchPyramid patches; // isr: level λ is mip level λ − 1, as everywhere
   bool changed = true;  // anything since the last run

@@ -438,4 +438,53 @@ TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
   EXPECT_TRUE(same(overlapped.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)));
 }
 
+/// VPLs of reflective shadow maps cost nothing where nothing changed, and follow what did.
+TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
+  for (const char* technique : {"rsm", "multires-gather", "multires-splat", "isr", "hisr"}) {
+    World world;
+    Settings settings;
+    applyTechnique(settings, technique);
+    settings.image.exposure = 1;
+    GiFrame gi(settings);
+    const FrameStats first = gi.run(world.first());
+    EXPECT_TRUE(first.plan.on(Indirect)) << technique;
+    EXPECT_FALSE(first.plan.on(Bounces)) << technique;
+    EXPECT_EQ(first.raysRadiosity.occlusion + first.raysCandidates.closest, 0u) << technique;
+    const Image before = gi.read(Buffer::Indirect);
+    EXPECT_EQ(gi.run(world.still()).work[size_t(Redraw)], 0u) << technique;
+    world.scene.lights[0].position.x -= 0.3f;
+    const FrameStats moved = gi.run(world.view({false, false, true, false, false}));
+    EXPECT_GT(moved.work[size_t(Redraw)], 0u) << technique;
+    EXPECT_NE(gi.read(Buffer::Indirect).pixels, before.pixels) << technique;
+    GiFrame anew(settings);
+    anew.run(world.first());
+    EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels) << technique;
+    world.scene.lights.clear();
+    world.scene.sky = vec3(1);
+    const FrameStats dark = gi.run(world.first());
+    EXPECT_FALSE(dark.plan.on(Indirect)) << technique;
+    EXPECT_EQ(dark.plan[Indirect].reason, "no punctual light, so no reflective shadow map");
+  }
+}
+
+/// The same VPLs with shadow maps and with a ray for every pair.
+TEST_F(EffectsTest, VplsOfReflectiveMapsMayHaveShadows) {
+  World world;
+  Settings settings;
+  applyTechnique(settings, "rsm");
+  settings.rsm.vpls = 150;
+  settings.image.exposure = 1;
+  const auto mean = [&](VplVisibility visibility) {
+    settings.vpl.visibility = visibility;
+    GiFrame gi(settings);
+    gi.run(world.first());
+    double sum = 0;
+    for (const vec3& p : gi.read(Buffer::Irradiance).pixels) sum += p.x;
+    return sum;
+  };
+  const double none = mean(VplVisibility::None), maps = mean(VplVisibility::Maps), rays = mean(VplVisibility::Rays);
+  EXPECT_LT(rays, 0.97 * none);
+  EXPECT_NEAR(maps / rays, 1, 0.02);
+}
+
 } // namespace lambent::test

@@ -39,8 +39,7 @@ class MultiresTest : public GlTest {
       glGetTextureImage(p.normalLo->name(), level - 1, GL_RGBA, GL_FLOAT, GLsizei(lo.size() * sizeof(vec4)), lo.data());
       for (int y = 0; y < gbuffer.height; ++y)
         for (int x = 0; x < gbuffer.width; ++x)
-          if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f)
-            levels[size_t(y) * gbuffer.width + x] = level;
+          if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f) levels[size_t(y) * gbuffer.width + x] = level;
     }
     std::vector<float> depth(levels.size());
     glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
@@ -282,6 +281,45 @@ TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
   const double own = error(multires(gbuffer, lights, settings, GatherMode::SplatPerVpl));
   EXPECT_GT(shared, 0.01);
   EXPECT_LT(own, 0.05 * shared);
+}
+
+/// Glossy light goes the same ways.
+TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
+  Room room;
+  for (Material& m : room.scene.assets.materials) {
+    m.roughness = 0.5f;
+    m.metalness = 0.5f;
+  }
+  gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
+  gpu->place(room.scene.instances);
+  const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera, true});
+  ASSERT_NE(gbuffer.finish, nullptr);
+  const std::vector<VplLight> lights = roomLights();
+  const auto glossy = [&](const gl::Texture* texture) { return texture ? readTexture(*texture) : std::vector<vec4>(); };
+  GatherSettings gather{.mode = GatherMode::Full, .glossy = true};
+  const std::vector<vec4> full = glossy(gatherPass.run({gbuffer, lightBuffer.run(lights), nullptr, 1, gather}).glossy);
+  ASSERT_EQ(full.size(), 64u * 48);
+  for (const GatherMode mode : {GatherMode::Multires, GatherMode::Splat, GatherMode::SplatPerVpl}) {
+    gather.mode = mode;
+    const MultiresSettings settings{.coarsest = 4, .depth = 0};
+    const std::vector<vec4> each = glossy(
+        multiresPass.run({gbuffer, lightBuffer.run(lights), nullptr, 1, gather, settings, FilterSettings{}}).glossy);
+    ASSERT_EQ(each.size(), full.size());
+    for (size_t i = 0; i < full.size(); ++i) {
+      ASSERT_GT(full[i].x, 0);
+      ASSERT_NEAR(each[i].x, full[i].x, 2e-5f * full[i].x);
+    }
+  }
+  gather.mode = GatherMode::Multires;
+  const std::vector<vec4> patches =
+      glossy(multiresPass.run({gbuffer, lightBuffer.run(lights), nullptr, 1, gather, {.coarsest = 4}, FilterSettings{}})
+                 .glossy);
+  float lo = kInfinity, hi = 0;
+  for (const vec4& g : full) lo = std::min(lo, g.x), hi = std::max(hi, g.x);
+  for (const vec4& g : patches) {
+    ASSERT_GE(g.x, 0.9999f * lo);
+    ASSERT_LE(g.x, 1.0001f * hi);
+  }
 }
 
 /// α of paper 2, equation 2.

@@ -163,6 +163,7 @@ void chooseSettings(Stage& stage, const LaunchOptions& options) {
     applySetting(stage.settings, text.substr(0, equals), text.substr(equals + 1));
   }
   if (options.bounces) applySetting(stage.settings, "smc.bounces", std::to_string(*options.bounces));
+  checkSettings(stage.settings);
 }
 
 } // namespace
@@ -179,7 +180,8 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
-  command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")->allow_extra_args(false);
+  command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")
+      ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
   command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
   command.add_option("--seed", options.seed, "of all random numbers");
