@@ -7,6 +7,7 @@
 #include "gi/vpl/sources.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/stability_report.h"
+#include "tools/lambent/text.h"
 #include "tools/lambent/tracked_pixels.h"
 
 #include <algorithm>
@@ -277,10 +278,7 @@ void stability(const StabilityOptions& options) {
   }
   if (options.check && options.still == 0 && options.techniques.size() < 2)
     throw InputError("--check", "needs smc and others (--techniques), or --still");
-  const fs::path folder = options.output.out.empty() ? fs::path("out/stability") : fs::path(options.output.out);
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+  const fs::path folder = reportFolder(options.output.out, "out/stability");
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
   for (const std::string& file : options.shots) {

@@ -1,13 +1,9 @@
 #include "tools/lambent/stability_report.h"
 
-#include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "tools/lambent/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
@@ -16,16 +12,6 @@ namespace lambent {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// Paper 1, table 1: |E'| of smc over that of ir in the sequence that a shot of ours follows.
 struct Published {
@@ -50,14 +36,6 @@ std::string overStill(const ShotRun& shot, const TechniqueRun& t) {
 
 std::string latencyText(const Latency& l) {
   return l.count ? format("%.0f, %.0f, %.0f %%", l.median, l.worstTenth, 100 * l.followed) : "";
-}
-
-void writeText(const fs::path& file, const std::string& text) {
-  writeAtomically(file, [&](const fs::path& temporary) {
-    std::ofstream out(temporary);
-    out << text;
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
-  });
 }
 
 std::string csv(const std::vector<ShotRun>& shots) {
