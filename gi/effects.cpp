@@ -21,6 +21,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"relight", "VPLs follow lights and geometry that change", "VPLs"},
     {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
     {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
+    {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
 };
@@ -30,8 +31,9 @@ std::string count(size_t n, const char* what) { return std::to_string(n) + " " +
 bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
 
 /// Whether light that one surface reflects can reach another that reflects. Certain only where it says no: everything
-/// that is not black lies in one plane. Large scenes are not asked.
-bool reflectorsSeeOneAnother(const SceneView& view) {
+/// that is not black lies in one plane. Large scenes are not asked. With `glossy` black surfaces count whose lobe
+/// reflects.
+bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
   constexpr uint32_t kAsked = 4096; // triangles
   const float tolerance = 1e-5f * std::max(1e-6f, view.boundsWorld.diameter());
   uint32_t triangles = 0;
@@ -39,7 +41,8 @@ bool reflectorsSeeOneAnother(const SceneView& view) {
   for (const InstanceView& i : view.instances) {
     const Mesh& mesh = view.assets->meshes[i.mesh];
     for (const Primitive& p : mesh.primitives) {
-      if (!reflects(view.assets->materials[p.material]) || p.triangleCount == 0) continue;
+      const Material& material = view.assets->materials[p.material];
+      if (!(reflects(material) || (glossy && material.glossy())) || p.triangleCount == 0) continue;
       triangles += p.triangleCount;
       if (triangles > kAsked || i.deformed) return true;
       for (uint32_t t = 0; t < p.triangleCount; ++t) {
@@ -62,7 +65,7 @@ bool reflectorsSeeOneAnother(const SceneView& view) {
 
 /// What the scene's lights, materials and instances hold.
 struct SceneFacts {
-  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, moved = 0;
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, moved = 0;
   bool emittersMoved = false;
 
   explicit SceneFacts(const SceneView& view) {
@@ -76,6 +79,7 @@ struct SceneFacts {
         masked += m.alphaMode == AlphaMode::Mask;
         textured += m.baseColorTexture.image != kNone;
         reflecting += reflects(m);
+        glossy += m.glossy();
       }
     }
   }
@@ -89,7 +93,7 @@ const EffectRow& effectRow(EffectId id) { return kRows[size_t(id)]; }
 
 EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts) {
   const SceneFacts scene(view);
-  const bool seeOneAnother = reflectorsSeeOneAnother(view);
+  const bool seeOneAnother = reflectorsSeeOneAnother(view, settings.gather.glossy);
   const SceneChanges& changes = view.changes;
   const SmcSettings& smc = settings.smc;
   EffectPlan plan;
@@ -138,12 +142,15 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
                                 : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
                                                                      : Answer{false, "shadow.emitterSamples is 1"});
-  decide(EffectId::Filter, !indirect                               ? none
+  decide(EffectId::Filter, !indirect                                        ? none
                            : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
-                           : !interleaved(settings.gather.mode)
-                               ? Answer{false, "every pixel sees all VPLs"}
-                           : !settings.filter.on ? Answer{false, "filter.on is off"}
+                           : !interleaved(settings.gather.mode)             ? Answer{false, "every pixel sees all VPLs"}
+                           : !settings.filter.on                            ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});
+
+  decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
+                           : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
+                                                   : Answer{false, "every material has roughness 1 and no metalness"});
 
   // What changed.
   const bool geometry = changes.geometry || changes.instances;

@@ -34,7 +34,8 @@ void GiFrame::State::draw() {
   const SceneView& view = world.view;
   const uint64_t draws = gl::drawCount();
   results = {};
-  const GBuffer gbuffer = gbufferPass.run({*gpuScene, view.camera});
+  const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
+  const GBuffer gbuffer = gbufferPass.run({*gpuScene, view.camera, glossy});
   const DirectLight direct = drawDirect(gbuffer);
   const IndirectLight indirect = plan.on(EffectId::Indirect) ? drawIndirect(gbuffer) : IndirectLight{};
   const Picture picture = compositePass.run({gbuffer, direct, indirect, view.skyRadiance});
@@ -53,6 +54,7 @@ void GiFrame::State::draw() {
   results.skyRadiance = view.skyRadiance;
   results.sceneDiameter = mapReach();
   work(EffectId::Redraw) = gl::drawCount() - draws;
+  if (glossy) work(EffectId::Glossy) = work(EffectId::Redraw);
 }
 
 /// Lamps that stand elsewhere get a new map, others the part that an object moved through.
@@ -158,8 +160,13 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   const bool tree = settings.vpl.source == VplSource::Hisr; // has no visibility
   if (settings.vpl.visibility == VplVisibility::Rays && !tree) {
     CpuScope scope(stats.stages, "gather by rays");
-    return indirectUpload.run(imageOf(
-        world.view.camera, gatherByRays(*rays, world.view.camera, vplsShown, settings.gather, stats.raysGather)));
+    const CameraView& camera = world.view.camera;
+    GlossyGather glossy{world.view, {}};
+    const Image irradiance = imageOf(camera, gatherByRays(*rays, camera, vplsShown, settings.gather, stats.raysGather,
+                                                          gbuffer.finish ? &glossy : nullptr));
+    if (!gbuffer.finish) return indirectUpload.run(irradiance);
+    const Image lobes = imageOf(camera, std::move(glossy.radiance));
+    return indirectUpload.run(irradiance, &lobes);
   }
   if (!reflective) shown = vplBuffer.run(vplLights);
   const LightTrees trees{sheet, settings.rsm};

@@ -5,8 +5,8 @@
 #include "engine/trace/embree_query.h"
 #include "gi/gi_frame.h"
 #include "gi/render/map_schedule.h"
-#include "gi/render/reflective_maps.h"
 #include "gi/render/passes.h"
+#include "gi/render/reflective_maps.h"
 #include "gi/vpl/sources.h"
 
 #include <chrono>

@@ -89,6 +89,8 @@ class Table {
          "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    flag("gather.glossy", &Settings::gather, &GatherSettings::glossy,
+         "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     whole("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, 1, 1024,
           "patches along the picture's longer side at the coarsest level");
     real("multires.depth", &Settings::multires, &MultiresSettings::depth, 0, big,
@@ -99,6 +101,8 @@ class Table {
          "patches side by side differ by one level at most");
     real("multires.detail", &Settings::multires, &MultiresSettings::detail, 0, 1,
          "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");
+    real("multires.light", &Settings::multires, &MultiresSettings::light, 0, big,
+         "splat-per-vpl: range of a VPL's light that splits a patch, share of what it brings to a surface facing it");
     whole("rsm.resolution", &Settings::rsm, &RsmSettings::resolution, 16, 4096,
           "texels per side of a light's reflective shadow map, of each face of a point light's");
     whole("rsm.vpls", &Settings::rsm, &RsmSettings::vpls, 1, 1 << 20,
@@ -288,10 +292,10 @@ struct Technique {
   GatherMode mode;
 };
 constexpr Technique kTechniques[] = {
-    {VplSource::Smc, GatherMode::Interleaved},  {VplSource::Ir, GatherMode::Interleaved},
-    {VplSource::Mir, GatherMode::Interleaved},  {VplSource::Tcas, GatherMode::Interleaved},
-    {VplSource::Rsm, GatherMode::Full},         {VplSource::Rsm, GatherMode::Splat},
-    {VplSource::Rsm, GatherMode::Multires},     {VplSource::Isr, GatherMode::Multires},
+    {VplSource::Smc, GatherMode::Interleaved}, {VplSource::Ir, GatherMode::Interleaved},
+    {VplSource::Mir, GatherMode::Interleaved}, {VplSource::Tcas, GatherMode::Interleaved},
+    {VplSource::Rsm, GatherMode::Full},        {VplSource::Rsm, GatherMode::Splat},
+    {VplSource::Rsm, GatherMode::Multires},    {VplSource::Isr, GatherMode::Multires},
     {VplSource::Hisr, GatherMode::Multires},
 };
 

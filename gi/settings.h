@@ -16,8 +16,8 @@ namespace lambent {
 enum class VplSource : int { Smc, Ir, Mir, Tcas, Rsm, Isr, Hisr };
 inline bool fromReflectiveMaps(VplSource source) { return source >= VplSource::Rsm; }
 enum class VplVisibility : int { Maps, Rays, None }; // paraboloid maps | exhaustive ray casts (paper 1, fig. 8) | all
-/// 4×4 interleaved subsets + filter | every VPL at every pixel | every VPL at every patch of the multiresolution buffer |
-/// patches of each of the 16 subsets + filter | VPLs splatted into the patches | each VPL into patches of its own.
+/// 4×4 interleaved subsets + filter | every VPL at every pixel | every VPL at every patch of the multiresolution buffer
+/// | patches of each of the 16 subsets + filter | VPLs splatted into the patches | each VPL into patches of its own.
 enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl };
 inline bool interleaved(GatherMode mode) {
   return mode == GatherMode::Interleaved || mode == GatherMode::MultiresInterleaved;
@@ -43,6 +43,7 @@ enum class EffectId : int {
   Relight,
   Replace,
   Filter,
+  Glossy,
   SoftShadows,
   Redraw,
 };
@@ -100,16 +101,18 @@ struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   bool operator==(const GatherSettings&) const = default;
 };
 
 /// Patches of the picture that gather as one (papers 2 and 3).
 struct MultiresSettings {
-  int coarsest = 16;     // patches along the picture's longer side at the coarsest level
-  float depth = 0.02f;   // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
-  float normal = 0.3f;   // range of a component of the normal that splits it
-  bool balance = true;   // neighbours differ by one level at most
-  float detail = 0;      // α of paper 2's surface detail
+  int coarsest = 16;   // patches along the picture's longer side at the coarsest level
+  float depth = 0.02f; // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
+  float normal = 0.3f; // range of a component of the normal that splits it
+  bool balance = true; // neighbours differ by one level at most
+  float detail = 0;    // α of paper 2's surface detail
+  float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
   bool operator==(const MultiresSettings&) const = default;
 };
 

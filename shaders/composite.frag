@@ -1,6 +1,13 @@
 #version 450
 // Radiance towards the camera: emission + albedo/π · (direct + indirect irradiance), the sky where nothing is seen.
+// Variant GLOSSY: with the receivers' lobes.
+#ifdef GLOSSY
+#include "lib/receiver.glsl"
+layout(binding = 8) uniform sampler2D directGlossy; // radiance over glossyTint
+layout(binding = 9) uniform sampler2D indirectGlossy;
+#else
 layout(binding = 0) uniform sampler2D gbufferDepth;
+#endif
 layout(binding = 2) uniform sampler2D albedo;
 layout(binding = 3) uniform sampler2D emission;
 layout(binding = 4) uniform sampler2D direct;
@@ -12,13 +19,20 @@ const float kInversePi = 0.318309886;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  if (texelFetch(gbufferDepth, pixel, 0).r == 0.0) {
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  if (depth == 0.0) {
     outRadiance = vec4(skyRadiance, 0.0);
     return;
   }
   // Textures of one texel stand for a constant (black where a stage did not run).
   vec3 irradiance = texelFetch(direct, min(pixel, textureSize(direct, 0) - 1), 0).rgb +
                     texelFetch(indirect, min(pixel, textureSize(indirect, 0) - 1), 0).rgb;
+#ifdef GLOSSY
+  vec3 glossy = texelFetch(directGlossy, min(pixel, textureSize(directGlossy, 0) - 1), 0).rgb +
+                texelFetch(indirectGlossy, min(pixel, textureSize(indirectGlossy, 0) - 1), 0).rgb;
+  vec3 reflected = reflectedAt(pixel, depth, irradiance, glossy);
+#else
   vec3 reflected = texelFetch(albedo, pixel, 0).rgb * kInversePi * irradiance;
+#endif
   outRadiance = vec4(texelFetch(emission, pixel, 0).rgb + reflected, 1.0);
 }

@@ -1,7 +1,11 @@
 #version 450
 // Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS
-// (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky).
+// (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky); GLOSSY (the
+// receivers' lobes too).
 #include "lib/gbuffer.glsl"
+#ifdef GLOSSY
+#include "lib/receiver.glsl"
+#endif
 #include "shared/punctual_light.h"
 
 layout(std140, binding = 1) uniform Lights { PunctualLight lights[kLightsPerBlock]; };
@@ -12,6 +16,9 @@ layout(binding = 2) uniform sampler2DArrayShadow maps;
 #endif
 uniform int lightCount;
 layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+#endif
 
 /// glTF: smooth range window and cone (KHR_lights_punctual, reference formulas), over r².
 float attenuation(PunctualLight light, vec3 towardsLight, float distance2) {
@@ -42,17 +49,25 @@ float axisDistance(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   outIrradiance = vec4(0.0);
+#ifdef GLOSSY
+  outGlossy = vec4(0.0);
+#endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 irradiance = vec3(0.0);
+#ifdef GLOSSY
+  Receiver receiver = receiverAt(pixel, position, normal);
+  vec3 glossy = vec3(0.0);
+#endif
 
   for (int i = 0; i < lightCount; ++i) {
     PunctualLight light = lights[i];
     float layer = light.intensityLayer.w;
 #ifdef SUN_MAPS
-    float cosine = -dot(normal, light.directionTexel.xyz);
+    vec3 towardsLight = -light.directionTexel.xyz;
+    float cosine = dot(normal, towardsLight);
     if (!(cosine > 0.0)) continue;
     vec3 lifted = liftedReceiver(position, normal, cosine, light.directionTexel.w, 2.0);
     float weight = cosine * filteredShadow((light.mapFromWorld * vec4(lifted, 1.0)).xyz, layer);
@@ -74,6 +89,12 @@ void main() {
 #endif
 #endif
     irradiance += light.intensityLayer.rgb * weight;
+#ifdef GLOSSY
+    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight));
+#endif
   }
   outIrradiance = vec4(irradiance, 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(glossy / glossyTint(receiver), 1.0);
+#endif
 }

@@ -1,8 +1,13 @@
 #version 450
 // One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1]
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
-// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY.
+// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, GLOSSY (REFLECTED: with the receivers' lobes).
+#ifdef GLOSSY
+#include "lib/receiver.glsl"
+layout(binding = 8) uniform sampler2D glossy; // radiance over glossyTint
+#else
 layout(binding = 0) uniform sampler2D gbufferDepth;
+#endif
 layout(binding = 2) uniform sampler2D source;
 layout(binding = 3) uniform sampler2D albedo;
 layout(binding = 4) uniform sampler2D emission;
@@ -33,7 +38,10 @@ void main() {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   vec3 value = sourceAt(pixel);
 #if MODE == 0
-#ifdef REFLECTED
+#ifdef GLOSSY
+  if (depth > 0.0)
+    value = reflectedAt(pixel, depth, value, texelFetch(glossy, min(pixel, textureSize(glossy, 0) - 1), 0).rgb);
+#elif defined(REFLECTED)
   value *= texelFetch(albedo, pixel, 0).rgb * kInversePi;
 #endif
 #ifdef EMITTED

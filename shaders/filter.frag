@@ -1,27 +1,38 @@
 #version 450
 // Puts the 4×4 subsets back in their places (SUBSETS) and filters (FILTER): a cross-bilateral tent of 7×7, weights
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
-// the mean over all 16 subsets exactly.
+// the mean over all 16 subsets exactly. GLOSSY: glossy light too, with weights by roughness and metalness besides.
 #include "lib/gbuffer.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance;
+#ifdef GLOSSY
+layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
+layout(binding = 7) uniform sampler2D gbufferFinish;
+layout(location = 1) out vec4 outGlossy;
+#endif
 uniform ivec2 tileSize;        // of a sub-image
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
 uniform float normalPower;
 uniform float distanceSigma;   // share of the view distance
 layout(location = 0) out vec4 outIrradiance;
 
-vec3 irradianceAt(ivec2 pixel) {
+/// Where the value of a pixel lies.
+ivec2 placeOf(ivec2 pixel) {
 #ifdef SUBSETS
-  return texelFetch(irradiance, (pixel & 3) * tileSize + (pixel >> 2), 0).rgb;
+  return (pixel & 3) * tileSize + (pixel >> 2);
 #else
-  return texelFetch(irradiance, pixel, 0).rgb;
+  return pixel;
 #endif
 }
+
+vec3 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0).rgb; }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   outIrradiance = vec4(0.0);
+#ifdef GLOSSY
+  outGlossy = vec4(0.0);
+#endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
 #ifdef FILTER
@@ -39,6 +50,11 @@ void main() {
   ivec2 first = max(-reach, -pixel), last = min(reach, ivec2(camera.size.xy) - 1 - pixel);
   vec3 sum = vec3(0.0);
   float weights = 0.0;
+#ifdef GLOSSY
+  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
+  vec3 glossySum = vec3(0.0);
+  float glossyWeights = 0.0;
+#endif
   for (int dy = first.y; dy <= last.y; ++dy) {
     for (int dx = first.x; dx <= last.x; ++dx) {
       ivec2 neighbour = pixel + ivec2(dx, dy);
@@ -53,10 +69,23 @@ void main() {
                      exp2(normalPower * log2(alignment) - 0.7213475 * height * height);
       sum += weight * irradianceAt(neighbour);
       weights += weight;
+#ifdef GLOSSY
+      // Lobes of other shape hold other light: exp(-Δ²/2σ²), σ = 0.1 of roughness or metalness.
+      vec2 difference = texelFetch(gbufferFinish, neighbour, 0).rg - finish;
+      weight *= exp2(-72.13475 * dot(difference, difference));
+      glossySum += weight * texelFetch(glossy, placeOf(neighbour), 0).rgb;
+      glossyWeights += weight;
+#endif
     }
   }
   outIrradiance = vec4(weights > 0.0 ? sum / weights : irradianceAt(pixel), 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(glossyWeights > 0.0 ? glossySum / glossyWeights : texelFetch(glossy, placeOf(pixel), 0).rgb, 1.0);
+#endif
 #else
   outIrradiance = vec4(irradianceAt(pixel), 1.0);
+#ifdef GLOSSY
+  outGlossy = texelFetch(glossy, placeOf(pixel), 0);
+#endif
 #endif
 }

@@ -1,5 +1,5 @@
 #version 450
-// Surface attributes seen by the camera.
+// Surface attributes seen by the camera. Variant GLOSSY: roughness and metalness too.
 #include "lib/material.glsl"
 #include "shared/camera_block.h"
 
@@ -12,6 +12,10 @@ layout(location = 4) flat in float handedness;
 layout(location = 0) out vec4 outNormal;
 layout(location = 1) out vec4 outAlbedo;
 layout(location = 2) out vec4 outEmission;
+#ifdef GLOSSY
+#include "shared/ggx.h"
+layout(location = 3) out vec2 outFinish;
+#endif
 
 void main() {
   vec4 base = baseColorAt(uv, color);
@@ -34,5 +38,9 @@ void main() {
   bool emits = front || material.baseUvV.w > 0.5;
   outNormal = vec4(normal, 1.0);
   outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+#ifdef GLOSSY
+  vec2 finish = finishAt(uv);
+  outFinish = vec2(max(finish.x, kLeastRoughness), finish.y);
+#endif
   outEmission = vec4(emits ? emissionAt(uv) : vec3(0.0), 1.0);
 }

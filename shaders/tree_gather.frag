@@ -2,8 +2,11 @@
 // Irradiance from the trees over reflective shadow maps, each fragment with clusters of its own choice (hierarchical
 // image-space radiosity, paper 3, section 3.5). The tree of a map is walked in Morton order without a stack: below a
 // cluster that is refined come its four parts, after one that is taken the next of its size or larger.
-// Variant PATCHES as in gather.frag.
+// Variants PATCHES and GLOSSY as in gather.frag.
 #include "lib/gbuffer.glsl"
+#ifdef GLOSSY
+#include "lib/receiver.glsl"
+#endif
 #include "shared/patches.h"
 
 layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
@@ -23,6 +26,9 @@ uniform int rootStep;
 uniform float diskFactor;
 uniform float largestG;
 layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+#endif
 #ifdef PATCHES
 layout(early_fragment_tests) in;
 #endif
@@ -43,12 +49,19 @@ void main() {
   ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
 #endif
   outIrradiance = vec4(0.0);
+#ifdef GLOSSY
+  outGlossy = vec4(0.0);
+#endif
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 irradiance = vec3(0.0);
+#ifdef GLOSSY
+  Receiver receiver = receiverAt(pixel, position, normal);
+  vec3 glossy = vec3(0.0);
+#endif
   int depthOfTree = coarsest - finest;
   for (int root = firstRoot; root < endRoot; root += rootStep) {
     int m = root << (2 * depthOfTree), end = (root + 1) << (2 * depthOfTree); // in units of the finest clusters
@@ -70,11 +83,18 @@ void main() {
         vec3 n = texelFetch(normals, cluster, at).xyz;
         float cosineLight = dot(n, direction) * inversesqrt(max(dot(n, n), 1e-12));
         float g = max(-dot(normal, direction), 0.0) * max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
-        irradiance += flux.rgb * (0.318309886 * min(g, largestG));
+        vec3 light = flux.rgb * (0.318309886 * min(g, largestG));
+        irradiance += light;
+#ifdef GLOSSY
+        glossy += light * glossyReflectance(receiver, -direction);
+#endif
       }
       m += 1 << (2 * shift);
       at = min(coarsest, finest + findLSB(m | (1 << (2 * depthOfTree))) / 2);
     }
   }
   outIrradiance = vec4(irradiance * float(rootStep), 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(glossy * float(rootStep) / glossyTint(receiver), 1.0);
+#endif
 }

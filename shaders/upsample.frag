@@ -2,7 +2,8 @@
 // One level of the multiresolution buffer made whole, from coarse to fine (paper 2, section 3.5): where a patch was gathered
 // at this level it stays; where it belongs to a coarser one, that level is interpolated; where it is split it stays empty.
 // What is interpolated holds light and lies on the same surface: weights as in filter.frag. A neighbour that was split
-// counts with its parts. Weights are divided by their sum, so a constant stays one. FINAL: to the pixels themselves.
+// counts with its parts. Weights are divided by their sum, so a constant stays one. FINAL: to the pixels themselves. GLOSSY:
+// glossy light too, with weights by roughness and metalness besides.
 #include "lib/gbuffer.glsl"
 #include "shared/patches.h"
 
@@ -17,6 +18,20 @@ uniform float normalPower;
 uniform float distanceSigma; // share of the view distance
 uniform float detail;        // FINAL: MultiresSettings::detail
 layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(binding = 4) uniform sampler2D atlasGlossy; // as irradiance, in the same places
+layout(binding = 5) uniform sampler2D coarseGlossy;
+layout(binding = 7) uniform sampler2D gbufferFinish;
+layout(location = 1) out vec4 outGlossy;
+
+vec2 finish;
+
+/// Lobes of other shape hold other light: as in filter.frag.
+float likeLobe(ivec2 pixel) {
+  vec2 difference = texelFetch(gbufferFinish, pixel, 0).rg - finish;
+  return exp2(-72.13475 * dot(difference, difference));
+}
+#endif
 
 vec3 normal, position;
 float inverseSigma;
@@ -34,6 +49,9 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 size = ivec2(camera.size.xy);
   outIrradiance = vec4(0.0);
+#ifdef GLOSSY
+  outGlossy = vec4(0.0);
+#endif
   ivec2 sub = base / grid >> level;
 #ifdef FINAL
   ivec2 subset = at / tile, texel = at - subset * tile;
@@ -52,6 +70,9 @@ void main() {
   position = positionFromDepth(pixel, depth);
   if (own.a > 0.0) {
     outIrradiance = vec4(own.rgb, 1.0);
+#ifdef GLOSSY
+    outGlossy = texelFetch(atlasGlossy, origin + texel, 0);
+#endif
   } else if (level < coarsest) {
     ivec2 subCoarse = sub >> 1, parent = texel >> 1;
     if (texelFetch(coarse, subset * subCoarse + parent, 0).a == 0.0) return; // gathered in parts
@@ -61,6 +82,11 @@ void main() {
     ivec2 side = ivec2(sign(offset));
     vec3 sum = vec3(0.0);
     float weights = 0.0;
+#ifdef GLOSSY
+    finish = texelFetch(gbufferFinish, pixel, 0).rg;
+    vec3 glossySum = vec3(0.0);
+    float glossyWeights = 0.0;
+#endif
     for (int i = 0; i < 4; ++i) {
       ivec2 step = ivec2(i & 1, i >> 1);
       vec2 linear = mix(1.0 - share, share, vec2(step));
@@ -69,31 +95,47 @@ void main() {
       if (weight == 0.0 || any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, subCoarse))) continue;
       vec4 value = texelFetch(coarse, subset * subCoarse + q, 0);
       if (value.a > 0.0) {
-        weight *= max(alike(patchPixel(q, level + 1, grid, subset, size)), i == 0 ? 1e-3 : 0.0);
+        ivec2 there = patchPixel(q, level + 1, grid, subset, size);
+        weight *= max(alike(there), i == 0 ? 1e-3 : 0.0);
         sum += weight * value.rgb;
         weights += weight;
+#ifdef GLOSSY
+        weight *= max(likeLobe(there), i == 0 ? 1e-3 : 0.0);
+        glossySum += weight * texelFetch(coarseGlossy, subset * subCoarse + q, 0).rgb;
+        glossyWeights += weight;
+#endif
         continue;
       }
-      vec3 partSum = vec3(0.0);
-      float partWeights = 0.0, parts = 0.0;
+      float parts = 0.0;
+      for (int k = 0; k < 4; ++k)
+        parts += texelFetch(atlas, origin + q * 2 + ivec2(k & 1, k >> 1), 0).a > 0.0 ? 1.0 : 0.0;
       for (int k = 0; k < 4; ++k) {
         ivec2 part = q * 2 + ivec2(k & 1, k >> 1);
         vec4 light = texelFetch(atlas, origin + part, 0);
         if (light.a == 0.0) continue;
-        float likeness = alike(patchPixel(part, level, grid, subset, size));
-        partSum += likeness * light.rgb;
-        partWeights += likeness;
-        parts += 1.0;
+        ivec2 there = patchPixel(part, level, grid, subset, size);
+        float portion = weight / parts * alike(there);
+        sum += portion * light.rgb;
+        weights += portion;
+#ifdef GLOSSY
+        portion *= likeLobe(there);
+        glossySum += portion * texelFetch(atlasGlossy, origin + part, 0).rgb;
+        glossyWeights += portion;
+#endif
       }
-      if (parts == 0.0) continue;
-      sum += weight / parts * partSum;
-      weights += weight / parts * partWeights;
     }
     outIrradiance = vec4(sum / weights, 1.0);
+#ifdef GLOSSY
+    outGlossy = vec4(glossySum / glossyWeights, 1.0);
+#endif
   }
 #ifdef FINAL
   vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz
                                            : normalize(camera.worldFromView[3].xyz - position);
-  outIrradiance.rgb *= detail * max(dot(towardsViewer, normal), 0.0) + 1.0 - detail;
+  float darkening = detail * max(dot(towardsViewer, normal), 0.0) + 1.0 - detail;
+  outIrradiance.rgb *= darkening;
+#ifdef GLOSSY
+  outGlossy.rgb *= darkening;
+#endif
 #endif
 }

@@ -74,6 +74,7 @@ int texelBytes(GLenum format) {
   case GL_DEPTH_COMPONENT16:
     return 2;
   case GL_RGBA8:
+  case GL_RG16:
   case GL_SRGB8_ALPHA8:
   case GL_R32F:
   case GL_DEPTH24_STENCIL8:
@@ -119,6 +120,9 @@ Object::~Object() {
     break;
   case GL_SAMPLER:
     glDeleteSamplers(1, &name_);
+    break;
+  case GL_TRANSFORM_FEEDBACK:
+    glDeleteTransformFeedbacks(1, &name_);
     break;
   case GL_QUERY:
     glDeleteQueries(1, &name_);
@@ -204,6 +208,16 @@ VertexArray::VertexArray(const std::string& label)
 
 Sampler::Sampler(const std::string& label)
     : Object(GL_SAMPLER, make([](GLsizei n, GLuint* names) { glCreateSamplers(n, names); }), label, 0) {}
+
+TransformFeedback::TransformFeedback(const std::string& label, const Buffer& target)
+    : Object(GL_TRANSFORM_FEEDBACK, make([](GLsizei n, GLuint* names) { glCreateTransformFeedbacks(n, names); }), label,
+             0) {
+  glTransformFeedbackBufferBase(name(), 0, target.name());
+}
+
+void TransformFeedback::bind() const { glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, name()); }
+
+void TransformFeedback::unbind() { glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0); }
 
 Query::Query(GLenum target)
     : Object(GL_QUERY, make([target](GLsizei n, GLuint* names) { glCreateQueries(target, n, names); }), {}, 0) {}

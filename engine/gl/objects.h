@@ -125,6 +125,15 @@ class Sampler : public detail::Object {
   explicit Sampler(const std::string& label);
 };
 
+/// What transform feedback writes to a buffer, and how much that was (for glDrawTransformFeedback).
+class TransformFeedback : public detail::Object {
+ public:
+  TransformFeedback() = default;
+  TransformFeedback(const std::string& label, const Buffer& target);
+  void bind() const;
+  static void unbind();
+};
+
 class Query : public detail::Object {
  public:
   Query() = default;
@@ -139,8 +148,8 @@ struct PipelineState {
   bool depthTest = false;
   bool depthWrite = false;
   GLenum depthFunc = GL_GREATER;
-  bool add = false;                        // destination + source
-  bool blendAlpha = false;                 // source over
+  bool add = false;        // destination + source
+  bool blendAlpha = false; // source over
   Stencil stencil = Stencil::Off;
   bool depthClamp = false;                 // casters outside the depth range are kept at its ends
   int x = 0, y = 0, width = 0, height = 0; // viewport and scissor

@@ -16,8 +16,8 @@ struct ProgramDesc {
   std::string vertex = "fullscreen.vert";
   std::string fragment = {};
   std::vector<std::string> defines = {};
-  std::string geometry = {};               // none if empty
-  std::vector<std::string> captured = {};  // outputs for transform feedback, interleaved; then `fragment` may be empty
+  std::string geometry = {};              // none if empty
+  std::vector<std::string> captured = {}; // outputs for transform feedback, interleaved; then `fragment` may be empty
 
   std::string key() const;
 };

@@ -35,8 +35,9 @@ struct TextureRef {
   mat3 uvTransform{1};
 };
 
-/// Lambert surface. Albedo = baseColor (factor) × texture × vertex colour. Emission is radiance, W/(m² sr) per channel,
-/// front side only unless doubleSided. Both sides reflect.
+/// Lambert surface; where the camera sees it, it may be glossy too (roughness and metalness, gather.glossy). Albedo =
+/// baseColor (factor) × texture × vertex colour. Emission is radiance, W/(m² sr) per channel, front side only unless
+/// doubleSided. Both sides reflect.
 struct Material {
   std::string name;
   vec3 baseColor{1};
@@ -44,11 +45,15 @@ struct Material {
   TextureRef baseColorTexture;
   vec3 emission{0}; // emissiveFactor × emissiveStrength
   TextureRef emissiveTexture;
+  float roughness = 1, metalness = 0; // factors, [0,1]; roughness is perceptual: α = roughness²
+  TextureRef finishTexture;           // G: roughness, B: metalness
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
 
   bool emits() const { return maxComponent(emission) > 0; }
+  /// Whether it is anything but Lambert; a texture may make it so.
+  bool glossy() const { return roughness < 1 || metalness > 0 || finishTexture.image != kNone; }
 };
 
 /// A run of triangles of one mesh that share a material.

@@ -149,6 +149,9 @@ void takeMaterials(Document& doc, const tinygltf::Model& model) {
     out.baseColor = numbers<4>(doc, pbr.baseColorFactor, place, "baseColorFactor", vec4(1));
     out.emissive = numbers<3>(doc, m.emissiveFactor, place, "emissiveFactor", vec3(0));
     out.baseColorTexture = textureUse(pbr.baseColorTexture);
+    out.roughness = float(pbr.roughnessFactor);
+    out.metalness = float(pbr.metallicFactor);
+    out.finishTexture = textureUse(pbr.metallicRoughnessTexture);
     out.emissiveTexture = textureUse(m.emissiveTexture);
     for (const auto& [name, value] : m.extensions) {
       if (name == "KHR_materials_emissive_strength") out.emissiveStrength = number(value, "emissiveStrength", 1);

@@ -16,7 +16,7 @@ struct StbFree {
   void operator()(stbi_uc* p) const { stbi_image_free(p); }
 };
 
-TextureImage decode(const Document& doc, int index) {
+TextureImage decode(const Document& doc, int index, bool srgb) {
   const Image& image = doc.images[size_t(index)];
   const std::string place = label("image", size_t(index), image.uri.empty() ? image.name : image.uri);
   Bytes bytes{image.encoded.data(), image.encoded.size()};
@@ -34,6 +34,7 @@ TextureImage decode(const Document& doc, int index) {
   out.name = !image.name.empty() ? image.name : !image.uri.empty() ? image.uri : "image " + std::to_string(index);
   out.width = width;
   out.height = height;
+  out.srgb = srgb;
   const size_t count = size_t(width) * size_t(height);
   out.texels.resize(count);
   glm::dvec4 sum(0);
@@ -49,14 +50,14 @@ TextureImage decode(const Document& doc, int index) {
 } // namespace
 
 void decodeImages(Import& import) {
-  std::vector<int> order(import.images.size());
-  for (const auto& [index, slot] : import.images) order[slot] = index;
+  std::vector<std::pair<int, bool>> order(import.images.size());
+  for (const auto& [image, slot] : import.images) order[slot] = image;
   auto& images = import.scene.assets.images;
   images.resize(order.size());
   std::vector<std::string> errors(order.size()); // the first by index is thrown, whichever thread met one first
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) try {
-        images[i] = decode(import.doc, order[i]);
+        images[i] = decode(import.doc, order[i].first, order[i].second);
       } catch (const InputError& e) {
         errors[i] = e.what();
       }

@@ -22,7 +22,8 @@ struct Import {
   Scene scene;
   std::map<std::pair<int, bool>, uint32_t> meshes; // by (mesh, whether its joints were read)
   std::map<uint32_t, HighestJoint> highestJoints;  // by slot of SceneAssets::meshes
-  std::map<int, uint32_t> materials, images;       // material -1: the default one
+  std::map<int, uint32_t> materials;               // -1: the default one
+  std::map<std::pair<int, bool>, uint32_t> images; // by (image, whether its colours are sRGB)
   std::vector<Entity> entities;                    // by node; invalid where the scene does not reach it
 
   bool reached(int node) const { return entities[size_t(node)] != Entity(); }

@@ -1,4 +1,4 @@
-// glTF materials as Lambert surfaces.
+// glTF materials as Lambert surfaces, with roughness and metalness for the glossy reflection at the receiver.
 
 #include "engine/scene/gltf_import.h"
 
@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 8> kSilentExtensions = {
     "KHR_materials_clearcoat",         "KHR_materials_sheen", "KHR_materials_iridescence",
     "KHR_materials_anisotropy",        "KHR_materials_unlit"};
 
-TextureRef importTexture(Import& import, const TextureUse& use, const std::string& place) {
+TextureRef importTexture(Import& import, const TextureUse& use, const std::string& place, bool srgb = true) {
   Document& doc = import.doc;
   TextureRef ref;
   if (use.texture < 0) return ref;
@@ -26,7 +26,7 @@ TextureRef importTexture(Import& import, const TextureUse& use, const std::strin
              " has no image that this program can use; white instead");
     return ref;
   }
-  ref.image = import.images.emplace(texture.image, uint32_t(import.images.size())).first->second;
+  ref.image = import.images.emplace(std::pair(texture.image, srgb), uint32_t(import.images.size())).first->second;
   ref.wrapU = texture.wrapU;
   ref.wrapV = texture.wrapV;
   ref.nearest = texture.nearest;
@@ -63,6 +63,13 @@ uint32_t importMaterial(Import& import, int index) {
   out.baseColor = vec3(color);
   out.alpha = color.w;
   out.baseColorTexture = importTexture(import, in.baseColorTexture, place + ", base colour");
+  const auto factor = [&](float value, const char* what) {
+    if (!(value >= 0 && value <= 1)) doc.warn(place + ": the " + what + " is out of range; clamped to 0..1");
+    return value >= 0 ? glm::min(value, 1.0f) : 0.0f;
+  };
+  out.roughness = factor(in.roughness, "roughness");
+  out.metalness = factor(in.metalness, "metalness");
+  out.finishTexture = importTexture(import, in.finishTexture, place + ", roughness and metalness", false);
   out.emission = glm::max(in.emissive * in.emissiveStrength, vec3(0));
   if (!isFinite(out.emission)) doc.fail(place, "the emission is a number beyond single precision");
   if (out.emits()) out.emissiveTexture = importTexture(import, in.emissiveTexture, place + ", emission");

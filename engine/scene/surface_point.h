@@ -1,4 +1,4 @@
-// Points that ride on a surface: a place on a triangle, where the scene has it now.
+// Points that ride on a surface: a place on a triangle, where the scene has it now, and what is there.
 #pragma once
 
 #include "engine/scene/scene_view.h"
@@ -17,5 +17,12 @@ struct SurfacePoint {
 /// corner: all as a SurfaceHit has them. Uses the deformed vertices where there are any.
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
                           vec2 barycentric);
+
+/// How a surface reflects besides its colour: factors times texture.
+struct SurfaceFinish {
+  float roughness = 1, metalness = 0; // roughness is perceptual
+};
+SurfaceFinish surfaceFinish(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
+                            vec2 barycentric);
 
 } // namespace lambent

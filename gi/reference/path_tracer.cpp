@@ -5,6 +5,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "gi/vpl/light_paths.h"
+#include "gi/vpl/receivers.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -40,7 +41,12 @@ struct Sample {
 class BlockTracer {
  public:
   BlockTracer(const ReferenceInputs& in, size_t firstPixel, std::span<const SurfaceHit> primary)
-      : in_(in), firstPixel_(firstPixel), primary_(primary), samples_(primary.size()) {}
+      : in_(in), firstPixel_(firstPixel), primary_(primary), samples_(primary.size()) {
+    if (!in.glossy) return;
+    receivers_.resize(primary.size());
+    for (size_t i = 0; i < primary.size(); ++i)
+      if (primary[i].valid()) receivers_[i] = receiverOf(*in.glossy, primary[i]);
+  }
 
   /// Sample number `index` of every pixel of the block; valid until the next call.
   std::span<const Sample> trace(uint32_t index, RayCounts& counts) {
@@ -78,8 +84,8 @@ class BlockTracer {
       Path& p = paths_[i];
       const float uLight = p.rng.next();
       const vec2 a = p.rng.next2();
-      const LightConnection c =
-          connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, lightWeights_);
+      LightConnection c = connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, lightWeights_);
+      if (glossyAt(vertex)) c.value *= kPi * reflectanceOf(receivers_[p.pixel], glm::normalize(c.segment.direction));
       if (maxComponent(c.value) <= 0) continue;
       segments_.push_back(c.segment);
       pending_.push_back(c.value);
@@ -95,7 +101,8 @@ class BlockTracer {
   void extend(int vertex, RayCounts& counts) {
     segments_.clear();
     for (Path& p : paths_) {
-      const vec3 direction = sampleCosineHemisphere(p.vertex.normal, p.rng.next2());
+      const vec3 direction =
+          glossyAt(vertex) ? drawReflection(p) : sampleCosineHemisphere(p.vertex.normal, p.rng.next2());
       // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
       const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
       segments_.push_back(
@@ -124,6 +131,20 @@ class BlockTracer {
     paths_.erase(paths_.begin() + long(alive), paths_.end());
   }
 
+  bool glossyAt(int vertex) const { return vertex == 0 && !receivers_.empty(); }
+
+  /// Direction of a glossy receiver's ray; the path's weight then is that of radiance from there. Emitters' shares need
+  /// no other weights than a cosine ray's: any that add up to one will do.
+  vec3 drawReflection(Path& p) const {
+    const Receiver& receiver = receivers_[p.pixel];
+    const vec2 u = p.rng.next2();
+    const vec3 direction = sampleReflection(receiver, p.rng.next(), u);
+    const float cosine = std::max(0.0f, glm::dot(direction, receiver.normal));
+    p.weight *=
+        cosine > 0 ? reflectanceOf(receiver, direction) * (cosine / pdfReflection(receiver, direction)) : vec3(0);
+    return direction;
+  }
+
   /// Share of the light along the first segment that remains when its geometry term is bounded: in the area formulation
   /// a cosine-distributed hit carries G/G, so min(G, clamp)/G (paper 1, 5.4).
   float clampFactor(const PathVertex& x, const vec3& direction, const SurfaceHit& h) const {
@@ -137,6 +158,7 @@ class BlockTracer {
   const size_t firstPixel_;
   const std::span<const SurfaceHit> primary_;
   std::vector<Sample> samples_;
+  std::vector<Receiver> receivers_; // by pixel; empty: Lambert
   std::vector<Path> paths_;
   std::vector<Ray> segments_;
   std::vector<vec3> pending_; // added to the owner's sum if the segment is clear
@@ -212,6 +234,8 @@ std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, cons
 }
 
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
+  const bool irradiance = buffer == ReferenceBuffer::Irradiance;
+  CHECK(!(irradiance && in.glossy));
   ReferencePicture picture{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
   picture.surface.resize(sums.pixels.size());
   const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
@@ -227,7 +251,7 @@ ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs&
       vec3& mean = picture.mean.pixels[i];
       picture.surface[i] = h.valid();
       if (h.valid()) {
-        const vec3 factor = buffer == ReferenceBuffer::Irradiance ? vec3(kPi) : h.albedo;
+        const vec3 factor = irradiance ? vec3(kPi) : in.glossy ? vec3(1) : h.albedo;
         for (int c = 0; c < 3; ++c) {
           const Estimate e = estimateOf(sums.pixels[i], c, sums.samples, direct, indirect);
           mean[c] = (direct ? h.emission[c] : 0) + factor[c] * float(e.mean);

@@ -17,9 +17,13 @@ struct ReferenceInputs {
   int bounces = 3;   // B; 0: emission and direct light only
   float clamp = 0;   // largest geometry term between primary hit and first bounce, 1/m² (as gather.clamp); 0 = none
   uint32_t seed = 1; // of all random numbers
+  /// Primary hits reflect by the roughness and metalness of this view's materials, as with gather.glossy; null:
+  /// Lambert.
+  const SceneView* glossy = nullptr;
 };
 
-/// Sums over the samples of one pixel. `direct` and `indirect` are irradiance/π: what a white surface would reflect.
+/// Sums over the samples of one pixel. `direct` and `indirect` are irradiance/π: what a white surface would reflect;
+/// with ReferenceInputs::glossy the radiance that the surface does reflect.
 struct PixelSums {
   glm::dvec3 direct{0}, directSquares{0};
   glm::dvec3 indirect{0}, indirectSquares{0};
@@ -58,6 +62,7 @@ struct ReferencePicture {
   /// Standard error of the picture's mean over that mean, as if a pixel's channels were fully correlated (else less).
   double relativeErrorOfMean = 0;
 };
+/// Irradiance is not to be had from glossy sums.
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
 
 } // namespace lambent

@@ -60,7 +60,8 @@ void add(Hash& hash, const TextureRef& t) {
   hash.bytes(&t.uvTransform, sizeof t.uvTransform);
 }
 
-void add(Hash& hash, const SceneAssets& assets) {
+/// What only glossy receivers depend on stays out of the others' hashes.
+void add(Hash& hash, const SceneAssets& assets, bool glossy) {
   for (const Mesh& mesh : assets.meshes) {
     hash.values(mesh.positions);
     hash.values(mesh.normals);
@@ -79,8 +80,13 @@ void add(Hash& hash, const SceneAssets& assets) {
     hash.value(m.alphaMode);
     hash.value(m.alphaCutoff);
     hash.value(m.doubleSided);
+    if (!glossy) continue;
+    hash.value(m.roughness);
+    hash.value(m.metalness);
+    add(hash, m.finishTexture);
   }
   for (const TextureImage& image : assets.images) {
+    if (!image.srgb && !glossy) continue;
     hash.value(image.width);
     hash.value(image.srgb);
     hash.values(image.texels);
@@ -108,7 +114,7 @@ uint64_t checksumOf(const ReferenceSums& sums) {
 
 uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   Hash hash;
-  if (view.assets) add(hash, *view.assets);
+  if (view.assets) add(hash, *view.assets, in.glossy != nullptr);
   for (const InstanceView& i : view.instances) {
     hash.value(i.mesh);
     hash.bytes(&i.worldFromObject, sizeof i.worldFromObject);
@@ -127,6 +133,7 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   hash.value(in.bounces);
   hash.value(in.clamp);
   hash.value(in.seed);
+  if (in.glossy) hash.value(true);
   return hash.result();
 }
 

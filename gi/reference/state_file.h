@@ -9,7 +9,7 @@
 namespace lambent {
 
 /// Hash of everything that the samples depend on: geometry, materials, textures, lights, camera, size, bounces, clamp,
-/// seed. Where the scene's file lies does not matter.
+/// seed, roughness and metalness where they count. Where the scene's file lies does not matter.
 uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in);
 
 /// Replaces the file in one step.

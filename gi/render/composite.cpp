@@ -1,5 +1,5 @@
 // The picture from its parts, and the exposure that suits it.
-#include "gi/render/passes.h"
+#include "gi/render/gather.h"
 
 #include <cmath>
 
@@ -16,14 +16,19 @@ Picture CompositePass::run(const CompositeInputs& in) {
     radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});
   }
-  const gl::Program& program = context_.programs.get({.fragment = "composite.frag"});
+  const gl::Program& program =
+      context_.programs.get({.fragment = "composite.frag", .defines = bindReceivers(in.gbuffer)});
   program.use();
   program.set("skyRadiance", in.skyRadiance);
+  in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
+  in.gbuffer.normal->bind(1);
   in.gbuffer.albedo->bind(2);
   in.gbuffer.emission->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
   (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
+  (in.direct.glossy ? in.direct.glossy : &black_)->bind(8);
+  (in.indirect.glossy ? in.indirect.glossy : &black_)->bind(9);
   framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();

@@ -17,14 +17,16 @@ DirectPass::DirectPass(PassContext context) : context_(context), compareSampler_
 DirectLight DirectPass::run(const DirectInputs& in) {
   const gl::PassScope scope(context_.profiler, "direct");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
+  bool resized = fitGlossy(glossy_, "direct/glossy", in.gbuffer, {width, height});
   if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
     irradiance_ = gl::Texture("direct/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
-    framebuffer_ = gl::Framebuffer("direct", {&irradiance_});
+    resized = true;
   }
+  if (resized) framebuffer_ = framebufferOf("direct", irradiance_, glossy_);
   framebuffer_.bind();
   gl::PipelineState{.add = true, .width = width, .height = height}.apply();
   const float black[4] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, black);
+  for (int i = 0; i < (glossy_ ? 2 : 1); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, black);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
@@ -32,7 +34,9 @@ DirectLight DirectPass::run(const DirectInputs& in) {
     const char* kind = block.kind == MapKind::Cube   ? "CUBE_MAPS"
                        : block.kind == MapKind::Spot ? "SPOT_MAPS"
                                                      : "SUN_MAPS";
-    const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = {kind}});
+    std::vector<std::string> defines = bindReceivers(in.gbuffer);
+    defines.push_back(kind);
+    const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = std::move(defines)});
     program.use();
     program.set("lightCount", block.count);
     block.lights.bindUniform(1);
@@ -53,7 +57,7 @@ DirectLight DirectPass::run(const DirectInputs& in) {
                 .biasTexels = 1.5f * in.shadow.bias,
                 .diskFactor = 1 / kPi,
                 .largestG = kInfinity});
-  return {&irradiance_};
+  return {&irradiance_, orNull(glossy_)};
 }
 
 } // namespace lambent

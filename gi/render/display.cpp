@@ -15,14 +15,15 @@ struct View {
   std::vector<std::string> defines;
   const gl::Texture* source;
   float factor;
+  const gl::Texture* glossy = nullptr; // goes with the source
 };
 
 View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   switch (buffer) {
   case Buffer::Direct:
-    return {{"MODE 0", "REFLECTED", "EMITTED"}, frame.direct.irradiance, exposure};
+    return {{"MODE 0", "REFLECTED", "EMITTED"}, frame.direct.irradiance, exposure, frame.direct.glossy};
   case Buffer::Indirect:
-    return {{"MODE 0", "REFLECTED"}, frame.indirect.irradiance, exposure};
+    return {{"MODE 0", "REFLECTED"}, frame.indirect.irradiance, exposure, frame.indirect.glossy};
   case Buffer::Irradiance:
     return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Unfiltered:
@@ -101,7 +102,14 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
     return display_;
   }
 
-  const View view = viewOf(buffer, frame, exposure);
+  View view = viewOf(buffer, frame, exposure);
+  if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
+    const std::vector<std::string> glossy = bindReceivers(frame.gbuffer);
+    view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
+    frame.gbuffer.camera->bindUniform(0);
+    frame.gbuffer.normal->bind(1);
+    (view.glossy ? view.glossy : &black_)->bind(8);
+  }
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
   program.use();
   program.set("factor", view.factor);

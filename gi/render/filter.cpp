@@ -10,20 +10,30 @@ namespace lambent {
 
 IndirectLight FilterPass::run(const FilterInputs& in) {
   // A full gather has nothing to mix: every pixel has seen every light.
-  if (!in.raw.deinterleaved) return {in.raw.irradiance};
+  if (!in.raw.deinterleaved) return {in.raw.irradiance, in.raw.glossy};
   const gl::PassScope scope(context_.profiler, "filter");
   const int width = in.gbuffer.width, height = in.gbuffer.height;
+  bool resized = fitGlossy(glossy_, "filter/glossy", in.gbuffer, {width, height});
+  fitGlossy(glossyRows_, "filter/glossy rows", in.gbuffer, {width, height});
   if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
     irradiance_ = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
-    framebuffer_ = gl::Framebuffer("filter", {&irradiance_});
     rows_ = gl::Texture("filter/rows", {.format = GL_RGBA32F, .width = width, .height = height});
-    rowsFramebuffer_ = gl::Framebuffer("filter rows", {&rows_});
+    resized = true;
+  }
+  if (resized) {
+    framebuffer_ = framebufferOf("filter", irradiance_, glossy_);
+    rowsFramebuffer_ = framebufferOf("filter rows", rows_, glossyRows_);
   }
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
-  const auto draw = [&](const gl::Texture& source, std::vector<std::string> defines, const glm::ivec2& reach,
-                        const gl::Framebuffer& target) {
+  const auto draw = [&](const gl::Texture& source, const gl::Texture* glossy, std::vector<std::string> defines,
+                        const glm::ivec2& reach, const gl::Framebuffer& target) {
+    if (glossy) {
+      glossy->bind(3);
+      in.gbuffer.finish->bind(7);
+      defines.push_back("GLOSSY");
+    }
     const gl::Program& program = context_.programs.get({.fragment = "filter.frag", .defines = std::move(defines)});
     program.use();
     program.set("tileSize", tileSize(in.gbuffer));
@@ -36,27 +46,30 @@ IndirectLight FilterPass::run(const FilterInputs& in) {
     gl::drawFullscreen();
   };
   if (!in.filter.on) {
-    draw(*in.raw.irradiance, {"SUBSETS"}, {0, 0}, framebuffer_);
+    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS"}, {0, 0}, framebuffer_);
   } else if (in.filter.kernel == FilterKernel::Whole) {
-    draw(*in.raw.irradiance, {"SUBSETS", "FILTER"}, {3, 3}, framebuffer_);
+    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS", "FILTER"}, {3, 3}, framebuffer_);
   } else {
-    draw(*in.raw.irradiance, {"SUBSETS", "FILTER"}, {3, 0}, rowsFramebuffer_);
-    draw(rows_, {"FILTER"}, {0, 3}, framebuffer_);
+    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS", "FILTER"}, {3, 0}, rowsFramebuffer_);
+    draw(rows_, orNull(glossyRows_), {"FILTER"}, {0, 3}, framebuffer_);
   }
-  return {&irradiance_};
+  return {&irradiance_, orNull(glossy_)};
 }
 
-IndirectLight IndirectUpload::run(const Image& image) {
+IndirectLight IndirectUpload::run(const Image& irradiance, const Image* glossy) {
   const gl::PassScope scope(context_.profiler, "irradiance upload");
-  if (!irradiance_ || irradiance_.width() != image.width || irradiance_.height() != image.height)
-    irradiance_ =
-        gl::Texture("irradiance upload/image", {.format = GL_RGBA32F, .width = image.width, .height = image.height});
-  std::vector<vec3> bottomUp(image.pixels.size());
-  for (int y = 0; y < image.height; ++y)
-    std::copy_n(&image.pixels[size_t(y) * image.width], image.width,
-                &bottomUp[size_t(image.height - 1 - y) * image.width]);
-  glTextureSubImage2D(irradiance_.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, bottomUp.data());
-  return {&irradiance_};
+  const auto upload = [](gl::Texture& texture, const char* label, const Image& image) {
+    if (!texture || texture.width() != image.width || texture.height() != image.height)
+      texture = gl::Texture(label, {.format = GL_RGBA32F, .width = image.width, .height = image.height});
+    std::vector<vec3> bottomUp(image.pixels.size());
+    for (int y = 0; y < image.height; ++y)
+      std::copy_n(&image.pixels[size_t(y) * image.width], image.width,
+                  &bottomUp[size_t(image.height - 1 - y) * image.width]);
+    glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, bottomUp.data());
+    return &texture;
+  };
+  return {upload(irradiance_, "irradiance upload/image", irradiance),
+          glossy ? upload(glossy_, "irradiance upload/glossy", *glossy) : nullptr};
 }
 
 } // namespace lambent

@@ -22,12 +22,36 @@ std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid) {
   return areas;
 }
 
+std::vector<std::string> bindReceivers(const GBuffer& gbuffer) {
+  if (!gbuffer.finish) return {};
+  gbuffer.albedo->bind(6);
+  gbuffer.finish->bind(7);
+  return {"GLOSSY"};
+}
+
+bool fitGlossy(gl::Texture& texture, const char* label, const GBuffer& gbuffer, const glm::ivec2& size) {
+  if (!gbuffer.finish) {
+    const bool had = bool(texture);
+    texture = {};
+    return had;
+  }
+  if (texture && texture.width() == size.x && texture.height() == size.y) return false;
+  texture = gl::Texture(label, {.format = GL_RGBA32F, .width = size.x, .height = size.y});
+  return true;
+}
+
+gl::Framebuffer framebufferOf(const char* label, const gl::Texture& irradiance, const gl::Texture& glossy) {
+  return glossy ? gl::Framebuffer(label, {&irradiance, &glossy}) : gl::Framebuffer(label, {&irradiance});
+}
+
+const gl::Texture* orNull(const gl::Texture& texture) { return texture ? &texture : nullptr; }
+
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
   if (in.trees) {
     drawTreeGather(programs, target, in);
     return;
   }
-  gl::ProgramDesc desc{.fragment = "gather.frag"};
+  gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindReceivers(in.gbuffer)};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (in.maps) desc.defines.push_back("SHADOWS");
   if (in.maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
@@ -89,10 +113,12 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
   const bool deinterleaved = interleaved(in.gather.mode);
   const glm::ivec2 tile = tileSize(in.gbuffer);
   const glm::ivec2 size = deinterleaved ? 4 * tile : glm::ivec2(in.gbuffer.width, in.gbuffer.height);
+  bool resized = fitGlossy(glossy_, "gather/glossy", in.gbuffer, size);
   if (!irradiance_ || irradiance_.width() != size.x || irradiance_.height() != size.y) {
     irradiance_ = gl::Texture("gather/irradiance", {.format = GL_RGBA32F, .width = size.x, .height = size.y});
-    framebuffer_ = gl::Framebuffer("gather", {&irradiance_});
+    resized = true;
   }
+  if (resized) framebuffer_ = framebufferOf("gather", irradiance_, glossy_);
   drawGather(context_.programs, framebuffer_,
              {.gbuffer = in.gbuffer,
               .lights = in.lights,
@@ -106,7 +132,7 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .diskFactor = in.gather.disk / kPi,
               .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
               .trees = in.trees});
-  return {&irradiance_, deinterleaved};
+  return {&irradiance_, deinterleaved, orNull(glossy_)};
 }
 
 } // namespace lambent

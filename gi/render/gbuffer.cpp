@@ -1,4 +1,4 @@
-// Depth, normal, albedo and emission of what the camera sees.
+// Depth, normal, albedo, emission, and on demand roughness and metalness of what the camera sees.
 #include "gi/render/passes.h"
 
 #include <cmath>
@@ -35,7 +35,7 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
 GBuffer GBufferPass::run(const GBufferInputs& in) {
   const gl::PassScope scope(context_.profiler, "g-buffer");
   const int width = in.camera.width, height = in.camera.height;
-  if (depth_.width() != width || depth_.height() != height || !depth_) {
+  if (depth_.width() != width || depth_.height() != height || !depth_ || in.glossy != bool(finish_)) {
     const auto make = [&](const char* label, GLenum format) {
       return gl::Texture(label, {.format = format, .width = width, .height = height});
     };
@@ -43,7 +43,9 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
     normal_ = make("g-buffer/normal", GL_RGBA16F);
     albedo_ = make("g-buffer/albedo", GL_RGBA16F);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    framebuffer_ = gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
+    finish_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
+    framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &finish_}, &depth_)
+                             : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
     camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
   }
   const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
@@ -53,10 +55,10 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
   const float zero[4] = {0, 0, 0, 0};
-  for (int i = 0; i < 3; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
+  for (int i = 0; i < (in.glossy ? 4 : 3); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
-  in.scene.draw(DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
-  return {&depth_, &normal_, &albedo_, &emission_, &camera_, block, width, height};
+  in.scene.draw(in.glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
+  return {&depth_, &normal_, &albedo_, &emission_, in.glossy ? &finish_ : nullptr, &camera_, block, width, height};
 }
 
 } // namespace lambent

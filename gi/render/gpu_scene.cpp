@@ -66,8 +66,10 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth ? "depth.frag" : "gbuffer.frag"};
   if (kind == DrawKind::Depth) desc.defines.push_back("DEPTH_ONLY");
   if (tested(material)) desc.defines.push_back("ALPHA_MASK");
-  if (material.baseTexture && (kind == DrawKind::GBuffer || tested(material))) desc.defines.push_back("BASE_TEXTURE");
-  if (material.emissiveTexture && kind == DrawKind::GBuffer) desc.defines.push_back("EMISSIVE_TEXTURE");
+  if (material.baseTexture && (kind != DrawKind::Depth || tested(material))) desc.defines.push_back("BASE_TEXTURE");
+  if (material.emissiveTexture && kind != DrawKind::Depth) desc.defines.push_back("EMISSIVE_TEXTURE");
+  if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
+  if (material.finishTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
   return programs_.get(desc);
 }
 
@@ -78,6 +80,8 @@ void GpuScene::bindMaterial(uint32_t index) const {
   glBindSampler(2, material.baseSampler);
   glBindTextureUnit(3, material.emissiveTexture);
   glBindSampler(3, material.emissiveSampler);
+  glBindTextureUnit(4, material.finishTexture);
+  glBindSampler(4, material.finishSampler);
 }
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
@@ -98,7 +102,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
         program->set("clipFromWorld", clipFromWorld);
         program->set("eye", eye);
       }
-      if (kind == DrawKind::GBuffer || tested(material)) bindMaterial(item.range.material);
+      if (kind != DrawKind::Depth || tested(material)) bindMaterial(item.range.material);
       bound = item.range.material;
     }
     if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
@@ -112,6 +116,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   }
   glBindSampler(2, 0);
   glBindSampler(3, 0);
+  glBindSampler(4, 0);
   glBindVertexArray(0);
   gl::countDraws(draws);
   return draws;

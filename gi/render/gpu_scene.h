@@ -23,8 +23,8 @@ struct Frustum {
   bool mayShow(const Aabb& box) const;
 };
 
-/// What a draw writes: everything, or depth alone.
-enum class DrawKind { GBuffer, Depth };
+/// What a draw writes: the G-buffer, the same with roughness and metalness, or depth alone.
+enum class DrawKind { GBuffer, GlossyGBuffer, Depth };
 
 class GpuScene {
  public:
@@ -35,8 +35,8 @@ class GpuScene {
   void place(std::span<const InstanceView> instances);
 
   /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer. Sets programs,
-  /// vertex array and textures; the caller sets the pipeline state and, for DrawKind::GBuffer, binds the camera block
-  /// and gives the eye. Returns the number of draws.
+  /// vertex array and textures; the caller sets the pipeline state and, for a G-buffer, binds the camera block and
+  /// gives the eye. Returns the number of draws.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0)) const;
 
   /// Masked at the start.
@@ -55,8 +55,8 @@ class GpuScene {
     Aabb boundsObject;
   };
   struct MaterialDraw {
-    GLuint baseTexture, emissiveTexture; // 0 = none
-    GLuint baseSampler, emissiveSampler;
+    GLuint baseTexture, emissiveTexture, finishTexture; // 0 = none
+    GLuint baseSampler, emissiveSampler, finishSampler;
     bool masked;
   };
   struct MeshRange {

@@ -46,6 +46,7 @@ struct GBuffer {
   const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer
   const gl::Texture* albedo = nullptr;   // RGBA16F
   const gl::Texture* emission = nullptr; // RGBA16F radiance emitted towards the viewer, W/(m² sr)
+  const gl::Texture* finish = nullptr;   // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
   const gl::Buffer* camera = nullptr;    // uniform block CameraBlock (shaders/shared/camera_block.h)
   CameraBlock block;                     // what `camera` holds
   int width = 0, height = 0;
@@ -54,6 +55,7 @@ struct GBuffer {
 struct GBufferInputs {
   const GpuScene& scene;
   const CameraView& camera;
+  bool glossy = false; // with `finish`: the passes that follow then add glossy reflection
 };
 
 /// The block of a camera; `orthoFar` is the far plane of an orthographic one, metres.
@@ -66,7 +68,7 @@ class GBufferPass {
 
  private:
   PassContext context_;
-  gl::Texture depth_, normal_, albedo_, emission_;
+  gl::Texture depth_, normal_, albedo_, emission_, finish_;
   gl::Framebuffer framebuffer_;
   gl::Buffer camera_;
 };
@@ -213,6 +215,7 @@ MapPose emitterPose(const EmitterPatch& patch);
 /// Direct irradiance at the visible surfaces, W/m², albedo not included.
 struct DirectLight {
   const gl::Texture* irradiance = nullptr; // RGBA32F
+  const gl::Texture* glossy = nullptr;     // RGBA32F reflected by the receivers' lobes, W/(m² sr) over glossyTint
 };
 
 class DirectPass {
@@ -223,7 +226,7 @@ class DirectPass {
  private:
   PassContext context_;
   gl::Sampler compareSampler_; // bilinear depth comparison for the emitters' maps
-  gl::Texture irradiance_;
+  gl::Texture irradiance_, glossy_;
   gl::Framebuffer framebuffer_;
 };
 
@@ -234,6 +237,8 @@ class DirectPass {
 struct RawIndirect {
   const gl::Texture* irradiance = nullptr; // RGBA32F
   bool deinterleaved = false;
+  const gl::Texture* glossy =
+      nullptr; // as DirectLight::glossy, in the same places; null unless gbuffer.finish is there
 };
 
 struct LightTrees; // gi/render/reflective_maps.h
@@ -254,13 +259,14 @@ class GatherPass {
 
  private:
   PassContext context_;
-  gl::Texture irradiance_;
+  gl::Texture irradiance_, glossy_;
   gl::Framebuffer framebuffer_;
 };
 
 /// Indirect irradiance at the visible surfaces, W/m². Null texture: none.
 struct IndirectLight {
   const gl::Texture* irradiance = nullptr; // RGBA32F
+  const gl::Texture* glossy = nullptr;     // as DirectLight::glossy
 };
 
 struct FilterInputs {
@@ -277,19 +283,20 @@ class FilterPass {
 
  private:
   PassContext context_;
-  gl::Texture irradiance_, rows_;
+  gl::Texture irradiance_, rows_, glossy_, glossyRows_;
   gl::Framebuffer framebuffer_, rowsFramebuffer_;
 };
 
-/// Irradiance that was computed on the CPU (vpl.visibility = rays), in place of gather and filter.
+/// Irradiance, and glossy light if there is any, computed on the CPU (vpl.visibility = rays), in place of gather and
+/// filter.
 class IndirectUpload {
  public:
   explicit IndirectUpload(PassContext context) : context_(context) {}
-  IndirectLight run(const Image& irradiance);
+  IndirectLight run(const Image& irradiance, const Image* glossy = nullptr);
 
  private:
   PassContext context_;
-  gl::Texture irradiance_;
+  gl::Texture irradiance_, glossy_;
 };
 
 // 6. Picture ----------------------------------------------------------------------------------------------------------
@@ -309,7 +316,7 @@ struct CompositeInputs {
 class CompositePass {
  public:
   explicit CompositePass(PassContext context) : context_(context) {}
-  /// emission + albedo/π · (E_direct + E_indirect); the sky where nothing is seen.
+  /// emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
   Picture run(const CompositeInputs& in);
 
  private:

@@ -1,6 +1,7 @@
-// Which patches of the picture hold one smooth surface. Papers 2 and 3 compare depths in a min-max pyramid, which fires on
-// floors seen at a grazing angle (paper 2 says so), or their derivatives. Here a patch keeps a plane and a bound of the
-// distance to it, merged from its parts: no plane ever fires, no step is missed. Normals are ranges, as in paper 2, 3.2.
+// Which patches of the picture hold one smooth surface. Papers 2 and 3 compare depths in a min-max pyramid, which fires
+// on floors seen at a grazing angle (paper 2 says so), or their derivatives. Here a patch keeps a plane and a bound of
+// the distance to it, merged from its parts: no plane ever fires, no step is missed. Normals are ranges, as in paper
+// 2, 3.2.
 #include "gi/render/multires.h"
 
 namespace lambent {
@@ -25,8 +26,9 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
                                  nullptr, i);
   }
   for (int i = 0; i < in.levels; ++i) {
-    const gl::Program& program = context_.programs.get(
-        {.fragment = "pyramid.frag", .defines = i == 0 ? std::vector<std::string>{"FIRST"} : std::vector<std::string>{}});
+    const gl::Program& program =
+        context_.programs.get({.fragment = "pyramid.frag",
+                               .defines = i == 0 ? std::vector<std::string>{"FIRST"} : std::vector<std::string>{}});
     program.use();
     program.set("size", in.size);
     program.set("cell", in.cell == in.size ? padded : in.cell / (1 << i)); // a picture is one cell

@@ -1,6 +1,7 @@
 // Buffers as linear values on the CPU.
 #include "gi/gi_frame.h"
 #include "gi/render/gather.h"
+#include "shaders/shared/ggx.h"
 
 #include <algorithm>
 
@@ -47,11 +48,27 @@ Image depthOf(const FrameResults& frame) {
   return image;
 }
 
-/// albedo/π · irradiance
-Image reflected(const FrameResults& frame, const gl::Texture* irradiance) {
-  Image image = rgbOf(irradiance, frame.gbuffer.width, frame.gbuffer.height);
-  const Image albedo = rgbOf(frame.gbuffer.albedo, image.width, image.height);
-  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
+/// albedo/π · irradiance; with the receivers' lobes where the G-buffer has finishes, as shaders/lib/receiver.glsl.
+Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const gl::Texture* glossyLight) {
+  const GBuffer& g = frame.gbuffer;
+  Image image = rgbOf(irradiance, g.width, g.height);
+  const Image albedo = rgbOf(g.albedo, g.width, g.height);
+  if (!g.finish) {
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
+    return image;
+  }
+  const Image glossy = rgbOf(glossyLight, g.width, g.height), finish = rgbOf(g.finish, g.width, g.height),
+              normal = rgbOf(g.normal, g.width, g.height), distance = depthOf(frame);
+  const mat4& worldFromView = g.block.worldFromView;
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x) {
+      if (distance.at(x, y).x == 0) continue;
+      const vec2 ndc = (vec2(x, g.height - 1 - y) + 0.5f) * vec2(g.block.size.z, g.block.size.w) * 2.0f - 1.0f;
+      const vec3 towardsView = g.block.lens.w > 0 ? vec3(0, 0, 1) : -vec3(ndc * vec2(g.block.lens), -1);
+      const Receiver receiver = makeReceiver(normal.at(x, y), glm::normalize(mat3(worldFromView) * towardsView),
+                                             albedo.at(x, y), finish.at(x, y).x, finish.at(x, y).y);
+      image.at(x, y) = receiver.diffuse / kPi * image.at(x, y) + glossyTint(receiver) * glossy.at(x, y);
+    }
   return image;
 }
 
@@ -61,14 +78,14 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   const int width = frame.gbuffer.width, height = frame.gbuffer.height;
   switch (buffer) {
   case Buffer::Direct: {
-    Image image = reflected(frame, frame.direct.irradiance);
+    Image image = reflected(frame, frame.direct.irradiance, frame.direct.glossy);
     const Image emission = rgbOf(frame.gbuffer.emission, width, height), depth = depthOf(frame);
     for (size_t i = 0; i < image.pixels.size(); ++i)
       image.pixels[i] = depth.pixels[i].x > 0 ? image.pixels[i] + emission.pixels[i] : frame.skyRadiance;
     return image;
   }
   case Buffer::Indirect:
-    return reflected(frame, frame.indirect.irradiance);
+    return reflected(frame, frame.indirect.irradiance, frame.indirect.glossy);
   case Buffer::Irradiance:
     return rgbOf(frame.indirect.irradiance, width, height);
   case Buffer::Unfiltered:

@@ -1,5 +1,5 @@
-// Reflective shadow maps: each light's view is drawn as a G-buffer (the same programs as the camera's), then turned into
-// positions and reflected flux. What did not change is not drawn again.
+// Reflective shadow maps: each light's view is drawn as a G-buffer (the same programs as the camera's), then turned
+// into positions and reflected flux. What did not change is not drawn again.
 #include "gi/render/reflective_maps.h"
 
 #include "engine/scene/scene.h"
@@ -30,7 +30,7 @@ std::vector<ReflectiveMap> mapsOf(const ReflectiveMapInputs& in) {
     if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity)) continue;
     ReflectiveMap map;
     map.light = light;
-    map.view.near = 1e-4f * diameter; // as light_shadows.cpp
+    map.view.near = 1e-4f * diameter;           // as light_shadows.cpp
     if (light.type == LightType::Directional) { // a sphere around the scene, whichever way the light comes
       map.parallel = true;
       map.view.orthoHalfHeight = 0.5f * diameter;

@@ -19,7 +19,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   const int subsets = in.grid * in.grid;                          // each takes one root in so many
   const int rootsPerDraw = std::max(1, kMostTurns / nodes) * subsets;
 
-  gl::ProgramDesc desc{.fragment = "tree_gather.frag"};
+  gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindReceivers(in.gbuffer)};
   if (in.patches) desc.defines.push_back("PATCHES");
   const gl::Program& program = programs.get(desc);
   program.use();
@@ -39,7 +39,8 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   if (!in.addToTarget) {
     gl::PipelineState{.width = 1 << 14, .height = 1 << 14}.apply(); // clearing keeps to the scissor
     const float nothing[4] = {};
-    glClearNamedFramebufferfv(target.name(), GL_COLOR, 0, nothing);
+    for (int i = 0; i < (in.gbuffer.finish ? 2 : 1); ++i)
+      glClearNamedFramebufferfv(target.name(), GL_COLOR, i, nothing);
   }
   // Paper 3, eq. 7: cluster j of solid angle ω brings at most C = I A/(π r² + A), A = ω |V|². C ≥ τ where
   // r² ≤ ω |V|² (I/τ − 1)/π, its eq. 8 with ω = 4π/(6 R²). I is the light of a whole map over that of the brightest.

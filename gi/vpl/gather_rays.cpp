@@ -1,6 +1,7 @@
 // Every visible point against every VPL with a ray each: paper 1's "all VPLs - ray tracing" (fig. 8), the measure that
 // separates errors of the VPL set from errors of shadow maps and interleaving. Costs width × height × N rays.
 #include "engine/core/parallel.h"
+#include "gi/vpl/receivers.h"
 #include "gi/vpl/smc.h"
 
 namespace lambent {
@@ -24,8 +25,10 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
 }
 
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts) {
+                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts,
+                                   GlossyGather* glossy) {
   constexpr size_t kGrain = 16;
+  if (glossy) glossy->radiance.assign(surfaces.size(), vec3(0));
   std::vector<vec3> irradiance(surfaces.size(), vec3(0));
   std::vector<RayCounts> perBlock((surfaces.size() + kGrain - 1) / kGrain);
   parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
@@ -55,6 +58,12 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       perBlock[begin / kGrain].occlusion += segments.size();
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j]) irradiance[i] += values[j];
+      if (!glossy) continue;
+      const Receiver receiver = receiverOf(glossy->view, h);
+      for (size_t j = 0; j < values.size(); ++j)
+        if (!blocked[j])
+          glossy->radiance[i] += values[j] * glossyReflectance(receiver, glm::normalize(segments[j].direction));
+      glossy->radiance[i] /= glossyTint(receiver);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;
@@ -62,12 +71,12 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
 }
 
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
-                               const GatherSettings& settings, RayCounts& counts) {
+                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy) {
   std::vector<vec2> centres;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
   counts.closest += centres.size();
-  return irradianceByRays(rays, surfacesAt(rays, camera, centres), vpls, settings, counts);
+  return irradianceByRays(rays, surfacesAt(rays, camera, centres), vpls, settings, counts, glossy);
 }
 
 } // namespace lambent

@@ -208,10 +208,16 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 /// nothing.
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
+/// Asks a gather for the light that the receivers' lobes reflect, beside irradiance.
+struct GlossyGather {
+  const SceneView& view;      // camera and materials
+  std::vector<vec3> radiance; // filled: W/(m² sr) over glossyTint (shaders/shared/ggx.h)
+};
+
 /// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
 /// ray tracing"). Row 0 at the top; zero where the camera sees nothing.
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
-                               const GatherSettings& settings, RayCounts& counts);
+                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr);
 
 /// What the camera sees at points (u, v) of its picture, v down, in [0, 1]. Rays start at the near plane, as the
 /// rasteriser's.
@@ -219,7 +225,8 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
 
 /// Irradiance at surfaces from all VPLs, a ray for every pair; zero where there is none.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts);
+                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts,
+                                   GlossyGather* glossy = nullptr);
 
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
 /// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².

@@ -24,6 +24,10 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
     return placeByShadowMapChains(set, in, log);
   case VplSource::Smc:
     break;
+  case VplSource::Rsm:
+  case VplSource::Isr:
+  case VplSource::Hisr:
+    CHECK(!"made on the GPU: gi/render/reflective_maps.h");
   }
   return updateVpls(set, in, log, progress);
 }

@@ -1,9 +1,10 @@
-// A material's textures at mesh coordinates. Units 2 and 3 and uniform binding 1 belong to it.
+// A material's textures at mesh coordinates. Units 2 to 4 and uniform binding 1 belong to it.
 #include "shared/material_block.h"
 
 layout(std140, binding = 1) uniform MaterialUniforms { MaterialBlock material; };
 layout(binding = 2) uniform sampler2D baseTexture;
 layout(binding = 3) uniform sampler2D emissiveTexture;
+layout(binding = 4) uniform sampler2D finishTexture;
 
 vec2 transformUv(vec4 rowU, vec4 rowV, vec4 uv01) {
   vec3 uv = vec3(rowU.w > 0.5 ? uv01.zw : uv01.xy, 1.0);
@@ -26,4 +27,13 @@ vec3 emissionAt(vec4 uv01) {
 #else
   return material.emission.rgb;
 #endif
+}
+
+/// Roughness and metalness.
+vec2 finishAt(vec4 uv01) {
+  vec2 finish = material.finish.xy;
+#ifdef FINISH_TEXTURE
+  finish *= texture(finishTexture, transformUv(material.finishUvU, material.finishUvV, uv01)).gb;
+#endif
+  return finish;
 }

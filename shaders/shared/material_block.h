@@ -11,10 +11,13 @@ struct MaterialBlock {
   vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
+  vec4 finish;    // x: roughness factor, y: metalness factor
+  vec4 finishUvU; // as baseUvU
+  vec4 finishUvV; // xyz: second row
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(lambent::MaterialBlock) == 96);
+static_assert(sizeof(lambent::MaterialBlock) == 144);
 #endif
 #endif

@@ -129,6 +129,7 @@ void trackPixels(const ReferenceOptions& options) {
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
   const Settings& settings = stage->settings;
   checkClamp(options, settings);
+  refuseGlossy(settings);
   const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
   const uint32_t samples = uint32_t(options.samples.value_or(kDefaultSamples));
   std::unique_ptr<EmbreeQuery> rays;
@@ -188,7 +189,12 @@ void reference(const ReferenceOptions& options) {
                            .camera = view.camera,
                            .bounces = settings.smc.bounces,
                            .clamp = options.clamped ? settings.gather.clamp : 0,
-                           .seed = stage->seed};
+                           .seed = stage->seed,
+                           // Irradiance does not depend on how it is reflected.
+                           .glossy = settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&
+                                             buffer != ReferenceBuffer::Irradiance
+                                         ? &view
+                                         : nullptr};
 
   const auto begin = Clock::now();
   Run run(options, in, buffer, referenceKey(view, in));

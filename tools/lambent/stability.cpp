@@ -147,6 +147,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
   launch.set.insert(launch.set.begin(), "vpl.visibility=rays");
   const auto stage = openStage(launch);
+  refuseGlossy(stage->settings);
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   say(*stage, options.output.quiet);
 

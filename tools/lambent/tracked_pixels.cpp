@@ -1,5 +1,7 @@
 #include "tools/lambent/tracked_pixels.h"
 
+#include "engine/core/error.h"
+
 #include <algorithm>
 
 namespace lambent {
@@ -17,6 +19,11 @@ TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint
   const glm::dvec3 mean = sums.indirect / n;
   const glm::dvec3 variance = glm::max(glm::dvec3(0), sums.indirectSquares / n - mean * mean) / std::max(1.0, n - 1);
   return {surface.albedo * vec3(mean), surface.albedo * vec3(glm::sqrt(variance))};
+}
+
+void refuseGlossy(const Settings& settings) {
+  if (settings.gather.glossy)
+    throw InputError("setting gather.glossy", "cannot be on here (tracked pixels are taken as Lambert surfaces)");
 }
 
 } // namespace lambent

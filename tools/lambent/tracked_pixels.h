@@ -3,6 +3,7 @@
 
 #include "engine/scene/shot.h"
 #include "gi/reference/path_tracer.h"
+#include "gi/settings.h"
 
 namespace lambent {
 
@@ -19,5 +20,8 @@ struct TrackedValue {
 };
 /// Zero where the camera sees no surface.
 TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples);
+
+/// Throws InputError when receivers are to be glossy: values and their truth are those of Lambert surfaces.
+void refuseGlossy(const Settings& settings);
 
 } // namespace lambent

@@ -1,0 +1,26 @@
+// Surfaces as glossy receivers (shaders/shared/ggx.h) for the gathers on the CPU and the reference.
+#pragma once
+
+#include "engine/trace/ray_query.h"
+#include "shaders/shared/ggx.h"
+
+#include <span>
+#include <vector>
+
+namespace lambent {
+
+/// The surface that `view`'s camera sees at a valid hit, as the G-buffer holds it.
+Receiver receiverOf(const SceneView& view, const SurfaceHit& hit);
+
+/// Radiance towards the viewer per irradiance from `direction` (unit), both parts of the reflection, 1/sr. Zero below
+/// the surface.
+vec3 reflectanceOf(const Receiver& receiver, const vec3& direction);
+
+/// Unit direction to look for light that the receiver reflects: with equal chances cosine-distributed, or the viewer's
+/// mirrored at a normal drawn from the lobe (Walter et al. 2007, eq. 35), which may lie below the surface. `uChoice`
+/// and `u` in [0, 1).
+vec3 sampleReflection(const Receiver& receiver, float uChoice, vec2 u);
+/// Density of sampleReflection, per steradian.
+float pdfReflection(const Receiver& receiver, const vec3& direction);
+
+} // namespace lambent

@@ -1,0 +1,23 @@
+// The surface at a pixel as a glossy receiver (variants GLOSSY), and what it sends to the camera. Units 6 and 7 belong
+// to it.
+#include "gbuffer.glsl"
+#include "shared/ggx.h"
+
+layout(binding = 6) uniform sampler2D gbufferAlbedo;
+layout(binding = 7) uniform sampler2D gbufferFinish;
+
+/// `position` and `normal` are the G-buffer's of that pixel.
+Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
+  vec3 towardsViewer =
+      camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
+  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
+  return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb, finish.x, finish.y);
+}
+
+/// Radiance towards the camera of irradiance and of glossy light as the passes store it, divided by glossyTint.
+/// `depth` must not be 0.
+vec3 reflectedAt(ivec2 pixel, float depth, vec3 irradiance, vec3 glossy) {
+  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  Receiver receiver = receiverAt(pixel, positionFromDepth(pixel, depth), normal);
+  return receiver.diffuse * 0.318309886 * irradiance + glossyTint(receiver) * glossy;
+}

@@ -1,0 +1,94 @@
+// What a VPL brings to a surface point, for gathering and for splatting. Variants: SHADOWS (paraboloid maps, unit 2),
+// SMOOTH_SHADOWS (bilinear comparison), GLOSSY (the receivers' lobes too).
+#include "gbuffer.glsl"
+#ifdef GLOSSY
+#include "receiver.glsl"
+#endif
+#include "shared/shadow_lookup.h"
+#include "shared/vpl_light.h"
+
+// Half of the classes of a chunk of 2048 lights: see VplLights in gi/render/passes.h
+layout(std140, binding = 1) uniform Lights { VplLight lights[kClassesPerLightBlock * kLightsPerClass]; };
+#ifdef SMOOTH_SHADOWS
+layout(binding = 2) uniform sampler2DArrayShadow maps;
+#else
+layout(binding = 2) uniform sampler2DArray maps;
+#endif
+uniform float diskFactor;    // GatherSettings::disk / π; 0 for a bare 1/r²
+uniform float largestG;      // 1/m²
+uniform float farDistance;   // metres at map value 1
+uniform float mapResolution; // texels
+uniform float biasTexels;    // ShadowSettings::bias
+
+/// A surface point of the picture.
+struct Surface {
+  vec3 position, normal;
+#ifdef GLOSSY
+  Receiver receiver;
+#endif
+};
+
+/// What VPLs brought to it.
+struct Received {
+  vec3 irradiance;
+#ifdef GLOSSY
+  vec3 glossy; // radiance towards the camera
+#endif
+};
+
+/// `depth` is the pixel's and not 0.
+Surface surfaceAt(ivec2 pixel, float depth) {
+  Surface s;
+  s.position = positionFromDepth(pixel, depth);
+  s.normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+#ifdef GLOSSY
+  s.receiver = receiverAt(pixel, s.position, s.normal);
+#endif
+  return s;
+}
+
+Received receivedNothing() {
+  Received r;
+  r.irradiance = vec3(0.0);
+#ifdef GLOSSY
+  r.glossy = vec3(0.0);
+#endif
+  return r;
+}
+
+#ifdef SHADOWS
+/// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame).
+float visibility(int layer, vec3 d, float distance, float cosine) {
+  float reach = paraboloidReach(distance, cosine, d.z, biasTexels, mapResolution);
+  vec2 uv = paraboloidFromDirection(d);
+#ifdef SMOOTH_SHADOWS
+  return texture(maps, vec4(uv, layer, reach / (max(cosine, 1e-4) * farDistance) - paraboloidRounding()));
+#else
+  // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
+  ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
+  float met = texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding();
+  return met * farDistance * cosine >= reach ? 1.0 : 0.0;
+#endif
+}
+#endif
+
+/// E = L·a·cosx·cosy/(r² + a/π)·V. No branches: pixels of a group disagree nearly always, and software Mesa pays for every
+/// mask. An empty slot has no power. `layer` is its map's.
+void receive(inout Received sum, Surface s, VplLight light, int layer) {
+  vec3 fromLight = s.position - light.positionArea.xyz;
+  float distance2 = max(dot(fromLight, fromLight), 1e-12);
+  float inverseDistance = inversesqrt(distance2);
+  vec3 direction = fromLight * inverseDistance;
+  float cosineReceiver = -dot(s.normal, direction);
+  vec3 d = vec3(dot(light.tangentNormalY.xyz, direction), dot(light.bitangentNormalZ.xyz, direction),
+                dot(vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w), direction));
+  float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
+  g = min(g, largestG);
+#ifdef SHADOWS
+  g *= visibility(layer, d, distance2 * inverseDistance, cosineReceiver);
+#endif
+  sum.irradiance += light.powerNormalX.rgb * g;
+#ifdef GLOSSY
+  sum.glossy += light.powerNormalX.rgb * (g * glossyReflectance(s.receiver, -direction));
+#endif
+}

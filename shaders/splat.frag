@@ -1,0 +1,24 @@
+#version 450
+// The light of one VPL at one patch, to be added up. Variants of lib/vpl_shading.glsl.
+#include "lib/vpl_shading.glsl"
+#include "shared/patches.h"
+
+uniform int blockClass; // class that the block starts with
+flat in ivec3 subsplat;
+flat in int light;
+layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+#endif
+
+void main() {
+  ivec2 pixel = patchPixel(subsplat.xy, subsplat.z, 1, ivec2(0), ivec2(camera.size.xy));
+  Surface surface = surfaceAt(pixel, texelFetch(gbufferDepth, pixel, 0).r);
+  Received sum = receivedNothing();
+  int layer = light % kLightsPerClass * kLightClasses + blockClass + light / kLightsPerClass;
+  receive(sum, surface, lights[light], layer);
+  outIrradiance = vec4(sum.irradiance, 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(sum.glossy / glossyTint(surface.receiver), 1.0);
+#endif
+}

@@ -1,0 +1,188 @@
+// Glossy receivers: the shared BRDF against textbook formulas integrated another way, energy, and its sampler.
+#include "engine/core/rng.h"
+#include "gi/vpl/receivers.h"
+#include "tests/support/hand_scene.h"
+#include "tests/support/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace lambent {
+namespace {
+
+const vec3 kUp(0, 0, 1);
+
+vec3 atCosine(float cosine, float phi = 0) {
+  const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+  return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+}
+
+Receiver seenAt(float cosViewer, float roughness, float metalness, const vec3& albedo = vec3(1)) {
+  return makeReceiver(kUp, atCosine(cosViewer), albedo, roughness, metalness);
+}
+
+/// ∫ f cosθ dω over the hemisphere of lights, by midpoints in (cos²θ, φ).
+double reflectedShare(const std::function<double(const vec3&)>& reflectance, int steps = 800) {
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j)
+      sum += reflectance(
+          atCosine(std::sqrt((float(i) + 0.5f) / float(steps)), 2 * kPi * (float(j) + 0.5f) / float(steps)));
+  return sum * double(kPi) / (double(steps) * steps);
+}
+
+/// The same integral of the lobe alone from the papers' own forms (D by tanθ, Smith's Λ), over half vectors in place of
+/// lights: cosines of light and half vector cancel as in Walter et al. 2007, eq. 41.
+double lobeShareByHalfVectors(double cosViewer, double roughness, double f0, int steps = 800) {
+  const double alpha = roughness * roughness, sineViewer = std::sqrt(1 - cosViewer * cosViewer);
+  const auto lambda = [&](double cosine) {
+    const double tan2 = 1 / (cosine * cosine) - 1;
+    return 0.5 * (std::sqrt(1 + alpha * alpha * tan2) - 1);
+  };
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double theta = 0.5 * M_PI * (i + 0.5) / steps, ch = std::cos(theta), sh = std::sin(theta), t = sh / ch;
+    const double d = alpha * alpha / (M_PI * std::pow(ch, 4) * std::pow(alpha * alpha + t * t, 2));
+    for (int j = 0; j < steps; ++j) {
+      const double phi = 2 * M_PI * (j + 0.5) / steps;
+      const double vh = sh * std::cos(phi) * sineViewer + ch * cosViewer, cosLight = 2 * vh * ch - cosViewer;
+      if (vh <= 0 || cosLight <= 0) continue;
+      const double fresnel = f0 + (1 - f0) * std::pow(1 - vh, 5);
+      const double masking = 1 / (1 + lambda(cosViewer) + lambda(cosLight));
+      // f cosLight dω = D G F / (4 cosViewer) · 4 vh dω_half
+      sum += d * masking * fresnel / cosViewer * vh * sh;
+    }
+  }
+  return sum * 0.5 * M_PI / steps * 2 * M_PI / steps;
+}
+
+TEST(Receivers, LobeIntegratesToTheSameInAnotherFormulation) {
+  for (const float roughness : {0.3f, 0.6f, 1.0f})
+    for (const float cosViewer : {0.1f, 0.4f, 0.8f, 1.0f})
+      for (const bool metal : {true, false}) {
+        if (!metal && roughness == 1) continue; // Lambert: below
+        const Receiver r = seenAt(cosViewer, roughness, metal ? 1.0f : 0.0f);
+        const double share = reflectedShare([&](const vec3& l) { return double(glossyReflectance(r, l).y); });
+        const double wanted = lobeShareByHalfVectors(cosViewer, roughness, metal ? 1 : 0.04);
+        EXPECT_NEAR(share, wanted, 2e-3 * wanted) << roughness << ' ' << cosViewer << ' ' << metal;
+        EXPECT_LT(share, 1);
+      }
+}
+
+TEST(Receivers, ReflectNoMoreThanTheyGet) {
+  double largest = 0;
+  for (float roughness = 0.3f; roughness < 1.01f; roughness += 0.05f)
+    for (const float cosViewer : {0.01f, 0.03f, 0.06f, 0.1f, 0.15f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 1.0f})
+      for (const float metalness : {0.0f, 0.3f, 1.0f}) {
+        const Receiver r = seenAt(cosViewer, roughness, metalness);
+        const double lobe = lobeShareByHalfVectors(double(cosViewer), double(roughness), double(r.specular.y), 200);
+        const double share = double(r.diffuse.y) + double(r.strength) * lobe;
+        EXPECT_LT(share, 1.0005) << roughness << ' ' << cosViewer << ' ' << metalness; // the sum's own error
+        // What the bound takes away from a white dielectric for nothing stays small.
+        if (metalness == 0) {
+          EXPECT_GT(share, 0.95) << roughness << ' ' << cosViewer;
+        }
+        largest = std::max(largest, share);
+      }
+  EXPECT_GT(largest, 0.99);
+}
+
+TEST(Receivers, TheLobeIsReciprocal) {
+  Rng rng(1, Stream::Test, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const vec3 a = atCosine(0.01f + 0.99f * rng.next(), 6 * rng.next()), b = atCosine(0.01f + 0.99f * rng.next(), 0);
+    const vec3 albedo(rng.next(), rng.next(), rng.next());
+    const float roughness = rng.next(), metalness = rng.next();
+    const vec3 there = glossyReflectance(makeReceiver(kUp, a, albedo, roughness, metalness), b),
+               back = glossyReflectance(makeReceiver(kUp, b, albedo, roughness, metalness), a);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], back[c], 1e-4f * there[c]);
+  }
+}
+
+TEST(Receivers, RoughDielectricsAreLambertAndSharpOnesAreBounded) {
+  const vec3 albedo(0.2f, 0.5f, 0.9f);
+  const Receiver rough = seenAt(0.6f, 1, 0, albedo);
+  EXPECT_EQ(rough.diffuse, albedo);
+  EXPECT_EQ(glossyReflectance(rough, atCosine(0.6f, kPi)), vec3(0));
+  EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).diffuse, vec3(0));
+  EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).specular, albedo);
+  const vec3 mirror = atCosine(0.6f, kPi);
+  EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror), glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror));
+  EXPECT_GT(glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror).x, 4 * glossyReflectance(seenAt(0.6f, 0.6f, 1), mirror).x);
+  // Nowhere infinite or NaN: light from under the surface, along it, opposite to a viewer who is also in it.
+  for (const float cosViewer : {0.0f, -1e-3f, 1.0f})
+    for (const vec3& light : {-atCosine(cosViewer), atCosine(0, kPi), vec3(0, 0, -1), vec3(0, 0, 1)})
+      EXPECT_TRUE(isFinite(glossyReflectance(seenAt(cosViewer, 0.3f, 0.5f), light)));
+}
+
+TEST(Receivers, SamplesFollowTheirDensity) {
+  for (const float roughness : {0.3f, 0.7f})
+    for (const float cosViewer : {0.15f, 0.9f}) {
+      const Receiver r = seenAt(cosViewer, roughness, 0.5f);
+      constexpr int kRings = 24, kSectors = 24, kFine = 24, kSamples = 200000; // rings of equal height above
+      std::vector<double> counts(kRings * kSectors + 1, 0), expected(kRings * kSectors + 1, 0); // last: all below
+      Rng rng(2, Stream::Test, uint32_t(1000 * roughness + 10 * cosViewer));
+      for (int i = 0; i < kSamples; ++i) {
+        const float choice = rng.next();
+        const vec3 d = sampleReflection(r, choice, rng.next2());
+        ASSERT_NEAR(glm::length(d), 1, 1e-5f);
+        const int ring = std::min(int(d.z * kRings), kRings - 1);
+        const int sector = std::clamp(int((std::atan2(d.y, d.x) / kPi + 1) / 2 * kSectors), 0, kSectors - 1);
+        counts[d.z < 0 ? kRings * kSectors : ring * kSectors + sector] += 1;
+      }
+      double above = 0;
+      for (int i = 0; i < kRings * kFine; ++i)
+        for (int j = 0; j < kSectors * kFine; ++j) {
+          const float z = (float(i) + 0.5f) / (kRings * kFine);
+          const float phi = kPi * (2 * (float(j) + 0.5f) / (kSectors * kFine) - 1);
+          const double share =
+              double(pdfReflection(r, atCosine(z, phi))) * 2 * double(kPi) / (kRings * kFine) / (kSectors * kFine);
+          expected[i / kFine * kSectors + j / kFine] += share * kSamples;
+          above += share;
+        }
+      expected.back() = (1 - above) * kSamples;
+      EXPECT_LT(test::chiSquareDeviate(counts, expected), test::kDeviateLimit) << roughness << ' ' << cosViewer;
+    }
+}
+
+TEST(Receivers, FinishComesFromFactorsAndTexture) {
+  test::HandScene scene;
+  const uint32_t m = scene.material(vec3(0.4f, 0.6f, 0.8f));
+  Material& material = scene.assets.materials[m];
+  EXPECT_FALSE(material.glossy());
+  material.roughness = 0.8f;
+  material.metalness = 0.5f;
+  TextureImage image;
+  image.width = 2;
+  image.height = 1;
+  image.srgb = false;
+  image.texels = {{255, 255, 0, 255}, {0, 128, 255, 255}}; // left: rough dielectric, right: half as rough, metal
+  scene.assets.images.push_back(image);
+  material.finishTexture.image = 0;
+  material.finishTexture.nearest = true;
+  EXPECT_TRUE(material.glossy());
+  scene.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, m);
+  scene.camera.worldFromView[3] = vec4(0, 0, 2, 1);
+  const SceneView view = scene.view();
+  SurfaceHit hit;
+  hit.t = 2;
+  hit.normal = hit.geometricNormal = kUp;
+  hit.albedo = material.baseColor;
+  hit.instance = hit.primitive = hit.triangle = 0; // corners (-1,-1), (1,-1), (1,1)
+  hit.barycentric = {0.2f, 0.0f};                  // u = 0.2
+  hit.position = {-0.6f, -1, 0};
+  Receiver r = receiverOf(view, hit), wanted = makeReceiver(kUp, glm::normalize(vec3(0.6f, 1, 2)), hit.albedo, 0.8f, 0);
+  EXPECT_NEAR(r.alpha2, wanted.alpha2, 1e-6f);
+  EXPECT_LT(glm::length(r.diffuse - wanted.diffuse), 1e-6f);
+  EXPECT_LT(glm::length(r.towardsViewer - wanted.towardsViewer), 1e-6f);
+  hit.barycentric = {0.8f, 0.0f};
+  r = receiverOf(view, hit);
+  wanted = makeReceiver(kUp, wanted.towardsViewer, hit.albedo, 0.8f * 128 / 255, 0.5f);
+  EXPECT_NEAR(r.alpha2, wanted.alpha2, 1e-6f);
+  EXPECT_LT(glm::length(r.specular - wanted.specular), 1e-6f);
+}
+
+} // namespace
+} // namespace lambent

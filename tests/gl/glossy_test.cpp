@@ -1,0 +1,258 @@
+// Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
+#include "gi/render/light_shadows.h"
+#include "gl_fixture.h"
+#include "shaders/shared/ggx.h"
+#include "tests/support/images.h"
+
+namespace lambent::test {
+
+class GlossyTest : public GlTest {
+ protected:
+  /// The floor of one material, seen askew so that views, lights and lobes differ from pixel to pixel.
+  struct GlossyFloor : Floor {
+    GlossyFloor(const vec3& albedo, float roughness, float metalness, bool orthographic = false) {
+      Material& m = scene.assets.materials[0];
+      m.baseColor = albedo;
+      m.roughness = roughness;
+      m.metalness = metalness;
+      scene.camera = cameraAt(vec3(1, 2, 2.2f), vec3(0), 0.7f);
+      if (orthographic) scene.camera.orthoHalfHeight = 1.2f;
+    }
+    Receiver receiverAt(int x, int y) const {
+      const Material& m = scene.assets.materials[0];
+      const vec3 towardsViewer = scene.camera.orthoHalfHeight > 0 ? vec3(scene.camera.worldFromView[2])
+                                                                  : glm::normalize(scene.camera.position() - at(x, y));
+      return makeReceiver({0, 1, 0}, towardsViewer, m.baseColor, m.roughness, m.metalness);
+    }
+  };
+
+  GBuffer surfaces(const HandScene& scene, bool glossy = true) {
+    gpu = std::make_unique<GpuScene>(programs, scene.assets);
+    gpu->place(scene.instances);
+    return gbufferPass.run({*gpu, scene.camera, glossy});
+  }
+  RawIndirect gathered(const GBuffer& gbuffer, const std::vector<VplLight>& lights, GatherMode mode) {
+    const VplLights uploaded = lightBuffer.run(lights);
+    return gatherPass.run({gbuffer, uploaded, nullptr, 1, {.mode = mode}});
+  }
+  Image indirectRadiance(const GBuffer& gbuffer, const IndirectLight& indirect) {
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.indirect = indirect;
+    return readBuffer(Buffer::Indirect, results);
+  }
+  static VplLight lamp(const vec3& position, const vec3& normal, const vec3& radiance, float area) {
+    Vpl vpl;
+    vpl.position = position;
+    vpl.normal = vpl.geometricNormal = normal;
+    vpl.radiance = radiance;
+    vpl.area = area;
+    vpl.alive = true;
+    return vplLight(vpl);
+  }
+
+  std::unique_ptr<GpuScene> gpu;
+  GBufferPass gbufferPass{passes};
+  VplLightBuffer lightBuffer{passes, "vpls"};
+  GatherPass gatherPass{passes};
+  FilterPass filterPass{passes};
+  CompositePass compositePass{passes};
+};
+
+struct Finish {
+  vec3 albedo;
+  float roughness, metalness;
+  bool orthographic = false;
+};
+const Finish kFinishes[] = {{vec3(0.9f, 0.6f, 0.2f), 0.3f, 1},       {vec3(0.2f, 0.5f, 0.8f), 0.3f, 0},
+                            {vec3(0.2f, 0.5f, 0.8f), 0.6f, 0.4f},    {vec3(0), 0.4f, 0},
+                            {vec3(0.9f, 0.6f, 0.2f), 0.1f, 1, true}, {vec3(0.5f), 1, 0}};
+
+TEST_F(GlossyTest, OneVplOnAPlane) {
+  const vec3 position(-0.6f, 0.9f, -1.2f), normal = glm::normalize(vec3(0.4f, -1, 0.6f)), radiance(4, 3, 2);
+  constexpr float kArea = 0.05f;
+  float brightest = 0; // lobe over Lambert
+  for (const Finish& f : kFinishes) {
+    const GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
+    const GBuffer gbuffer = surfaces(floor.scene);
+    const RawIndirect raw = gathered(gbuffer, {lamp(position, normal, radiance, kArea)}, GatherMode::Full);
+    const IndirectLight indirect = filterPass.run({gbuffer, raw, {}});
+    const Image image = indirectRadiance(gbuffer, indirect);
+    const Picture picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.picture = picture;
+    const Image beauty = readBuffer(Buffer::Beauty, results);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
+        const float r2 = glm::dot(d, d);
+        const vec3 irradiance =
+            radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
+        const Receiver receiver = floor.receiverAt(x, y);
+        const vec3 lambert = irradiance * receiver.diffuse / kPi;
+        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight);
+        for (int c = 0; c < 3; ++c) {
+          const float wanted = lambert[c] + lobe[c];
+          ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f)
+              << x << ' ' << y << " roughness " << f.roughness;
+          ASSERT_NEAR(beauty.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y;
+        }
+        brightest = std::max(brightest, lobe.x / std::max(irradiance.x / kPi, 1e-6f));
+      }
+  }
+  EXPECT_GT(brightest, 10) << "the light's mirror image lies in the picture";
+}
+
+TEST_F(GlossyTest, InterleavedMeansTheSameAsFull) {
+  const GlossyFloor floor(vec3(0.9f, 0.6f, 0.2f), 0.3f, 0.5f);
+  const GBuffer gbuffer = surfaces(floor.scene);
+  // The same light in every slot: each subset of 16 sees as much as all of them together.
+  const std::vector<VplLight> lights(2048, lamp({-0.6f, 0.9f, -1.2f}, {0, -1, 0}, vec3(1, 2, 3), 0.01f));
+  const auto radianceOf = [&](GatherMode mode) {
+    const RawIndirect raw = gathered(gbuffer, lights, mode);
+    return indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = false}}));
+  };
+  const Image full = radianceOf(GatherMode::Full), interleaved = radianceOf(GatherMode::Interleaved);
+  for (size_t i = 0; i < full.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(interleaved.pixels[i][c], full.pixels[i][c], 2e-4f * full.pixels[i][c]) << i;
+}
+
+TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
+  // Two metals side by side on one plane: a constant in the filter's input must come out in each one's own colour.
+  HandScene scene;
+  const vec3 colors[2] = {{1, 0.7f, 0.3f}, {0.5f, 0.6f, 0.9f}};
+  for (int i = 0; i < 2; ++i) {
+    const uint32_t m = scene.material(colors[i]);
+    scene.assets.materials[m].metalness = 1;
+    scene.assets.materials[m].roughness = 0.5f;
+    scene.quad({i ? 0.0f : -9.0f, -9, 0}, {9, 0, 0}, {0, 18, 0}, m);
+  }
+  scene.camera = cameraAt({0, 0, 3}, vec3(0), 1);
+  const GBuffer gbuffer = surfaces(scene);
+  const gl::Texture black("black", {.format = GL_RGBA32F, .width = 64, .height = 48}),
+      constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 48});
+  black.clear();
+  const float value[4] = {2, 3, 4, 1};
+  glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
+  for (const bool on : {true, false})
+    for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
+      const RawIndirect raw{&black, true, &constant};
+      const Image image = indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = on, .kernel = kernel}}));
+      for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x)
+          ASSERT_LT(glm::length(image.at(x, y) - colors[x >= 32] * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
+    }
+}
+
+TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
+  const vec3 position(-0.6f, 0.9f, -1.2f), intensity(5, 4, 3);
+  const vec3 sunDirection = glm::normalize(vec3(-0.3f, -0.7f, -0.8f)), sun(2, 2, 1);
+  ShadowSettings shadow;
+  shadow.sunResolution = shadow.pointResolution = shadow.spotResolution = 512;
+  for (const Finish& f : kFinishes) {
+    GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
+    floor.scene.lights.push_back({.type = LightType::Point, .position = position, .intensity = intensity});
+    floor.scene.lights.push_back({.type = LightType::Directional, .direction = sunDirection, .intensity = sun});
+    const SceneView view = floor.scene.view();
+    const GBuffer gbuffer = surfaces(floor.scene);
+    LightShadowPass shadowPass(passes);
+    const LightShadows& shadows =
+        shadowPass.run({*gpu, view.lights, false, vec3(0), view.boundsWorld, view.boundsWorld, true, {}, shadow});
+    DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
+    const VplLights lamps = lightBuffer.run(std::vector{emitterLight({{0.5f, 1, -1}, {0, -1, 0}, vec3(6), 0.04f})});
+    in.emitters = &lamps;
+    DirectPass directPass(passes);
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.direct = directPass.run(in);
+    const Image image = readBuffer(Buffer::Direct, results);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Receiver receiver = floor.receiverAt(x, y);
+        const vec3 at = floor.at(x, y);
+        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight) {
+          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight));
+        };
+        const vec3 d = position - at, e = vec3(0.5f, 1, -1) - at;
+        const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
+        const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
+                            reflected(sun * -sunDirection.y, -sunDirection) +
+                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e));
+        for (int c = 0; c < 3; ++c)
+          ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
+      }
+  }
+}
+
+TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
+  GlossyFloor floor(vec3(0.5f), 0.8f, 0.5f);
+  TextureImage image;
+  image.width = image.height = 1;
+  image.srgb = false;
+  image.texels = {{255, 191, 102, 255}};
+  floor.scene.assets.images.push_back(image);
+  floor.scene.assets.materials[0].finishTexture.image = 0;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  for (const vec4& t : readTexture(*gbuffer.finish)) {
+    ASSERT_NEAR(t.x, 0.8f * 191 / 255, 1e-4f);
+    ASSERT_NEAR(t.y, 0.5f * 102 / 255, 1e-4f);
+  }
+  EXPECT_EQ(surfaces(floor.scene, false).finish, nullptr);
+}
+
+/// A lit room with a metal block, by frames.
+class GlossyFrameTest : public GlossyTest {
+ protected:
+  GlossyFrameTest() {
+    for (const auto& [m, roughness, metalness] : {std::tuple(0, 0.4f, 0.0f), std::tuple(2, 0.5f, 0.7f)}) {
+      room.scene.assets.materials[m].roughness = roughness;
+      room.scene.assets.materials[m].metalness = metalness;
+    }
+    LightView light;
+    light.position = {0.5f, 0.6f, 0.4f};
+    light.intensity = vec3(1);
+    room.scene.lights.push_back(light);
+    settings.smc.vpls = 256;
+    settings.smc.points = 256;
+    settings.smc.warmup = 10;
+    settings.shadow.resolution = 64;
+    settings.shadow.maker = ShadowMaker::Rays;
+    settings.debug.timing = TimingMode::Finish;
+    settings.gather.glossy = true;
+    settings.gather.mode = GatherMode::Full;
+  }
+  Room room;
+  Settings settings;
+};
+
+TEST_F(GlossyFrameTest, MapsAgreeWithARayForEveryPair) {
+  const auto radianceOf = [&](VplVisibility visibility) {
+    settings.vpl.visibility = visibility;
+    GiFrame gi(settings);
+    gi.run(room.scene.view());
+    return gi.read(Buffer::Indirect);
+  };
+  expectClose("glossy-maps", radianceOf(VplVisibility::Maps), radianceOf(VplVisibility::Rays), 0.03);
+}
+
+TEST_F(GlossyFrameTest, BuffersAddUpAndSwitchingOffGoesBack) {
+  settings.gather.mode = GatherMode::Interleaved;
+  settings.smc.moves = 0;
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), indirect = gi.read(Buffer::Indirect);
+  for (size_t i = 0; i < beauty.pixels.size(); ++i)
+    ASSERT_LT(glm::length(beauty.pixels[i] - direct.pixels[i] - indirect.pixels[i]),
+              1e-3f * glm::length(beauty.pixels[i]) + 1e-6f);
+  const Image irradiance = gi.read(Buffer::Irradiance);
+  gi.settings().gather.glossy = false;
+  SceneView still = room.scene.view();
+  still.changes = {false, false, false, false, false};
+  gi.run(still);
+  EXPECT_EQ(relativeRmse(gi.read(Buffer::Irradiance), irradiance), 0) << "irradiance is that of Lambert surfaces";
+  EXPECT_GT(relativeRmse(gi.read(Buffer::Beauty), beauty), 0.02);
+}
+
+} // namespace lambent::test

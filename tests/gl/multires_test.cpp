@@ -1,0 +1,304 @@
+// The multiresolution buffer: which patches it takes, what it gathers there, and how pixels get their light back.
+#include "gi/render/multires.h"
+#include "gl_fixture.h"
+
+#include <random>
+
+namespace lambent::test {
+
+class MultiresTest : public GlTest {
+ protected:
+  GBuffer surfaces(const HandScene& scene) {
+    gpu = std::make_unique<GpuScene>(programs, scene.assets);
+    gpu->place(scene.instances);
+    return gbufferPass.run({*gpu, scene.camera});
+  }
+  Image read(const GBuffer& gbuffer, const RawIndirect& raw) {
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.raw = raw;
+    return readBuffer(Buffer::Unfiltered, results);
+  }
+  Image gathered(const GBuffer& gbuffer, const std::vector<VplLight>& lights, GatherMode mode) {
+    const GatherSettings gather{.mode = mode};
+    return read(gbuffer, gatherPass.run({gbuffer, lightBuffer.run(lights), nullptr, 1, gather}));
+  }
+  Image multires(const GBuffer& gbuffer, const std::vector<VplLight>& lights, const MultiresSettings& settings,
+                 GatherMode mode = GatherMode::Multires) {
+    const GatherSettings gather{.mode = mode};
+    return read(gbuffer,
+                multiresPass.run({gbuffer, lightBuffer.run(lights), nullptr, 1, gather, settings, FilterSettings{}}));
+  }
+  /// Level of the patch that each pixel belongs to, from the top; −1 on background.
+  std::vector<int> patchLevels(const GBuffer& gbuffer) {
+    const PatchPyramid& p = multiresPass.patches();
+    std::vector<int> levels(size_t(gbuffer.width) * gbuffer.height, 0);
+    for (int level = 1; level <= p.levels; ++level) {
+      const glm::ivec2 size = p.padded / (1 << level);
+      std::vector<vec4> lo(size_t(size.x) * size.y);
+      glGetTextureImage(p.normalLo->name(), level - 1, GL_RGBA, GL_FLOAT, GLsizei(lo.size() * sizeof(vec4)), lo.data());
+      for (int y = 0; y < gbuffer.height; ++y)
+        for (int x = 0; x < gbuffer.width; ++x)
+          if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f)
+            levels[size_t(y) * gbuffer.width + x] = level;
+    }
+    std::vector<float> depth(levels.size());
+    glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
+    for (size_t i = 0; i < depth.size(); ++i)
+      if (depth[i] == 0) levels[i] = -1;
+    return levels;
+  }
+  static uint64_t patchesOf(const std::vector<int>& levels, int width, int height) {
+    uint64_t count = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const int level = levels[size_t(y) * width + x];
+        count += level >= 0 && x % (1 << level) == 0 && y % (1 << level) == 0;
+      }
+    return count;
+  }
+
+  std::unique_ptr<GpuScene> gpu;
+  GBufferPass gbufferPass{passes};
+  VplLightBuffer lightBuffer{passes, "vpls"};
+  GatherPass gatherPass{passes};
+  MultiresPass multiresPass{passes};
+};
+
+std::vector<VplLight> lightsIn(const vec3& lo, const vec3& hi, int count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> u(0, 1);
+  std::vector<VplLight> lights;
+  for (int i = 0; i < count; ++i) {
+    Vpl v;
+    v.position = lo + vec3(u(random), u(random), u(random)) * (hi - lo);
+    v.normal = v.geometricNormal = glm::normalize(vec3(u(random), u(random), u(random)) - 0.5f);
+    v.radiance = vec3(u(random), u(random), u(random));
+    v.area = 0.05f;
+    v.alive = true;
+    lights.push_back(vplLight(v));
+  }
+  return lights;
+}
+
+std::vector<VplLight> roomLights() { return lightsIn(vec3(-0.9f), vec3(0.9f), 40); }
+
+TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
+  Room room;
+  for (const glm::ivec2 size : {glm::ivec2(64, 48), glm::ivec2(131, 77)}) {
+    room.scene.camera.width = size.x;
+    room.scene.camera.height = size.y;
+    const GBuffer gbuffer = surfaces(room.scene);
+    const MultiresSettings settings{.coarsest = 4, .depth = 0};
+    const Image full = gathered(gbuffer, roomLights(), GatherMode::Full);
+    EXPECT_EQ(multires(gbuffer, roomLights(), settings).pixels, full.pixels);
+    const Image subsets = gathered(gbuffer, roomLights(), GatherMode::Interleaved);
+    EXPECT_EQ(multires(gbuffer, roomLights(), settings, GatherMode::MultiresInterleaved).pixels, subsets.pixels);
+  }
+}
+
+/// Six lights far away, one along each axis, light every face of axis-aligned boxes alike.
+TEST_F(MultiresTest, AConstantStaysConstant) {
+  Room room;
+  room.scene.camera.width = 131;
+  room.scene.camera.height = 77;
+  const GBuffer gbuffer = surfaces(room.scene);
+  std::vector<VplLight> lights(16 * 6, VplLight{}); // every class has all six
+  for (int i = 0; i < 6; ++i) {
+    vec3 axis(0);
+    axis[i / 2] = i % 2 ? -1.0f : 1.0f;
+    Vpl v;
+    v.position = 1e6f * axis;
+    v.normal = v.geometricNormal = -axis;
+    v.radiance = vec3(1e12f) * vec3(0.5f, 1, 2);
+    v.area = 1;
+    v.alive = true;
+    for (int c = 0; c < 16; ++c) lights[size_t(i) * 16 + c] = vplLight(v);
+  }
+  for (const GatherMode mode : {GatherMode::Multires, GatherMode::Splat, GatherMode::MultiresInterleaved}) {
+    const Image image = multires(gbuffer, lights, {.coarsest = 4}, mode);
+    for (const vec3& e : image.pixels) {
+      ASSERT_NEAR(e.x / 16, 0.5f, 1e-5f);
+      ASSERT_NEAR(e.z / 16, 2, 4e-5f);
+    }
+    EXPECT_LT(multiresPass.countPatches(), image.pixels.size() * 3 / 4) << "or nothing was interpolated";
+  }
+}
+
+TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGathered) {
+  const Room room;
+  const GBuffer gbuffer = surfaces(room.scene);
+  const std::vector<VplLight> lights = lightsIn(vec3(0, -0.5f, 0), vec3(0.5f), 40); // none close to a wall
+  const Image full = gathered(gbuffer, lights, GatherMode::Full);
+  const Image image = multires(gbuffer, lights, {.coarsest = 4});
+  float lo = kInfinity, hi = 0;
+  double sumFull = 0, sum = 0;
+  for (size_t i = 0; i < full.pixels.size(); ++i) {
+    lo = std::min(lo, full.pixels[i].y);
+    hi = std::max(hi, full.pixels[i].y);
+    sumFull += full.pixels[i].y;
+    sum += image.pixels[i].y;
+  }
+  for (const vec3& e : image.pixels) {
+    ASSERT_GE(e.y, lo * 0.9999f);
+    ASSERT_LE(e.y, hi * 1.0001f);
+  }
+  EXPECT_NEAR(sum / sumFull, 1, 0.02);
+}
+
+TEST_F(MultiresTest, AFloorAtAGrazingAngleIsOnePatch) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  scene.quad(vec3(-500, 0, 500), vec3(1000, 0, 0), vec3(0, 0, -1000), grey);
+  scene.camera = cameraAt(vec3(3, 0.5f, 10), vec3(0, 0.2f, 0), 0.05f, 256, 192); // 2° above the floor
+  const GBuffer gbuffer = surfaces(scene);
+  multires(gbuffer, roomLights(), {.coarsest = 4, .depth = 0.001f, .normal = 0.01f});
+  const int levels = multiresPass.patches().levels;
+  ASSERT_EQ(levels, 6);
+  for (const int level : patchLevels(gbuffer)) ASSERT_EQ(level, levels);
+  EXPECT_EQ(multiresPass.countPatches(), 12u);
+  // A step of 4 cm across it is seen, in spite of 20 m of depth in every patch.
+  scene.box(vec3(-2.3f, 0, -7), vec3(-1.7f, 0.04f, -6.5f), grey, false);
+  const GBuffer stepped = surfaces(scene);
+  multires(stepped, roomLights(), {.coarsest = 4, .depth = 0.001f, .normal = 10});
+  EXPECT_GT(multiresPass.countPatches(), 50u);
+}
+
+/// Straight edges along patch borders, where a plane fitted to four pixels would bridge the step.
+TEST_F(MultiresTest, NoPatchSpansAStep) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
+  scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 18, 0), grey); // nearer, over the left half
+  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 96);
+  const GBuffer gbuffer = surfaces(scene);
+  multires(gbuffer, roomLights(), {.coarsest = 2});
+  const std::vector<int> levels = patchLevels(gbuffer);
+  FrameResults results;
+  results.gbuffer = gbuffer;
+  const Image depth = readBuffer(Buffer::Depth, results);
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 128; ++x) {
+      const int side = 1 << levels[size_t(y) * 128 + x];
+      for (int k = 0; k < 4; ++k) { // corners of the patch
+        const int cx = x / side * side + (k & 1) * (side - 1), cy = y / side * side + (k >> 1) * (side - 1);
+        ASSERT_NEAR(depth.at(cx, 95 - cy).x, depth.at(x, 95 - y).x, 0.5f) << x << ' ' << y;
+      }
+    }
+}
+
+TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
+  Room room;
+  room.scene.camera.width = 256;
+  room.scene.camera.height = 192;
+  const GBuffer gbuffer = surfaces(room.scene);
+  for (const bool balance : {true, false}) {
+    multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance});
+    const std::vector<int> levels = patchLevels(gbuffer);
+    int largest = 0;
+    for (int y = 0; y + 1 < gbuffer.height; ++y)
+      for (int x = 0; x + 1 < gbuffer.width; ++x)
+        for (const int other : {y * 256 + x + 1, (y + 1) * 256 + x, (y + 1) * 256 + x + 1})
+          largest = std::max(largest, std::abs(levels[size_t(y) * 256 + x] - levels[size_t(other)]));
+    if (balance)
+      EXPECT_EQ(largest, 1);
+    else
+      EXPECT_GT(largest, 1) << "or the scene needs no balance";
+    EXPECT_EQ(multiresPass.countPatches(), patchesOf(levels, gbuffer.width, gbuffer.height));
+  }
+}
+
+/// A light between two panels lights the far one only.
+TEST_F(MultiresTest, NoLightLeaksOverAnEdge) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
+  scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 18, 0), grey);
+  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 131, 77);
+  const GBuffer gbuffer = surfaces(scene);
+  Vpl v;
+  v.position = vec3(0, 0, -1);
+  v.normal = v.geometricNormal = vec3(0, 0, -1);
+  v.radiance = vec3(1);
+  v.area = 0.1f;
+  v.alive = true;
+  const std::vector<VplLight> lights{vplLight(v)};
+  const Image full = gathered(gbuffer, lights, GatherMode::Full);
+  const Image image = multires(gbuffer, lights, {.coarsest = 4});
+  int dark = 0, lit = 0;
+  for (size_t i = 0; i < full.pixels.size(); ++i) {
+    if (full.pixels[i].x == 0) {
+      ++dark;
+      ASSERT_LT(image.pixels[i].x, 1e-6f);
+    } else {
+      ++lit;
+      ASSERT_GT(image.pixels[i].x, 0);
+    }
+  }
+  EXPECT_GT(dark, 4000);
+  EXPECT_GT(lit, 4000);
+}
+
+TEST_F(MultiresTest, SplattingIsGatheringTheOtherWayRound) {
+  Room room;
+  room.scene.camera.width = 131;
+  room.scene.camera.height = 77;
+  const GBuffer gbuffer = surfaces(room.scene);
+  const MultiresSettings settings{.coarsest = 4, .light = 1e9f};
+  for (const int count : {40, 2100}) { // two chunks of lights
+    const std::vector<VplLight> lights = lightsIn(vec3(-0.9f), vec3(0.9f), count);
+    const Image gather = multires(gbuffer, lights, settings);
+    const uint64_t patches = multiresPass.countPatches();
+    std::vector<GatherMode> modes{GatherMode::Splat};
+    if (count < 100) modes.push_back(GatherMode::SplatPerVpl); // whose lists are all the same without its criterion
+    for (const GatherMode mode : modes) {
+      const Image splat = multires(gbuffer, lights, settings, mode);
+      EXPECT_EQ(multiresPass.countPatches(), patches);
+      for (size_t i = 0; i < gather.pixels.size(); ++i)
+        ASSERT_NEAR(splat.pixels[i].y, gather.pixels[i].y, 2e-5f * gather.pixels[i].y + 1e-6f);
+    }
+  }
+}
+
+/// Where a VPL stands close to a wall its light changes within a patch that is smooth.
+TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
+  const Floor floor;
+  const GBuffer gbuffer = surfaces(floor.scene);
+  Vpl v;
+  v.position = vec3(0.3f, 0.2f, -0.2f);
+  v.normal = v.geometricNormal = vec3(0, -1, 0);
+  v.radiance = vec3(1);
+  v.area = 0.05f;
+  v.alive = true;
+  const std::vector<VplLight> lights{vplLight(v)};
+  const Image full = gathered(gbuffer, lights, GatherMode::Full);
+  const auto error = [&](const Image& image) {
+    double sum = 0;
+    for (size_t i = 0; i < full.pixels.size(); ++i) sum += std::pow(image.pixels[i].x - full.pixels[i].x, 2);
+    return std::sqrt(sum / double(full.pixels.size()));
+  };
+  const MultiresSettings settings{.coarsest = 4, .light = 0.02f};
+  const double shared = error(multires(gbuffer, lights, settings, GatherMode::Splat));
+  const double own = error(multires(gbuffer, lights, settings, GatherMode::SplatPerVpl));
+  EXPECT_GT(shared, 0.01);
+  EXPECT_LT(own, 0.05 * shared);
+}
+
+/// α of paper 2, equation 2.
+TEST_F(MultiresTest, SurfaceDetailDarkensWhatTurnsAway) {
+  const Room room;
+  const GBuffer gbuffer = surfaces(room.scene);
+  const Image plain = multires(gbuffer, roomLights(), {.coarsest = 4});
+  const Image detailed = multires(gbuffer, roomLights(), {.coarsest = 4, .detail = 0.5f});
+  FrameResults results;
+  results.gbuffer = gbuffer;
+  const Image normal = readBuffer(Buffer::Normal, results);
+  for (int y = 0; y < plain.height; ++y)
+    for (int x = 0; x < plain.width; ++x) {
+      const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
+      const float facing = std::max(0.0f, -glm::dot(ray.direction, normal.at(x, y)));
+      ASSERT_NEAR(detailed.at(x, y).y, plain.at(x, y).y * (0.5f * facing + 0.5f), 2e-3f * plain.at(x, y).y + 1e-6f);
+    }
+}
+
+} // namespace lambent::test
