@@ -91,6 +91,8 @@ class Table {
          "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     flag("gather.glossy", &Settings::gather, &GatherSettings::glossy,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
+    real("gather.spread", &Settings::gather, &GatherSettings::spread, 0, 1000,
+         "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     whole("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, 1, 1024,
           "patches along the picture's longer side at the coarsest level");
     real("multires.depth", &Settings::multires, &MultiresSettings::depth, 0, big,

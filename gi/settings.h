@@ -102,6 +102,7 @@ struct GatherSettings {
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
   bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
+  float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
   bool operator==(const GatherSettings&) const = default;
 };
 

@@ -90,7 +90,7 @@ void main() {
 #endif
     irradiance += light.intensityLayer.rgb * weight;
 #ifdef GLOSSY
-    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight));
+    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight, 0.0));
 #endif
   }
   outIrradiance = vec4(irradiance, 1.0);

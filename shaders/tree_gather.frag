@@ -25,6 +25,7 @@ uniform int endRoot;
 uniform int rootStep;
 uniform float diskFactor;
 uniform float largestG;
+uniform float spread; // GLOSSY
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
@@ -86,7 +87,8 @@ void main() {
         vec3 light = flux.rgb * (0.318309886 * min(g, largestG));
         irradiance += light;
 #ifdef GLOSSY
-        glossy += light * glossyReflectance(receiver, -direction);
+        float widening = lobeSpread(spread, flux.a, cosineLight, distance2);
+        glossy += light * glossyReflectance(receiver, -direction, widening);
 #endif
       }
       m += 1 << (2 * shift);

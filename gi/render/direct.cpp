@@ -56,7 +56,8 @@ DirectLight DirectPass::run(const DirectInputs& in) {
                 // Bilinear comparison reaches half a texel farther.
                 .biasTexels = 1.5f * in.shadow.bias,
                 .diskFactor = 1 / kPi,
-                .largestG = kInfinity});
+                .largestG = kInfinity,
+                .spread = GatherSettings{}.spread});
   return {&irradiance_, orNull(glossy_)};
 }
 

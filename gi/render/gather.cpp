@@ -59,6 +59,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.use();
   program.set("diskFactor", in.diskFactor);
   program.set("largestG", in.largestG);
+  program.set("spread", in.spread);
   if (in.maps) {
     program.set("farDistance", in.maps->farDistance);
     program.set("mapResolution", float(in.maps->resolution));
@@ -131,6 +132,8 @@ RawIndirect GatherPass::run(const GatherInputs& in) {
               .biasTexels = in.bias,
               .diskFactor = in.gather.disk / kPi,
               .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
+              .spread = in.gather.spread,
+
               .trees = in.trees});
   return {&irradiance_, deinterleaved, orNull(glossy_)};
 }

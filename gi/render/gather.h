@@ -24,6 +24,7 @@ struct GatherDraw {
   float biasTexels;
   float diskFactor;                  // GatherSettings::disk / π
   float largestG;                    // 1/m², kInfinity for none
+  float spread;                      // GatherSettings::spread
   const LightTrees* trees = nullptr; // in place of `lights`
 };
 

@@ -134,6 +134,7 @@ GatherDraw MultiresPass::drawOf(const MultiresInputs& in) const {
           .biasTexels = in.bias,
           .diskFactor = in.gather.disk / kPi,
           .largestG = in.gather.clamp > 0 ? in.gather.clamp : kInfinity,
+          .spread = in.gather.spread,
           .trees = in.trees};
 }
 

@@ -24,6 +24,7 @@ std::vector<std::string> shadingDefines(const GatherDraw& draw) {
 void setShading(const gl::Program& program, const GatherDraw& draw) {
   program.set("diskFactor", draw.diskFactor);
   program.set("largestG", draw.largestG);
+  program.set("spread", draw.spread);
   if (draw.maps) {
     program.set("farDistance", draw.maps->farDistance);
     program.set("mapResolution", float(draw.maps->resolution));

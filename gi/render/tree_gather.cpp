@@ -29,6 +29,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   program.set("rootStep", subsets);
   program.set("diskFactor", in.diskFactor);
   program.set("largestG", in.largestG);
+  program.set("spread", in.spread);
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);

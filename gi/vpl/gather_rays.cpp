@@ -34,6 +34,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
   parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
     std::vector<Ray> segments;
     std::vector<vec3> values;
+    std::vector<float> spreads; // of lobes
     std::vector<uint8_t> blocked;
     for (size_t i = begin; i < end; ++i) {
       const SurfaceHit& h = surfaces[i];
@@ -41,6 +42,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       const vec3 origin = offsetPoint(h.position, h.geometricNormal);
       segments.clear();
       values.clear();
+      spreads.clear();
       for (const Vpl& v : vpls) {
         if (!v.alive || maxComponent(v.radiance) <= 0) continue;
         const vec3 d = v.position - h.position;
@@ -52,6 +54,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
         if (g <= 0) continue;
         segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal)));
         values.push_back(v.radiance * (v.area * g));
+        if (glossy) spreads.push_back(lobeSpread(settings.spread, v.area, -glm::dot(d, v.normal) * inverse, r2));
       }
       blocked.resize(segments.size());
       rays.occluded(segments, blocked);
@@ -62,7 +65,8 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       const Receiver receiver = receiverOf(glossy->view, h);
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j])
-          glossy->radiance[i] += values[j] * glossyReflectance(receiver, glm::normalize(segments[j].direction));
+          glossy->radiance[i] +=
+              values[j] * glossyReflectance(receiver, glm::normalize(segments[j].direction), spreads[j]);
       glossy->radiance[i] /= glossyTint(receiver);
     }
   });

@@ -18,7 +18,7 @@ Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
 
 vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {
   if (!(glm::dot(direction, receiver.normal) > 0)) return vec3(0);
-  return receiver.diffuse / kPi + glossyReflectance(receiver, direction);
+  return receiver.diffuse / kPi + glossyReflectance(receiver, direction, 0);
 }
 
 vec3 sampleReflection(const Receiver& receiver, float uChoice, vec2 u) {

@@ -16,6 +16,7 @@ layout(binding = 2) uniform sampler2DArray maps;
 #endif
 uniform float diskFactor;    // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;      // 1/m²
+uniform float spread;        // GLOSSY: GatherSettings::spread
 uniform float farDistance;   // metres at map value 1
 uniform float mapResolution; // texels
 uniform float biasTexels;    // ShadowSettings::bias
@@ -89,6 +90,7 @@ void receive(inout Received sum, Surface s, VplLight light, int layer) {
 #endif
   sum.irradiance += light.powerNormalX.rgb * g;
 #ifdef GLOSSY
-  sum.glossy += light.powerNormalX.rgb * (g * glossyReflectance(s.receiver, -direction));
+  float widening = lobeSpread(spread, light.positionArea.w, d.z, distance2);
+  sum.glossy += light.powerNormalX.rgb * (g * glossyReflectance(s.receiver, -direction, widening));
 #endif
 }

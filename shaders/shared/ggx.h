@@ -11,8 +11,7 @@
 #include "interop.h"
 SHARED_BEGIN
 
-/// Sharper lobes are drawn as this one: virtual lights are points, and would be seen one by one (paper 2 has its
-/// exponents, too, no higher than such lights allow).
+/// Sharper lobes are drawn as this one: virtual lights are points, and would be seen one by one.
 const float kLeastRoughness = 0.3f;
 const float kDielectricF0 = 0.04f;
 
@@ -57,16 +56,26 @@ SHARED_INLINE float ggxDensity(float alpha2, float cosHalf) {
   return alpha2 / (3.14159265f * t * t);
 }
 
+/// What a virtual light adds to α², for it stands for a surface and not for a point: `factor` (GatherSettings::spread)
+/// times the square of the angle under which the receiver sees the radius of its area. A disk by itself would ask for
+/// 1/8 (half vectors turn by half the angle, α² is twice the variance of their slopes), and the gaps between lights for
+/// more.
+SHARED_INLINE float lobeSpread(float factor, float area, float cosLight, float distance2) {
+  return factor * 0.318309886f * area * max(cosLight, 0.0f) / distance2;
+}
+
 /// The lobe, 1/sr: radiance towards the viewer per irradiance from the unit direction `towardsLight`. Finite
-/// everywhere; means nothing where the light is below the surface, for its irradiance is zero there.
-SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight) {
+/// everywhere; means nothing where the light is below the surface, for its irradiance is zero there. `spread`: see
+/// lobeSpread; 0 for a light that is a point.
+SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight, float spread) {
+  float alpha2 = min(r.alpha2 + spread, 1.0f);
   float cosLight = max(dot(r.normal, towardsLight), 0.0f);
   // |light + viewer|² = 2 + 2 light·viewer, so cosines with the half vector need not build it.
   float onePlus = max(1.0f + dot(towardsLight, r.towardsViewer), 1e-6f);
   float cosHalf = min((cosLight + r.cosViewer) / sqrt(2.0f * onePlus), 1.0f);
-  float density = ggxDensity(r.alpha2, cosHalf);
-  float masking = 0.5f / (cosLight * sqrt(r.cosViewer * r.cosViewer * (1.0f - r.alpha2) + r.alpha2) +
-                          r.cosViewer * sqrt(cosLight * cosLight * (1.0f - r.alpha2) + r.alpha2));
+  float density = ggxDensity(alpha2, cosHalf);
+  float masking = 0.5f / (cosLight * sqrt(r.cosViewer * r.cosViewer * (1.0f - alpha2) + alpha2) +
+                          r.cosViewer * sqrt(cosLight * cosLight * (1.0f - alpha2) + alpha2));
   float grazing = max(1.0f - sqrt(0.5f * onePlus), 0.0f);
   float grazing2 = grazing * grazing;
   vec3 fresnel = r.specular + (vec3(1.0f) - r.specular) * (grazing2 * grazing2 * grazing);

@@ -64,7 +64,7 @@ TEST(Receivers, LobeIntegratesToTheSameInAnotherFormulation) {
       for (const bool metal : {true, false}) {
         if (!metal && roughness == 1) continue; // Lambert: below
         const Receiver r = seenAt(cosViewer, roughness, metal ? 1.0f : 0.0f);
-        const double share = reflectedShare([&](const vec3& l) { return double(glossyReflectance(r, l).y); });
+        const double share = reflectedShare([&](const vec3& l) { return double(glossyReflectance(r, l, 0).y); });
         const double wanted = lobeShareByHalfVectors(cosViewer, roughness, metal ? 1 : 0.04);
         EXPECT_NEAR(share, wanted, 2e-3 * wanted) << roughness << ' ' << cosViewer << ' ' << metal;
         EXPECT_LT(share, 1);
@@ -95,8 +95,8 @@ TEST(Receivers, TheLobeIsReciprocal) {
     const vec3 a = atCosine(0.01f + 0.99f * rng.next(), 6 * rng.next()), b = atCosine(0.01f + 0.99f * rng.next(), 0);
     const vec3 albedo(rng.next(), rng.next(), rng.next());
     const float roughness = rng.next(), metalness = rng.next();
-    const vec3 there = glossyReflectance(makeReceiver(kUp, a, albedo, roughness, metalness), b),
-               back = glossyReflectance(makeReceiver(kUp, b, albedo, roughness, metalness), a);
+    const vec3 there = glossyReflectance(makeReceiver(kUp, a, albedo, roughness, metalness), b, 0),
+               back = glossyReflectance(makeReceiver(kUp, b, albedo, roughness, metalness), a, 0);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], back[c], 1e-4f * there[c]);
   }
 }
@@ -105,16 +105,28 @@ TEST(Receivers, RoughDielectricsAreLambertAndSharpOnesAreBounded) {
   const vec3 albedo(0.2f, 0.5f, 0.9f);
   const Receiver rough = seenAt(0.6f, 1, 0, albedo);
   EXPECT_EQ(rough.diffuse, albedo);
-  EXPECT_EQ(glossyReflectance(rough, atCosine(0.6f, kPi)), vec3(0));
+  EXPECT_EQ(glossyReflectance(rough, atCosine(0.6f, kPi), 0), vec3(0));
   EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).diffuse, vec3(0));
   EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).specular, albedo);
   const vec3 mirror = atCosine(0.6f, kPi);
-  EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror), glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror));
-  EXPECT_GT(glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror).x, 4 * glossyReflectance(seenAt(0.6f, 0.6f, 1), mirror).x);
+  EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror, 0), glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror, 0));
+  EXPECT_GT(glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror, 0).x,
+            4 * glossyReflectance(seenAt(0.6f, 0.6f, 1), mirror, 0).x);
   // Nowhere infinite or NaN: light from under the surface, along it, opposite to a viewer who is also in it.
   for (const float cosViewer : {0.0f, -1e-3f, 1.0f})
     for (const vec3& light : {-atCosine(cosViewer), atCosine(0, kPi), vec3(0, 0, -1), vec3(0, 0, 1)})
-      EXPECT_TRUE(isFinite(glossyReflectance(seenAt(cosViewer, 0.3f, 0.5f), light)));
+      EXPECT_TRUE(isFinite(glossyReflectance(seenAt(cosViewer, 0.3f, 0.5f), light, 0)));
+}
+
+TEST(Receivers, SpreadIsThatOfARougherSurface) {
+  const vec3 light = atCosine(0.7f, 2.8f);
+  const Receiver smooth = seenAt(0.6f, 0.4f, 1), rough = seenAt(0.6f, 0.5f, 1);
+  const vec3 wanted = glossyReflectance(rough, light, 0);
+  EXPECT_LT(glm::length(glossyReflectance(smooth, light, rough.alpha2 - smooth.alpha2) - wanted), 1e-5f * wanted.x);
+  EXPECT_TRUE(isFinite(glossyReflectance(smooth, light, kInfinity)));
+  // A disk seen by a receiver: its radius over the distance, squared, shrinks with the cosine.
+  EXPECT_NEAR(lobeSpread(1, kPi * 0.01f, 0.5f, 4), 0.01 / 4 * 0.5, 1e-7);
+  EXPECT_EQ(lobeSpread(1, 1, -0.5f, 4), 0);
 }
 
 TEST(Receivers, SamplesFollowTheirDensity) {

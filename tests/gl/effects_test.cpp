@@ -263,6 +263,36 @@ TEST_F(EffectsTest, FilterNeedsAnInterleavedGather) {
   EXPECT_GT(lossWithout(Filter, quick(), asItIs()), 0.01);
 }
 
+TEST_F(EffectsTest, GlossyNeedsAGlossyMaterial) {
+  Settings glossy = quick();
+  glossy.gather.glossy = true;
+  withoutIt(Glossy, glossy, asItIs());
+  const auto metal = stillWorld([](World& w) {
+    for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughness = 0.4f;
+  });
+  withoutIt(Glossy, quick(), metal, 0, true); // gather.glossy is off, and nothing can force it
+  EXPECT_GT(lossWithout(Glossy, glossy, metal), 0.1);
+}
+
+TEST_F(EffectsTest, IndirectReachesBlackGloss) {
+  Settings glossy = quick();
+  glossy.gather.glossy = true;
+  // All that reflects lies in one plane; only the lobes of black walls can show its light.
+  const auto varnished = stillWorld([](World& w) {
+    const uint32_t floor = w.scene.material(vec3(0.6f));
+    for (Material& m : w.scene.assets.materials) m.roughness = 0.4f;
+    for (uint32_t i = 1; i < w.scene.instances.size(); ++i)
+      for (Primitive& p : w.scene.assets.meshes[w.scene.instances[i].mesh].primitives)
+        w.scene.assets.materials[p.material].baseColor = vec3(0);
+    w.scene.assets.materials[floor].roughness = 1;
+    w.scene.assets.meshes[w.scene.instances[0].mesh].primitives[0].material = floor;
+  });
+  World w;
+  GiFrame lambert(quick());
+  EXPECT_FALSE(lambert.run(*varnished(w, 0)).plan.on(Indirect));
+  EXPECT_GT(lossWithout(Indirect, glossy, varnished), 1e-3);
+}
+
 // A still world
 // ---------------------------------------------------------------------------------------------------------
 

@@ -1,8 +1,12 @@
 // Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
+#include "engine/trace/embree_query.h"
+#include "gi/reference/path_tracer.h"
 #include "gi/render/light_shadows.h"
 #include "gl_fixture.h"
 #include "shaders/shared/ggx.h"
 #include "tests/support/images.h"
+#include "tests/support/spread_lights.h"
+#include "tests/support/statistics.h"
 
 namespace lambent::test {
 
@@ -91,7 +95,8 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
             radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
         const Receiver receiver = floor.receiverAt(x, y);
         const vec3 lambert = irradiance * receiver.diffuse / kPi;
-        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight);
+        const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
+        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
         for (int c = 0; c < 3; ++c) {
           const float wanted = lambert[c] + lobe[c];
           ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f)
@@ -172,14 +177,15 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
       for (int x = 0; x < image.width; ++x) {
         const Receiver receiver = floor.receiverAt(x, y);
         const vec3 at = floor.at(x, y);
-        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight) {
-          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight));
+        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
+          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
         };
         const vec3 d = position - at, e = vec3(0.5f, 1, -1) - at;
         const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
         const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
                             reflected(sun * -sunDirection.y, -sunDirection) +
-                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e));
+                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
+                                      lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
         for (int c = 0; c < 3; ++c)
           ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
       }
@@ -200,6 +206,52 @@ TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
     ASSERT_NEAR(t.y, 0.5f * 102 / 255, 1e-4f);
   }
   EXPECT_EQ(surfaces(floor.scene, false).finish, nullptr);
+}
+
+TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
+  // One bounce in an empty box, where every light sees every point.
+  const vec3 size(2, 1, 3), albedo(0.6f, 0.5f, 0.4f);
+  for (const Finish& f : {Finish{albedo, 0.35f, 1}, Finish{albedo, 0.5f, 0}}) {
+    HandScene scene;
+    const uint32_t m = scene.material(albedo);
+    scene.assets.materials[m].roughness = f.roughness;
+    scene.assets.materials[m].metalness = f.metalness;
+    scene.box(vec3(0), size, m, true);
+    LightView point;
+    point.position = {1.6f, 0.4f, 2.5f};
+    scene.lights.push_back(point);
+    scene.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.4f, 3}, 1, 24, 16);
+    const SceneView view = scene.view();
+    EmbreeQuery rays(scene.assets);
+    rays.update(view);
+    const LightSet lights = collectLights(view);
+    RayCounts counts;
+    const GBuffer gbuffer = surfaces(scene);
+    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0};
+    std::vector<double> means;
+    for (uint32_t set = 0; set < 32; ++set) {
+      std::vector<Vpl> vpls = spreadOverBox(size, albedo, 2000, set);
+      std::vector<VplLight> shown;
+      for (Vpl& v : vpls) {
+        v.radiance = albedo / kPi * punctualIrradiance(point, v.position, v.normal).irradiance;
+        shown.push_back(vplLight(v));
+      }
+      const VplLights uploaded = lightBuffer.run(shown);
+      const RawIndirect raw = gatherPass.run({gbuffer, uploaded, nullptr, 1, settings});
+      means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
+    }
+    const ReferenceInputs in{rays, lights, view.camera, 1, settings.clamp, 1, &view};
+    ReferenceSums sums(24, 16);
+    addSamples(sums, in, 2000, counts);
+    const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Indirect);
+    const double truth = meanLuminance(picture.mean);
+    const Mean mean = meanOf(means);
+    // 5e-4: the G-buffer's normals and albedos are half floats.
+    EXPECT_LT(std::abs(mean.mean - truth),
+              kDeviateLimit * std::hypot(mean.error, truth * picture.relativeErrorOfMean) + 5e-4 * truth)
+        << mean.mean << " against " << truth << ", roughness " << f.roughness;
+    EXPECT_LT(std::hypot(mean.error, truth * picture.relativeErrorOfMean), 0.015 * truth) << "too noisy to tell";
+  }
 }
 
 /// A lit room with a metal block, by frames.

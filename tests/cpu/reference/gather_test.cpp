@@ -1,10 +1,10 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
 // gather must agree with it, clamped alike.
-#include "engine/core/rng.h"
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/hand_scene.h"
+#include "tests/support/spread_lights.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -38,30 +38,11 @@ TEST(ReferenceAgainstVpls, ClampedGatherOfEvenlySpreadLights) {
   gather.clamp = kClamp;
   RayCounts counts;
 
-  const vec3 areas(size.y * size.z, size.x * size.z, size.x * size.y); // of a face, by axis
-  const float total = 2 * (areas.x + areas.y + areas.z);
   std::vector<double> means;
   for (uint32_t set = 0; set < kSets; ++set) {
-    std::vector<Vpl> vpls(kPerSet);
+    std::vector<Vpl> vpls = test::spreadOverBox(size, albedo, kPerSet, set);
     std::vector<Vpl*> all;
-    for (uint32_t i = 0; i < kPerSet; ++i) {
-      Rng rng(set, Stream::Test, i);
-      float u = rng.next() * total;
-      int face = 0;
-      for (; face < 5 && u >= areas[face / 2]; ++face) u -= areas[face / 2];
-      Vpl& v = vpls[i];
-      v.position = size * vec3(rng.next(), rng.next(), rng.next());
-      v.position[face / 2] = face % 2 ? size[face / 2] : 0;
-      v.normal[face / 2] = face % 2 ? -1.0f : 1.0f;
-      for (int axis = 0; axis < 3; ++axis)
-        if (axis != face / 2) v.normal[axis] = 0;
-      v.geometricNormal = v.normal;
-      v.albedo = albedo;
-      v.area = total / kPerSet;
-      v.id = uint64_t(set) * kPerSet + i;
-      v.alive = true;
-      all.push_back(&v);
-    }
+    for (Vpl& v : vpls) all.push_back(&v);
     estimateRadiance(all, rays, lights, 16, kBounces, 1, counts);
     double sum = 0;
     for (const vec3& e : gatherByRays(rays, view.camera, vpls, gather, counts)) sum += double(e.y) / (24 * 16);

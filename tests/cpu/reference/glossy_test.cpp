@@ -1,11 +1,11 @@
 // Glossy receivers in the reference: closed forms, other integrals, and virtual lights as another way to the same
 // number.
-#include "engine/core/rng.h"
 #include "engine/trace/embree_query.h"
 #include "gi/reference/state_file.h"
 #include "gi/vpl/receivers.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/hand_scene.h"
+#include "tests/support/spread_lights.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(GlossyReference, PlateUnderAPointLight) {
     const float r2 = glm::dot(lamp.position, lamp.position);
     const vec3 towards = lamp.position / std::sqrt(r2);
     const Receiver receiver = plate.receiver();
-    const float wanted = 3 / r2 * towards.z * (receiver.diffuse.y / kPi + glossyReflectance(receiver, towards).y);
+    const float wanted = 3 / r2 * towards.z * (receiver.diffuse.y / kPi + glossyReflectance(receiver, towards, 0).y);
     const test::Mean m = plate.direct(1); // one light is always the one chosen
     EXPECT_NEAR(m.mean, wanted, 1e-3 * wanted) << finish.roughness;
     EXPECT_GT(m.mean, 1.2 * 3 / r2 * towards.z * receiver.diffuse.y / kPi) << "the lobe matters";
@@ -134,36 +134,18 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     rays.update(view);
     const LightSet lights = collectLights(view);
     GatherSettings gather;
-    gather.disk = 0;
+    gather.disk = gather.spread = 0;
     gather.clamp = kClamp;
     RayCounts counts;
-    const vec3 size = room.size, areas(size.y * size.z, size.x * size.z, size.x * size.y); // of a face, by axis
-    const float total = 2 * (areas.x + areas.y + areas.z);
     std::vector<vec2> centres;
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 24; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(24, 16));
     const std::vector<SurfaceHit> seen = surfacesAt(rays, view.camera, centres);
     std::vector<double> means;
     for (uint32_t set = 0; set < kSets; ++set) {
-      std::vector<Vpl> vpls(kPerSet);
+      std::vector<Vpl> vpls = test::spreadOverBox(room.size, room.albedo, kPerSet, set);
       std::vector<Vpl*> all;
-      for (uint32_t i = 0; i < kPerSet; ++i) {
-        Rng rng(set, Stream::Test, i);
-        float u = rng.next() * total;
-        int face = 0;
-        for (; face < 5 && u >= areas[face / 2]; ++face) u -= areas[face / 2];
-        Vpl& v = vpls[i];
-        v.position = size * vec3(rng.next(), rng.next(), rng.next());
-        v.position[face / 2] = face % 2 ? size[face / 2] : 0;
-        v.normal = vec3(0);
-        v.normal[face / 2] = face % 2 ? -1.0f : 1.0f;
-        v.geometricNormal = v.normal;
-        v.albedo = room.albedo;
-        v.area = total / kPerSet;
-        v.id = uint64_t(set) * kPerSet + i;
-        v.alive = true;
-        all.push_back(&v);
-      }
+      for (Vpl& v : vpls) all.push_back(&v);
       estimateRadiance(all, rays, lights, 16, 2, 1, counts);
       GlossyGather glossy{view, {}};
       const std::vector<vec3> irradiance = gatherByRays(rays, view.camera, vpls, gather, counts, &glossy);

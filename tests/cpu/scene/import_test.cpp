@@ -215,6 +215,42 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
   expectNear(vec3(image.averageLinear), {1, 0, 0.5029f}, 1e-3f); // 188 is half of linear light
 }
 
+TEST_F(Import, RoughnessAndMetalnessFromFactorsAndALinearTexture) {
+  GltfBuilder b = testing::oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const int picture = b.view(png({255, 188, 51, 255}));
+  b.json["images"] = {{{"bufferView", picture}, {"mimeType", "image/png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  const nlohmann::json texture = {{"index", 0}};
+  b.json["materials"] = {{{"pbrMetallicRoughness",
+                           {{"baseColorTexture", texture},
+                            {"metallicRoughnessTexture", texture},
+                            {"roughnessFactor", 0.5},
+                            {"metallicFactor", 0.25}}}},
+                         {{"pbrMetallicRoughness", {{"roughnessFactor", 7}, {"metallicFactor", -1}}}},
+                         {{"name", "plain"}}};
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions(kSquare)}}}, {"material", 1}});
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions(kSquare)}}}, {"material", 2}});
+  scene = b.load(folder);
+  const std::vector<Material>& m = scene.assets.materials;
+  ASSERT_EQ(m.size(), 3u);
+  EXPECT_FLOAT_EQ(m[0].roughness, 0.5f);
+  EXPECT_FLOAT_EQ(m[0].metalness, 0.25f);
+  // The same picture twice: as a colour it is sRGB, as roughness and metalness it is linear.
+  ASSERT_NE(m[0].finishTexture.image, m[0].baseColorTexture.image);
+  const TextureImage &color = scene.assets.images.at(m[0].baseColorTexture.image),
+                     &finish = scene.assets.images.at(m[0].finishTexture.image);
+  EXPECT_NEAR(color.averageLinear.y, 0.5029f, 1e-3f);
+  EXPECT_NEAR(finish.averageLinear.y, 188 / 255.0f, 1e-6f);
+  EXPECT_NEAR(finish.averageLinear.z, 0.2f, 1e-6f);
+  EXPECT_EQ(m[1].roughness, 1);
+  EXPECT_EQ(m[1].metalness, 0);
+  EXPECT_TRUE(hasWarning(scene, "the roughness is out of range"));
+  EXPECT_TRUE(hasWarning(scene, "the metalness is out of range"));
+  EXPECT_EQ(m[2].roughness, 1); // glTF's defaults
+  EXPECT_EQ(m[2].metalness, 1);
+}
+
 TEST_F(Import, BlendedMaterialsBecomeMaskedWithAWarning) {
   GltfBuilder b = testing::oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
