@@ -1,19 +1,15 @@
-// lambent accuracy SCENE: what approximations cost in error. First row of the report: shadow maps of VPLs.
+// lambent accuracy SCENE: what approximations cost in error. Shadow maps of VPLs here; with --curve see
+// accuracy_curve.cpp.
+#include "tools/lambent/accuracy.h"
+
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
-#include "tools/lambent/commands.h"
 
 #include <cstdio>
 
 namespace lambent {
 
 namespace {
-
-struct AccuracyOptions {
-  LaunchOptions launch;
-  OutputOptions output;
-  int slots = 64, points = 1024;
-};
 
 void accuracy(const AccuracyOptions& options) {
   const auto stage = openStage(options.launch);
@@ -45,14 +41,19 @@ void accuracy(const AccuracyOptions& options) {
 
 void declareAccuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command =
-      app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual lights");
+  CLI::App* command = app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual "
+                                                     "lights, or with --curve patches and clusters");
   command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
   addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "");
+  addOutputOptions(*command, options->output, "--curve: folder for plot, table and pictures (default out/accuracy)");
   command->add_option("--lights", options->slots, "virtual lights to compare")->check(CLI::Range(1, 32768));
   command->add_option("--points", options->points, "visible points to compare at")->check(CLI::Range(1, 1000000));
-  command->callback([options] { accuracy(*options); });
+  command
+      ->add_option(
+          "--curve", options->curve,
+          "error against threshold: patches (multires-gather; paper 3, fig. 9) or clusters (isr and hisr; fig. 13)")
+      ->check(CLI::IsMember({"patches", "clusters"}));
+  command->callback([options] { options->curve.empty() ? accuracy(*options) : accuracyCurve(*options); });
 }
 
 } // namespace lambent

@@ -1,9 +1,10 @@
 // lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against, two settings frame
-// by frame in turn.
+// by frame in turn. With --multires see bench_multires.cpp.
+#include "tools/lambent/bench.h"
+
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
-#include "tools/lambent/commands.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -11,20 +12,13 @@
 
 namespace lambent {
 
-namespace {
-
-struct BenchOptions {
-  LaunchOptions launch;
-  OutputOptions output;
-  std::vector<std::string> against; // NAME=VALUE
-  int frames = 0, skip = 2;
-};
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  std::nth_element(v.begin(), v.begin() + v.size() / 2, v.end());
-  return v[v.size() / 2];
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
 }
+
+namespace {
 
 /// What one of the settings did, frame by frame.
 struct Side {
@@ -87,6 +81,9 @@ void printShares(const Side& side) {
 }
 
 void bench(const BenchOptions& options) {
+  if (options.multires) return benchMultires(options);
+  if (options.launch.scene.empty())
+    throw InputError(options.scenes[1], "one scene or shot is enough (several go with --multires)");
   const auto stage = openStage(options.launch);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
@@ -104,9 +101,7 @@ void bench(const BenchOptions& options) {
   for (size_t i = 0; i < sides.size(); ++i) sides[i].gi = std::make_unique<GiFrame>(settings[i], stage->seed);
 
   const double fps = stage->shot ? stage->shot->fps : 30;
-  const int shotFrames = stage->shot ? stage->shot->frameCount() : 60;
-  const int total = options.frames > 0 ? std::min(options.frames, shotFrames) : shotFrames;
-  if (total <= options.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(total));
+  const int total = framesOf(options, *stage);
   {
     Progress progress("measuring", options.output.quiet);
     for (int frame = 0; frame < total && !interrupted; ++frame) {
@@ -143,18 +138,34 @@ void bench(const BenchOptions& options) {
 
 } // namespace
 
+int framesOf(const BenchOptions& options, const Stage& stage) {
+  const int shotFrames = stage.shot ? stage.shot->frameCount() : 60;
+  const int total = options.frames > 0 ? std::min(options.frames, shotFrames) : shotFrames;
+  if (total <= options.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(total));
+  return total;
+}
+
 void declareBench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against, of two settings");
-  command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
+  command->add_option("SCENE", options->scenes, "glTF or shot file; several with --multires")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "");
   command->add_option("--frames", options->frames, "only the first so many (60 of a scene)")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--against", options->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
-  command->callback([options] { bench(*options); });
+  CLI::Option* against = command->add_option("--against", options->against,
+                                             "NAME=VALUE: measure this setting too, frame by frame in turn");
+  command
+      ->add_flag("--multires", options->multires,
+                 "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
+                 "(paper 3, table 1)")
+      ->excludes(against);
+  command->callback([options] {
+    if (options->scenes.size() == 1) options->launch.scene = options->scenes[0];
+    bench(*options);
+  });
 }
 
 } // namespace lambent

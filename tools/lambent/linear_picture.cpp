@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "tools/lambent/commands.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lambent {
@@ -34,11 +35,19 @@ void writePicture(const std::string& file, const Image& image, float factor) {
     writeExr(file, image);
     return;
   }
-  Image8 out{image.width, image.height, {}};
-  for (const vec3& pixel : image.pixels) {
-    const vec3 shown = displayed(pixel, factor);
-    for (int c = 0; c < 3; ++c) out.rgb.push_back(uint8_t(std::lround(255 * shown[c])));
-  }
+  writeShown(file, shownImage(image, factor));
+}
+
+Image shownImage(const Image& image, float factor) {
+  Image out = image;
+  for (vec3& pixel : out.pixels) pixel = displayed(pixel, factor);
+  return out;
+}
+
+void writeShown(const std::string& file, const Image& shown) {
+  Image8 out{shown.width, shown.height, {}};
+  for (const vec3& pixel : shown.pixels)
+    for (int c = 0; c < 3; ++c) out.rgb.push_back(uint8_t(std::lround(255 * std::clamp(pixel[c], 0.0f, 1.0f))));
   writePng(file, out);
 }
 

@@ -14,4 +14,9 @@ Image readLinear(const std::string& file);
 /// magenta, infinity cyan). Throws InputError for other names.
 void writePicture(const std::string& file, const Image& image, float factor);
 
+/// What such a .png holds, before it is rounded: values of the display, 0 to 1.
+Image shownImage(const Image& image, float factor);
+/// Writes such values as a .png.
+void writeShown(const std::string& file, const Image& shown);
+
 } // namespace lambent

@@ -1,12 +1,13 @@
-// lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7).
+// lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7), or
+// of those from reflective shadow maps against every texel of these (paper 3, fig. 5).
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "engine/platform/gl_context.h"
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
-#include "gi/vpl/sources.h"
 #include "tools/lambent/commands.h"
-#include "tools/lambent/stability_report.h"
+#include "tools/lambent/follower.h"
+#include "tools/lambent/reflective_truth.h"
+#include "tools/lambent/text.h"
 #include "tools/lambent/tracked_pixels.h"
 
 #include <algorithm>
@@ -24,64 +25,11 @@ struct StabilityOptions {
   LaunchOptions launch;
   OutputOptions output;
   std::vector<std::string> shots, techniques{"smc", "ir", "mir", "tcas"};
+  std::string truth = "path";
   int samples = 1024, frames = 0, grid = 16, still = 0, seeds = 1;
   bool check = false;
-};
 
-/// A technique with all that it keeps between frames. With shadow maps a whole frame is drawn and the tracked pixels
-/// are read from the indirect buffer; with rays only they are gathered, each from all virtual lights.
-class Follower {
- public:
-  Follower(const Stage& stage, const std::string& name, uint32_t seed) : settings_(stage.settings), seed_(seed) {
-    run.name = name;
-    applyTechnique(settings_, name);
-    if (settings_.vpl.visibility == VplVisibility::Maps) gi_.emplace(settings_, seed_);
-  }
-
-  /// Radiance of indirect light at the tracked points of this frame.
-  std::vector<vec3> frame(const SceneView& view, const RayQuery& rays, const LightSet& lights,
-                          std::span<const vec2> points, std::span<const SurfaceHit> surfaces) {
-    if (gi_) {
-      const FrameStats& stats = gi_->run(view);
-      place(stats.stages);
-      const Image picture = gi_->read(Buffer::Indirect);
-      std::vector<vec3> out;
-      for (const vec2& p : points) {
-        const int x = std::min(int(p.x * float(picture.width)), picture.width - 1);
-        const int y = std::min(int(p.y * float(picture.height)), picture.height - 1);
-        out.push_back(picture.pixels[size_t(y) * picture.width + x]);
-      }
-      return out;
-    }
-    VplUpdateLog log;
-    placeVpls(settings_.vpl.source, set_, {view, rays, lights, settings_.smc, seed_, settings_.vpl}, log);
-    place(log.stages);
-    RayCounts counts;
-    std::vector<vec3> out = irradianceByRays(rays, surfaces, set_.slots, settings_.gather, counts);
-    for (size_t i = 0; i < out.size(); ++i) out[i] *= surfaces[i].albedo / kPi;
-    return out;
-  }
-
-  double medianPlaceMs() {
-    if (placeMs_.size() > 1) placeMs_.erase(placeMs_.begin()); // the warm-up
-    std::nth_element(placeMs_.begin(), placeMs_.begin() + placeMs_.size() / 2, placeMs_.end());
-    return placeMs_[placeMs_.size() / 2];
-  }
-
-  TechniqueRun run;
-
- private:
-  void place(const std::vector<StageTime>& stages) {
-    double ms = 0;
-    for (const StageTime& s : stages) ms += s.cpuMs;
-    placeMs_.push_back(ms);
-  }
-
-  Settings settings_;
-  uint32_t seed_;
-  VplSet set_;
-  std::optional<GiFrame> gi_;
-  std::vector<double> placeMs_;
+  bool pathTraced() const { return truth == "path"; }
 };
 
 /// Frames in which some light differs from the frame before by half or more, or some object jumps.
@@ -150,13 +98,10 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   say(*stage, options.output.quiet);
 
-  if (stage->settings.vpl.visibility == VplVisibility::Maps && !context) context.emplace(GlContext::headless());
-
   const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
   const std::vector<vec2>& points = tracked.points;
   ShotRun shot;
   shot.name = fs::path(file).stem().string();
-  shot.vpls = stage->settings.smc.vpls;
   shot.fps = stage->shot->fps;
   shot.marked = tracked.marked;
   std::vector<uint32_t> marked, grid;
@@ -164,8 +109,17 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
 
   std::vector<std::unique_ptr<Follower>> followers;
   for (const std::string& name : options.techniques)
-    for (int k = 0; k < options.seeds; ++k)
-      followers.push_back(std::make_unique<Follower>(*stage, name, stage->seed + uint32_t(k)));
+    for (int k = 0; k < options.seeds; ++k) {
+      Settings settings = stage->settings;
+      applyTechnique(settings, name);
+      followers.push_back(std::make_unique<Follower>(settings, name, stage->seed + uint32_t(k), context));
+    }
+  std::optional<Follower> everyTexel;
+  if (!options.pathTraced()) {
+    Settings settings = stage->settings;
+    lightByEveryTexel(settings);
+    everyTexel.emplace(settings, "truth", stage->seed, context);
+  }
   std::unique_ptr<EmbreeQuery> rays;
   StepFinder steps;
   std::vector<PixelSums> sums;
@@ -184,7 +138,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     if (steps.step(view)) shot.steps.push_back(size_t(f));
     const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, points);
     RayCounts counts;
-    if (!stillAt || f == 0)
+    if (options.pathTraced() && (!stillAt || f == 0))
       sums = sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
                             uint32_t(options.samples), counts);
     std::vector<TrackedValue> known;
@@ -193,6 +147,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
       known.push_back(trackedValue(sums[i], surfaces[i], uint32_t(options.samples)));
       truth.push_back(known.back().radiance);
     }
+    if (everyTexel) truth = everyTexel->frame(view, *rays, lights, points, surfaces);
     if (exposure <= 0) exposure = exposureOf(truth);
     const auto toneMapped = [&](const std::vector<vec3>& radiance) {
       std::vector<float> out;
@@ -278,10 +233,7 @@ void stability(const StabilityOptions& options) {
   }
   if (options.check && options.still == 0 && options.techniques.size() < 2)
     throw InputError("--check", "needs smc and others (--techniques), or --still");
-  const fs::path folder = options.output.out.empty() ? fs::path("out/stability") : fs::path(options.output.out);
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+  const fs::path folder = reportFolder(options.output.out, "out/stability");
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
   for (const std::string& file : options.shots) {
@@ -289,12 +241,13 @@ void stability(const StabilityOptions& options) {
     if (options.still > 0 && shots.back().steps.empty()) measureStill(options, file, context, shots.back());
   }
 
-  std::string conditions = "Truth: path tracing with " + std::to_string(options.samples) +
-                           " paths per pixel; standard error of its values (tone-mapped luminance):";
-  for (const ShotRun& s : shots) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s %.4f in ", &s == shots.data() ? "" : ",", s.truthError);
-    conditions += text + s.name;
+  std::string conditions = "Truth: every texel of the reflective shadow maps at every pixel";
+  if (options.pathTraced()) {
+    conditions =
+        format("Truth: path tracing with %d paths per pixel; standard error of its values (tone-mapped luminance):",
+               options.samples);
+    for (const ShotRun& s : shots)
+      conditions += format("%s %.4f in ", &s == shots.data() ? "" : ",", s.truthError) + s.name;
   }
   conditions += ". " + std::to_string(options.grid * options.grid) + " grid pixels, " +
                 std::to_string(shots.front().truth.size()) + " frames of the first shot";
@@ -305,7 +258,7 @@ void stability(const StabilityOptions& options) {
     for (const TechniqueRun& t : s.techniques) {
       figures.push_back({{"shot", s.name},
                          {"technique", t.name},
-                         {"vpls", s.vpls},
+                         {"vpls", t.vpls},
                          {"error_marked", t.marked.error},
                          {"change_marked", t.marked.change},
                          {"error_grid", t.grid.error},
@@ -336,6 +289,12 @@ void declareStability(CLI::App& app) {
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "folder for the report (default out/stability)");
   command->add_option("--techniques", options->techniques, "comma-separated (default smc,ir,mir,tcas)")->delimiter(',');
+  command
+      ->add_option(
+          "--truth", options->truth,
+          "path: path tracing (default); reflective: every texel of the reflective shadow maps at every pixel, "
+          "which rsm, isr, hisr and the multires techniques approximate")
+      ->check(CLI::IsMember({"path", "reflective"}));
   command->add_option("--spp", options->samples, "paths per pixel and frame of the truth (default 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--frames", options->frames, "only the first so many of each shot")

@@ -1,13 +1,10 @@
 #include "tools/lambent/stability_report.h"
 
-#include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "gi/settings.h"
+#include "tools/lambent/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
@@ -16,16 +13,6 @@ namespace lambent {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// Paper 1, table 1: |E'| of smc over that of ir in the sequence that a shot of ours follows.
 struct Published {
@@ -48,16 +35,18 @@ std::string overStill(const ShotRun& shot, const TechniqueRun& t) {
   return format("%.2f, %.2f", t.marked.error / t.stillMarked.error, t.grid.error / t.stillGrid.error);
 }
 
-std::string latencyText(const Latency& l) {
-  return l.count ? format("%.0f, %.0f, %.0f %%", l.median, l.worstTenth, 100 * l.followed) : "";
+std::string vplsText(const TechniqueRun& t) { return t.vpls > 0 ? format("%u", t.vpls) : "cut"; }
+
+/// What |E'| is held against: that of ir as in paper 1, among techniques from reflective maps that of rsm.
+const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
+  Settings settings;
+  applyTechnique(settings, t.name);
+  const TechniqueRun* simplest = shot.technique(fromReflectiveMaps(settings.vpl.source) ? "rsm" : "ir");
+  return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 
-void writeText(const fs::path& file, const std::string& text) {
-  writeAtomically(file, [&](const fs::path& temporary) {
-    std::ofstream out(temporary);
-    out << text;
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
-  });
+std::string latencyText(const Latency& l) {
+  return l.count ? format("%.0f, %.0f, %.0f %%", l.median, l.worstTenth, 100 * l.followed) : "";
 }
 
 std::string csv(const std::vector<ShotRun>& shots) {
@@ -66,7 +55,7 @@ std::string csv(const std::vector<ShotRun>& shots) {
          "error_still_grid,l90_median,l90_worst_tenth,l90_followed,l90_count,place_ms,truth_error\n";
   for (const ShotRun& s : shots)
     for (const TechniqueRun& t : s.techniques)
-      out << s.name << ',' << t.name << ',' << s.vpls << ',' << s.truth.size() << ',' << t.marked.error << ','
+      out << s.name << ',' << t.name << ',' << t.vpls << ',' << s.truth.size() << ',' << t.marked.error << ','
           << t.marked.change << ',' << t.grid.error << ',' << t.grid.change << ',' << t.grid.bias << ','
           << (s.still ? format("%g,%g,", t.stillMarked.error, t.stillGrid.error) : ",,") << t.latency.median << ','
           << t.latency.worstTenth << ',' << t.latency.followed << ',' << t.latency.count << ','
@@ -139,8 +128,8 @@ std::string html(const std::vector<ShotRun>& shots, const std::string& condition
   for (const ShotRun& s : shots)
     for (const TechniqueRun& t : s.techniques)
       out << "<tr><td>" << s.name << "<td>" << t.name
-          << format("<td>%d<td>%.4f<td>%.4f<td>%.4f<td>%.4f<td>%+.4f", s.vpls, t.marked.error, t.marked.change,
-                    t.grid.error, t.grid.change, t.grid.bias)
+          << format("<td>%s<td>%.4f<td>%.4f<td>%.4f<td>%.4f<td>%+.4f", vplsText(t).c_str(), t.marked.error,
+                    t.marked.change, t.grid.error, t.grid.change, t.grid.bias)
           << "<td>" << overStill(s, t) << "<td>" << latencyText(t.latency) << format("<td>%.1f</tr>\n", t.placeMs);
   out << "</table>\n";
   for (const ShotRun& s : shots) {
@@ -164,17 +153,18 @@ const TechniqueRun* ShotRun::technique(const std::string& wanted) const {
 std::string stabilityTable(const std::vector<ShotRun>& shots) {
   std::ostringstream out;
   out << "| shot | technique | N | \\|E\\| marked | \\|E'\\| marked | \\|E\\| grid | \\|E'\\| grid | bias | \\|E'\\| "
-         "over ir's | paper 1 | \\|E\\| over still | L90, worst tenth, followed | ms to place |\n"
+         "over ir's, rsm's | paper 1 | \\|E\\| over still | L90, worst tenth, followed | ms to place |\n"
          "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ShotRun& s : shots) {
-    const TechniqueRun* ir = s.technique("ir");
-    for (const TechniqueRun& t : s.techniques)
-      out << "| " << s.name << " | " << t.name << " | " << s.vpls
+    for (const TechniqueRun& t : s.techniques) {
+      const TechniqueRun* simplest = simplestOf(s, t);
+      out << "| " << s.name << " | " << t.name << " | " << vplsText(t)
           << format(" | %.4f | %.4f | %.4f | %.4f | %+.4f | ", t.marked.error, t.marked.change, t.grid.error,
                     t.grid.change, t.grid.bias)
-          << (ir && ir->grid.change > 0 ? format("%.2f", t.grid.change / ir->grid.change) : "") << " | "
+          << (simplest ? format("%.2f", t.grid.change / simplest->grid.change) : "") << " | "
           << (t.name == "smc" ? publishedRatio(s.name) : "") << " | " << overStill(s, t) << " | "
           << latencyText(t.latency) << format(" | %.1f |\n", t.placeMs);
+    }
   }
   return out.str();
 }

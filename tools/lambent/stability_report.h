@@ -13,6 +13,7 @@ namespace lambent {
 /// One technique over one shot.
 struct TechniqueRun {
   std::string name;
+  uint32_t vpls = 0; // N; those of most in a frame where it varies; 0: every pixel has its own clusters
   PixelSeries series;
   StabilityErrors marked, grid;
   StabilityErrors stillMarked, stillGrid; // of the same view standing still, where ShotRun::still is set
@@ -23,7 +24,6 @@ struct TechniqueRun {
 /// One shot. The first `marked` pixels are the shot's own, the others its grid.
 struct ShotRun {
   std::string name;
-  int vpls = 0;
   double fps = 30;
   size_t marked = 0;
   PixelSeries truth;

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 
@@ -124,9 +125,8 @@ bool hasEmitters(const Scene& scene) {
   return false;
 }
 
-void addDefaultLight(Stage& stage, const SceneView& view) {
-  if (!view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage.scene) || view.instances.empty())
-    return;
+/// A sun, or in a closed room a lamp by the camera. `lack`: what the scene is without.
+void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lack) {
   // Open to the sky? A sun in a closed room would leave it black.
   EmbreeQuery rays(stage.scene.assets);
   rays.update(view);
@@ -142,12 +142,12 @@ void addDefaultLight(Stage& stage, const SceneView& view) {
     light.type = LightType::Directional;
     light.direction = glm::normalize(vec3(-0.4f, -1, -0.3f));
     light.intensity = vec3(kPi);
-    stage.notes.push_back("the scene has no light: added a sun (--sun -0.4,-1,-0.3,3.14,3.14,3.14)");
+    stage.notes.push_back("the scene has no " + lack + ": added a sun (--sun -0.4,-1,-0.3,3.14,3.14,3.14)");
   } else {
     const float size = view.boundsWorld.diameter();
     light.position = view.camera.position() + vec3(view.camera.worldFromView[1]) * 0.01f * size;
     light.intensity = vec3(0.02f * size * size);
-    stage.notes.push_back("the scene has no light and is closed: added a lamp by the camera (--point)");
+    stage.notes.push_back("the scene has no " + lack + " and is closed: added a lamp by the camera (--point)");
   }
   addLight(stage.scene, light, "default light");
 }
@@ -222,8 +222,18 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   animate(stage->scene, 0);
   chooseCamera(*stage, options);
   SceneExtractor probe;
-  addDefaultLight(*stage, probe.extract(stage->scene, stage->camera, 0));
+  const SceneView view = probe.extract(stage->scene, stage->camera, 0);
+  const bool lit = !view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage->scene);
+  if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
   return stage;
+}
+
+void needPunctualLight(Stage& stage) {
+  SceneExtractor probe;
+  const SceneView view = probe.extract(stage.scene, stage.camera, 0);
+  const bool lit = std::any_of(view.lights.begin(), view.lights.end(),
+                               [](const LightView& light) { return maxComponent(light.intensity) > 0; });
+  if (!lit && !view.instances.empty()) addDefaultLight(stage, view, "punctual light");
 }
 
 fs::path findContentFolder() {

@@ -54,6 +54,9 @@ class Stage {
 /// Throws InputError.
 std::unique_ptr<Stage> openStage(const LaunchOptions& options);
 
+/// The same default for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual lights.
+void needPunctualLight(Stage& stage);
+
 /// Folder of the bundled scenes: LAMBENT_CONTENT, else ../share/lambent/content beside the executable, else the source
 /// tree's. Throws InputError naming the places when none is there.
 std::filesystem::path findContentFolder();
