@@ -110,7 +110,7 @@ struct GatherSettings {
 struct MultiresSettings {
   int coarsest = 16;   // patches along the picture's longer side at the coarsest level
   float depth = 0.02f; // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
-  float normal = 0.3f; // range of a component of the normal that splits it
+  float normal = 0.2f; // range of a component of the normal that splits it
   bool balance = true; // neighbours differ by one level at most
   float detail = 0;    // α of paper 2's surface detail
   float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
@@ -122,11 +122,11 @@ struct RsmSettings {
   int resolution = 256; // texels per side of a light's map, of each face of a point light's
   int vpls = 256;       // rsm: about as many on a regular grid over all maps
   bool exact = true;    // solid angle of every texel; off: all of a map the same, as the papers
-  int coarsest = 16;    // isr, hisr: patches per side of a map at the coarsest level
-  int finest = 64;      // and at the finest
+  int coarsest = 32;    // isr, hisr: patches per side of a map at the coarsest level
+  int finest = 256;     // and at the finest
   float depth = 0.05f;  // isr: as MultiresSettings::depth, seen from the light
-  float normal = 0.5f;  // isr: as MultiresSettings::normal
-  float tau = 0.02f;    // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
+  float normal = 0.2f;  // isr: as MultiresSettings::normal
+  float tau = 0.003f;   // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
   bool operator==(const RsmSettings&) const = default;
 };
 

@@ -20,7 +20,7 @@ uniform int balance;
 layout(location = 0) out vec4 outPlane;    // inverse depth at the centre (0: background, −1: outside), slope per pixel,
                                            // largest deviation
 layout(location = 1) out vec4 outNormalLo; // a: 1 = to be split
-layout(location = 2) out vec4 outNormalHi;
+layout(location = 2) out vec4 outNormalHi; // a, of 2 × 2 pixels: 1 = whole, but an edge runs along its border
 
 const float kSplit = 1e30;
 
@@ -30,6 +30,15 @@ struct Child {
   float deviation;
   vec3 lo, hi;
 };
+
+float relativeTo(float deviation, float centre, ivec2 map) {
+  return deviation * (map.x + map.y * columns >= orthoFrom ? orthoScale : 1.0 / centre);
+}
+
+bool turns(vec3 lo, vec3 hi) {
+  vec3 range = hi - lo;
+  return max(max(range.x, range.y), range.z) >= normalThreshold;
+}
 
 #ifdef FIRST
 /// Difference to the neighbour that continues the surface better: the smaller of both, none if they disagree.
@@ -102,15 +111,31 @@ void main() {
     }
     outPlane = vec4(max(centre, 1e-30), slope, deviation);
     ivec2 map = first / cell;
-    float relative = deviation * (map.x + map.y * columns >= orthoFrom ? orthoScale : 1.0 / outPlane.x);
-    vec3 range = hi - lo;
-    bool split = relative >= depthThreshold || max(max(range.x, range.y), range.z) >= normalThreshold;
+    bool split = relativeTo(deviation, outPlane.x, map) >= depthThreshold || turns(lo, hi);
     outNormalLo.xyz = lo;
     outNormalHi.xyz = hi;
     outNormalLo.a = split ? 1.0 : 0.0;
+#ifdef FIRST
+    // Patches may end where an edge runs, and have none inside. Light changes fast along it, and what is beyond says nothing
+    // about this side, so patches next to it stay small.
+    if (balance != 0 && !split) {
+      ivec2 origin = map * cell;
+      bool edge = false;
+      for (int i = 0; i < 16; ++i) {
+        ivec2 step = ivec2(i & 3, i >> 2) - 1;
+        float beside = depthAt(first + step, origin);
+        if (beside < 0.0) continue;
+        float off = abs(beside - outPlane.x - dot(slope, vec2(step) - 0.5));
+        vec3 normal = texelFetch(normalMap, first + step, 0).xyz;
+        edge = edge || beside == 0.0 || relativeTo(off, outPlane.x, map) >= depthThreshold ||
+               turns(min(lo, normal), max(hi, normal));
+      }
+      outNormalHi.a = edge ? 1.0 : 0.0;
+    }
+#endif
   }
 #ifndef FIRST
-  // A split child makes this one split; so does, for balance, one beside the children.
+  // A split child makes this one split, or one with an edge along its border; so does, for balance, a split one beside.
   ivec2 origin = first / cell * cell;
   int ring = balance;
   for (int y = -ring; y < 2 + ring; ++y) {
@@ -118,6 +143,8 @@ void main() {
       ivec2 texel = first + ivec2(x, y), within = texel - origin;
       if (any(lessThan(within, ivec2(0))) || any(greaterThanEqual(within, cell))) continue;
       outNormalLo.a = max(outNormalLo.a, texelFetch(normalsLo, texel, 0).a);
+      if (all(greaterThanEqual(ivec2(x, y), ivec2(0))) && all(lessThan(ivec2(x, y), ivec2(2))))
+        outNormalLo.a = max(outNormalLo.a, texelFetch(normalsHi, texel, 0).a);
     }
   }
 #endif

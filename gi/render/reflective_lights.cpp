@@ -4,6 +4,7 @@
 #include "engine/core/error.h"
 
 #include <algorithm>
+
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace {
 const std::vector<std::string> kLightFields{"positionArea", "powerNormalX", "tangentNormalY", "bitangentNormalZ"};
 constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
+/// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
+constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
 /// Runs the program over `vertices` points into `target` and returns how many it wrote.
 uint32_t capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
@@ -75,7 +78,12 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
     capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
     return {&lights_, count_};
   }
-  const int coarsest = maps.levels - 1, finest = std::min(maps.levelOf(rsm.finest), coarsest);
+  const int coarsest = maps.levels - 1;
+  int finest = std::min(maps.levelOf(rsm.finest), coarsest);
+  const auto clusters = [&](int level) {
+    return uint64_t(mapCount) * uint64_t(maps.resolution >> level) * uint64_t(maps.resolution >> level);
+  };
+  while (finest < coarsest && clusters(finest) > kMostClusters) ++finest;
   const int side = maps.resolution >> finest;
   const uint32_t most = mapCount * uint32_t(side * side);
   const uint64_t bytes = std::max<uint64_t>(1, most) * sizeof(VplLight);
@@ -83,15 +91,15 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
     compact_ = gl::Buffer("reflective lights/clusters", bytes, nullptr);
     compactView_ = gl::Texture::ofBuffer("reflective lights/view", GL_RGBA32F, compact_);
   }
-  const gl::Program& clusters = context_.programs.get(
+  const gl::Program& compact = context_.programs.get(
       {.vertex = "rsm_cluster.vert", .fragment = "", .geometry = "rsm_cluster.geom", .captured = kLightFields});
-  clusters.set("side", side);
-  clusters.set("columns", maps.columns);
-  clusters.set("finest", finest);
-  clusters.set("coarsest", coarsest);
+  compact.set("side", side);
+  compact.set("columns", maps.columns);
+  compact.set("finest", finest);
+  compact.set("coarsest", coarsest);
   bindClusters(maps);
   if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
-  count_ = most > 0 ? capture(clusters, compact_, most) : 0;
+  count_ = most > 0 ? capture(compact, compact_, most) : 0;
   reserve(count_);
   const gl::Program& order = context_.programs.get(desc);
   order.set("count", int(count_));
