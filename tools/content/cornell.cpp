@@ -1,6 +1,6 @@
 // The Cornell box, with the measurements that Cornell University publishes (millimetres, x to the left of the camera,
-// z away from it), at five times the size: a room of 2.76 × 2.74 × 2.80 m. Walls are 0.2 m thick.
-#include "tools/content/gltf_writer.h"
+// z away from it), at five times the size: a room of 2.76 × 2.74 × 2.80 m. Walls are 0.2 m thick. `cornell` is lit by
+// the published emitter, `cornell-spot` by a spot below the ceiling's middle.
 #include "tools/content/recipes.h"
 
 #include <array>
@@ -28,15 +28,11 @@ Geometry block(const std::array<dvec2, 4>& corners, double height) {
   return g;
 }
 
-} // namespace
-
-GeneratedScene writeCornell(const std::filesystem::path& folder) {
-  GltfWriter gltf;
+/// The room and its two blocks; what lights them is left to the caller.
+void addRoom(GltfWriter& gltf) {
   const Index white = gltf.addMaterial({.name = "white", .albedo = {0.73, 0.73, 0.73}});
   const Index red = gltf.addMaterial({.name = "red", .albedo = {0.63, 0.065, 0.05}});
   const Index green = gltf.addMaterial({.name = "green", .albedo = {0.14, 0.45, 0.091}});
-  const Index lamp = gltf.addMaterial(
-      {.name = "emitter", .albedo = {0.78, 0.78, 0.78}, .emissionColor = {1, 0.706, 0.235}, .emissionRadiance = 17});
   const auto place = [&](const char* name, const Geometry& g, Index material) {
     gltf.addNode({.name = name, .mesh = gltf.addMesh(name, g, material)});
   };
@@ -49,16 +45,39 @@ GeneratedScene writeCornell(const std::filesystem::path& folder) {
   place("right wall", box({hi.x, lo.y, lo.z}, {hi.x + kWall, hi.y, hi.z}), green);
   place("short block", block({dvec2(130, 65), dvec2(82, 225), dvec2(240, 272), dvec2(290, 114)}, 165), white);
   place("tall block", block({dvec2(423, 247), dvec2(265, 296), dvec2(314, 456), dvec2(472, 406)}, 330), white);
+}
+
+void addCamera(GltfWriter& gltf) {
+  const Index camera = gltf.addPerspectiveCamera("front", 39.3);
+  gltf.addNode({.name = "front", .translation = placed(278, 273, -800), .camera = camera});
+}
+
+} // namespace
+
+GeneratedScene writeCornell(const std::filesystem::path& folder) {
+  GltfWriter gltf;
+  addRoom(gltf);
 
   // Hangs 5 mm below the ceiling; it lights the side that it faces, so the gap stays dark.
+  const Index lamp = gltf.addMaterial(
+      {.name = "emitter", .albedo = {0.78, 0.78, 0.78}, .emissionColor = {1, 0.706, 0.235}, .emissionRadiance = 17});
   Geometry emitter;
   const double below = kHeight - 1.0;
   emitter.addQuad(placed(343, below, 227), placed(343, below, 332), placed(213, below, 332), placed(213, below, 227));
-  place("emitter", emitter, lamp);
+  gltf.addNode({.name = "emitter", .mesh = gltf.addMesh("emitter", emitter, lamp)});
 
-  const Index camera = gltf.addPerspectiveCamera("front", 39.3);
-  gltf.addNode({.name = "front", .translation = placed(278, 273, -800), .camera = camera});
+  addCamera(gltf);
   return gltf.write(folder, "cornell");
+}
+
+GeneratedScene writeCornellSpot(const std::filesystem::path& folder) {
+  SceneBuilder s;
+  addRoom(s.gltf);
+  // Half as far from the axis as the walls are and tilted to the red one: floor, red wall and both blocks are lit, the
+  // green wall, the back of the room and the ceiling by reflected light alone or nearly so.
+  s.spot("spot", {1, 0.93, 0.8}, 22, {0, 0.97 * kHeight * kScale, 0.35}, {-0.45, -1, -0.3});
+  addCamera(s.gltf);
+  return s.gltf.write(folder, "cornell-spot");
 }
 
 } // namespace lambent::content

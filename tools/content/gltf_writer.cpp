@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <stb/stb_image_write.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -17,7 +18,8 @@ using nlohmann::json;
 namespace {
 
 // Constants of the glTF 2.0 specification (those of OpenGL).
-constexpr uint32_t kFloat = 5126, kUnsignedShort = 5123, kVertexBuffer = 34962, kIndexBuffer = 34963;
+constexpr uint32_t kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
+constexpr uint32_t kVertexBuffer = 34962, kIndexBuffer = 34963;
 constexpr uint32_t kLinear = 9729, kLinearMipmapLinear = 9987;
 
 /// Rounded to a millionth: no digits that differ between maths libraries, and short numbers in the JSON.
@@ -97,14 +99,17 @@ Index GltfWriter::addAccessor(const std::vector<float>& values, uint32_t compone
 }
 
 Index GltfWriter::addIndexAccessor(const std::vector<uint32_t>& indices) {
-  std::vector<uint16_t> narrow;
-  for (const uint32_t i : indices) {
-    CHECK_LT(i, 65535u); // 65535 restarts a primitive
-    narrow.push_back(uint16_t(i));
+  const bool fit = *std::max_element(indices.begin(), indices.end()) < 65535; // 65535 restarts a primitive
+  Index view = kAbsent;
+  if (fit) {
+    const std::vector<uint16_t> narrow(indices.begin(), indices.end());
+    view = addView(narrow.data(), narrow.size() * sizeof(uint16_t), Target::Indices);
+  } else {
+    view = addView(indices.data(), indices.size() * sizeof(uint32_t), Target::Indices);
   }
-  accessors_.push_back({{"bufferView", addView(narrow.data(), narrow.size() * sizeof(uint16_t), Target::Indices)},
-                        {"componentType", kUnsignedShort},
-                        {"count", narrow.size()},
+  accessors_.push_back({{"bufferView", view},
+                        {"componentType", fit ? kUnsignedShort : kUnsignedInt},
+                        {"count", indices.size()},
                         {"type", "SCALAR"}});
   return Index(accessors_.size() - 1);
 }
@@ -172,6 +177,14 @@ Index GltfWriter::addDirectionalLight(const std::string& name, const dvec3& colo
 
 Index GltfWriter::addPointLight(const std::string& name, const dvec3& color, double intensity) {
   return addLight(name, "point", color, intensity);
+}
+
+Index GltfWriter::addSpotLight(const std::string& name, const dvec3& color, double intensity, double innerDegrees,
+                               double outerDegrees) {
+  const Index light = addLight(name, "spot", color, intensity);
+  lights_[light]["spot"] = {{"innerConeAngle", rounded(glm::radians(innerDegrees))},
+                            {"outerConeAngle", rounded(glm::radians(outerDegrees))}};
+  return light;
 }
 
 Index GltfWriter::addNode(const NodeSpec& spec) {

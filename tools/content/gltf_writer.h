@@ -52,6 +52,9 @@ class GltfWriter {
   Index addPerspectiveCamera(const std::string& name, double fovYDegrees);
   Index addDirectionalLight(const std::string& name, const dvec3& color, double irradiance);
   Index addPointLight(const std::string& name, const dvec3& color, double intensity);
+  /// Full intensity within `innerDegrees` of the axis and none beyond `outerDegrees`: half of the cone's opening each.
+  Index addSpotLight(const std::string& name, const dvec3& color, double intensity, double innerDegrees,
+                     double outerDegrees);
   Index addNode(const NodeSpec& node);
   /// Adds a linear channel to the scene's one animation clip; times in seconds, ascending.
   void animateTranslation(Index node, const std::vector<double>& times, const std::vector<dvec3>& translations);
@@ -61,7 +64,7 @@ class GltfWriter {
 
  private:
   enum class Target { None, Vertices, Indices };
-  /// Appends floats (or 16-bit indices) to the buffer and describes them; gives the accessor.
+  /// Appends floats (or indices, 16-bit where they fit) to the buffer and describes them; gives the accessor.
   Index addAccessor(const std::vector<float>& values, uint32_t components, Target target, bool bounds);
   Index addIndexAccessor(const std::vector<uint32_t>& indices);
   Index addView(const void* data, size_t bytes, Target target);

@@ -25,6 +25,7 @@ const std::vector<ContentRecipe>& contentRecipes() {
         {"hall", "two-storey arcaded hall: sun through an open roof, cloth, a moving lamp and a rolling ball", true,
          content::writeHall},
         {"cornell", "Cornell box with two blocks and a ceiling emitter", true, content::writeCornell},
+        {"cornell-spot", "the same room lit by one spot of 90° below the ceiling", true, content::writeCornellSpot},
         {"door", "a dark room beside a bright one, and the door leaf between them", true, content::writeDoor},
         {"red-box", "white corridor, and a red box to be carried along it", true, content::writeRedBox},
         {"lift", "hall of three storeys with a lift in front of lit rooms", true, content::writeLift},
@@ -33,6 +34,8 @@ const std::vector<ContentRecipe>& contentRecipes() {
     addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);
     addSizes(all, "maze", "maze under a ceiling with 13 static lamps", content::writeMaze);
     addSizes(all, "atrium", "galleries around a court with one moving lantern", content::writeAtrium);
+    addSizes(all, "knot", "carved knot on a plinth in a plain room under one spot", content::writeKnot);
+    addSizes(all, "garden", "glasshouse with thin-leaved plants in beds under one spot", content::writeGarden);
     return all;
   }();
   return recipes;

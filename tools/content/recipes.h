@@ -9,8 +9,11 @@ namespace lambent::content {
 GeneratedScene writeAtrium(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeCitadel(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeCornell(const std::filesystem::path& folder);
+GeneratedScene writeCornellSpot(const std::filesystem::path& folder);
 GeneratedScene writeDoor(const std::filesystem::path& folder);
+GeneratedScene writeGarden(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeHall(const std::filesystem::path& folder);
+GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeLift(const std::filesystem::path& folder);
 GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);

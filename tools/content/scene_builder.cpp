@@ -19,6 +19,14 @@ Index SceneBuilder::lamp(const std::string& name, const dvec3& color, double int
   return gltf.addNode({.name = name, .translation = at, .light = gltf.addPointLight(name, color, intensity)});
 }
 
+Index SceneBuilder::spot(const std::string& name, const dvec3& color, double intensity, const dvec3& at,
+                         const dvec3& direction) {
+  return gltf.addNode({.name = name,
+                       .translation = at,
+                       .rotation = facing(direction),
+                       .light = gltf.addSpotLight(name, color, intensity, 40, 45)});
+}
+
 void SceneBuilder::sun(const dvec3& direction, const dvec3& color, double irradiance) {
   gltf.addNode({.name = "sun",
                 .translation = {0, 20, 0},

@@ -5,8 +5,8 @@
 
 namespace lambent::content {
 
-/// Every large scene comes in two sizes of one plan: Full, 250 000 to 550 000 placed triangles, and Small, at most
-/// 30 000, with fewer rooms and coarser meshes, for tests.
+/// Every large scene comes in two sizes of one plan: Full, 250 000 to 550 000 placed triangles (60 000 to 120 000 where
+/// they are mostly thin sheets), and Small, at most 30 000, with fewer parts and coarser meshes, for tests.
 enum class SceneSize { Full, Small };
 
 class SceneBuilder {
@@ -26,6 +26,8 @@ class SceneBuilder {
   }
   /// `intensity` in W/sr where the colour is 1.
   Index lamp(const std::string& name, const dvec3& color, double intensity, const dvec3& at);
+  /// A spot of 90° full opening, its edge softened over the last 5° of the half angle; `intensity` as for `lamp`.
+  Index spot(const std::string& name, const dvec3& color, double intensity, const dvec3& at, const dvec3& direction);
   void sun(const dvec3& direction, const dvec3& color, double irradiance);
   void camera(const std::string& name, const dvec3& eye, const dvec3& target, double fovYDegrees = 60);
 

@@ -179,7 +179,7 @@ Geometry cloth(const ClothShape& shape) {
   return g;
 }
 
-Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides) {
+Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides, double taper) {
   CHECK_LE(2u, line.size());
   Geometry g;
   const uint32_t points = uint32_t(line.size());
@@ -191,8 +191,9 @@ Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides) {
     const double angle = kTau * (s % sides) / sides;
     return std::cos(angle) * side + std::sin(angle) * glm::cross(direction(i), side);
   };
+  const auto thickness = [&](uint32_t i) { return radius * (1 - taper * i / (points - 1)); };
   for (uint32_t i = 0; i < points; ++i)
-    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + radius * outward(i, s), outward(i, s));
+    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + thickness(i) * outward(i, s), outward(i, s));
   for (uint32_t i = 0; i + 1 < points; ++i)
     for (uint32_t s = 0; s < sides; ++s) {
       const uint32_t a = i * sides + s, b = i * sides + (s + 1) % sides;
@@ -202,13 +203,31 @@ Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides) {
     const uint32_t i = end ? points - 1 : 0, middle = uint32_t(g.positions.size());
     const dvec3 normal = end ? direction(i) : -direction(i);
     g.addVertex(line[i], normal);
-    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + radius * outward(i, s), normal);
+    for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + thickness(i) * outward(i, s), normal);
     for (uint32_t s = 0; s < sides; ++s) {
       const uint32_t a = middle + 1 + s, b = middle + 1 + (s + 1) % sides;
       if (end)
         g.indices.insert(g.indices.end(), {middle, a, b});
       else
         g.indices.insert(g.indices.end(), {middle, b, a});
+    }
+  }
+  return g;
+}
+
+Geometry prism(const std::vector<dvec2>& outline, double x0, double x1) {
+  Geometry g;
+  const uint32_t corners = uint32_t(outline.size());
+  const auto at = [&](uint32_t i, double x) { return dvec3(x, outline[i % corners].y, outline[i % corners].x); };
+  for (uint32_t i = 0; i < corners; ++i) g.addQuad(at(i, x1), at(i, x0), at(i + 1, x0), at(i + 1, x1));
+  for (const bool end : {false, true}) {
+    const uint32_t first = uint32_t(g.positions.size());
+    for (uint32_t i = 0; i < corners; ++i) g.addVertex(at(i, end ? x1 : x0), {end ? 1 : -1, 0, 0});
+    for (uint32_t i = 1; i + 1 < corners; ++i) {
+      if (end)
+        g.indices.insert(g.indices.end(), {first, first + i, first + i + 1});
+      else
+        g.indices.insert(g.indices.end(), {first, first + i + 1, first + i});
     }
   }
   return g;

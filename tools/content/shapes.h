@@ -62,7 +62,12 @@ struct ClothShape {
 };
 Geometry cloth(const ClothShape& shape);
 
-/// Round rod along a line of at least two points, with flat ends; no piece is vertical.
-Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides);
+/// Round rod along a line of at least two points, with flat ends; no piece is vertical. `taper` is the share of the
+/// radius that is lost towards the end.
+Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides, double taper = 0);
+
+/// Solid along X between x0 and x1 whose cross-section is a convex outline in (z, y), counter-clockwise from +X: with z
+/// to the left.
+Geometry prism(const std::vector<dvec2>& outline, double x0, double x1);
 
 } // namespace lambent::content
