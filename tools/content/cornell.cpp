@@ -73,8 +73,8 @@ GeneratedScene writeCornell(const std::filesystem::path& folder) {
 GeneratedScene writeCornellSpot(const std::filesystem::path& folder) {
   SceneBuilder s;
   addRoom(s.gltf);
-  // Half as far from the axis as the walls are and tilted to the red one: floor, red wall and both blocks are lit, the
-  // green wall, the back of the room and the ceiling by reflected light alone or nearly so.
+  // Tilted to the red wall: that wall, the floor and both blocks are lit, ceiling and green wall by reflected light
+  // alone.
   s.spot("spot", {1, 0.93, 0.8}, 22, {0, 0.97 * kHeight * kScale, 0.35}, {-0.45, -1, -0.3});
   addCamera(s.gltf);
   return s.gltf.write(folder, "cornell-spot");

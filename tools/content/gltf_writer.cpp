@@ -99,6 +99,7 @@ Index GltfWriter::addAccessor(const std::vector<float>& values, uint32_t compone
 }
 
 Index GltfWriter::addIndexAccessor(const std::vector<uint32_t>& indices) {
+  CHECK_LT(0u, indices.size());
   const bool fit = *std::max_element(indices.begin(), indices.end()) < 65535; // 65535 restarts a primitive
   Index view = kAbsent;
   if (fit) {

@@ -32,8 +32,8 @@ double knotRadius(double s, double a, bool fine) {
   const auto wave = [](double turns) { return std::sin(kTau * turns); };
   const double swell = 0.022 * wave(7 * s + 0.1) + 0.01 * wave(16 * s + 0.3);
   // Five carved grooves that twist around the tube, rounded at the bottom and broad between.
-  const double lobe = std::abs(wave(2.5 * a + 6 * s + 0.12 * wave(9 * s)));
-  const double grooves = 0.045 * (std::sqrt(lobe * lobe + 0.06) - 1.0);
+  const double lobe = std::abs(wave(2.5 * a + 6 * s + 0.08 * wave(8 * s)));
+  const double grooves = 0.04 * (std::sqrt(lobe * lobe + 0.08) - 1.0);
   // Rows of knobs across the grooves.
   const double knobs = 0.013 * wave(3 * a - 29 * s) * wave(2 * a + 23 * s);
   const double grain = fine ? 0.0035 * wave(11 * a + 53 * s) * wave(9 * a - 71 * s) : 0;
@@ -97,7 +97,7 @@ GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size) {
   s.place("end walls", ends, pale);
 
   s.place("plinth", plinth(), stone);
-  const Geometry carved = full ? knot(1050, 150, true) : knot(280, 46, false);
+  const Geometry carved = full ? knot(1050, 150, true) : knot(280, 40, false);
   double lowest = 0;
   for (const dvec3& p : carved.positions) lowest = std::min(lowest, p.y);
   s.place("knot", carved, marble, {0, kPlinth - 0.015 - lowest, 0});
