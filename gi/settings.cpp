@@ -273,7 +273,7 @@ void applyPreset(Settings& settings, const std::string& name) {
   static constexpr Preset presets[]{{512, 1024, 8, 64, GatherMode::Interleaved},
                                     {2048, 2048, 16, 128, GatherMode::Interleaved},
                                     {8192, 4096, 16, 128, GatherMode::Interleaved},
-                                    {16384, 4096, 16, 128, GatherMode::Interleaved}};
+                                    {2048, 4096, 16, 128, GatherMode::Multires}};
   for (size_t i = 0; i < presetNames().size(); ++i) {
     if (presetNames()[i] != name) continue;
     settings.smc.vpls = presets[i].vpls;
