@@ -114,6 +114,7 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   if (ImGui::CollapsingHeader("Virtual point lights", ImGuiTreeNodeFlags_DefaultOpen)) {
     ImGui::Text("alive %u   kept %u   moved %u", stats.vplsAlive, stats.vplsKept, stats.vplsMoved);
     ImGui::Text("invalid %u   relit %u%s", stats.vplsInvalid, stats.vplsRelit, stats.burst ? "   (camera cut)" : "");
+    if (stats.patches > 0) ImGui::Text("patches gathered %llu", (unsigned long long)stats.patches);
     ImGui::Text("paths retraced %llu of %llu", (unsigned long long)stats.pathsRetraced,
                 (unsigned long long)stats.pathsHeld);
     ImGui::Text("maps drawn %u   waiting %u", stats.mapsDrawn, stats.mapsWaiting);

@@ -46,6 +46,7 @@ struct FrameStats {
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
       raysMapTests;
+  uint64_t patches = 0; // of the multiresolution buffer that gathered, as far as the GPU has told
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
   uint32_t mapsDrawn = 0;                                     // paraboloid maps, in part or whole

@@ -153,8 +153,10 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   ReflectiveMaps sheet;
   VplLights shown;
   if (reflective) {
-    sheet = reflectiveMapPass.run({*gpuScene, world.view.lights, world.view.boundsWorld, world.view.changes.first,
-                                   disturbance.boxes(), settings.rsm, settings.vpl.source});
+    sheet = reflectiveMapPass.run({*gpuScene, world.view.lights, world.view.boundsWorld,
+                                   world.view.changes.first || reflectiveMapsOld, disturbance.boxes(), settings.rsm,
+                                   settings.vpl.source});
+    reflectiveMapsOld = false;
     shown = reflectiveLights(sheet);
   }
   const bool tree = settings.vpl.source == VplSource::Hisr; // has no visibility
@@ -190,6 +192,8 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   if (multiresolution(settings.gather.mode)) {
     results.patches = multiresPass.patches().normalLo;
     results.patchLevels = multiresPass.patches().levels;
+    if (settings.gather.mode == GatherMode::Multires || settings.gather.mode == GatherMode::MultiresInterleaved)
+      stats.patches = multiresPass.patchesMarked();
   }
   FilterSettings filter = settings.filter;
   filter.on = filter.on && plan.on(EffectId::Filter);

@@ -17,6 +17,7 @@ void GiFrame::State::updateLight(const std::function<void(int, int)>& progress) 
     mapSchedule.clear();
     return;
   }
+  reflectiveMapsOld = true;
   const auto called = [&](EffectId id) { return plan.on(id) && plan.calledFor(id); };
   const bool smc = settings.vpl.source == VplSource::Smc;
   const bool needed = vpls.slots.empty() || called(Replace) || (smc && (called(Relight) || called(Motion)));

@@ -98,7 +98,8 @@ struct GiFrame::State {
   std::vector<MapPose> poses, emitterPoses;
   std::vector<MapJob> mapJobs;
   MapSchedule mapSchedule;
-  bool vplMapsOld = false; // VPLs were shown without maps
+  bool vplMapsOld = false;        // VPLs were shown without maps
+  bool reflectiveMapsOld = false; // frames passed without them
   float farDistance = 0;
   Aabb receivers;           // see visibleBounds
   uint64_t testedDraws = 0; // GpuScene's count at the end of the last frame

@@ -112,7 +112,15 @@ void MultiresPass::mark(const MultiresInputs& in) {
     pyramid_.plane->bind(1);
     pyramid_.normalLo->bind(2);
   }
+  if (!marks_) marks_ = gl::Query(GL_SAMPLES_PASSED);
+  glBeginQuery(GL_SAMPLES_PASSED, marks_.name());
   gl::drawFullscreen();
+  glEndQuery(GL_SAMPLES_PASSED);
+}
+
+uint64_t MultiresPass::patchesMarked() {
+  if (marks_) glGetQueryObjectui64v(marks_.name(), GL_QUERY_RESULT_NO_WAIT, &marked_); // untouched if not yet known
+  return marked_;
 }
 
 void MultiresPass::clear(const MultiresInputs& in) {

@@ -72,7 +72,9 @@ class MultiresPass {
   explicit MultiresPass(PassContext context) : context_(context) {}
   RawIndirect run(const MultiresInputs& in);
   const PatchPyramid& patches() const { return pyramid_; } // of the last run
-  /// Patches that gathered in the last run, of all subsets. Reads the atlas back.
+  /// Patches that the stencil marked, of all subsets, in the last run that is known of: does not wait for the GPU.
+  uint64_t patchesMarked();
+  /// Patches that hold light after the last run, gathered or splatted. Reads the atlas back.
   uint64_t countPatches() const;
 
  private:
@@ -88,6 +90,8 @@ class MultiresPass {
   SplatPass splatPass_{context_};
   PatchPass patchPass_{context_, "patches"};
   PatchPyramid pyramid_;
+  gl::Query marks_;
+  uint64_t marked_ = 0;
   AtlasShape shape_;
   gl::Texture atlas_, stencil_, levels_, irradiance_; // levels_: level l ≥ 1 made whole is mip level l − 1
   gl::Texture atlasGlossy_, levelsGlossy_, glossy_;   // beside them, when the G-buffer has finishes

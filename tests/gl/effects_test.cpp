@@ -467,6 +467,26 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
   }
 }
 
+/// What moved while another technique was shown is not missed.
+TEST_F(EffectsTest, ReflectiveMapsComeBackUpToDate) {
+  World world;
+  Settings settings;
+  settings.smc.vpls = 64;
+  settings.smc.warmup = 2;
+  settings.image.exposure = 1;
+  applyTechnique(settings, "isr");
+  GiFrame gi(settings);
+  gi.run(world.first());
+  applyTechnique(gi.settings(), "smc");
+  gi.run(world.still());
+  gi.run(world.moveBlock({0.3f, 0, 0.2f}));
+  applyTechnique(gi.settings(), "isr");
+  gi.run(world.still());
+  GiFrame anew(settings);
+  anew.run(world.first());
+  EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels);
+}
+
 /// The same VPLs with shadow maps and with a ray for every pair.
 TEST_F(EffectsTest, VplsOfReflectiveMapsMayHaveShadows) {
   World world;

@@ -204,6 +204,8 @@ TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
     else
       EXPECT_GT(largest, 1) << "or the scene needs no balance";
     EXPECT_EQ(multiresPass.countPatches(), patchesOf(levels, gbuffer.width, gbuffer.height));
+    glFinish();
+    EXPECT_EQ(multiresPass.patchesMarked(), multiresPass.countPatches());
   }
 }
 

@@ -197,6 +197,34 @@ TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
     }
 }
 
+/// Each of the 16 subsets of pixels takes every sixteenth root, so that blocks of 4 × 4 pixels have them all.
+TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
+  HandScene scene;
+  scene.quad(vec3(-5, 0, 5), vec3(10, 0, 0), vec3(0, 0, -10), scene.material(vec3(0.5f)));
+  scene.quad(vec3(-5, 4, -5), vec3(10, 0, 0), vec3(0, 0, 10), scene.material(vec3(0.5f)));
+  scene.camera = cameraAt(vec3(0, 2, 0), vec3(0, 0, 0), 0.1f, 32, 24); // light hardly changes over the picture
+  place(scene);
+  const RsmSettings rsm{.resolution = 64, .coarsest = 16, .finest = 64};
+  const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, VplSource::Hisr);
+  const Image full = gathered(scene, sheet, rsm, VplSource::Hisr);
+  const GBuffer gbuffer = gbufferPass.run({*gpu, scene.camera});
+  const GatherSettings gather{.mode = GatherMode::Interleaved};
+  const LightTrees trees{sheet, rsm};
+  FrameResults results;
+  results.gbuffer = gbuffer;
+  results.raw = gatherPass.run({gbuffer, {}, nullptr, 1, gather, &trees});
+  const Image subsets = readBuffer(Buffer::Unfiltered, results);
+  for (int by = 0; by < 6; ++by)
+    for (int bx = 0; bx < 8; ++bx) {
+      double sum = 0, wanted = 0;
+      for (int k = 0; k < 16; ++k) {
+        sum += subsets.at(4 * bx + k % 4, 4 * by + k / 4).x;
+        wanted += full.at(4 * bx + k % 4, 4 * by + k / 4).x;
+      }
+      ASSERT_NEAR(sum, wanted, 0.02 * wanted) << bx << ' ' << by;
+    }
+}
+
 TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   const Room room;
   place(room.scene);

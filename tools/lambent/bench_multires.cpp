@@ -65,6 +65,7 @@ struct Column {
   int frames = 0;
   Times times[kHalves];
   uint32_t vpls[kHalves] = {};
+  uint64_t patches = 0; // that gathered, in the last frame
   double rmseShare = 0; // between the last frames' indirect radiance, share of its mean
 
   double lightRatio() const { return ratio(times[Splatting].rows[kLight], times[Gathering].rows[kLight]); }
@@ -122,6 +123,7 @@ Column measure(const BenchOptions& options, const std::string& file) {
       const int k = (turn + frame) % kHalves;
       const FrameStats& stats = gi[k]->run(view);
       column.vpls[k] = stats.vplsAlive;
+      if (k == Gathering) column.patches = stats.patches;
       if (frame >= options.skip) column.times[k].add(stats);
     }
     progress.update(frame + 1, total);
@@ -135,6 +137,7 @@ nlohmann::json figuresOf(const Column& c) {
                    {"size", {c.size.x, c.size.y}},
                    {"frames", c.frames},
                    {"vpls", c.vpls[Gathering]},
+                   {"patches", c.patches},
                    {"splat_over_gather", {{"light", c.lightRatio()}, {"total", c.totalRatio()}}},
                    {"rmse_share", c.rmseShare}};
   for (int k = 0; k < kHalves; ++k) {
@@ -182,6 +185,7 @@ void benchMultires(const BenchOptions& options) {
   print(columns, "splat over gather, light", [](const Column& c) { return format("%.2f", c.lightRatio()); });
   print(columns, "splat over gather, total", [](const Column& c) { return format("%.2f", c.totalRatio()); });
   print(columns, "VPLs", [](const Column& c) { return format("%u", c.vpls[Gathering]); });
+  print(columns, "Patches", [](const Column& c) { return format("%llu", (unsigned long long)c.patches); });
   print(columns, "RMSE of the two, % of mean", [](const Column& c) { return format("%.3f", 100 * c.rmseShare); });
   print(columns, "frames", [](const Column& c) { return format("%d", c.frames); });
 }

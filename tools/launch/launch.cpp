@@ -152,6 +152,16 @@ void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lac
   addLight(stage.scene, light, "default light");
 }
 
+/// Reflective shadow maps see light of some kinds only.
+void tellWhatIsLeftOut(Stage& stage, const SceneView& view) {
+  const std::string technique = "technique " + techniqueOf(stage.settings);
+  if (view.lights.empty() && (hasEmitters(stage.scene) || luminance(view.skyRadiance) > 0))
+    stage.notes.push_back(technique +
+                          " reflects punctual lights only, and there is none: no indirect light (--point, --sun)");
+  else if (hasEmitters(stage.scene) || luminance(view.skyRadiance) > 0)
+    stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
+}
+
 void chooseSettings(Stage& stage, const LaunchOptions& options) {
   if (!options.preset.empty()) applyPreset(stage.settings, options.preset);
   if (stage.shot)
@@ -169,13 +179,15 @@ void chooseSettings(Stage& stage, const LaunchOptions& options) {
 } // namespace
 
 void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
+  std::string techniques; // but the first
+  for (size_t i = 1; i < techniqueNames().size(); ++i) techniques += (i > 1 ? ", " : "") + techniqueNames()[i];
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
   command.add_option("--target", options.target, "look at x,y,z");
   command.add_option("--fov", options.fovDegrees, "vertical field of view, degrees");
   command.add_option("--size", options.size, "WIDTHxHEIGHT");
-  command.add_option("--technique", options.technique, "who places virtual lights: smc (default), ir, mir or tcas");
+  command.add_option("--technique", options.technique, "how indirect light is made: smc (default), " + techniques);
   command.add_option("--preset", options.preset, "low, medium (default), high or ultra; --set changes single settings");
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);
@@ -225,6 +237,7 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
+  if (fromReflectiveMaps(stage->settings.vpl.source)) tellWhatIsLeftOut(*stage, view);
   return stage;
 }
 
