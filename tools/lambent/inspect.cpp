@@ -15,7 +15,7 @@ const char* typeName(LightType t) {
 
 void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   const auto stage = openStage(launch);
-  const SceneView view = stage->at(0);
+  const SceneView view = stage->at(0); // its spans hold until the next one
   const SceneAssets& assets = stage->scene.assets;
   uint64_t meshTriangles = 0, placedTriangles = 0;
   for (const Mesh& m : assets.meshes) meshTriangles += m.triangles.size();
@@ -76,9 +76,12 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
               double(texels) * 4 / (1 << 20));
   std::printf("  size       %.3g x %.3g x %.3g m\n", double(size.x), double(size.y), double(size.z));
   std::printf("  animations %zu, cameras %zu\n", stage->scene.animations.size(), j["cameras"].size());
-  for (const LightView& l : view.lights)
-    std::printf("  light      %s, %.3g %.3g %.3g %s\n", typeName(l.type), double(l.intensity.x), double(l.intensity.y),
-                double(l.intensity.z), l.type == LightType::Directional ? "W/m2" : "W/sr");
+  for (const auto& l : j["lights"]) {
+    const std::string type = l["type"];
+    std::printf("  light      %s, %.3g %.3g %.3g %s\n", type.c_str(), l["intensity"][0].get<double>(),
+                l["intensity"][1].get<double>(), l["intensity"][2].get<double>(),
+                type == typeName(LightType::Directional) ? "W/m2" : "W/sr");
+  }
   for (const Emitter& e : lights.emitters)
     std::printf("  emitter    %u triangles, %.3g W/sr%s\n", e.triangleCount, double(e.power),
                 e.doubleSided ? " on each side" : "");
