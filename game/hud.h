@@ -1,7 +1,7 @@
 // The panel over the picture: what is shown, where the time goes, and every setting.
 #pragma once
 
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 
 #include <deque>
 #include <map>

@@ -5,7 +5,7 @@
 #include "game/hud.h"
 #include "game/interaction.h"
 #include "game/player.h"
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 #include "tools/launch/launch.h"
 
 #include <epoxy/gl.h>

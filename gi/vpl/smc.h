@@ -6,7 +6,7 @@
 #pragma once
 
 #include "engine/core/profile.h"
-#include "gi/settings.h"
+#include "gi/plan/settings.h"
 #include "gi/vpl/disturbance.h"
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/light_set.h"
@@ -166,7 +166,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
 /// Candidates that were taken are marked alive.
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
 
-/// Parts of an update that may be left out or forced (gi/effects.h). As they stand, all is done that changes call for.
+/// Parts of an update that may be left out or forced (gi/plan/effects.h). As they stand, all is done that changes call for.
 struct VplEffects {
   bool replace = true;     // false: slots once filled keep their VPLs, and no candidates are looked for
   bool relight = true;     // false: only VPLs that are new are lit

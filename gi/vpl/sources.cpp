@@ -27,7 +27,7 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
   case VplSource::Rsm:
   case VplSource::Isr:
   case VplSource::Hisr:
-    CHECK(!"made on the GPU: gi/render/reflective_maps.h");
+    CHECK(!"made on the GPU: gi/lights/reflective_maps.h");
   }
   return updateVpls(set, in, log, progress);
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/core/math.h"
-#include "gi/settings.h"
+#include "gi/plan/settings.h"
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/settling.h"
 

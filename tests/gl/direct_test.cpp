@@ -1,5 +1,5 @@
 // Direct light against closed forms, and shadow maps that are drawn only when they must be.
-#include "gi/render/light_shadows.h"
+#include "gi/direct/light_shadows.h"
 #include "gl_fixture.h"
 
 namespace lambent::test {

@@ -1,6 +1,6 @@
 // The effect plan. For each effect: a scene without it, where its work is not done at all (counted) and the picture is,
 // byte for byte, the one with everything forced on; and a scene with it, where leaving it out changes the picture.
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 

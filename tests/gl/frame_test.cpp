@@ -1,5 +1,5 @@
 // The frame as a whole, through the interface that programs use.
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 

@@ -6,8 +6,8 @@
 #include "engine/gl/program.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
-#include "gi/gi_frame.h"
-#include "gi/render/passes.h"
+#include "gi/frame/gi_frame.h"
+#include "gi/contract/passes.h"
 #include "tests/support/hand_scene.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
-#include "gi/render/light_shadows.h"
+#include "gi/direct/light_shadows.h"
 #include "gl_fixture.h"
 #include "shaders/shared/ggx.h"
 #include "tests/support/images.h"

@@ -4,7 +4,7 @@
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "engine/trace/embree_query.h"
-#include "gi/render/map_schedule.h"
+#include "gi/visibility/map_schedule.h"
 #include "gl_fixture.h"
 #include "shaders/shared/paraboloid.h"
 

@@ -1,5 +1,5 @@
 // The multiresolution buffer: which patches it takes, what it gathers there, and how pixels get their light back.
-#include "gi/render/multires.h"
+#include "gi/gather/multires.h"
 #include "gl_fixture.h"
 
 #include <random>

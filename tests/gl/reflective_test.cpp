@@ -1,5 +1,5 @@
 // Reflective shadow maps, their VPLs, clusters and trees: flux against closed forms and against one another.
-#include "gi/render/reflective_maps.h"
+#include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
 #include "shaders/shared/solid_angle.h"
 

@@ -2,7 +2,7 @@
 // throws InputError (exit 2) or RunError (exit 1).
 #pragma once
 
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 #include "tools/launch/launch.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/platform/gl_context.h"
-#include "gi/gi_frame.h"
+#include "gi/frame/gi_frame.h"
 #include "gi/vpl/smc.h"
 #include "gi/vpl/sources.h"
 #include "tools/lambent/stability_report.h"

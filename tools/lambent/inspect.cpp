@@ -1,5 +1,5 @@
 // lambent inspect SCENE: contents, size, lights; the effects it calls for, each with its reason; warnings.
-#include "gi/effects.h"
+#include "gi/plan/effects.h"
 #include "gi/vpl/light_set.h"
 #include "tools/lambent/commands.h"
 

@@ -1,6 +1,6 @@
 #include "tools/lambent/stability_report.h"
 
-#include "gi/settings.h"
+#include "gi/plan/settings.h"
 #include "tools/lambent/text.h"
 
 #include <algorithm>

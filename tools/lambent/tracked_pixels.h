@@ -3,7 +3,7 @@
 
 #include "engine/scene/shot.h"
 #include "gi/reference/path_tracer.h"
-#include "gi/settings.h"
+#include "gi/plan/settings.h"
 
 namespace lambent {
 

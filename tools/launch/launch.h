@@ -3,7 +3,7 @@
 
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
-#include "gi/settings.h"
+#include "gi/plan/settings.h"
 
 #include <memory>
 #include <optional>

@@ -1,0 +1,248 @@
+// Shadow maps of punctual lights and of the sky. A map, or a face of a cube, is drawn when what it shows may differ
+// from what is stored: its view changed, or something moved within it.
+#include "gi/direct/light_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace lambent {
+
+namespace {
+
+/// Bytes that the maps of one kind may take; their resolution is halved until they fit (hundreds of point lights).
+constexpr uint64_t kBudgetBytes = uint64_t(512) << 20;
+/// Spots wider than this half angle get a cube, for their perspective would have hardly any texels in the middle.
+constexpr float kWidestSpotCos = 0.34f; // 70°
+
+/// A light with the views that its map needs: one, or six for a cube.
+struct LitMap {
+  PunctualLight light;
+  std::vector<mat4> clipFromWorld;
+};
+
+mat4 viewFromWorld(const vec3& position, const vec3& right, const vec3& up, const vec3& forward) {
+  mat4 m = glm::transpose(mat4(vec4(right, 0), vec4(up, 0), vec4(forward, 0), vec4(0, 0, 0, 1)));
+  m[3] = m * vec4(-position, 1);
+  return m; // z along forward
+}
+
+/// Reversed, infinite: depth = near / z, looking along +z of view space.
+mat4 clipFromForwardView(float tanHalf, float near) {
+  mat4 m(0);
+  m[0][0] = m[1][1] = 1 / tanHalf;
+  m[3][2] = near;
+  m[2][3] = 1;
+  return m;
+}
+
+/// From clip space to [0,1]² map coordinates; depth stays.
+mat4 mapFromClip() {
+  mat4 m(1);
+  m[0][0] = m[1][1] = 0.5f;
+  m[3][0] = m[3][1] = 0.5f;
+  return m;
+}
+
+LitMap punctual(const LightView& light, float near) {
+  LitMap out;
+  const float range4 = light.range * light.range * light.range * light.range;
+  out.light.positionRange = vec4(light.position, std::isfinite(range4) && range4 > 0 ? 1 / range4 : 0);
+  out.light.directionTexel = vec4(light.direction, 0);
+  out.light.intensityLayer = vec4(light.intensity, 0);
+  out.light.coneNear = vec4(0, 1, near, 0);
+  out.light.mapFromWorld = mat4(0);
+  if (light.type == LightType::Spot) { // reference formula of KHR_lights_punctual
+    out.light.coneNear.x = 1 / std::max(0.001f, light.innerConeCos - light.outerConeCos);
+    out.light.coneNear.y = -light.outerConeCos * out.light.coneNear.x;
+  }
+  return out;
+}
+
+LitMap cubeMap(const LightView& light, int resolution, float near) {
+  LitMap out = punctual(light, near);
+  out.light.directionTexel.w = 2.0f / float(resolution);
+  // OpenGL's faces: +x −x +y −y +z −z with these axes for s, t.
+  const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const vec3 axes[6][3] = {{-z, -y, x}, {z, -y, -x}, {x, z, y}, {x, -z, -y}, {x, -y, z}, {-x, -y, -z}};
+  for (const vec3(&a)[3] : axes)
+    out.clipFromWorld.push_back(clipFromForwardView(1, near) * viewFromWorld(light.position, a[0], a[1], a[2]));
+  return out;
+}
+
+LitMap spotMap(const LightView& light, int resolution, float near) {
+  LitMap out = punctual(light, near);
+  const float sine = std::sqrt(std::max(0.0f, 1 - light.outerConeCos * light.outerConeCos));
+  // One texel and a half beyond the cone on each side, for the 3×3 comparison.
+  const float tanHalf = std::max(1e-3f, sine / light.outerConeCos) * (1 + 3.0f / float(resolution));
+  out.light.directionTexel.w = 2 * tanHalf / float(resolution);
+  mat3 frame;
+  frame[2] = light.direction;
+  const vec3 helper = std::abs(light.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+  frame[0] = glm::normalize(glm::cross(helper, frame[2]));
+  frame[1] = glm::cross(frame[2], frame[0]);
+  out.clipFromWorld.push_back(clipFromForwardView(tanHalf, near) *
+                              viewFromWorld(light.position, frame[0], frame[1], frame[2]));
+  out.light.mapFromWorld = mapFromClip() * out.clipFromWorld[0];
+  return out;
+}
+
+LitMap sunMap(const SunFit& fit, const vec3& irradiance, int resolution) {
+  LitMap out;
+  out.light.positionRange = vec4(0);
+  out.light.directionTexel = vec4(fit.direction, std::max(fit.size().x, fit.size().y) / float(resolution));
+  out.light.intensityLayer = vec4(irradiance, 0);
+  out.light.coneNear = vec4(0);
+  out.clipFromWorld.push_back(fit.clipFromWorld());
+  out.light.mapFromWorld = mapFromClip() * out.clipFromWorld[0];
+  return out;
+}
+
+int affordableResolution(int wanted, size_t maps) {
+  int resolution = wanted;
+  while (resolution > 32 && uint64_t(resolution) * resolution * 4 * maps > kBudgetBytes) resolution /= 2;
+  return resolution;
+}
+
+} // namespace
+
+struct LightShadowState {
+  explicit LightShadowState(PassContext c) : context(c), framebuffer("light maps") {}
+
+  PassContext context;
+  gl::Framebuffer framebuffer;
+  LightShadows shadows;
+  std::vector<SunFit> sunFits, skyFits;
+  uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
+
+  void fill(size_t& block, MapKind kind, int resolution, std::vector<LitMap>& maps, const LightShadowInputs& in);
+  void drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
+};
+
+/// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
+void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::vector<LitMap>& maps,
+                            const LightShadowInputs& in) {
+  for (size_t first = 0; first < maps.size(); first += kLightsPerBlock, ++block) {
+    const int count = int(std::min<size_t>(kLightsPerBlock, maps.size() - first));
+    if (shadows.blocks.size() <= block) shadows.blocks.emplace_back();
+    LightBlock& target = shadows.blocks[block];
+    if (!target.maps || target.kind != kind || target.maps.desc().layers != count ||
+        target.maps.width() != resolution) {
+      target.kind = kind;
+      target.maps = gl::Texture("light maps/block " + std::to_string(block),
+                                {.kind = kind == MapKind::Cube ? gl::TextureKind::CubeArray : gl::TextureKind::Array,
+                                 .format = GL_DEPTH_COMPONENT32F,
+                                 .width = resolution,
+                                 .height = resolution,
+                                 .layers = count,
+                                 .linear = true,
+                                 .depthCompare = true,
+                                 .compareGreater = true});
+      target.drawn.assign(size_t(count), mat4(0));
+    }
+    if (!target.lights)
+      target.lights = gl::Buffer("light maps/lights", sizeof(PunctualLight) * kLightsPerBlock, nullptr);
+    target.count = count;
+    std::vector<PunctualLight> lights;
+    for (int i = 0; i < count; ++i) {
+      lights.push_back(maps[first + i].light);
+      lights.back().intensityLayer.w = float(i);
+    }
+    if (lights.size() != target.held.size() ||
+        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(PunctualLight)) != 0) {
+      target.lights.write(0, lights.size() * sizeof(PunctualLight), lights.data());
+      target.held = std::move(lights);
+    }
+    drawMaps(target, maps, first, in);
+  }
+}
+
+void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first,
+                                const LightShadowInputs& in) {
+  const int resolution = block.maps.width();
+  for (int layer = 0; layer < block.count; ++layer) {
+    const LitMap& map = maps[first + layer];
+    const bool whole = in.allChanged || block.drawn[layer] != map.clipFromWorld[0];
+    block.drawn[layer] = map.clipFromWorld[0];
+    const int faces = int(map.clipFromWorld.size());
+    bool drawn = false;
+    for (int face = 0; face < faces; ++face) {
+      const Frustum frustum = Frustum::ofClip(map.clipFromWorld[face]);
+      const auto shows = [&](const Aabb& box) { return frustum.mayShow(box); };
+      if (!whole && std::none_of(in.moved.begin(), in.moved.end(), shows)) continue;
+      framebuffer.bind();
+      gl::PipelineState{.depthTest = true, .depthWrite = true, .width = resolution, .height = resolution}.apply();
+      framebuffer.attachDepthLayer(block.maps, layer * faces + face);
+      const float nothing = 0;
+      glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
+      in.scene.draw(DrawKind::Depth, map.clipFromWorld[face]);
+      drawn = true;
+    }
+    mapsDrawn += drawn;
+  }
+}
+
+LightShadowPass::LightShadowPass(PassContext context) : state_(std::make_unique<LightShadowState>(context)) {}
+LightShadowPass::~LightShadowPass() = default;
+uint32_t LightShadowPass::mapsDrawn() const { return state_->mapsDrawn; }
+uint32_t LightShadowPass::skyMapsDrawn() const { return state_->skyMapsDrawn; }
+
+const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
+  LightShadowState& s = *state_;
+  const gl::PassScope scope(s.context.profiler, "light maps");
+  s.mapsDrawn = 0;
+  // Casters nearer than this to a light's point are its own housing as often as not; relative, since scenes come in all
+  // sizes.
+  const float near = std::max(1e-6f, 1e-4f * in.casters.diameter());
+
+  std::vector<const LightView*> cubes, spots, suns;
+  for (const LightView& light : in.lights) {
+    if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity)) continue;
+    if (light.type == LightType::Directional)
+      suns.push_back(&light);
+    else if (light.type == LightType::Spot && light.outerConeCos > kWidestSpotCos)
+      spots.push_back(&light);
+    else
+      cubes.push_back(&light);
+  }
+  std::vector<LitMap> maps;
+  size_t block = 0;
+  int resolution = affordableResolution(in.shadow.pointResolution, cubes.size() * 6);
+  for (const LightView* light : cubes) maps.push_back(cubeMap(*light, resolution, near));
+  s.fill(block, MapKind::Cube, resolution, maps, in);
+
+  maps.clear();
+  resolution = affordableResolution(in.shadow.spotResolution, spots.size());
+  for (const LightView* light : spots) maps.push_back(spotMap(*light, resolution, near));
+  s.fill(block, MapKind::Spot, resolution, maps, in);
+
+  // Directions of suns and sky are fitted to the receivers; nothing to fit or light in an empty scene.
+  const auto fitted = [&](std::vector<SunFit>& fits, const std::vector<vec3>& directions,
+                          const std::vector<vec3>& irradiances, int wanted) {
+    maps.clear();
+    fits.resize(directions.size());
+    resolution = affordableResolution(wanted, directions.size());
+    for (size_t i = 0; i < directions.size() && !in.casters.empty(); ++i) {
+      fits[i] = fitSun(directions[i], in.receivers, in.casters, fits[i]);
+      maps.push_back(sunMap(fits[i], irradiances[i], resolution));
+    }
+    s.fill(block, MapKind::Sun, resolution, maps, in);
+  };
+  std::vector<vec3> directions, irradiances;
+  for (const LightView* light : suns) {
+    directions.push_back(light->direction);
+    irradiances.push_back(light->intensity);
+  }
+  fitted(s.sunFits, directions, irradiances, in.shadow.sunResolution);
+  const uint32_t punctualMaps = s.mapsDrawn;
+  if (in.sky) {
+    directions = skyDirections(in.shadow.skyMaps);
+    irradiances.assign(directions.size(), in.skyRadiance * (4 * kPi / float(directions.size())));
+    fitted(s.skyFits, directions, irradiances, in.shadow.skyResolution);
+  }
+  s.skyMapsDrawn = s.mapsDrawn - punctualMaps;
+  s.shadows.blocks.resize(block);
+  return s.shadows;
+}
+
+} // namespace lambent

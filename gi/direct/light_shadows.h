@@ -1,0 +1,41 @@
+// Shadow maps of punctual lights and sky directions, as the direct pass reads them.
+#pragma once
+
+#include "gi/contract/passes.h"
+#include "shaders/shared/punctual_light.h"
+
+namespace lambent {
+
+enum class MapKind { Cube, Spot, Sun };
+
+/// Up to kLightsPerBlock lights of one kind, with their maps in one texture array.
+struct LightBlock {
+  MapKind kind = MapKind::Sun;
+  gl::Texture maps; // DEPTH32F, reversed
+  gl::Buffer lights;
+  int count = 0;
+  std::vector<PunctualLight> held; // what `lights` holds
+  std::vector<mat4> drawn;         // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
+};
+
+struct LightShadows {
+  std::vector<LightBlock> blocks;
+};
+
+/// Orthographic view along a light's direction, in its own frame: xy across, z towards the light.
+struct SunFit {
+  vec3 direction{0};
+  vec2 lo{0}, hi{0};
+  float zLo = 0, zHi = 0;
+
+  mat4 clipFromWorld() const; // reversed depth: 1 at the light's end
+  vec2 size() const { return hi - lo; }
+};
+/// Covers `receivers` across and `casters` along the light. Keeps `previous` while it still covers them and is not more
+/// than twice as large as needed, so that a slow camera redraws nothing; a new fit has a tenth to spare on each side.
+SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous);
+
+/// `count` directions that light travels from a uniform sky, each standing for 4π/count of solid angle.
+std::vector<vec3> skyDirections(int count);
+
+} // namespace lambent

@@ -1,0 +1,67 @@
+// Where orthographic shadow maps look.
+#include "gi/direct/light_shadows.h"
+#include "shaders/shared/paraboloid.h"
+
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+mat3 worldFromSun(const vec3& direction) {
+  mat3 frame;
+  frame[2] = -direction;
+  basisAround(frame[2], frame[0], frame[1]);
+  return frame;
+}
+
+Aabb inSunFrame(const Aabb& box, const vec3& direction) {
+  return transformed(box, mat4(glm::transpose(worldFromSun(direction))));
+}
+
+} // namespace
+
+mat4 SunFit::clipFromWorld() const {
+  mat4 clipFromSun(1);
+  clipFromSun[0][0] = 2 / size().x;
+  clipFromSun[1][1] = 2 / size().y;
+  clipFromSun[2][2] = 1 / (zHi - zLo);
+  clipFromSun[3] = vec4(-(lo.x + hi.x) / size().x, -(lo.y + hi.y) / size().y, -zLo / (zHi - zLo), 1);
+  return clipFromSun * mat4(glm::transpose(worldFromSun(direction)));
+}
+
+SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous) {
+  const Aabb along = inSunFrame(casters, direction);
+  const Aabb across = inSunFrame(receivers.empty() ? casters : receivers, direction);
+  const vec2 needed = glm::max(vec2(across.size().x, across.size().y), vec2(1e-3f));
+  const bool same = previous.direction == direction && previous.zLo <= along.lo.z && previous.zHi >= along.hi.z;
+  if (same && receivers.empty()) return previous;
+  if (same && previous.lo.x <= across.lo.x && previous.lo.y <= across.lo.y && previous.hi.x >= across.hi.x &&
+      previous.hi.y >= across.hi.y) {
+    const vec2 ratio = previous.size() / needed;
+    if (ratio.x <= 2 && ratio.y <= 2) return previous;
+  }
+  SunFit fit;
+  fit.direction = direction;
+  fit.lo = vec2(across.lo.x, across.lo.y) - 0.1f * needed;
+  fit.hi = vec2(across.hi.x, across.hi.y) + 0.1f * needed;
+  // A little room along the light: receivers lie on the casters' box, where depth would touch its limits.
+  const float room = 0.01f * (along.hi.z - along.lo.z) + 1e-3f;
+  fit.zLo = along.lo.z - room;
+  fit.zHi = along.hi.z + room;
+  return fit;
+}
+
+std::vector<vec3> skyDirections(int count) {
+  // Fibonacci lattice: equal areas, and the heights are midpoints, so that an open horizontal plane gets exactly πL.
+  std::vector<vec3> directions;
+  const float golden = kPi * (3 - std::sqrt(5.0f));
+  for (int i = 0; i < count; ++i) {
+    const float y = 1 - (2 * float(i) + 1) / float(count);
+    const float r = std::sqrt(1 - y * y);
+    directions.push_back(-glm::normalize(vec3(r * std::cos(golden * float(i)), y, r * std::sin(golden * float(i)))));
+  }
+  return directions;
+}
+
+} // namespace lambent

@@ -1,0 +1,54 @@
+// The picture from its parts, and the exposure that suits it.
+#include "gi/gather/gather.h"
+
+#include <cmath>
+
+namespace lambent {
+
+Picture CompositePass::run(const CompositeInputs& in) {
+  const gl::PassScope scope(context_.profiler, "composite");
+  const int width = in.gbuffer.width, height = in.gbuffer.height;
+  if (!black_) {
+    black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
+    black_.clear();
+  }
+  if (!radiance_ || radiance_.width() != width || radiance_.height() != height) {
+    radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
+    framebuffer_ = gl::Framebuffer("composite", {&radiance_});
+  }
+  const gl::Program& program =
+      context_.programs.get({.fragment = "composite.frag", .defines = bindReceivers(in.gbuffer)});
+  program.use();
+  program.set("skyRadiance", in.skyRadiance);
+  in.gbuffer.camera->bindUniform(0);
+  in.gbuffer.depth->bind(0);
+  in.gbuffer.normal->bind(1);
+  in.gbuffer.albedo->bind(2);
+  in.gbuffer.emission->bind(3);
+  (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
+  (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
+  (in.direct.glossy ? in.direct.glossy : &black_)->bind(8);
+  (in.indirect.glossy ? in.indirect.glossy : &black_)->bind(9);
+  framebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+  return {&radiance_};
+}
+
+float measureExposure(const Picture& picture) {
+  const int width = picture.radiance->width(), height = picture.radiance->height();
+  std::vector<vec4> texels(size_t(width) * height);
+  glGetTextureImage(picture.radiance->name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)),
+                    texels.data());
+  double logSum = 0;
+  size_t count = 0;
+  for (const vec4& texel : texels) {
+    const float y = luminance(vec3(texel));
+    if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
+    logSum += std::log(double(y));
+    ++count;
+  }
+  return count == 0 ? 1.0f : float(0.18 / std::exp(logSum / double(count)));
+}
+
+} // namespace lambent

@@ -1,0 +1,187 @@
+// Every buffer as a display shows it, and the views that exist only for looking.
+#include "gi/frame/gi_frame.h"
+#include "gi/gather/gather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lambent {
+
+namespace {
+
+/// How a buffer is drawn: shader variant and source texture.
+struct View {
+  std::vector<std::string> defines;
+  const gl::Texture* source;
+  float factor;
+  const gl::Texture* glossy = nullptr; // goes with the source
+};
+
+View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
+  switch (buffer) {
+  case Buffer::Direct:
+    return {{"MODE 0", "REFLECTED", "EMITTED"}, frame.direct.irradiance, exposure, frame.direct.glossy};
+  case Buffer::Indirect:
+    return {{"MODE 0", "REFLECTED"}, frame.indirect.irradiance, exposure, frame.indirect.glossy};
+  case Buffer::Irradiance:
+    return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
+  case Buffer::Unfiltered:
+    if (frame.raw.deinterleaved && frame.raw.irradiance)
+      return {{"MODE 0", "DEINTERLEAVED"}, frame.raw.irradiance, exposure / kPi};
+    return {{"MODE 0"}, frame.raw.irradiance ? frame.raw.irradiance : frame.indirect.irradiance, exposure / kPi};
+  case Buffer::Albedo:
+    return {{"MODE 1"}, frame.gbuffer.albedo, 1};
+  case Buffer::Normal:
+    return {{"MODE 2"}, frame.gbuffer.normal, 1};
+  case Buffer::Depth:
+    return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
+  case Buffer::Emission:
+    return {{"MODE 0"}, frame.gbuffer.emission, exposure};
+  case Buffer::Patches:
+    if (!frame.patches) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
+    return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
+  case Buffer::Nan:
+    return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
+  case Buffer::Beauty:
+  case Buffer::Vpls:
+  case Buffer::ShadowMaps:
+    break;
+  }
+  return {{"MODE 0"}, frame.picture.radiance, exposure};
+}
+
+struct Sprite {
+  vec3 position;
+  float heat; // rank of the intensity, 0..1
+  float age;  // 0 new, 1 old
+};
+
+std::vector<Sprite> spritesOf(const VplSet& set) {
+  std::vector<uint32_t> order;
+  for (uint32_t i = 0; i < set.slots.size(); ++i)
+    if (set.slots[i].alive) order.push_back(i);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const float ia = set.slots[a].intensity(), ib = set.slots[b].intensity();
+    return ia != ib ? ia < ib : a < b;
+  });
+  std::vector<Sprite> sprites;
+  for (size_t rank = 0; rank < order.size(); ++rank) {
+    const Vpl& vpl = set.slots[order[rank]];
+    const float frames = float(set.frame - std::min(vpl.bornFrame, set.frame));
+    // Half way to old after a second at 60 frames per second.
+    sprites.push_back(
+        {vpl.position, float(rank) / float(std::max<size_t>(1, order.size() - 1)), 1 - std::exp2(-frames / 60.0f)});
+  }
+  return sprites;
+}
+
+} // namespace
+
+const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan) {
+  const gl::PassScope scope(context_.profiler, "display");
+  const int width = frame.gbuffer.width, height = frame.gbuffer.height;
+  if (!black_) {
+    black_ = gl::Texture("display/black", {.format = GL_RGBA32F});
+    black_.clear();
+  }
+  if (!display_ || display_.width() != width || display_.height() != height) {
+    display_ = gl::Texture("display/picture", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+    framebuffer_ = gl::Framebuffer("display", {&display_});
+  }
+  framebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  frame.gbuffer.depth->bind(0);
+
+  if (buffer == Buffer::ShadowMaps && !frame.vplMaps.arrays.empty()) {
+    const int rows = 8, columns = std::max(1, rows * width / height); // square cells
+    const gl::Program& program = context_.programs.get({.fragment = "map_sheet.frag"});
+    program.use();
+    program.set("grid", glm::ivec2(columns, rows));
+    program.set("cellPixels", float(height) / float(rows));
+    program.set("count", std::min(columns * rows, frame.vplMaps.arrays[0].desc().layers));
+    frame.vplMaps.arrays[0].bind(0);
+    gl::drawFullscreen();
+    return display_;
+  }
+
+  View view = viewOf(buffer, frame, exposure);
+  if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
+    const std::vector<std::string> glossy = bindReceivers(frame.gbuffer);
+    view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
+    frame.gbuffer.camera->bindUniform(0);
+    frame.gbuffer.normal->bind(1);
+    (view.glossy ? view.glossy : &black_)->bind(8);
+  }
+  const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
+  program.use();
+  program.set("factor", view.factor);
+  program.set("lens", vec2(frame.gbuffer.block.lens.z, frame.gbuffer.block.lens.w));
+  program.set("skyRadiance", frame.skyRadiance);
+  program.set("tileSize", tileSize(frame.gbuffer));
+  program.set("markNan", markNan || buffer == Buffer::Nan ? 1 : 0);
+  if (frame.patches) {
+    program.set("patchLevels", frame.patchLevels);
+    program.set("finestPatch", frame.raw.deinterleaved ? 2 : 0);
+    frame.patches->bind(5);
+  }
+  (view.source ? view.source : &black_)->bind(2);
+  frame.gbuffer.albedo->bind(3);
+  frame.gbuffer.emission->bind(4);
+  gl::drawFullscreen();
+  if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
+  return display_;
+}
+
+void DisplayPass::drawVpls(const FrameResults& frame) {
+  const std::vector<Sprite> sprites = spritesOf(*frame.vpls);
+  if (sprites.empty()) return;
+  const uint64_t bytes = sprites.size() * sizeof(Sprite);
+  if (!sprites_ || sprites_.bytes() < bytes) {
+    sprites_ = gl::Buffer("display/vpls", bytes, nullptr);
+    spriteArray_ = gl::VertexArray("display/vpls");
+    const GLuint array = spriteArray_.name();
+    glVertexArrayVertexBuffer(array, 0, sprites_.name(), 0, sizeof(Sprite));
+    glEnableVertexArrayAttrib(array, 0);
+    glVertexArrayAttribFormat(array, 0, 4, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(array, 0, 0);
+    glEnableVertexArrayAttrib(array, 1);
+    glVertexArrayAttribFormat(array, 1, 1, GL_FLOAT, GL_FALSE, offsetof(Sprite, age));
+    glVertexArrayAttribBinding(array, 1, 0);
+  }
+  sprites_.write(0, bytes, sprites.data());
+  const gl::Program& program = context_.programs.get({.vertex = "vpl_sprite.vert", .fragment = "vpl_sprite.frag"});
+  program.use();
+  program.set("diameterPixels", std::max(5.0f, float(frame.gbuffer.height) / 72));
+  frame.gbuffer.camera->bindUniform(0);
+  frame.gbuffer.depth->bind(0);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glBindVertexArray(spriteArray_.name());
+  glDrawArrays(GL_POINTS, 0, GLsizei(sprites.size()));
+  glBindVertexArray(0);
+  glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void DisplayPass::present(uint32_t framebuffer, int width, int height) {
+  const gl::PassScope scope(context_.profiler, "present");
+  const gl::Program& program = context_.programs.get({.fragment = "present.frag"});
+  program.use();
+  program.set("targetSize", vec2(width, height));
+  display_.bind(0);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+}
+
+Image8 DisplayPass::read() const {
+  const int width = display_.width(), height = display_.height();
+  std::vector<uint8_t> bottomUp(size_t(width) * height * 3);
+  glGetTextureImage(display_.name(), 0, GL_RGB, GL_UNSIGNED_BYTE, GLsizei(bottomUp.size()), bottomUp.data());
+  Image8 image{width, height, std::vector<uint8_t>(bottomUp.size())};
+  const size_t row = size_t(width) * 3;
+  for (int y = 0; y < height; ++y)
+    std::copy_n(&bottomUp[size_t(height - 1 - y) * row], row, &image.rgb[size_t(y) * row]);
+  return image;
+}
+
+} // namespace lambent

@@ -1,0 +1,101 @@
+// Global illumination of one frame, read top to bottom in gi_frame.cpp:
+// SceneView → EffectPlan → VplChanges → VplLights → VplShadows → GBuffer → Direct → Indirect → image.
+#pragma once
+
+#include "engine/core/image.h"
+#include "engine/core/profile.h"
+#include "engine/scene/scene_view.h"
+#include "engine/trace/ray_query.h"
+#include "gi/plan/effects.h"
+#include "gi/visibility/shadow_agreement.h"
+#include "gi/plan/settings.h"
+#include "gi/vpl/vpl_set.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace lambent {
+
+/// What may be shown or read back. The first seven are `--buffer` names of INTERFACE; the others are debug views.
+enum class Buffer : int {
+  Beauty,
+  Direct,
+  Indirect,
+  Irradiance,
+  Albedo,
+  Normal,
+  Depth,
+  Emission,   // radiance the visible surfaces emit
+  Unfiltered, // irradiance before the cross-bilateral filter: shows the 4×4 subsets
+  Vpls,       // beauty with the VPLs drawn in: colour = intensity, ring = age
+  ShadowMaps, // the first paraboloid maps as a contact sheet
+  Patches, // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
+  Nan,     // NaN magenta, infinity cyan, else grey beauty
+};
+/// Throws InputError with the nearest name.
+Buffer bufferByName(const std::string& name);
+const std::vector<std::string>& bufferNames();
+
+/// Figures of one frame: a line of frames.csv and the HUD's table. With frame.overlap, what concerns the update of the
+/// VPLs is of the update that ended before this frame's picture: that of the frame before.
+struct FrameStats {
+  uint32_t frame = 0;
+  std::vector<StageTime> stages;   // CPU and GPU, in order, milliseconds
+  double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
+  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
+      raysMapTests;
+  uint64_t patches = 0; // of the multiresolution buffer that gathered, as far as the GPU has told
+  uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
+  uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
+  uint32_t mapsDrawn = 0;                                     // paraboloid maps, in part or whole
+  uint64_t mapTexelsDrawn = 0;                                // of VPLs' maps, a ray or a texel drawn each
+  uint32_t mapsWaiting = 0;    // that show where a moved object was, and had to wait for later frames
+  uint32_t lightMapsDrawn = 0; // of punctual lights and of the sky
+  bool burst = false;
+  EffectPlan plan;
+  std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
+  std::string shadowMaker, timing;
+};
+
+/// Owns all GI state of one scene in the current GL context. Not copyable; destroy while the context is current.
+class GiFrame {
+ public:
+  explicit GiFrame(const Settings& settings, uint32_t seed = 1);
+  ~GiFrame();
+
+  Settings& settings(); // may be changed between frames; takes effect at the next one
+
+  /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up. Where nothing
+  /// changed and the VPLs have settled, nothing is computed and the last picture stays. With frame.overlap the VPLs of
+  /// this view are still being updated when it returns.
+  /// `progress` (may be empty) is called during the warm-up with done and total iterations.
+  const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {});
+
+  /// The last frame as linear values: radiance (beauty, direct, indirect), irradiance, albedo, world normal, depth in
+  /// metres along the view direction.
+  Image read(Buffer buffer) const;
+  /// The last frame as shown on a display: exposure, Reinhard, sRGB (albedo, normal, depth mapped to visible ranges).
+  Image8 readDisplay(Buffer buffer) const;
+  /// Draws the last frame as shown on a display into the framebuffer bound as `framebuffer`, scaled to its size.
+  void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
+
+  /// Shadow maps of the present VPLs held against each other and against rays, as `view` (the last one run) sees them.
+  ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
+                                    const std::function<void(int, int)>& progress = {});
+
+  /// Compiles shaders anew that changed on disk; one message per program touched. A failed one keeps its last good
+  /// version.
+  std::vector<std::string> reloadShaders();
+
+  const VplSet& vpls() const;
+  const RayQuery& rays() const;
+  float exposure() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace lambent

@@ -1,0 +1,119 @@
+// VPLs of reflective shadow maps, made on the GPU: nothing is read back but their number (isr).
+#include "gi/lights/reflective_maps.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+
+#include <cmath>
+#include <utility>
+
+namespace lambent {
+
+namespace {
+
+const std::vector<std::string> kLightFields{"positionArea", "powerNormalX", "tangentNormalY", "bitangentNormalZ"};
+constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
+constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
+/// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
+constexpr uint64_t kMostClusters = uint64_t(1) << 20;
+
+/// Runs the program over `vertices` points into `target` and returns how many it wrote.
+uint32_t capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
+  const gl::VertexArray empty("points");
+  const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  program.use();
+  glBindVertexArray(empty.name());
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, target.name());
+  glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
+  glBeginTransformFeedback(GL_POINTS);
+  glDrawArrays(GL_POINTS, 0, GLsizei(vertices));
+  glEndTransformFeedback();
+  glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  glDisable(GL_RASTERIZER_DISCARD);
+  glBindVertexArray(0);
+  gl::countDraws(1);
+  GLuint count = 0;
+  glGetQueryObjectuiv(written.name(), GL_QUERY_RESULT, &count);
+  return count;
+}
+
+void bindClusters(const ReflectiveMaps& maps) {
+  maps.position->bind(0);
+  maps.normal->bind(1);
+  maps.flux->bind(2);
+}
+
+} // namespace
+
+void ReflectiveLightPass::reserve(uint32_t slots) {
+  const uint64_t bytes = uint64_t(std::max(1u, (slots + kChunk - 1) / kChunk)) * kChunk * sizeof(VplLight);
+  if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
+}
+
+VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
+  if (!maps.changed && lights_) return {&lights_, count_};
+  const gl::PassScope scope(context_.profiler, "reflective lights");
+  const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));
+  gl::ProgramDesc desc{.vertex = "rsm_light.vert", .captured = kLightFields};
+  if (source == VplSource::Rsm) {
+    const int side = mapCount == 0 ? 0 : std::max(1, int(std::sqrt(double(rsm.vpls) / mapCount) + 1e-9));
+    count_ = mapCount * uint32_t(side * side);
+    reserve(count_);
+    std::vector<vec4> lenses(kMostMaps, vec4(0));
+    for (uint32_t i = 0; i < mapCount; ++i)
+      if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
+    const gl::Buffer lensBlock = gl::Buffer::of<vec4>("reflective lights/lenses", lenses);
+    lensBlock.bindUniform(3);
+    desc.defines.push_back("GRID");
+    const gl::Program& program = context_.programs.get(desc);
+    program.set("count", int(count_));
+    program.set("resolution", maps.resolution);
+    program.set("columns", maps.columns);
+    program.set("side", side);
+    program.set("exact", rsm.exact ? 1 : 0);
+    bindClusters(maps);
+    capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+    return {&lights_, count_};
+  }
+  const int coarsest = maps.levels - 1;
+  int finest = std::min(maps.levelOf(rsm.finest), coarsest);
+  const auto clusters = [&](int level) {
+    return uint64_t(mapCount) * uint64_t(maps.resolution >> level) * uint64_t(maps.resolution >> level);
+  };
+  while (finest < coarsest && clusters(finest) > kMostClusters) ++finest;
+  const int side = maps.resolution >> finest;
+  const uint32_t most = mapCount * uint32_t(side * side);
+  const uint64_t bytes = std::max<uint64_t>(1, most) * sizeof(VplLight);
+  if (!compact_ || compact_.bytes() < bytes) {
+    compact_ = gl::Buffer("reflective lights/clusters", bytes, nullptr);
+    compactView_ = gl::Texture::ofBuffer("reflective lights/view", GL_RGBA32F, compact_);
+  }
+  const gl::Program& compact = context_.programs.get(
+      {.vertex = "rsm_cluster.vert", .fragment = "", .geometry = "rsm_cluster.geom", .captured = kLightFields});
+  compact.set("side", side);
+  compact.set("columns", maps.columns);
+  compact.set("finest", finest);
+  compact.set("coarsest", coarsest);
+  bindClusters(maps);
+  if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
+  count_ = most > 0 ? capture(compact, compact_, most) : 0;
+  reserve(count_);
+  const gl::Program& order = context_.programs.get(desc);
+  order.set("count", int(count_));
+  compactView_.bind(0);
+  capture(order, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+  return {&lights_, count_};
+}
+
+std::vector<VplLight> ReflectiveLightPass::read() const {
+  const uint32_t chunks = std::max(1u, (count_ + kChunk - 1) / kChunk);
+  std::vector<VplLight> ordered(size_t(chunks) * kChunk), slots(count_);
+  glGetNamedBufferSubData(lights_.name(), 0, GLsizeiptr(ordered.size() * sizeof(VplLight)), ordered.data());
+  for (uint32_t slot = 0; slot < count_; ++slot) slots[slot] = ordered[lightOrder(slot)];
+  return slots;
+}
+
+} // namespace lambent

@@ -1,0 +1,207 @@
+#include "gi/plan/effects.h"
+
+
+#include <cmath>
+#include <utility>
+
+namespace lambent {
+
+namespace {
+
+constexpr EffectRow kRows[kEffects] = {
+    {"indirect", "light reflected by surfaces: VPLs, their shadow maps, the gather", "rays and draws"},
+    {"bounces", "light paths beyond the first surface that reflects; off: one bounce", "rays"},
+    {"emissive", "light from emissive surfaces; off: they glow and light nothing", "shadow maps and rays"},
+    {"sky", "light from the sky; off: it is seen and lights nothing", "shadow maps and rays"},
+    {"alpha", "cut-out materials let light through their holes", "tests and draws"},
+    {"textures", "light takes the colour of the texel it meets; off: the texture's mean", "lookups"},
+    {"motion", "objects move; off: they stay where they were when it was switched off", "objects placed"},
+    {"mapRefresh", "shadow maps of VPLs follow objects that move", "maps and rays"},
+    {"relight", "VPLs follow lights and geometry that change", "VPLs"},
+    {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
+    {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
+    {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
+    {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
+    {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
+};
+
+std::string count(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
+
+bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
+
+/// Whether light that one surface reflects can reach another that reflects. Certain only where it says no: everything
+/// that is not black lies in one plane. Large scenes are not asked. With `glossy` black surfaces count whose lobe
+/// reflects.
+bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
+  constexpr uint32_t kAsked = 4096; // triangles
+  const float tolerance = 1e-5f * std::max(1e-6f, view.boundsWorld.diameter());
+  uint32_t triangles = 0;
+  vec3 origin(0), normal(0);
+  for (const InstanceView& i : view.instances) {
+    const Mesh& mesh = view.assets->meshes[i.mesh];
+    for (const Primitive& p : mesh.primitives) {
+      const Material& material = view.assets->materials[p.material];
+      if (!(reflects(material) || (glossy && material.glossy())) || p.triangleCount == 0) continue;
+      triangles += p.triangleCount;
+      if (triangles > kAsked || i.deformed) return true;
+      for (uint32_t t = 0; t < p.triangleCount; ++t) {
+        const uvec3 corners = mesh.triangles[p.firstTriangle + t];
+        vec3 at[3];
+        for (int c = 0; c < 3; ++c) at[c] = vec3(i.worldFromObject * vec4(mesh.positions[corners[c]], 1));
+        if (normal == vec3(0)) {
+          const vec3 n = glm::cross(at[1] - at[0], at[2] - at[0]);
+          if (!(glm::length(n) > 0)) return true;
+          normal = glm::normalize(n);
+          origin = at[0];
+        }
+        for (const vec3& corner : at)
+          if (!(std::abs(glm::dot(corner - origin, normal)) <= tolerance)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// What the scene's lights, materials and instances hold.
+struct SceneFacts {
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, moved = 0;
+  bool emittersMoved = false;
+
+  explicit SceneFacts(const SceneView& view) {
+    for (const LightView& l : view.lights) punctual += luminance(l.intensity) > 0;
+    for (const InstanceView& i : view.instances) {
+      moved += i.moved;
+      for (const Primitive& p : view.assets->meshes[i.mesh].primitives) {
+        const Material& m = view.assets->materials[p.material];
+        emissive += m.emits();
+        emittersMoved |= m.emits() && i.moved;
+        masked += m.alphaMode == AlphaMode::Mask;
+        textured += m.baseColorTexture.image != kNone;
+        reflecting += reflects(m);
+        glossy += m.glossy();
+      }
+    }
+  }
+};
+
+using Answer = std::pair<bool, std::string>;
+
+} // namespace
+
+const EffectRow& effectRow(EffectId id) { return kRows[size_t(id)]; }
+
+EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts) {
+  const SceneFacts scene(view);
+  const bool seeOneAnother = reflectorsSeeOneAnother(view, settings.gather.glossy);
+  const SceneChanges& changes = view.changes;
+  const SmcSettings& smc = settings.smc;
+  EffectPlan plan;
+  const auto decide = [&](EffectId id, Answer answer) {
+    Effect& e = plan.effects_[size_t(id)];
+    const EffectMode mode = settings.effects[id];
+    e.forced = mode != EffectMode::Auto;
+    e.calledFor = answer.first;
+    e.on = e.forced ? mode == EffectMode::On : answer.first;
+    e.reason = e.forced ? std::string("effects.") + effectRow(id).name + " is " + (e.on ? "on" : "off")
+                        : std::move(answer.second);
+    return e.on;
+  };
+  const bool reflective = fromReflectiveMaps(settings.vpl.source);
+  const auto whyNoIndirect = [&](bool light) -> Answer {
+    if (smc.bounces < 1) return {false, "smc.bounces is 0"};
+    if (reflective && scene.punctual == 0) return {false, "no punctual light, so no reflective shadow map"};
+    if (view.instances.empty()) return {false, "nothing to light"};
+    if (!light) return {false, "no light"};
+    if (scene.reflecting == 0) return {false, "every surface is black"};
+    if (!seeOneAnother) return {false, "all that reflects lies in one plane"};
+    return {true, "light, and surfaces that reflect it to one another"};
+  };
+
+  // What the scene holds.
+  const bool emissive =
+      decide(EffectId::Emissive, {scene.emissive > 0, scene.emissive > 0 ? count(scene.emissive, "emissive surface")
+                                                                         : "no material emits"});
+  const bool sky = luminance(view.skyRadiance) > 0;
+  const bool skyLight = decide(EffectId::Sky, {sky, sky ? "the sky has radiance" : "the sky is black"});
+  decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked surface")
+                                                              : "no material has an alpha mask"});
+  const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
+  const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
+  const Answer none{false, "no indirect light"};
+  const Answer oneBounce{false, "reflective shadow maps show one bounce"};
+  decide(EffectId::Bounces, !indirect         ? none
+                            : reflective      ? oneBounce
+                            : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
+                            : !seeOneAnother  ? Answer{false, "all that reflects lies in one plane"}
+                                              : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
+  decide(EffectId::Textures, !indirect            ? none
+                             : reflective         ? Answer{false, "no light path is traced"}
+                             : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
+                                                  : Answer{false, "no base-colour texture"});
+  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
+                                : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
+                                                                     : Answer{false, "shadow.emitterSamples is 1"});
+  decide(EffectId::Filter, !indirect                                        ? none
+                           : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
+                           : !interleaved(settings.gather.mode)             ? Answer{false, "every pixel sees all VPLs"}
+                           : !settings.filter.on                            ? Answer{false, "filter.on is off"}
+                                                 : Answer{true, "the gather is interleaved"});
+
+  decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
+                           : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
+                                                   : Answer{false, "every material has roughness 1 and no metalness"});
+
+  // What changed.
+  const bool geometry = changes.geometry || changes.instances;
+  const std::string movers = !geometry         ? "nothing moved"
+                             : scene.moved > 0 ? count(scene.moved, "object") + " moved"
+                                               : "objects came or went";
+  const bool motion =
+      decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
+  const bool moved = geometry && motion;
+  decide(EffectId::MapRefresh, !indirect               ? none
+                               : reflective            ? Answer{false, "maps are drawn with the VPLs"}
+                               : moved                 ? Answer{true, movers}
+                               : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
+                                                       : Answer{false, "nothing moved"});
+  const bool placedAnew = settings.vpl.source != VplSource::Smc && !reflective; // every frame, by photons or chains
+  const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
+  const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
+  decide(EffectId::Relight, !indirect               ? none
+                            : reflective            ? fromMaps
+                            : placedAnew            ? Answer{true, "the technique lights its VPLs anew in every frame"}
+                            : changes.first         ? Answer{true, "the scene is new"}
+                            : changes.lights        ? Answer{true, "lights changed"}
+                            : moved                 ? Answer{true, movers}
+                            : facts.settingsChanged ? Answer{true, "settings changed"}
+                            : !smc.cache && !(still && facts.settled)
+                                ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
+                                : Answer{false, "neither lights nor objects changed"});
+  decide(EffectId::Replace, !indirect                ? none
+                            : reflective             ? fromMaps
+                            : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
+                            : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
+                            : still                  ? Answer{true, "the VPLs have not settled yet"}
+                                                     : Answer{true, "the view or the scene changed"});
+  const Effect& replace = plan[EffectId::Replace];
+  const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
+  decide(EffectId::Redraw, !still                              ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged              ? Answer{true, "settings or shaders changed"}
+                           : newLight                          ? Answer{true, "VPLs change"}
+                           : indirect && facts.mapsWaiting > 0 ? Answer{true, "shadow maps are waiting"}
+                                                               : Answer{false, "nothing changed"});
+  if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
+    redraw.on = true;
+    redraw.reason = "there is no picture yet";
+  }
+  return plan;
+}
+
+std::string EffectPlan::oneLine() const {
+  std::string line;
+  for (size_t i = 0; i < kEffects; ++i)
+    if (effects_[i].on) line += (line.empty() ? "" : "+") + std::string(effectRow(EffectId(i)).name);
+  return line.empty() ? "none" : line;
+}
+
+} // namespace lambent

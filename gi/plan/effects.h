@@ -1,0 +1,58 @@
+// Which effects a scene and a frame call for: every optional part of the work, on or off, each with its reason in plain
+// words. A pure function of the view, the settings and a few facts about the last frame. What is off does not run at
+// all; settings force each on or off for comparison.
+#pragma once
+
+#include "engine/scene/scene_view.h"
+#include "gi/plan/settings.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace lambent {
+
+/// One row per effect: how it is named, and the unit in which FrameStats counts its work.
+struct EffectRow {
+  const char* name;
+  const char* help; // what it does; what leaving it out does to the picture
+  const char* work;
+};
+const EffectRow& effectRow(EffectId id);
+
+struct Effect {
+  bool on = false;
+  bool calledFor = false; // what the plan would be if settings did not force it
+  bool forced = false;    // by settings
+  std::string reason;
+};
+
+/// What a plan depends on besides the scene and the settings.
+struct FrameFacts {
+  bool first = true;           // no picture was drawn yet
+  bool settingsChanged = true; // of VPLs or effects
+  bool drawingChanged = true;  // other settings, or the shaders
+  bool settled = false;        // no better set of VPLs is in reach, see gi/vpl/settling.h
+  uint32_t mapsWaiting = 0;    // maps that show where a moved object was
+  bool lightArrived = false;   // VPLs were updated beside the last picture and are not in it
+};
+
+class EffectPlan {
+ public:
+  bool on(EffectId id) const { return effects_[size_t(id)].on; }
+  bool calledFor(EffectId id) const { return effects_[size_t(id)].calledFor; }
+  /// On without need: the work is done, and must not change anything.
+  bool idle(EffectId id) const { return on(id) && !calledFor(id); }
+  const Effect& operator[](EffectId id) const { return effects_[size_t(id)]; }
+  /// Names of the effects that are on, separated by '+'; "none".
+  std::string oneLine() const;
+
+ private:
+  friend EffectPlan planEffects(const SceneView&, const Settings&, const FrameFacts&);
+  std::array<Effect, kEffects> effects_;
+};
+
+/// `view.changes` counts: what nothing changed about needs no work.
+EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts);
+
+} // namespace lambent

@@ -1,0 +1,203 @@
+// Every knob of the GI module: default, unit, range and what it costs. The same names are used by `--set group.name`,
+// by shot files and by the walkthrough's panel. `settingsTable()` lists them; nothing else holds a tunable number.
+#pragma once
+
+#include "engine/core/math.h"
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace lambent {
+
+/// Who places the virtual lights: gi/vpl/sources.h, and from reflective shadow maps a regular grid, clusters, or a tree
+/// that every fragment cuts for itself (gi/lights/reflective_maps.h).
+enum class VplSource : int { Smc, Ir, Mir, Tcas, Rsm, Isr, Hisr };
+inline bool fromReflectiveMaps(VplSource source) { return source >= VplSource::Rsm; }
+enum class VplVisibility : int { Maps, Rays, None }; // paraboloid maps | exhaustive ray casts (paper 1, fig. 8) | all
+/// 4×4 interleaved subsets + filter | every VPL at every pixel | every VPL at every patch of the multiresolution buffer
+/// | patches of each of the 16 subsets + filter | VPLs splatted into the patches | each VPL into patches of its own.
+enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl };
+inline bool interleaved(GatherMode mode) {
+  return mode == GatherMode::Interleaved || mode == GatherMode::MultiresInterleaved;
+}
+inline bool multiresolution(GatherMode mode) { return mode >= GatherMode::Multires; }
+enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
+// What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
+enum class DensityEstimator : int { Knn, KnnSide, Cells };
+enum class FilterKernel : int { Separable, Whole };    // rows then columns | all 49 taps at once
+enum class EffectMode : int { Auto, On, Off };         // as the plan says (gi/plan/effects.h) | forced, for comparison
+enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
+
+/// Parts of the work that a scene or a frame may do without: see gi/plan/effects.h.
+enum class EffectId : int {
+  Indirect,
+  Bounces,
+  Emissive,
+  Sky,
+  Alpha,
+  Textures,
+  Motion,
+  MapRefresh,
+  Relight,
+  Replace,
+  Filter,
+  Glossy,
+  SoftShadows,
+  Redraw,
+};
+inline constexpr size_t kEffects = size_t(EffectId::Redraw) + 1;
+
+struct EffectSettings {
+  EffectMode modes[kEffects] = {};
+  EffectMode& operator[](EffectId id) { return modes[size_t(id)]; }
+  EffectMode operator[](EffectId id) const { return modes[size_t(id)]; }
+  bool operator==(const EffectSettings&) const = default;
+};
+
+struct VplSettings {
+  VplSource source = VplSource::Smc;
+  VplVisibility visibility = VplVisibility::Maps;
+  int mirCandidates = 256; // mir: paths per VPL slot to choose from (paper 1, 5.1: 256:1)
+  int tcasIterations = 16; // tcas: Metropolis–Hastings iterations per VPL and frame (paper 1, 5.1)
+  bool operator==(const VplSettings&) const = default;
+};
+
+struct SmcSettings {
+  int vpls = 2048;         // slots N
+  int moves = 16;          // M_max, replacements per frame
+  int candidateRays = 16;  // candidate rays per candidate drawn (16:1 resampling)
+  int poolFrames = 16;     // frames that a candidate is kept at most; 1 = all drawn anew in every frame (paper 1)
+  int paths = 16;          // light paths per VPL radiosity estimate
+  int bounces = 3;         // B: B=1 is light → VPL → pixel
+  int points = 2048;       // directly visible points X
+  int validationRays = 16; // V, rays per point and round towards unverified VPLs
+  int warmup = 100;        // iterations before the first picture
+  int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
+  bool cache = true;       // keep light paths until geometry that they touch moves; same results
+  DensityEstimator density = DensityEstimator::Cells;
+  bool operator==(const SmcSettings&) const = default;
+};
+
+struct ShadowSettings {
+  int resolution = 128; // texels per side of a VPL's paraboloid map
+  ShadowMaker maker = ShadowMaker::Auto;
+  float bias = 1.0f;   // in texels of the map at the receiver
+  int refresh = 32;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
+  // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
+  int sunResolution = 0;   // 2w
+  int pointResolution = 0; // w/2 per cube face
+  int spotResolution = 0;  // w
+  int emitterSamples = 16; // shadowed samples that stand for all emissive surfaces in direct light
+  int emitterResolution = 256;
+  int skyMaps = 32; // directions that stand for the sky in direct light
+  int skyResolution = 256;
+  bool operator==(const ShadowSettings&) const = default;
+};
+
+struct GatherSettings {
+  GatherMode mode = GatherMode::Interleaved;
+  float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
+  float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
+  float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
+  bool operator==(const GatherSettings&) const = default;
+};
+
+/// Patches of the picture that gather as one (papers 2 and 3).
+struct MultiresSettings {
+  int coarsest = 16;   // patches along the picture's longer side at the coarsest level
+  float depth = 0.02f; // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
+  float normal = 0.2f; // range of a component of the normal that splits it
+  bool balance = true; // neighbours differ by one level at most
+  float detail = 0;    // α of paper 2's surface detail
+  float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
+  bool operator==(const MultiresSettings&) const = default;
+};
+
+/// Lights from reflective shadow maps (papers 2 and 3).
+struct RsmSettings {
+  int resolution = 256; // texels per side of a light's map, of each face of a point light's
+  int vpls = 256;       // rsm: about as many on a regular grid over all maps
+  bool exact = true;    // solid angle of every texel; off: all of a map the same, as the papers
+  int coarsest = 32;    // isr, hisr: patches per side of a map at the coarsest level
+  int finest = 256;     // and at the finest
+  float depth = 0.05f;  // isr: as MultiresSettings::depth, seen from the light
+  float normal = 0.2f;  // isr: as MultiresSettings::normal
+  float tau = 0.003f;   // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
+  bool operator==(const RsmSettings&) const = default;
+};
+
+struct FilterSettings {
+  bool on = true;
+  FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
+  float normalPower = 16;                        // weight = max(0, n·n')^power
+  float distance = 0.02f; // standard deviation of the plane distance, share of the pixel's view distance
+  bool operator==(const FilterSettings&) const = default;
+};
+
+struct ImageSettings {
+  float exposure = 0; // factor on radiance before Reinhard; 0 = measured once when the first picture is drawn
+  bool operator==(const ImageSettings&) const = default;
+};
+
+struct FrameSettings {
+  bool overlap = false; // VPLs of this frame are updated while the GPU draws the last ones: their light is a frame late
+  bool operator==(const FrameSettings&) const = default;
+};
+
+struct DebugSettings {
+  bool nan = true; // paint NaN magenta and infinity cyan
+  TimingMode timing = TimingMode::Auto;
+  bool operator==(const DebugSettings&) const = default;
+};
+
+struct Settings {
+  VplSettings vpl;
+  SmcSettings smc;
+  ShadowSettings shadow;
+  GatherSettings gather;
+  MultiresSettings multires;
+  RsmSettings rsm;
+  FilterSettings filter;
+  ImageSettings image;
+  FrameSettings frame;
+  EffectSettings effects;
+  DebugSettings debug;
+  bool operator==(const Settings&) const = default;
+};
+
+/// One row: how a setting is named, what it may be, and what it costs.
+struct SettingRow {
+  std::string name; // "smc.vpls"
+  std::string help; // meaning, unit, cost, one line
+  std::string defaultText;
+  std::string range; // "1..65536" or "maps|rays"
+};
+const std::vector<SettingRow>& settingsTable();
+
+/// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
+void applySetting(Settings& settings, std::string_view name, std::string_view value);
+/// Names of the presets, cheapest first. Each is a point of the measured front of error against time
+/// (docs/measurements).
+const std::vector<std::string>& presetNames();
+/// Sets what the preset is about (numbers of VPLs, paths, map texels, gather) and leaves everything else. Throws
+/// InputError that names the presets.
+void applyPreset(Settings& settings, const std::string& name);
+
+/// Names of the techniques: choices of settings that belong together (gi/README.md, "Comparators").
+const std::vector<std::string>& techniqueNames();
+/// Throws InputError that gives the nearest name, or all of them.
+void applyTechnique(Settings& settings, const std::string& name);
+/// The technique that the settings amount to.
+const std::string& techniqueOf(const Settings& settings);
+
+/// Throws InputError where settings contradict each other.
+void checkSettings(const Settings& settings);
+
+/// Text of the present value.
+std::string settingText(const Settings& settings, std::string_view name);
+
+} // namespace lambent

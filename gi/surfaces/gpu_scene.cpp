@@ -1,0 +1,125 @@
+// Drawing of the scene's instances: culling, sorting, binding.
+#include "gi/surfaces/gpu_scene.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+Frustum Frustum::ofClip(const mat4& clipFromWorld) {
+  const mat4 rows = glm::transpose(clipFromWorld);
+  // z ≥ 0 and z ≤ w bound both conventions of depth; with an infinite far plane one of them is open by itself.
+  return {{rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[2], rows[3] - rows[2]}};
+}
+
+bool Frustum::mayShow(const Aabb& box) const {
+  for (const vec4& plane : planes) {
+    const vec3 n(plane);
+    const vec3 farthest(n.x > 0 ? box.hi.x : box.lo.x, n.y > 0 ? box.hi.y : box.lo.y, n.z > 0 ? box.hi.z : box.lo.z);
+    if (glm::dot(n, farthest) + plane.w < 0) return false;
+  }
+  return true;
+}
+
+void GpuScene::place(std::span<const InstanceView> instances) {
+  std::vector<Placed> placed;
+  placed.reserve(instances.size());
+  for (const InstanceView& i : instances)
+    placed.push_back({i.mesh, i.worldFromObject, i.deformed ? i.deformed->revision : 0});
+  if (placed == placed_) return;
+  layOutDeformed(instances);
+  uploadDeformed(instances);
+  placed_ = std::move(placed);
+
+  std::vector<vec4> rows;
+  rows.reserve(instances.size() * 3);
+  items_.clear();
+  bounds_ = {};
+  triangleCount_ = 0;
+  for (uint32_t i = 0; i < instances.size(); ++i) {
+    const InstanceView& instance = instances[i];
+    const mat4 transposed = glm::transpose(instance.worldFromObject);
+    rows.insert(rows.end(), {transposed[0], transposed[1], transposed[2]});
+    for (PrimitiveRange range : meshes_[instance.mesh].primitives) {
+      if (instance.deformed) {
+        range.baseVertex = deformed_.baseVertex[i];
+        range.boundsObject = instance.deformed->primitiveBoundsObject[range.primitive];
+      }
+      items_.push_back(
+          {i, range, transformed(range.boundsObject, instance.worldFromObject), instance.deformed != nullptr});
+      bounds_.add(items_.back().boundsWorld);
+      triangleCount_ += range.indexCount / 3;
+    }
+  }
+  // Sorted once here, not per draw: by material, since binding one costs more than anything else of a draw.
+  std::stable_sort(items_.begin(), items_.end(),
+                   [](const Item& a, const Item& b) { return a.range.material < b.range.material; });
+
+  const uint64_t bytes = std::max<size_t>(1, rows.size()) * sizeof(vec4);
+  if (!instanceRows_ || instanceRows_.bytes() < bytes)
+    instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
+  for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
+    if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
+  instanceRows_.write(0, rows.size() * sizeof(vec4), rows.data());
+}
+
+const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
+  gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth ? "depth.frag" : "gbuffer.frag"};
+  if (kind == DrawKind::Depth) desc.defines.push_back("DEPTH_ONLY");
+  if (tested(material)) desc.defines.push_back("ALPHA_MASK");
+  if (material.baseTexture && (kind != DrawKind::Depth || tested(material))) desc.defines.push_back("BASE_TEXTURE");
+  if (material.emissiveTexture && kind != DrawKind::Depth) desc.defines.push_back("EMISSIVE_TEXTURE");
+  if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
+  if (material.finishTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
+  return programs_.get(desc);
+}
+
+void GpuScene::bindMaterial(uint32_t index) const {
+  const MaterialDraw& material = materialDraws_[index];
+  materials_.bindUniform(1, index * materialStride_, sizeof(MaterialBlock));
+  glBindTextureUnit(2, material.baseTexture);
+  glBindSampler(2, material.baseSampler);
+  glBindTextureUnit(3, material.emissiveTexture);
+  glBindSampler(3, material.emissiveSampler);
+  glBindTextureUnit(4, material.finishTexture);
+  glBindSampler(4, material.finishSampler);
+}
+
+uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
+  const Frustum frustum = Frustum::ofClip(clipFromWorld);
+  GLuint array = vertexArray_.name();
+  glBindVertexArray(array);
+  glVertexAttrib4f(3, 1, 1, 1, 1); // the colour of vertices without colour (context state, not the array's)
+  const gl::Program* program = nullptr;
+  uint32_t bound = kNone, draws = 0;
+  for (const Item& item : items_) {
+    if (!frustum.mayShow(item.boundsWorld)) continue;
+    const MaterialDraw& material = materialDraws_[item.range.material];
+    if (item.range.material != bound) {
+      const gl::Program& wanted = programFor(kind, material);
+      if (&wanted != program) {
+        program = &wanted;
+        program->use();
+        program->set("clipFromWorld", clipFromWorld);
+        program->set("eye", eye);
+      }
+      if (kind != DrawKind::Depth || tested(material)) bindMaterial(item.range.material);
+      bound = item.range.material;
+    }
+    if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
+      glBindVertexArray(array = wanted);
+    glDrawElementsInstancedBaseVertexBaseInstance(
+        GL_TRIANGLES, GLsizei(item.range.indexCount), GL_UNSIGNED_INT,
+        reinterpret_cast<const void*>(uintptr_t(item.range.firstIndex) * sizeof(uint32_t)), 1,
+        GLint(item.range.baseVertex), item.instance);
+    ++draws;
+    testedDraws_ += tested(material);
+  }
+  glBindSampler(2, 0);
+  glBindSampler(3, 0);
+  glBindSampler(4, 0);
+  glBindVertexArray(0);
+  gl::countDraws(draws);
+  return draws;
+}
+
+} // namespace lambent

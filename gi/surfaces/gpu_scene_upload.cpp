@@ -1,0 +1,166 @@
+// Assets into GPU memory: one vertex and one index buffer for all meshes, one uniform buffer for all materials.
+#include "engine/core/error.h"
+#include "gi/surfaces/gpu_scene.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <bit>
+#include <cstring>
+
+namespace lambent {
+
+namespace {
+
+GLenum glWrap(Wrap wrap) {
+  switch (wrap) {
+  case Wrap::Repeat:
+    return GL_REPEAT;
+  case Wrap::MirroredRepeat:
+    return GL_MIRRORED_REPEAT;
+  case Wrap::ClampToEdge:
+    return GL_CLAMP_TO_EDGE;
+  }
+  return GL_REPEAT;
+}
+
+vec4 uvRow(const TextureRef& ref, int row, float w) {
+  return {ref.uvTransform[0][row], ref.uvTransform[1][row], ref.uvTransform[2][row], w};
+}
+
+MaterialBlock blockOf(const Material& m) {
+  return {
+      .baseColor = vec4(m.baseColor, m.alpha),
+      .emission = vec4(m.emission, m.alphaMode == AlphaMode::Mask ? m.alphaCutoff : 0),
+      .baseUvU = uvRow(m.baseColorTexture, 0, float(m.baseColorTexture.uvSet)),
+      .baseUvV = uvRow(m.baseColorTexture, 1, m.doubleSided ? 1.0f : 0.0f),
+      .emissiveUvU = uvRow(m.emissiveTexture, 0, float(m.emissiveTexture.uvSet)),
+      .emissiveUvV = uvRow(m.emissiveTexture, 1, 0),
+      .finish = vec4(m.roughness, m.metalness, 0, 0),
+      .finishUvU = uvRow(m.finishTexture, 0, float(m.finishTexture.uvSet)),
+      .finishUvV = uvRow(m.finishTexture, 1, 0),
+  };
+}
+
+gl::Texture uploadImage(const TextureImage& image) {
+  const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
+  gl::Texture texture("scene/" + image.name.substr(0, 100), {.format = GLenum(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
+                                                             .width = image.width,
+                                                             .height = image.height,
+                                                             .levels = levels,
+                                                             .linear = true});
+  glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                      image.texels.data());
+  glGenerateTextureMipmap(texture.name());
+  return texture;
+}
+
+/// Declares attribute `location` fed from `buffer`, or leaves it at its current (constant) value when that is empty.
+void attribute(const gl::VertexArray& array, GLuint location, const gl::Buffer& buffer, int components, GLenum type,
+               bool normalized, int stride) {
+  if (!buffer) return;
+  glEnableVertexArrayAttrib(array.name(), location);
+  glVertexArrayAttribFormat(array.name(), location, components, type, normalized, 0);
+  glVertexArrayAttribBinding(array.name(), location, location);
+  glVertexArrayVertexBuffer(array.name(), location, buffer.name(), 0, stride);
+}
+
+} // namespace
+
+GpuScene::GpuScene(gl::ProgramCache& programs, const SceneAssets& assets) : programs_(programs) {
+  uploadMeshes(assets);
+  uploadMaterials(assets);
+}
+
+void GpuScene::uploadMeshes(const SceneAssets& assets) {
+  std::vector<vec3> positions;
+  std::vector<uint64_t> normals, colors; // four 16-bit values each
+  std::vector<vec4> uvs;                 // uv0, uv1
+  std::vector<uvec3> triangles;
+  bool anyUv = false, anyColor = false;
+  for (const Mesh& mesh : assets.meshes) {
+    anyUv |= !mesh.uv0.empty() || !mesh.uv1.empty();
+    anyColor |= !mesh.colors.empty();
+  }
+  for (const Mesh& mesh : assets.meshes) {
+    const uint32_t baseVertex = uint32_t(positions.size()), baseTriangle = uint32_t(triangles.size());
+    CHECK_EQ(mesh.normals.size(), mesh.positions.size());
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    triangles.insert(triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+      normals.push_back(glm::packSnorm4x16(vec4(mesh.normals[i], 0)));
+      const vec2 uv0 = mesh.uv0.empty() ? vec2(0) : mesh.uv0[i], uv1 = mesh.uv1.empty() ? vec2(0) : mesh.uv1[i];
+      if (anyUv) uvs.push_back(vec4(uv0.x, uv0.y, uv1.x, uv1.y));
+      if (anyColor) colors.push_back(glm::packUnorm4x16(mesh.colors.empty() ? vec4(1) : mesh.colors[i]));
+    }
+    MeshRange& range = meshes_.emplace_back(MeshRange{baseVertex, uint32_t(mesh.positions.size()), {}});
+    for (uint32_t i = 0; i < mesh.primitives.size(); ++i)
+      if (const Primitive& p = mesh.primitives[i]; p.triangleCount > 0)
+        range.primitives.push_back(
+            {i, (baseTriangle + p.firstTriangle) * 3, p.triangleCount * 3, baseVertex, p.material, p.boundsObject});
+  }
+  if (positions.empty()) {
+    vertexArray_ = gl::VertexArray("scene/vertices"); // nothing to draw, but bound all the same
+    return;
+  }
+
+  positions_ = gl::Buffer::of<vec3>("scene/positions", positions);
+  normals_ = gl::Buffer::of<uint64_t>("scene/normals", normals);
+  if (anyUv) uvs_ = gl::Buffer::of<vec4>("scene/uvs", uvs);
+  if (anyColor) colors_ = gl::Buffer::of<uint64_t>("scene/colors", colors);
+  if (!triangles.empty()) indices_ = gl::Buffer::of<uvec3>("scene/indices", triangles);
+
+  vertexArray_ = vertexArrayOf("scene/vertices", positions_, normals_, uvs_, colors_);
+}
+
+/// Attributes from these buffers, rows of worldFromObject per instance, and the indices of all meshes.
+gl::VertexArray GpuScene::vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
+                                        const gl::Buffer& uvs, const gl::Buffer& colors) const {
+  gl::VertexArray array(label);
+  attribute(array, 0, positions, 3, GL_FLOAT, false, sizeof(vec3));
+  attribute(array, 1, normals, 3, GL_SHORT, true, sizeof(uint64_t));
+  attribute(array, 2, uvs, 4, GL_FLOAT, false, sizeof(vec4));
+  attribute(array, 3, colors, 4, GL_UNSIGNED_SHORT, true, sizeof(uint64_t));
+  for (GLuint row = 0; row < 3; ++row) {
+    glEnableVertexArrayAttrib(array.name(), kInstanceBinding + row);
+    glVertexArrayAttribFormat(array.name(), kInstanceBinding + row, 4, GL_FLOAT, GL_FALSE, row * sizeof(vec4));
+    glVertexArrayAttribBinding(array.name(), kInstanceBinding + row, kInstanceBinding);
+  }
+  glVertexArrayBindingDivisor(array.name(), kInstanceBinding, 1);
+  if (indices_) glVertexArrayElementBuffer(array.name(), indices_.name());
+  return array;
+}
+
+uint32_t GpuScene::samplerFor(const TextureRef& ref) {
+  const uint32_t key = uint32_t(ref.wrapU) | uint32_t(ref.wrapV) << 4 | uint32_t(ref.nearest) << 8;
+  gl::Sampler& sampler = samplers_[key];
+  if (!sampler) {
+    sampler = gl::Sampler("scene/sampler");
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GLint(glWrap(ref.wrapU)));
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GLint(glWrap(ref.wrapV)));
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, ref.nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, ref.nearest ? GL_NEAREST : GL_LINEAR);
+  }
+  return sampler.name();
+}
+
+void GpuScene::uploadMaterials(const SceneAssets& assets) {
+  for (const TextureImage& image : assets.images) textures_.push_back(uploadImage(image));
+  const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };
+  const auto samplerOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : samplerFor(ref); };
+
+  GLint alignment = 256;
+  glGetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+  materialStride_ = (sizeof(MaterialBlock) + alignment - 1) / alignment * alignment;
+  std::vector<std::byte> bytes(std::max<size_t>(1, assets.materials.size()) * materialStride_);
+  for (size_t i = 0; i < assets.materials.size(); ++i) {
+    const Material& m = assets.materials[i];
+    const MaterialBlock block = blockOf(m);
+    std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
+    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.finishTexture),
+                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture), samplerOf(m.finishTexture),
+                              m.alphaMode == AlphaMode::Mask});
+  }
+  materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
+}
+
+} // namespace lambent

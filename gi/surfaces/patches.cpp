@@ -1,0 +1,60 @@
+// Which patches of the picture hold one smooth surface. Papers 2 and 3 compare depths in a min-max pyramid, which fires
+// on floors seen at a grazing angle (paper 2 says so), or their derivatives. Here a patch keeps a plane and a bound of
+// the distance to it, merged from its parts: no plane ever fires, no step is missed. Normals are ranges, as in paper
+// 2, 3.2.
+#include "gi/gather/multires.h"
+
+namespace lambent {
+
+PatchPyramid PatchPass::run(const PatchInputs& in) {
+  const gl::PassScope scope(context_.profiler, name_);
+  const int multiple = 1 << in.levels;
+  const glm::ivec2 padded = (in.size + multiple - 1) / multiple * multiple;
+  if (in.levels == 0) return {nullptr, nullptr, nullptr, 0, padded};
+  const glm::ivec2 half = padded / 2;
+  if (!plane_ || plane_.width() != half.x || plane_.height() != half.y || plane_.desc().levels != in.levels) {
+    const auto make = [&](const char* what, GLenum format) {
+      return gl::Texture(name_ + "/" + what,
+                         {.format = format, .width = half.x, .height = half.y, .levels = in.levels});
+    };
+    plane_ = make("planes", GL_RGBA32F);
+    normalLo_ = make("least normals", GL_RGBA16F);
+    normalHi_ = make("largest normals", GL_RGBA16F);
+    framebuffers_.clear();
+    for (int i = 0; i < in.levels; ++i)
+      framebuffers_.emplace_back(name_, std::initializer_list<const gl::Texture*>{&plane_, &normalLo_, &normalHi_},
+                                 nullptr, i);
+  }
+  for (int i = 0; i < in.levels; ++i) {
+    const gl::Program& program =
+        context_.programs.get({.fragment = "pyramid.frag",
+                               .defines = i == 0 ? std::vector<std::string>{"FIRST"} : std::vector<std::string>{}});
+    program.use();
+    program.set("size", in.size);
+    program.set("cell", in.cell == in.size ? padded : in.cell / (1 << i)); // a picture is one cell
+    program.set("childPixels", 1 << i);
+    program.set("depthThreshold", in.depthThreshold);
+    program.set("normalThreshold", in.normalThreshold);
+    program.set("orthoScale", in.orthoScale);
+    program.set("orthoFrom", in.orthoFrom);
+    program.set("columns", in.size.x / in.cell.x);
+    program.set("balance", in.balance ? 1 : 0);
+    if (i == 0) {
+      in.depth.bind(0);
+      in.normal.bind(1);
+    } else {
+      int unit = 0;
+      for (const gl::Texture* t : {&plane_, &normalLo_, &normalHi_}) {
+        t->limitLevels(i - 1, i - 1);
+        t->bind(unit++);
+      }
+    }
+    framebuffers_[i].bind();
+    gl::PipelineState{.width = half.x >> i, .height = half.y >> i}.apply();
+    gl::drawFullscreen();
+  }
+  for (const gl::Texture* t : {&plane_, &normalLo_, &normalHi_}) t->limitLevels(0, in.levels - 1);
+  return {&plane_, &normalLo_, &normalHi_, in.levels, padded};
+}
+
+} // namespace lambent

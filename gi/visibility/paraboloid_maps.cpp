@@ -1,0 +1,132 @@
+// Distance maps of VPLs and emissive samples: bookkeeping and the choice of the maker. Paper 1, section 4.4, draws them
+// on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
+#include "gi/visibility/paraboloid_maps.h"
+#include "engine/core/error.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace lambent {
+
+namespace {
+
+double secondsOf(const std::function<void()>& work) {
+  glFinish();
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  glFinish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+} // namespace
+
+std::vector<MapPose> mapPoses(const VplSet& set) {
+  std::vector<MapPose> poses;
+  poses.reserve(set.slots.size());
+  for (const Vpl& vpl : set.slots) poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
+  return poses;
+}
+
+ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
+  const gl::PassScope scope(context_.profiler, name_);
+  mapsDrawn_ = 0;
+  CHECK(in.farDistance > 0);
+  std::vector<MapJob> all;
+  std::span<const MapJob> jobs = in.jobs;
+  if (drawsAllAnew(in)) {
+    allocate(in);
+    all.resize(in.poses.size());
+    for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
+    jobs = all;
+  }
+  for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
+
+  ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
+  if (maker == ShadowMaker::Auto && !measuredMaker_ && !jobs.empty()) measureMakers(in, jobs);
+  if (maker == ShadowMaker::Auto)
+    maker = measuredMaker_.value_or(ShadowMaker::Rays);
+  else if (!jobs.empty())
+    makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
+
+  if (maker == ShadowMaker::Rays)
+    drawRays(in, jobs);
+  else
+    drawRaster(in, jobs);
+  mapsDrawn_ = uint32_t(jobs.size());
+  return {arrays_, resolution_, in.farDistance};
+}
+
+bool ParaboloidMapPass::drawsAllAnew(const ParaboloidMapInputs& in) const {
+  return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size();
+}
+
+void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
+  const size_t needed = (in.poses.size() + kLayersPerArray - 1) / kLayersPerArray;
+  const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
+  arrays_.clear();
+  for (size_t i = 0; i < needed; ++i)
+    arrays_.emplace_back(name_ + "/array " + std::to_string(i),
+                         gl::TextureDesc{.kind = gl::TextureKind::Array,
+                                         .format = GL_DEPTH_COMPONENT16,
+                                         .width = in.resolution,
+                                         .height = in.resolution,
+                                         .layers = i + 1 < needed ? kLayersPerArray : lastLayers});
+  resolution_ = in.resolution;
+  farDistance_ = in.farDistance;
+  slots_ = in.poses.size();
+}
+
+void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
+  // The first map of each maker pays for shaders and caches. Eight more, spread over the slots, are timed: enough to
+  // even out where they stand, and the rays' worker threads get more than one map each.
+  std::vector<MapJob> sample;
+  for (size_t i = 0; i < std::min<size_t>(8, jobs.size()); ++i)
+    sample.push_back({jobs[i * jobs.size() / std::min<size_t>(8, jobs.size())].slot, TexelRect::whole(in.resolution)});
+  drawRaster(in, std::span(sample).first(1));
+  drawRays(in, std::span(sample).first(1));
+  const double rasterMs = secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
+  const double raysMs = secondsOf([&] { drawRays(in, sample); }) * 1e3 / double(sample.size());
+  // Rays unless raster is twice as fast: the two differ in a few texels, so a machine's noise must not decide which
+  // picture it is. Software Mesa is 2 to 12 times on the one side; a GPU with a slow CPU beside it is as far on the
+  // other.
+  measuredMaker_ = 2 * rasterMs < raysMs ? ShadowMaker::Raster : ShadowMaker::Rays;
+  makerReport_ = measuredMaker_ == ShadowMaker::Rays
+                     ? fmt::format("rays ({:.2f} ms a map, raster {:.2f} ms)", raysMs, rasterMs)
+                     : fmt::format("raster ({:.2f} ms a map, rays {:.2f} ms)", rasterMs, raysMs);
+}
+
+std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {
+  const size_t array = slot / kLayersPerArray;
+  CHECK_LT(array, arrays_.size());
+  return readMap(arrays_[array], int(slot % kLayersPerArray), farDistance_);
+}
+
+std::vector<float> readMap(const gl::Texture& array, int layer, float farDistance) {
+  const int resolution = array.width();
+  std::vector<uint16_t> values(size_t(resolution) * resolution);
+  glGetTextureSubImage(array.name(), 0, 0, 0, layer, resolution, resolution, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
+                       GLsizei(values.size() * sizeof(uint16_t)), values.data());
+  std::vector<float> distances(values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    distances[i] = values[i] == 65535 ? kInfinity : float(values[i]) / 65535.0f * farDistance;
+  return distances;
+}
+
+MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, const MapPose& pose) {
+  const gl::PassScope scope(context_.profiler, name_ + " comparison");
+  CHECK(in.rays != nullptr);
+  const gl::Texture scratch(name_ + "/comparison", {.kind = gl::TextureKind::Array,
+                                                    .format = GL_DEPTH_COMPONENT16,
+                                                    .width = in.resolution,
+                                                    .height = in.resolution,
+                                                    .layers = 2});
+  rasterInto(in, pose, scratch, 0);
+  const std::vector<uint16_t> texels = castMap(in, pose, TexelRect::whole(in.resolution));
+  glTextureSubImage3D(scratch.name(), 0, 0, 0, 1, in.resolution, in.resolution, 1, GL_DEPTH_COMPONENT,
+                      GL_UNSIGNED_SHORT, texels.data());
+  return {in.resolution, readMap(scratch, 0, in.farDistance), readMap(scratch, 1, in.farDistance)};
+}
+
+} // namespace lambent
