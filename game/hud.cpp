@@ -111,14 +111,16 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
 
   if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) drawStages(stats);
   if (ImGui::CollapsingHeader("Effects", ImGuiTreeNodeFlags_DefaultOpen)) drawEffects(gi.settings(), stats);
-  if (ImGui::CollapsingHeader("Virtual point lights", ImGuiTreeNodeFlags_DefaultOpen)) {
-    ImGui::Text("alive %u   kept %u   moved %u", stats.vplsAlive, stats.vplsKept, stats.vplsMoved);
-    ImGui::Text("invalid %u   relit %u%s", stats.vplsInvalid, stats.vplsRelit, stats.burst ? "   (camera cut)" : "");
-    if (stats.patches > 0) ImGui::Text("patches gathered %llu", (unsigned long long)stats.patches);
-    ImGui::Text("paths retraced %llu of %llu", (unsigned long long)stats.pathsRetraced,
-                (unsigned long long)stats.pathsHeld);
-    ImGui::Text("maps drawn %u   waiting %u", stats.mapsDrawn, stats.mapsWaiting);
-    ImGui::TextWrapped("maps by %s", stats.shadowMaker.empty() ? "nobody yet" : stats.shadowMaker.c_str());
+  if (ImGui::CollapsingHeader("Figures", ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (const FigureRow& row : figureTable()) {
+      const Figure figure = row.value(stats);
+      if (std::holds_alternative<double>(figure) || std::string_view(row.name) == "plan") continue; // stand elsewhere
+      ImGui::TextUnformatted(row.name);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.help);
+      ImGui::SameLine(130);
+      ImGui::TextUnformatted(figureText(figure).c_str());
+    }
+    if (!stats.makerTimes.empty()) ImGui::TextWrapped("%s", stats.makerTimes.c_str());
   }
   if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());
   ImGui::TextDisabled("F1: keys   Tab: hide this panel");
@@ -160,12 +162,12 @@ void Hud::drawStages(const FrameStats& stats) {
   ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, 60);
   ImGui::TableHeadersRow();
   for (const StageTime& stage : stats.stages) {
-    auto& [cpu, gpu] = smoothedMs_[stage.name];
+    auto& [cpu, gpu] = smoothedMs_[stage.stage.id];
     smooth(cpu, stage.cpuMs);
     smooth(gpu, stage.gpuMs);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(stage.name.c_str());
+    ImGui::TextUnformatted(stage.stage.name);
     ImGui::TableNextColumn();
     ImGui::Text("%6.2f", cpu);
     ImGui::TableNextColumn();

@@ -55,7 +55,7 @@ class Hud {
     double until = 0; // seconds of the ImGui clock
   };
   std::deque<Message> messages_;
-  std::map<std::string, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
+  std::map<uint16_t, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
   double smoothedFrameMs_ = 0;
   std::map<std::string, std::string> edited_; // settings in the middle of being typed
   std::string settingError_;

@@ -61,7 +61,7 @@ std::vector<StageTime> GpuProfiler::takeRows() {
   collectFinishedQueries();
   if (timing_ == Timing::Queries)
     for (StageTime& row : rows_)
-      if (const auto found = latestGpuMs_.find(row.name); found != latestGpuMs_.end()) row.gpuMs = found->second;
+      if (const auto found = latestGpuMs_.find(row.stage.id); found != latestGpuMs_.end()) row.gpuMs = found->second;
   return std::exchange(rows_, {});
 }
 
@@ -74,14 +74,14 @@ void GpuProfiler::collectFinishedQueries() {
     GLuint64 t0 = 0, t1 = 0;
     glGetQueryObjectui64v(oldest.begin.name(), GL_QUERY_RESULT, &t0);
     glGetQueryObjectui64v(oldest.end.name(), GL_QUERY_RESULT, &t1);
-    latestGpuMs_[oldest.name] = double(t1 - t0) * 1e-6;
+    latestGpuMs_[oldest.stage.id] = double(t1 - t0) * 1e-6;
     freeQueries_.emplace_back(std::move(oldest.begin), std::move(oldest.end));
     pending_.pop_front();
   }
 }
 
-PassScope::PassScope(GpuProfiler& profiler, std::string name) : profiler_(profiler), name_(std::move(name)) {
-  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(name_.size()), name_.c_str());
+PassScope::PassScope(GpuProfiler& profiler, StageKey stage) : profiler_(profiler), stage_(stage) {
+  glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, stage_.name);
   if (profiler_.timing_ == Timing::Finish) {
     glFinish();
   } else {
@@ -103,12 +103,12 @@ PassScope::~PassScope() {
   if (beginQuery_) {
     glQueryCounter(endQuery_.name(), GL_TIMESTAMP);
     cpuMs = msSince(begin_);
-    profiler_.pending_.push_back({name_, std::move(beginQuery_), std::move(endQuery_)});
+    profiler_.pending_.push_back({stage_, std::move(beginQuery_), std::move(endQuery_)});
   } else {
     glFinish();
     cpuMs = gpuMs = msSince(begin_);
   }
-  profiler_.rows_.push_back({std::move(name_), cpuMs, gpuMs});
+  profiler_.rows_.push_back({stage_, cpuMs, gpuMs});
   glPopDebugGroup();
 }
 

@@ -9,7 +9,7 @@
 
 namespace lambent::gl {
 
-/// Queries: GPU timestamps, read without waiting, so a row shows the latest known time of its name (a few frames old).
+/// Queries: GPU timestamps, read without waiting, so a row shows the latest known time of its stage (a few frames old).
 /// Finish: glFinish around each pass; exact everywhere, but the CPU waits.
 enum class Timing { Queries, Finish };
 
@@ -30,7 +30,7 @@ class GpuProfiler {
  private:
   friend class PassScope;
   struct Pending {
-    std::string name;
+    StageKey stage;
     Query begin, end;
   };
   void collectFinishedQueries();
@@ -39,20 +39,20 @@ class GpuProfiler {
   std::vector<StageTime> rows_;
   std::deque<Pending> pending_;
   std::vector<std::pair<Query, Query>> freeQueries_;
-  std::map<std::string, double> latestGpuMs_;
+  std::map<uint16_t, double> latestGpuMs_; // by stage
 };
 
 /// All GL commands of a pass run inside one of these. Scopes may nest; the outer row then includes the inner.
 class PassScope {
  public:
-  PassScope(GpuProfiler& profiler, std::string name);
+  PassScope(GpuProfiler& profiler, StageKey stage);
   ~PassScope();
   PassScope(const PassScope&) = delete;
   PassScope& operator=(const PassScope&) = delete;
 
  private:
   GpuProfiler& profiler_;
-  std::string name_;
+  StageKey stage_;
   std::chrono::steady_clock::time_point begin_;
   Query beginQuery_, endQuery_;
 };

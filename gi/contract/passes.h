@@ -17,6 +17,7 @@
 #include "gi/surfaces/gpu_scene.h"
 #include "gi/contract/map_job.h"
 #include "gi/plan/settings.h"
+#include "gi/plan/stages.h"
 #include "gi/vpl/light_set.h"
 #include "gi/vpl/vpl_set.h"
 #include "shaders/shared/camera_block.h"
@@ -36,6 +37,9 @@ enum class Buffer : int; // gi/frame/gi_frame.h
 struct PassContext {
   gl::ProgramCache& programs;
   gl::GpuProfiler& profiler;
+
+  /// What all GL commands of a stage run inside.
+  gl::PassScope scope(StageId stage) const { return {profiler, key(stage)}; }
 };
 
 // 1. G-buffer ---------------------------------------------------------------------------------------------------------
@@ -104,8 +108,8 @@ struct MakerComparison {
 
 class ParaboloidMapPass {
  public:
-  /// `name` labels its profiler rows and memory ("vpl maps", "emitter maps").
-  ParaboloidMapPass(PassContext context, std::string name) : context_(context), name_(std::move(name)) {}
+  /// `stage` names its times and its memory.
+  ParaboloidMapPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
   /// Whether a run would draw every map, whatever its jobs.
@@ -127,6 +131,7 @@ class ParaboloidMapPass {
   void rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array, int layer);
 
   PassContext context_;
+  StageId stage_;
   std::string name_, makerReport_;
   std::vector<gl::Texture> arrays_;
   gl::Texture faces_;
@@ -157,14 +162,14 @@ struct VplLights {
 
 class VplLightBuffer {
  public:
-  explicit VplLightBuffer(PassContext context, std::string name) : context_(context), name_(std::move(name)) {}
+  VplLightBuffer(PassContext context, StageId stage) : context_(context), stage_(stage) {}
   /// Uploads the slots whose light differs from what the buffer holds.
   VplLights run(std::span<const VplLight> slots);
   uint32_t uploaded() const { return uploaded_; } // lights that differed in the last run
 
  private:
   PassContext context_;
-  std::string name_;
+  StageId stage_;
   gl::Buffer buffer_;
   std::vector<VplLight> mirror_; // in buffer order
   uint32_t count_ = 0, uploaded_ = 0;

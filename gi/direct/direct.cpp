@@ -15,7 +15,7 @@ DirectPass::DirectPass(PassContext context) : context_(context), compareSampler_
 }
 
 DirectLight DirectPass::run(const DirectInputs& in) {
-  const gl::PassScope scope(context_.profiler, "direct");
+  const gl::PassScope scope = context_.scope(StageId::Direct);
   const int width = in.gbuffer.width, height = in.gbuffer.height;
   bool resized = fitGlossy(glossy_, "direct/glossy", in.gbuffer, {width, height});
   if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {

@@ -189,7 +189,7 @@ uint32_t LightShadowPass::skyMapsDrawn() const { return state_->skyMapsDrawn; }
 
 const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
-  const gl::PassScope scope(s.context.profiler, "light maps");
+  const gl::PassScope scope = s.context.scope(StageId::LightMaps);
   s.mapsDrawn = 0;
   // Casters nearer than this to a light's point are its own housing as often as not; relative, since scenes come in all
   // sizes.

@@ -6,7 +6,7 @@
 namespace lambent {
 
 Picture CompositePass::run(const CompositeInputs& in) {
-  const gl::PassScope scope(context_.profiler, "composite");
+  const gl::PassScope scope = context_.scope(StageId::Composite);
   const int width = in.gbuffer.width, height = in.gbuffer.height;
   if (!black_) {
     black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});

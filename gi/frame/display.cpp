@@ -79,7 +79,7 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
 } // namespace
 
 const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan) {
-  const gl::PassScope scope(context_.profiler, "display");
+  const gl::PassScope scope = context_.scope(StageId::Display);
   const int width = frame.gbuffer.width, height = frame.gbuffer.height;
   if (!black_) {
     black_ = gl::Texture("display/black", {.format = GL_RGBA32F});
@@ -163,7 +163,7 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
 }
 
 void DisplayPass::present(uint32_t framebuffer, int width, int height) {
-  const gl::PassScope scope(context_.profiler, "present");
+  const gl::PassScope scope = context_.scope(StageId::Present);
   const gl::Program& program = context_.programs.get({.fragment = "present.frag"});
   program.use();
   program.set("targetSize", vec2(width, height));

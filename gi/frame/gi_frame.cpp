@@ -48,7 +48,7 @@ void GiFrame::State::begin(const SceneView& given) {
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
   if (assets != given.assets) {
-    CpuScope scope(stats.stages, "scene");
+    CpuScope scope(stats.stages, key(StageId::Scene));
     assets = given.assets;
     gpuScene = std::make_unique<GpuScene>(programs, *assets);
     rays = std::make_unique<EmbreeQuery>(*assets);
@@ -91,7 +91,7 @@ void GiFrame::State::planFrame(const SceneView& given) {
 }
 
 void GiFrame::State::placeWorld() {
-  CpuScope scope(stats.stages, "scene");
+  CpuScope scope(stats.stages, key(StageId::Scene));
   const SceneView& view = world.view;
   using enum EffectId;
   const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Masked;

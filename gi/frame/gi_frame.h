@@ -3,10 +3,9 @@
 #pragma once
 
 #include "engine/core/image.h"
-#include "engine/core/profile.h"
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
-#include "gi/plan/effects.h"
+#include "gi/frame/figures.h"
 #include "gi/visibility/shadow_agreement.h"
 #include "gi/plan/settings.h"
 #include "gi/vpl/vpl_set.h"
@@ -37,27 +36,6 @@ enum class Buffer : int {
 /// Throws InputError with the nearest name.
 Buffer bufferByName(const std::string& name);
 const std::vector<std::string>& bufferNames();
-
-/// Figures of one frame: a line of frames.csv and the HUD's table. With frame.overlap, what concerns the update of the
-/// VPLs is of the update that ended before this frame's picture: that of the frame before.
-struct FrameStats {
-  uint32_t frame = 0;
-  std::vector<StageTime> stages;   // CPU and GPU, in order, milliseconds
-  double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
-  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysShadowMaps, raysGather,
-      raysMapTests;
-  uint64_t patches = 0; // of the multiresolution buffer that gathered, as far as the GPU has told
-  uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
-  uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
-  uint32_t mapsDrawn = 0;                                     // paraboloid maps, in part or whole
-  uint64_t mapTexelsDrawn = 0;                                // of VPLs' maps, a ray or a texel drawn each
-  uint32_t mapsWaiting = 0;    // that show where a moved object was, and had to wait for later frames
-  uint32_t lightMapsDrawn = 0; // of punctual lights and of the sky
-  bool burst = false;
-  EffectPlan plan;
-  std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
-  std::string shadowMaker, timing;
-};
 
 /// Owns all GI state of one scene in the current GL context. Not copyable; destroy while the context is current.
 class GiFrame {

@@ -161,7 +161,7 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   }
   const bool tree = settings.vpl.source == VplSource::Hisr; // has no visibility
   if (settings.vpl.visibility == VplVisibility::Rays && !tree) {
-    CpuScope scope(stats.stages, "gather by rays");
+    CpuScope scope(stats.stages, key(StageId::GatherByRays));
     const CameraView& camera = world.view.camera;
     GlossyGather glossy{world.view, {}};
     const Image irradiance = imageOf(camera, gatherByRays(*rays, camera, vplsShown, settings.gather, stats.raysGather,
@@ -180,7 +180,8 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
         {*gpuScene, rays.get(), poses, mapJobs, mapReach(), settings.shadow.resolution, settings.shadow.maker});
     mapsDrawn = vplMapPass.mapsDrawn();
     stats.mapsDrawn += mapsDrawn;
-    stats.shadowMaker = vplMapPass.makerReport();
+    stats.makerTimes = vplMapPass.makerReport();
+    stats.shadowMaker = stats.makerTimes.substr(0, stats.makerTimes.find(' '));
   }
   const ParaboloidMaps* maps = shadowed ? &results.vplMaps : nullptr;
   const float bias = settings.shadow.bias;

@@ -63,11 +63,11 @@ struct GiFrame::State {
   PassContext context{programs, profiler};
   GBufferPass gbufferPass{context};
   LightShadowPass lightShadowPass{context};
-  ParaboloidMapPass emitterMapPass{context, "emitter maps"};
-  VplLightBuffer emitterBuffer{context, "emitters"};
+  ParaboloidMapPass emitterMapPass{context, StageId::EmitterMaps};
+  VplLightBuffer emitterBuffer{context, StageId::Emitters};
   DirectPass directPass{context};
-  ParaboloidMapPass vplMapPass{context, "vpl maps"};
-  VplLightBuffer vplBuffer{context, "vpls"};
+  ParaboloidMapPass vplMapPass{context, StageId::VplMaps};
+  VplLightBuffer vplBuffer{context, StageId::Vpls};
   GatherPass gatherPass{context};
   MultiresPass multiresPass{context};
   ReflectiveMapPass reflectiveMapPass{context};

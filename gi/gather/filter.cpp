@@ -11,7 +11,7 @@ namespace lambent {
 IndirectLight FilterPass::run(const FilterInputs& in) {
   // A full gather has nothing to mix: every pixel has seen every light.
   if (!in.raw.deinterleaved) return {in.raw.irradiance, in.raw.glossy};
-  const gl::PassScope scope(context_.profiler, "filter");
+  const gl::PassScope scope = context_.scope(StageId::Filter);
   const int width = in.gbuffer.width, height = in.gbuffer.height;
   bool resized = fitGlossy(glossy_, "filter/glossy", in.gbuffer, {width, height});
   fitGlossy(glossyRows_, "filter/glossy rows", in.gbuffer, {width, height});
@@ -57,7 +57,7 @@ IndirectLight FilterPass::run(const FilterInputs& in) {
 }
 
 IndirectLight IndirectUpload::run(const Image& irradiance, const Image* glossy) {
-  const gl::PassScope scope(context_.profiler, "irradiance upload");
+  const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
   const auto upload = [](gl::Texture& texture, const char* label, const Image& image) {
     if (!texture || texture.width() != image.width || texture.height() != image.height)
       texture = gl::Texture(label, {.format = GL_RGBA32F, .width = image.width, .height = image.height});

@@ -110,7 +110,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
 }
 
 RawIndirect GatherPass::run(const GatherInputs& in) {
-  const gl::PassScope scope(context_.profiler, "gather");
+  const gl::PassScope scope = context_.scope(StageId::Gather);
   const bool deinterleaved = interleaved(in.gather.mode);
   const glm::ivec2 tile = tileSize(in.gbuffer);
   const glm::ivec2 size = deinterleaved ? 4 * tile : glm::ivec2(in.gbuffer.width, in.gbuffer.height);

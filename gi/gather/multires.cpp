@@ -95,7 +95,7 @@ void MultiresPass::allocate(const AtlasShape& shape, const glm::ivec2& target) {
 
 /// Sets the stencil where a patch gathers.
 void MultiresPass::mark(const MultiresInputs& in) {
-  const gl::PassScope scope(context_.profiler, "stencil");
+  const gl::PassScope scope = context_.scope(StageId::Stencil);
   stencilFramebuffer_.bind();
   gl::PipelineState{.stencil = gl::Stencil::Mark, .width = stencil_.width(), .height = stencil_.height()}.apply();
   const GLint zero = 0;
@@ -149,7 +149,7 @@ GatherDraw MultiresPass::drawOf(const MultiresInputs& in) const {
 /// Each VPL into patches of its own. What of a texel's light came from which patches is known only while one VPL is
 /// looked at, so each is made whole by itself.
 void MultiresPass::splatEach(const MultiresInputs& in) {
-  const gl::PassScope scope(context_.profiler, "splat per VPL");
+  const gl::PassScope scope = context_.scope(StageId::SplatPerVpl);
   const GatherDraw draw = drawOf(in);
   const SplatInputs splats{draw, pyramid_, shape_, in.multires.light};
   framebuffer_.bind();
@@ -166,7 +166,7 @@ void MultiresPass::splatEach(const MultiresInputs& in) {
 }
 
 void MultiresPass::gather(const MultiresInputs& in) {
-  const gl::PassScope scope(context_.profiler, "gather");
+  const gl::PassScope scope = context_.scope(StageId::Gather);
   clear(in);
   std::vector<GatherArea> areas;
   for (int level = 0; level <= shape_.coarsest; ++level) {
@@ -185,7 +185,7 @@ void MultiresPass::gather(const MultiresInputs& in) {
 /// From the atlas to the pixels; `add`: to what they hold.
 void MultiresPass::upsample(const MultiresInputs& in, bool add) {
   std::optional<gl::PassScope> scope;
-  if (!add) scope.emplace(context_.profiler, "upsample"); // else part of a row that has begun
+  if (!add) scope.emplace(context_.profiler, key(StageId::Upsample)); // else part of a row that has begun
   in.gbuffer.camera->bindUniform(0);
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);

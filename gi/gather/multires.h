@@ -34,11 +34,12 @@ struct PatchInputs {
 
 class PatchPass {
  public:
-  PatchPass(PassContext context, std::string name) : context_(context), name_(std::move(name)) {}
+  PatchPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
   PatchPyramid run(const PatchInputs& in);
 
  private:
   PassContext context_;
+  StageId stage_;
   std::string name_;
   gl::Texture plane_, normalLo_, normalHi_;
   std::vector<gl::Framebuffer> framebuffers_; // by mip level
@@ -88,7 +89,7 @@ class MultiresPass {
 
   PassContext context_;
   SplatPass splatPass_{context_};
-  PatchPass patchPass_{context_, "patches"};
+  PatchPass patchPass_{context_, StageId::Patches};
   PatchPyramid pyramid_;
   gl::Query marks_;
   uint64_t marked_ = 0;

@@ -59,7 +59,7 @@ void bindLights(const GatherDraw& draw, uint32_t chunk, int block) {
 } // namespace
 
 void SplatPass::refine(const SplatInputs& in) {
-  const gl::PassScope scope(context_.profiler, "refine");
+  const gl::PassScope scope = context_.scope(StageId::Refine);
   bindSurfaces(in.draw);
   const auto program = [&](std::vector<std::string> defines) -> const gl::Program& {
     return context_.programs.get({.vertex = "splat_refine.vert",
@@ -136,7 +136,7 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
 }
 
 void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
-  const gl::PassScope scope(context_.profiler, "splat");
+  const gl::PassScope scope = context_.scope(StageId::Splat);
   const uint32_t count = in.draw.lights.count;
   for (uint32_t chunk = 0; chunk * kChunk < count; ++chunk) {
     const int perClass = int(std::min(kChunk, count - chunk * kChunk) + kLightClasses - 1) / kLightClasses;

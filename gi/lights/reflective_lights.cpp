@@ -55,7 +55,7 @@ void ReflectiveLightPass::reserve(uint32_t slots) {
 
 VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
   if (!maps.changed && lights_) return {&lights_, count_};
-  const gl::PassScope scope(context_.profiler, "reflective lights");
+  const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
   const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));
   gl::ProgramDesc desc{.vertex = "rsm_light.vert", .captured = kLightFields};
   if (source == VplSource::Rsm) {

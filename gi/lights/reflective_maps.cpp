@@ -98,7 +98,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
   const int levels = clustered ? int(std::bit_width(unsigned(resolution / coarsest))) : 1;
   for (ReflectiveMap& m : maps) complete(m, resolution, in.bounds);
 
-  const gl::PassScope scope(context_.profiler, "reflective maps");
+  const gl::PassScope scope = context_.scope(StageId::ReflectiveMaps);
   const bool anew = !position_ || resolution != resolution_ || columns != columns_ ||
                     position_.height() != rows * resolution || position_.desc().levels != levels ||
                     maps.size() != maps_.size() || in.allChanged;

@@ -60,7 +60,7 @@ class ReflectiveMapPass {
   void drawPyramid();
 
   PassContext context_;
-  PatchPass patchPass_{context_, "light patches"};
+  PatchPass patchPass_{context_, StageId::LightPatches};
   std::vector<ReflectiveMap> maps_;
   RsmSettings settings_;
   VplSource source_ = VplSource::Smc;

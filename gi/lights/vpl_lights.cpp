@@ -50,7 +50,7 @@ VplLight emitterLight(const EmitterPatch& patch) {
 MapPose emitterPose(const EmitterPatch& patch) { return {patch.position, patch.normal, patch.normal}; }
 
 VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
-  const gl::PassScope scope(context_.profiler, name_);
+  const gl::PassScope scope = context_.scope(stage_);
   const size_t chunks = std::max<size_t>(1, (slots.size() + kChunk - 1) / kChunk);
   const bool fresh = mirror_.size() != chunks * kChunk;
   if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
@@ -67,7 +67,7 @@ VplLights VplLightBuffer::run(std::span<const VplLight> slots) {
   for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
-  if (fresh) buffer_ = gl::Buffer(name_ + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
+  if (fresh) buffer_ = gl::Buffer(std::string(key(stage_).name) + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
   // Whole chunks of 128 KiB: one transfer costs less than many small ones.
   for (size_t chunk = 0; chunk < chunks; ++chunk)
     if (dirtyChunks[chunk])

@@ -33,7 +33,7 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
 }
 
 GBuffer GBufferPass::run(const GBufferInputs& in) {
-  const gl::PassScope scope(context_.profiler, "g-buffer");
+  const gl::PassScope scope = context_.scope(StageId::Surfaces);
   const int width = in.camera.width, height = in.camera.height;
   if (depth_.width() != width || depth_.height() != height || !depth_ || in.glossy != bool(finish_)) {
     const auto make = [&](const char* label, GLenum format) {

@@ -7,7 +7,7 @@
 namespace lambent {
 
 PatchPyramid PatchPass::run(const PatchInputs& in) {
-  const gl::PassScope scope(context_.profiler, name_);
+  const gl::PassScope scope = context_.scope(stage_);
   const int multiple = 1 << in.levels;
   const glm::ivec2 padded = (in.size + multiple - 1) / multiple * multiple;
   if (in.levels == 0) return {nullptr, nullptr, nullptr, 0, padded};

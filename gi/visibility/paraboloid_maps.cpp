@@ -30,7 +30,7 @@ std::vector<MapPose> mapPoses(const VplSet& set) {
 }
 
 ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
-  const gl::PassScope scope(context_.profiler, name_);
+  const gl::PassScope scope = context_.scope(stage_);
   mapsDrawn_ = 0;
   CHECK(in.farDistance > 0);
   std::vector<MapJob> all;
@@ -115,7 +115,7 @@ std::vector<float> readMap(const gl::Texture& array, int layer, float farDistanc
 }
 
 MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, const MapPose& pose) {
-  const gl::PassScope scope(context_.profiler, name_ + " comparison");
+  const gl::PassScope scope = context_.scope(StageId::MapComparison);
   CHECK(in.rays != nullptr);
   const gl::Texture scratch(name_ + "/comparison", {.kind = gl::TextureKind::Array,
                                                     .format = GL_DEPTH_COMPONENT16,

@@ -18,7 +18,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
   std::vector<PlacedVpl> placed(slots);
   const PhotonSource source(in.lights, in.view.boundsWorld);
   if (bounces > 0 && !source.empty()) {
-    CpuScope scope(log.stages, "photons");
+    CpuScope scope(log.stages, key(StageId::Photons));
     // Photons that bounce b has slots for. Earlier bounces get the odd slots: they carry more light.
     const auto share = [&](uint32_t b) { return slots / bounces + (b < slots % bounces ? 1 : 0); };
     constexpr size_t kGrain = 64;

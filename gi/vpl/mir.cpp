@@ -67,7 +67,7 @@ VplChanges placeByImagePower(VplSet& set, const VplUpdate& in, VplUpdateLog& log
   const int count = int(slots) * in.vpl.mirCandidates;
   std::vector<CandidateHit> hits;
   {
-    CpuScope scope(log.stages, "candidates");
+    CpuScope scope(log.stages, key(StageId::Candidates));
     const std::vector<VisiblePoint> points =
         findVisiblePoints(in.rays, in.view.camera, count, in.seed, set.frame, log.points);
     if (points.empty()) { // the camera faces the sky
@@ -81,12 +81,12 @@ VplChanges placeByImagePower(VplSet& set, const VplUpdate& in, VplUpdateLog& log
   }
   std::vector<vec3> radiance;
   {
-    CpuScope scope(log.stages, "radiosity");
+    CpuScope scope(log.stages, key(StageId::Radiosity));
     radiance = estimateHits(hits, in, set.frame, log.radiosity);
   }
   std::vector<PlacedVpl> placed(slots);
   {
-    CpuScope scope(log.stages, "resample");
+    CpuScope scope(log.stages, key(StageId::Resample));
     std::vector<float> weights;
     double total = 0;
     for (const vec3& r : radiance) total += weights.emplace_back(luminance(r));

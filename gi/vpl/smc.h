@@ -7,6 +7,7 @@
 
 #include "engine/core/profile.h"
 #include "gi/plan/settings.h"
+#include "gi/plan/stages.h"
 #include "gi/vpl/disturbance.h"
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/light_set.h"

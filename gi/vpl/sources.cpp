@@ -59,7 +59,7 @@ std::vector<float> boundedAreas(std::span<const DensityPoint> points, const VplU
 } // namespace
 
 VplChanges adoptVpls(VplSet& set, std::span<const PlacedVpl> placed, const VplUpdate& in, VplUpdateLog& log) {
-  CpuScope scope(log.stages, "density");
+  CpuScope scope(log.stages, key(StageId::Density));
   std::vector<DensityPoint> points;
   for (const PlacedVpl& p : placed)
     if (p.alive()) points.push_back({p.position, p.normal});

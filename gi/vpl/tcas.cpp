@@ -117,7 +117,7 @@ VplChanges placeByShadowMapChains(VplSet& set, const VplUpdate& in, VplUpdateLog
   std::vector<PlacedVpl> placed(slots);
   const PhotonSource source(in.lights, in.view.boundsWorld);
   if (in.settings.bounces > 0 && !source.empty()) {
-    CpuScope scope(log.stages, "chains");
+    CpuScope scope(log.stages, key(StageId::Chains));
     const std::vector<PlacedVpl> texels = readShadowMaps(source, in, log.candidates);
     const std::vector<VisiblePoint> points =
         findVisiblePoints(in.rays, in.view.camera, kCameraPoints, in.seed, 0, log.points); // the same in every frame

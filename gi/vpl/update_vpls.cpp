@@ -129,7 +129,7 @@ void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::sp
   const bool cells = settings.density == DensityEstimator::Cells;
   std::vector<uint32_t> changed(moved.begin(), moved.end());
   {
-    CpuScope scope(log.stages, "density");
+    CpuScope scope(log.stages, key(StageId::Density));
     if (cells) {
       changed = updateCells(set, in.rays, since.moved, moved, std::sqrt(areaLimit(set) / kPi), in.seed, log.cells);
     } else {
@@ -141,7 +141,7 @@ void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::sp
       for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].area = areas[i];
     }
   }
-  CpuScope scope(log.stages, "radiosity");
+  CpuScope scope(log.stages, key(StageId::Radiosity));
   if (all) {
     changed.clear();
     for (uint32_t i = 0; i < set.slots.size(); ++i) changed.push_back(i);
@@ -203,7 +203,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
   std::vector<VisiblePoint> points;
   int draws = 0;
   {
-    CpuScope scope(log.stages, "validate");
+    CpuScope scope(log.stages, key(StageId::Validate));
     const VisibilityUpdate changed{since.camera, &since.moved, since.carried};
     verifyMailboxes(set.slots, in.rays, in.view.camera, changed, log.validation);
     verifyMailboxes(set.pool, in.rays, in.view.camera, {since.camera, &since.moved}, log.validation);
@@ -212,7 +212,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
   const auto open = [](const Vpl& v) { return v.alive && !v.valid; };
   const bool anyOpen = std::any_of(set.slots.begin(), set.slots.end(), open);
   {
-    CpuScope scope(log.stages, "points");
+    CpuScope scope(log.stages, key(StageId::Points));
     // As many rays towards candidates leave each point whether few or all candidates are drawn.
     const int wanted = anyOpen ? settings.points : int(int64_t(settings.points) * draws / settings.vpls);
     points = findVisiblePoints(in.rays, in.view.camera, std::max(1, wanted), in.seed, set.frame, log.points);
@@ -225,24 +225,24 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
     return none;
   }
   if (anyOpen) {
-    CpuScope scope(log.stages, "validate");
+    CpuScope scope(log.stages, key(StageId::Validate));
     verifyByPoints(set, in.rays, points, settings.validationRays, in.seed, log.validation);
   }
   std::vector<CandidateHit> hits;
   {
-    CpuScope scope(log.stages, "candidates");
+    CpuScope scope(log.stages, key(StageId::Candidates));
     hits = traceCandidates(in.rays, points, settings.candidateRays * draws, in.seed, set.frame, log.candidates);
   }
   Resampled resampled;
   {
-    CpuScope scope(log.stages, "resample");
+    CpuScope scope(log.stages, key(StageId::Resample));
     resampled = resampleUniformInArea(hits, draws, in.seed, set.frame);
     // A slow average: the limit on areas must not flicker.
     const float area = float(resampled.area);
     set.visibleArea = set.visibleArea > 0 ? glm::mix(set.visibleArea, area, 1.0f / 16) : area;
   }
   {
-    CpuScope scope(log.stages, "radiosity");
+    CpuScope scope(log.stages, key(StageId::Radiosity));
     const size_t old = now.relight ? 0 : set.pool.size();
     for (uint32_t pick : resampled.picks) set.pool.push_back(candidateAt(hits[pick], in.view, set.nextId++));
     set.poolPaths.resize(set.pool.size());
@@ -257,7 +257,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
   }
   VplChanges changes;
   {
-    CpuScope scope(log.stages, "replace");
+    CpuScope scope(log.stages, key(StageId::Replace));
     std::vector<uint32_t> index;
     std::vector<DensityPoint> queries;
     for (const Vpl& v : set.pool) queries.push_back({v.position, v.normal});
@@ -281,7 +281,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
 void mergeStages(std::vector<StageTime>& stages) {
   std::vector<StageTime> merged;
   for (const StageTime& s : stages) {
-    const auto same = std::find_if(merged.begin(), merged.end(), [&](const StageTime& m) { return m.name == s.name; });
+    const auto same = std::find_if(merged.begin(), merged.end(), [&](const StageTime& m) { return m.stage == s.stage; });
     if (same == merged.end())
       merged.push_back(s);
     else

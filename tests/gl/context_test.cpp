@@ -42,13 +42,13 @@ TEST_F(ContextTest, CountsMemoryByOwner) {
 TEST_F(ContextTest, ProfilerTimesPassesInOrder) {
   profiler.calibrate();
   {
-    const gl::PassScope outer(profiler, "outer");
-    const gl::PassScope inner(profiler, "inner");
+    const gl::PassScope outer(profiler, key(StageId::Direct));
+    const gl::PassScope inner(profiler, key(StageId::LightMaps));
   }
   const std::vector<StageTime> rows = profiler.takeRows();
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].name, "inner");
-  EXPECT_EQ(rows[1].name, "outer");
+  EXPECT_EQ(std::string(rows[0].stage.name), "light maps");
+  EXPECT_EQ(std::string(rows[1].stage.name), "direct");
   EXPECT_TRUE(profiler.takeRows().empty());
 }
 

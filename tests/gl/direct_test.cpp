@@ -23,8 +23,8 @@ class DirectTest : public GlTest {
     GBufferPass gbufferPass(passes);
     LightShadowPass shadowPass(passes);
     DirectPass directPass(passes);
-    VplLightBuffer lightBuffer(passes, "emitters");
-    ParaboloidMapPass mapPass(passes, "emitter maps");
+    VplLightBuffer lightBuffer(passes, StageId::Emitters);
+    ParaboloidMapPass mapPass(passes, StageId::EmitterMaps);
     const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
     const LightShadows& shadows = shadowPass.run({gpu,
                                                   view.lights,

@@ -57,7 +57,7 @@ class GlossyTest : public GlTest {
 
   std::unique_ptr<GpuScene> gpu;
   GBufferPass gbufferPass{passes};
-  VplLightBuffer lightBuffer{passes, "vpls"};
+  VplLightBuffer lightBuffer{passes, StageId::Vpls};
   GatherPass gatherPass{passes};
   FilterPass filterPass{passes};
   CompositePass compositePass{passes};

@@ -27,7 +27,7 @@ class IndirectTest : public GlTest {
 
   std::unique_ptr<GpuScene> gpu;
   GBufferPass gbufferPass{passes};
-  VplLightBuffer lightBuffer{passes, "vpls"};
+  VplLightBuffer lightBuffer{passes, StageId::Vpls};
   GatherPass gatherPass{passes};
   FilterPass filterPass{passes};
 };

@@ -179,7 +179,7 @@ class MapScheduleTest : public GlTest {
 };
 
 TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
-  ParaboloidMapPass parts(passes, "in part");
+  ParaboloidMapPass parts(passes, StageId::VplMaps);
   parts.run(in);
   MapSchedule schedule;
   int odd = 0;
@@ -202,7 +202,7 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
     for (uint32_t i = 0; i < poses.size(); ++i) before.push_back(parts.readLayer(i));
     in.jobs = jobs;
     parts.run(in);
-    ParaboloidMapPass whole(passes, "whole");
+    ParaboloidMapPass whole(passes, StageId::EmitterMaps);
     in.jobs = {};
     whole.run(in);
     for (uint32_t i = 0; i < poses.size(); ++i) {
@@ -216,11 +216,11 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
 }
 
 TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
-  ParaboloidMapPass parts(passes, "in part");
+  ParaboloidMapPass parts(passes, StageId::VplMaps);
   parts.run(in);
   const SceneView view = room.carry({0.45f, -0.3f, 0.1f}, 0.7f);
   rays.update(view);
-  ParaboloidMapPass whole(passes, "whole");
+  ParaboloidMapPass whole(passes, StageId::EmitterMaps);
   whole.run(in);
   const auto wrong = [&] { // share of texels whose distance is off by more than 2 %
     size_t differing = 0, all = 0;

@@ -20,7 +20,7 @@ class MapsTest : public GlTest {
 TEST_F(MapsTest, MakersAgree) {
   const Room room;
   const ParaboloidMapInputs in = inputs(room);
-  ParaboloidMapPass pass(passes, "vpl maps");
+  ParaboloidMapPass pass(passes, StageId::VplMaps);
   const vec3 tilted = glm::normalize(vec3(0.2f, 1, -0.3f));
   const MapPose all[] = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}, {{-1, 0.2f, 0.1f}, {1, 0, 0}, {1, 0, 0}},
                          {{1, 0, 0.5f}, {-1, 0, 0}, {-1, 0, 0}},   {{0.1f, 1, 0}, {0, -1, 0}, {0, -1, 0}},
@@ -53,7 +53,7 @@ TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
     ParaboloidMapInputs in = inputs(room);
     in.maker = maker;
-    ParaboloidMapPass pass(passes, "vpl maps");
+    ParaboloidMapPass pass(passes, StageId::VplMaps);
     const ParaboloidMaps maps = pass.run(in);
     EXPECT_EQ(pass.mapsDrawn(), 1u);
     ASSERT_EQ(maps.arrays.size(), 1u);
@@ -66,7 +66,7 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   const Room room;
   poses.assign(20, {{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}});
   const ParaboloidMapInputs in = inputs(room);
-  ParaboloidMapPass pass(passes, "vpl maps");
+  ParaboloidMapPass pass(passes, StageId::VplMaps);
   pass.run(in);
   EXPECT_EQ(pass.mapsDrawn(), 20u) << "a new array starts with all of its maps";
   const std::string report = pass.makerReport();
@@ -86,7 +86,7 @@ TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
   ParaboloidMapInputs in = inputs(room);
   in.resolution = 8;
   in.maker = ShadowMaker::Rays;
-  ParaboloidMapPass pass(passes, "vpl maps");
+  ParaboloidMapPass pass(passes, StageId::VplMaps);
   EXPECT_EQ(pass.run(in).arrays.size(), 2u);
   EXPECT_EQ(pass.readLayer(0), pass.readLayer(2099));
 }
@@ -107,9 +107,9 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
     ParaboloidMapInputs in = inputs(room);
     in.resolution = 128;
     in.maker = maker;
-    ParaboloidMapPass mapPass(passes, "vpl maps");
+    ParaboloidMapPass mapPass(passes, StageId::VplMaps);
     GBufferPass gbufferPass(passes);
-    VplLightBuffer lightBuffer(passes, "vpls");
+    VplLightBuffer lightBuffer(passes, StageId::Vpls);
     GatherPass gatherPass(passes);
     const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera});
     const ParaboloidMaps maps = mapPass.run(in);

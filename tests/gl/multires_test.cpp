@@ -59,7 +59,7 @@ class MultiresTest : public GlTest {
 
   std::unique_ptr<GpuScene> gpu;
   GBufferPass gbufferPass{passes};
-  VplLightBuffer lightBuffer{passes, "vpls"};
+  VplLightBuffer lightBuffer{passes, StageId::Vpls};
   GatherPass gatherPass{passes};
   MultiresPass multiresPass{passes};
 };

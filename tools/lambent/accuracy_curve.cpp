@@ -78,7 +78,7 @@ double numberOf(const Settings& settings, const std::string& setting) {
 double gatherMs(const FrameStats& stats) {
   double ms = 0;
   for (const StageTime& t : stats.stages)
-    if (t.name == "gather") ms += std::max(t.cpuMs, t.gpuMs);
+    if (t.stage == key(StageId::Gather)) ms += std::max(t.cpuMs, t.gpuMs);
   return ms;
 }
 

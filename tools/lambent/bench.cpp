@@ -37,8 +37,8 @@ struct Side {
   void add(const FrameStats& s, const Settings& settings) {
     std::map<std::string, double> ms;
     for (const StageTime& t : s.stages) {
-      if (!ms.contains(t.name) && !rows.contains(t.name)) order.push_back(t.name);
-      ms[t.name] += std::max(t.cpuMs, t.gpuMs);
+      if (!ms.contains(t.stage.name) && !rows.contains(t.stage.name)) order.push_back(t.stage.name);
+      ms[t.stage.name] += std::max(t.cpuMs, t.gpuMs);
     }
     for (const auto& [name, value] : ms) rows[name].push_back(value);
     note("updateVpls", s.updateMs);

@@ -50,7 +50,7 @@ struct Times {
     for (size_t i = 1; i < rows.size(); ++i) {
       double ms = 0;
       for (const StageTime& t : stats.stages)
-        if (std::ranges::count(lambent::rows()[i].stages, t.name)) ms += std::max(t.cpuMs, t.gpuMs);
+        if (std::ranges::count(lambent::rows()[i].stages, t.stage.name)) ms += std::max(t.cpuMs, t.gpuMs);
       rows[i].push_back(ms);
       others += ms;
     }

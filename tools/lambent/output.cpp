@@ -41,43 +41,30 @@ void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer) {
     writePng(file, gi.readDisplay(buffer));
 }
 
+namespace {
+
+template <class Value> nlohmann::json jsonOf(const Value& value) { return value; }
+nlohmann::json jsonOf(const RayCounts& c) { return {{"closest", c.closest}, {"occlusion", c.occlusion}}; }
+
+} // namespace
+
 nlohmann::json figuresOf(const FrameStats& s) {
-  const auto rays = [](const RayCounts& c) {
-    return nlohmann::json{{"closest", c.closest}, {"occlusion", c.occlusion}};
-  };
-  nlohmann::json stages = nlohmann::json::array();
-  for (const StageTime& t : s.stages) stages.push_back({{"name", t.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
-  nlohmann::json effects = nlohmann::json::array();
+  nlohmann::json figures;
+  for (const FigureRow& row : figureTable()) {
+    const std::string name = row.name;
+    const size_t dot = name.find('.');
+    nlohmann::json& at = dot == std::string::npos ? figures[name] : figures[name.substr(0, dot)][name.substr(dot + 1)];
+    at = std::visit([](const auto& value) { return jsonOf(value); }, row.value(s));
+  }
+  figures["shadow_maker_times"] = s.makerTimes;
+  for (const StageTime& t : s.stages)
+    figures["stages"].push_back({{"name", t.stage.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = s.plan[EffectId(i)];
     const EffectRow& row = effectRow(EffectId(i));
-    effects.push_back({{"name", row.name}, {"on", e.on}, {"reason", e.reason}, {row.work, s.work[i]}});
+    figures["effects"].push_back({{"name", row.name}, {"on", e.on}, {"reason", e.reason}, {row.work, s.work[i]}});
   }
-  return {{"frame", s.frame},
-          {"wall_ms", s.wallMs},
-          {"stages", stages},
-          {"rays",
-           {{"points", rays(s.raysPoints)},
-            {"validation", rays(s.raysValidation)},
-            {"candidates", rays(s.raysCandidates)},
-            {"radiosity", rays(s.raysRadiosity)},
-            {"cells", rays(s.raysCells)},
-            {"map_tests", rays(s.raysMapTests)},
-            {"gather", rays(s.raysGather)}}},
-          {"vpls",
-           {{"alive", s.vplsAlive},
-            {"kept", s.vplsKept},
-            {"moved", s.vplsMoved},
-            {"invalid", s.vplsInvalid},
-            {"relit", s.vplsRelit}}},
-          {"paths", {{"held", s.pathsHeld}, {"traced", s.pathsTraced}, {"retraced", s.pathsRetraced}}},
-          {"maps_drawn", s.mapsDrawn},
-          {"maps_waiting", s.mapsWaiting},
-          {"light_maps_drawn", s.lightMapsDrawn},
-          {"burst", s.burst},
-          {"effects", effects},
-          {"shadow_maker", s.shadowMaker},
-          {"timing", s.timing}};
+  return figures;
 }
 
 } // namespace lambent

@@ -3,6 +3,7 @@
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "tools/lambent/commands.h"
+#include "tools/lambent/text.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -27,43 +28,29 @@ struct RecordOptions {
   bool video = false;
 };
 
-/// Keeps the log in memory and writes it whole, so that it is never half-written; times are its last columns.
+/// Keeps the log in memory and writes it whole, so that it is never half-written.
 class FrameLog {
  public:
   void add(double time, const FrameStats& s, double writeMs) {
     rows_.push_back({time, s, writeMs});
-    for (const StageTime& t : s.stages)
-      if (std::find(stages_.begin(), stages_.end(), t.name) == stages_.end()) stages_.push_back(t.name);
+    for (const StageTime& t : s.stages) stages_[t.stage.id] = true;
   }
 
+  /// Columns are those of the table of figures, and scene time and time to write a picture.
   void write(const fs::path& file) const {
     writeAtomically(file, [&](const fs::path& temporary) {
       std::ofstream out(temporary);
-      out << "frame,time_s,rays_points,rays_validation,rays_candidates,rays_radiosity_closest,rays_radiosity_occlusion,"
-             "rays_cells,rays_map_tests,rays_gather,vpls_alive,vpls_kept,vpls_moved,vpls_invalid,vpls_relit,paths_held,"
-             "paths_traced,paths_retraced,maps_drawn,maps_waiting,light_maps_drawn,burst,shadow_"
-             "maker,plan,"
-             "timing,wall_ms,write_ms";
-      for (const std::string& s : stages_) out << ',' << columnName(s);
-      out << '\n';
-      for (const Row& r : rows_) {
-        const FrameStats& s = r.stats;
-        const auto all = [](const RayCounts& c) { return c.closest + c.occlusion; };
-        char time[32];
-        std::snprintf(time, sizeof time, "%.6f", r.time);
-        out << s.frame << ',' << time << ',' << all(s.raysPoints) << ',' << all(s.raysValidation) << ','
-            << all(s.raysCandidates) << ',' << s.raysRadiosity.closest << ',' << s.raysRadiosity.occlusion << ','
-            << all(s.raysCells) << ',' << all(s.raysMapTests) << ',' << all(s.raysGather) << ',' << s.vplsAlive << ','
-            << s.vplsKept << ',' << s.vplsMoved << ',' << s.vplsInvalid << ',' << s.vplsRelit << ',' << s.pathsHeld
-            << ',' << s.pathsTraced << ',' << s.pathsRetraced << ',' << s.mapsDrawn << ',' << s.mapsWaiting << ','
-            << s.lightMapsDrawn << ',' << s.burst << ',' << s.shadowMaker.substr(0, s.shadowMaker.find(' ')) << ','
-            << s.plan.oneLine() << ',' << s.timing << ',' << milliseconds(s.wallMs) << ',' << milliseconds(r.writeMs);
-        for (const std::string& name : stages_) {
-          double ms = 0;
-          for (const StageTime& t : s.stages)
-            if (t.name == name) ms += std::max(t.cpuMs, t.gpuMs);
-          out << ',' << milliseconds(ms);
+      for (size_t i = 0; i < std::max<size_t>(1, rows_.size()); ++i) {
+        const Row row = rows_.empty() ? Row{} : rows_[i];
+        const std::vector<FigureColumn> columns = columnsOf(row.stats, stages_);
+        if (i == 0) {
+          out << "time_s,write_ms";
+          for (const FigureColumn& c : columns) out << ',' << c.name;
+          out << '\n';
+          if (rows_.empty()) break;
         }
+        out << format("%.6f,%.3f", row.time, row.writeMs);
+        for (const FigureColumn& c : columns) out << ',' << c.text;
         out << '\n';
       }
       if (!out.flush()) throw RunError(file.string() + ": cannot be written");
@@ -79,22 +66,13 @@ class FrameLog {
 
  private:
   struct Row {
-    double time;
+    double time = 0;
     FrameStats stats;
-    double writeMs;
+    double writeMs = 0;
   };
-  static std::string milliseconds(double ms) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3f", ms);
-    return text;
-  }
-  static std::string columnName(std::string stage) {
-    std::replace(stage.begin(), stage.end(), ' ', '_');
-    return stage + "_ms";
-  }
 
   std::vector<Row> rows_;
-  std::vector<std::string> stages_;
+  std::array<bool, kStages> stages_{}; // that ran in any frame
 };
 
 /// Runs ffmpeg without a shell. Throws RunError when it is missing or fails.

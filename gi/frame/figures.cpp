@@ -1,0 +1,105 @@
+#include "gi/frame/figures.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lambent {
+
+namespace {
+
+using S = FrameStats;
+
+constexpr FigureRow kRows[] = {
+    {"frame", "number of the frame", [](const S& s) -> Figure { return uint64_t(s.frame); }},
+    {"rays.points", "camera rays that found visible points", [](const S& s) -> Figure { return s.raysPoints; }},
+    {"rays.validation", "from visible points to VPLs", [](const S& s) -> Figure { return s.raysValidation; }},
+    {"rays.candidates", "that looked for places for VPLs", [](const S& s) -> Figure { return s.raysCandidates; }},
+    {"rays.radiosity", "of light paths", [](const S& s) -> Figure { return s.raysRadiosity; }, true},
+    {"rays.cells", "that found the surface around VPLs", [](const S& s) -> Figure { return s.raysCells; }},
+    {"rays.map_tests", "from VPLs to objects that moved", [](const S& s) -> Figure { return s.raysMapTests; }},
+    {"rays.gather", "between pixels and VPLs", [](const S& s) -> Figure { return s.raysGather; }},
+    {"vpls.alive", "virtual lights that bring light", [](const S& s) -> Figure { return uint64_t(s.vplsAlive); }},
+    {"vpls.kept", "that stayed", [](const S& s) -> Figure { return uint64_t(s.vplsKept); }},
+    {"vpls.moved", "that stand elsewhere now", [](const S& s) -> Figure { return uint64_t(s.vplsMoved); }},
+    {"vpls.invalid", "that no visible point sees", [](const S& s) -> Figure { return uint64_t(s.vplsInvalid); }},
+    {"vpls.relit", "whose light was added up again", [](const S& s) -> Figure { return uint64_t(s.vplsRelit); }},
+    {"paths.held", "light paths kept", [](const S& s) -> Figure { return s.pathsHeld; }},
+    {"paths.traced", "light paths traced", [](const S& s) -> Figure { return s.pathsTraced; }},
+    {"paths.retraced", "of these, paths that had been traced before",
+     [](const S& s) -> Figure { return s.pathsRetraced; }},
+    {"patches", "gathered at, as far as the GPU has told", [](const S& s) -> Figure { return s.patches; }},
+    {"maps_drawn", "shadow maps of VPLs and lamps, in part or whole",
+     [](const S& s) -> Figure { return uint64_t(s.mapsDrawn); }},
+    {"map_texels_drawn", "of VPLs' maps", [](const S& s) -> Figure { return s.mapTexelsDrawn; }},
+    {"maps_waiting", "shadow maps of VPLs that show where something was",
+     [](const S& s) -> Figure { return uint64_t(s.mapsWaiting); }},
+    {"light_maps_drawn", "shadow maps of punctual lights and of the sky",
+     [](const S& s) -> Figure { return uint64_t(s.lightMapsDrawn); }},
+    {"burst", "camera cut: any number of VPLs may be replaced", [](const S& s) -> Figure { return s.burst; }},
+    {"shadow_maker", "who draws VPLs' maps", [](const S& s) -> Figure { return s.shadowMaker; }},
+    {"plan", "effects that ran", [](const S& s) -> Figure { return s.plan.oneLine(); }},
+    {"timing", "how GPU times were taken", [](const S& s) -> Figure { return s.timing; }},
+    {"wall_ms", "the whole frame", [](const S& s) -> Figure { return s.wallMs; }},
+    {"update_ms", "update of the VPLs, wherever it ran", [](const S& s) -> Figure { return s.updateMs; }},
+};
+
+std::string milliseconds(double ms) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", ms);
+  return text;
+}
+
+std::string underscored(std::string name) {
+  for (char& c : name)
+    if (c == '.' || c == ' ') c = '_';
+  return name;
+}
+
+} // namespace
+
+double FrameStats::ms(StageId stage) const {
+  double ms = 0;
+  for (const StageTime& t : stages)
+    if (t.stage == key(stage)) ms += std::max(t.cpuMs, t.gpuMs);
+  return ms;
+}
+
+std::span<const FigureRow> figureTable() { return kRows; }
+
+std::vector<FigureColumn> columnsOf(const FrameStats& stats, const std::array<bool, kStages>& stages) {
+  std::vector<FigureColumn> columns;
+  for (const FigureRow& row : kRows) {
+    const std::string name = underscored(row.name);
+    const Figure figure = row.value(stats);
+    if (const RayCounts* rays = std::get_if<RayCounts>(&figure)) {
+      if (row.split) {
+        columns.push_back({name + "_closest", std::to_string(rays->closest)});
+        columns.push_back({name + "_occlusion", std::to_string(rays->occlusion)});
+      } else {
+        columns.push_back({name, std::to_string(rays->closest + rays->occlusion)});
+      }
+    } else if (const double* ms = std::get_if<double>(&figure)) {
+      columns.push_back({name, milliseconds(*ms)});
+    } else if (const bool* flag = std::get_if<bool>(&figure)) {
+      columns.push_back({name, *flag ? "1" : "0"});
+    } else {
+      columns.push_back({name, figureText(figure)});
+    }
+  }
+  for (size_t i = 0; i < kStages; ++i)
+    if (stages[i]) columns.push_back({underscored(kStageNames[i]) + "_ms", milliseconds(stats.ms(StageId(i)))});
+  return columns;
+}
+
+std::string figureText(const Figure& figure) {
+  struct Text {
+    std::string operator()(uint64_t n) const { return std::to_string(n); }
+    std::string operator()(bool on) const { return on ? "on" : "off"; }
+    std::string operator()(double ms) const { return milliseconds(ms) + " ms"; }
+    std::string operator()(const RayCounts& rays) const { return std::to_string(rays.closest + rays.occlusion); }
+    std::string operator()(const std::string& text) const { return text; }
+  };
+  return std::visit(Text(), figure);
+}
+
+} // namespace lambent

@@ -1,0 +1,93 @@
+// Every stage of a frame that is timed, on the CPU or the GPU: a row of the panel, a column of frames.csv.
+#pragma once
+
+#include "engine/core/profile.h"
+
+#include <iterator>
+
+namespace lambent {
+
+enum class StageId : uint16_t {
+  Scene,
+  // virtual lights on the CPU (gi/vpl)
+  Validate,
+  Points,
+  Candidates,
+  Resample,
+  Radiosity,
+  Replace,
+  Density,
+  Photons, // ir
+  Chains,  // tcas
+  // virtual lights on the GPU (gi/lights)
+  ReflectiveMaps,
+  LightPatches, // of reflective maps
+  ReflectiveLights,
+  Vpls, // upload
+  // surfaces
+  Surfaces,
+  Patches,
+  // direct light
+  LightMaps,
+  Emitters, // upload
+  EmitterMaps,
+  Direct,
+  // who sees whom
+  VplMaps,
+  MapComparison,
+  // indirect light
+  Gather,
+  GatherByRays,
+  IrradianceUpload,
+  Stencil,
+  Refine,
+  Splat,
+  SplatPerVpl,
+  Upsample,
+  Filter,
+  // picture
+  Composite,
+  Display,
+  Present,
+};
+
+inline constexpr const char* kStageNames[] = {"scene",
+                                              "validate",
+                                              "points",
+                                              "candidates",
+                                              "resample",
+                                              "radiosity",
+                                              "replace",
+                                              "density",
+                                              "photons",
+                                              "chains",
+                                              "reflective maps",
+                                              "light patches",
+                                              "reflective lights",
+                                              "vpls",
+                                              "g-buffer",
+                                              "patches",
+                                              "light maps",
+                                              "emitters",
+                                              "emitter maps",
+                                              "direct",
+                                              "vpl maps",
+                                              "map comparison",
+                                              "gather",
+                                              "gather by rays",
+                                              "irradiance upload",
+                                              "stencil",
+                                              "refine",
+                                              "splat",
+                                              "splat per VPL",
+                                              "upsample",
+                                              "filter",
+                                              "composite",
+                                              "display",
+                                              "present"};
+inline constexpr size_t kStages = std::size(kStageNames);
+static_assert(kStages == size_t(StageId::Present) + 1);
+
+constexpr StageKey key(StageId id) { return {uint16_t(id), kStageNames[size_t(id)]}; }
+
+} // namespace lambent
