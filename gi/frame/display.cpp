@@ -157,7 +157,7 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
   frame.gbuffer.depth->bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
   glBindVertexArray(spriteArray_.name());
-  glDrawArrays(GL_POINTS, 0, GLsizei(sprites.size()));
+  gl::drawArrays(GL_POINTS, int(sprites.size()));
   glBindVertexArray(0);
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
@@ -176,7 +176,7 @@ void DisplayPass::present(uint32_t framebuffer, int width, int height) {
 Image8 DisplayPass::read() const {
   const int width = display_.width(), height = display_.height();
   std::vector<uint8_t> bottomUp(size_t(width) * height * 3);
-  glGetTextureImage(display_.name(), 0, GL_RGB, GL_UNSIGNED_BYTE, GLsizei(bottomUp.size()), bottomUp.data());
+  display_.read(std::span(bottomUp), GL_RGB, GL_UNSIGNED_BYTE);
   Image8 image{width, height, std::vector<uint8_t>(bottomUp.size())};
   const size_t row = size_t(width) * 3;
   for (int y = 0; y < height; ++y)

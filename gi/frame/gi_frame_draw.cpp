@@ -32,7 +32,7 @@ Image imageOf(const CameraView& camera, std::vector<vec3> pixels) {
 
 void GiFrame::State::draw() {
   const SceneView& view = world.view;
-  const uint64_t draws = gl::drawCount();
+  const uint64_t draws = gl::counts().draws;
   results = {};
   const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
   const GBuffer gbuffer = gbufferPass.run({*gpuScene, view.camera, glossy});
@@ -53,7 +53,7 @@ void GiFrame::State::draw() {
   results.vpls = &vpls;
   results.skyRadiance = view.skyRadiance;
   results.sceneDiameter = mapReach();
-  work(EffectId::Redraw) = gl::drawCount() - draws;
+  work(EffectId::Redraw) = gl::counts().draws - draws;
   if (glossy) work(EffectId::Glossy) = work(EffectId::Redraw);
 }
 
@@ -148,7 +148,7 @@ VplLights GiFrame::State::reflectiveLights(const ReflectiveMaps& sheet) {
 }
 
 IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
-  const uint64_t draws = gl::drawCount();
+  const uint64_t draws = gl::counts().draws;
   const bool reflective = fromReflectiveMaps(settings.vpl.source);
   ReflectiveMaps sheet;
   VplLights shown;
@@ -198,10 +198,10 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   }
   FilterSettings filter = settings.filter;
   filter.on = filter.on && plan.on(EffectId::Filter);
-  const uint64_t filterDraws = gl::drawCount();
+  const uint64_t filterDraws = gl::counts().draws;
   const IndirectLight indirect = filterPass.run({gbuffer, raw, filter});
-  if (filter.on) work(EffectId::Filter) = gl::drawCount() - filterDraws;
-  work(EffectId::Indirect) += gl::drawCount() - draws + mapsDrawn;
+  if (filter.on) work(EffectId::Filter) = gl::counts().draws - filterDraws;
+  work(EffectId::Indirect) += gl::counts().draws - draws + mapsDrawn;
   return indirect;
 }
 

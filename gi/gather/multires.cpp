@@ -119,7 +119,7 @@ void MultiresPass::mark(const MultiresInputs& in) {
 }
 
 uint64_t MultiresPass::patchesMarked() {
-  if (marks_) glGetQueryObjectui64v(marks_.name(), GL_QUERY_RESULT_NO_WAIT, &marked_); // untouched if not yet known
+  if (marks_) marked_ = marks_.known().value_or(marked_);
   return marked_;
 }
 
@@ -223,7 +223,7 @@ void MultiresPass::upsample(const MultiresInputs& in, bool add) {
 
 uint64_t MultiresPass::countPatches() const {
   std::vector<vec4> texels(size_t(atlas_.width()) * atlas_.height());
-  glGetTextureImage(atlas_.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
+  atlas_.read(std::span(texels), GL_RGBA, GL_FLOAT);
   return uint64_t(std::count_if(texels.begin(), texels.end(), [](const vec4& t) { return t.a > 0; }));
 }
 
