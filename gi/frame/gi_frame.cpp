@@ -23,6 +23,7 @@ GiFrame::~GiFrame() = default;
 const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(int, int)>& progress) {
   State& s = *state_;
   const auto begin = std::chrono::steady_clock::now();
+  const gl::Counts before = gl::counts();
   s.finishUpdate();
   s.begin(view);
   s.planFrame(view);
@@ -30,6 +31,10 @@ const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(i
   if (s.plan.on(EffectId::Indirect)) s.updateLight(progress);
   if (s.plan.on(EffectId::Redraw)) s.draw();
   s.countWork();
+  const gl::Counts asked = gl::counts() - before;
+  s.stats.draws = asked.draws;
+  s.stats.waits = asked.waits;
+  s.stats.readBacks = asked.readBacks;
   s.stats.wallMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return s.stats;
 }
