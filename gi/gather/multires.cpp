@@ -112,16 +112,12 @@ void MultiresPass::mark(const MultiresInputs& in) {
     pyramid_.plane->bind(1);
     pyramid_.normalLo->bind(2);
   }
-  if (!marks_) marks_ = gl::Query(GL_SAMPLES_PASSED);
-  glBeginQuery(GL_SAMPLES_PASSED, marks_.name());
+  marks_.begin();
   gl::drawFullscreen();
-  glEndQuery(GL_SAMPLES_PASSED);
+  marks_.end();
 }
 
-uint64_t MultiresPass::patchesMarked() {
-  if (marks_) marked_ = marks_.known().value_or(marked_);
-  return marked_;
-}
+uint64_t MultiresPass::patchesMarked() { return marks_.latest().value_or(0); }
 
 void MultiresPass::clear(const MultiresInputs& in) {
   gl::PipelineState{.width = atlas_.width(), .height = atlas_.height()}.apply(); // clearing keeps to the scissor

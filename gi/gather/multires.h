@@ -6,6 +6,7 @@
 //                  makes the levels whole from coarse to fine                           upsample.frag
 #pragma once
 
+#include "engine/gl/query_ring.h"
 #include "gi/gather/splat.h"
 
 namespace lambent {
@@ -73,7 +74,7 @@ class MultiresPass {
   explicit MultiresPass(PassContext context) : context_(context) {}
   RawIndirect run(const MultiresInputs& in);
   const PatchPyramid& patches() const { return pyramid_; } // of the last run
-  /// Patches that the stencil marked, of all subsets, in the last run that is known of: does not wait for the GPU.
+  /// Patches that the stencil marked, of all subsets, in the last run that the GPU has told of: does not wait for it.
   uint64_t patchesMarked();
   /// Patches that hold light after the last run, gathered or splatted. Reads the atlas back.
   uint64_t countPatches() const;
@@ -91,8 +92,7 @@ class MultiresPass {
   SplatPass splatPass_{context_};
   PatchPass patchPass_{context_, StageId::Patches};
   PatchPyramid pyramid_;
-  gl::Query marks_;
-  uint64_t marked_ = 0;
+  gl::QueryRing marks_{GL_SAMPLES_PASSED};
   AtlasShape shape_;
   gl::Texture atlas_, stencil_, levels_, irradiance_; // levels_: level l ≥ 1 made whole is mip level l − 1
   gl::Texture atlasGlossy_, levelsGlossy_, glossy_;   // beside them, when the G-buffer has finishes

@@ -1,6 +1,6 @@
 // Draws, waits and read-backs are counted wherever they happen, and a frame makes no more of the last two than it
 // needs.
-#include "engine/gl/counts.h"
+#include "engine/gl/query_ring.h"
 #include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
 
@@ -44,6 +44,36 @@ TEST_F(CountsTest, OnlyTheResultOfAQueryWaits) {
   EXPECT_EQ(sinceBefore().waits, 1u);
   EXPECT_EQ(query.known(), time);
   EXPECT_EQ(sinceBefore().waits, 1u);
+}
+
+/// Frame i marks i fragments. Whatever the GPU has come to by then, what is heard is the count of a frame that was
+/// drawn, never of an earlier one than was heard before, and at last that of the last frame that asked.
+TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
+  const gl::Texture target("ring/target", {.format = GL_RGBA8, .width = 64, .height = 1});
+  const gl::Framebuffer framebuffer("ring", {&target});
+  gl::QueryRing ring(GL_SAMPLES_PASSED);
+  EXPECT_EQ(ring.latest(), std::nullopt);
+  programs.get({.fragment = "present.frag"}).use();
+  framebuffer.bind();
+  uint64_t heard = 0;
+  for (int i = 1; i <= 40; ++i) {
+    gl::PipelineState{.width = i, .height = 1}.apply();
+    ring.begin();
+    gl::drawFullscreen();
+    ring.end();
+    const uint64_t now = ring.latest().value_or(0);
+    EXPECT_GE(now, heard);
+    EXPECT_LE(now, uint64_t(i));
+    heard = now;
+  }
+  EXPECT_EQ(sinceBefore().waits, 0u);
+  glFinish();
+  EXPECT_GT(ring.latest().value_or(0), 0u);
+  ring.begin();
+  gl::drawFullscreen();
+  ring.end();
+  glFinish();
+  EXPECT_EQ(ring.latest(), 40u);
 }
 
 TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
