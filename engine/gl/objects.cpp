@@ -175,11 +175,6 @@ void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, null
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
     : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
 
-void Buffer::write(uint64_t offset, uint64_t size, const void* data) const {
-  CHECK_LE(offset + size, bytes());
-  if (size > 0) glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
-}
-
 void Buffer::readBytes(uint64_t offset, uint64_t size, void* to) const {
   CHECK_LE(offset + size, bytes());
   glGetNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), to);

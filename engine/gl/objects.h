@@ -104,13 +104,12 @@ int texelBytes(GLenum format);
 class Buffer : public detail::Object {
  public:
   Buffer() = default;
-  /// `data` may be null. `flags` as for glNamedBufferStorage; dynamic storage by default.
-  Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+  /// `data` may be null. `flags` as for glNamedBufferStorage. What the CPU changes later goes through a Ring.
+  Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags = 0);
 
   template <class T> static Buffer of(const std::string& label, std::span<const T> data, GLbitfield flags = 0) {
     return Buffer(label, data.size_bytes(), data.data(), flags);
   }
-  void write(uint64_t offset, uint64_t bytes, const void* data) const;
   /// Copies the bytes from `offset` on to `values`.
   template <class T> void read(uint64_t offset, std::span<T> values) const {
     readBytes(offset, values.size_bytes(), values.data());

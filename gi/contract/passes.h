@@ -12,12 +12,13 @@
 #include "engine/gl/objects.h"
 #include "engine/gl/profiler.h"
 #include "engine/gl/program.h"
+#include "engine/gl/ring.h"
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
-#include "gi/surfaces/gpu_scene.h"
 #include "gi/contract/map_job.h"
 #include "gi/plan/settings.h"
 #include "gi/plan/stages.h"
+#include "gi/surfaces/gpu_scene.h"
 #include "gi/vpl/light_set.h"
 #include "gi/vpl/vpl_set.h"
 #include "shaders/shared/camera_block.h"
@@ -46,13 +47,13 @@ struct PassContext {
 
 /// Surfaces seen by the camera. World position follows from `depth` and `camera` (shaders/lib/gbuffer.glsl).
 struct GBuffer {
-  const gl::Texture* depth = nullptr;    // DEPTH32F, reversed: 0 where nothing is seen
-  const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer
-  const gl::Texture* albedo = nullptr;   // RGBA16F
-  const gl::Texture* emission = nullptr; // RGBA16F radiance emitted towards the viewer, W/(m² sr)
-  const gl::Texture* finish = nullptr;   // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
-  const gl::Buffer* camera = nullptr;    // uniform block CameraBlock (shaders/shared/camera_block.h)
-  CameraBlock block;                     // what `camera` holds
+  const gl::Texture* depth = nullptr;      // DEPTH32F, reversed: 0 where nothing is seen
+  const gl::Texture* normal = nullptr;     // RGBA16F world shading normal, turned to the viewer
+  const gl::Texture* albedo = nullptr;     // RGBA16F
+  const gl::Texture* emission = nullptr;   // RGBA16F radiance emitted towards the viewer, W/(m² sr)
+  const gl::Texture* finish = nullptr;     // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
+  const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)
+  CameraBlock block;                       // what `camera` holds
   int width = 0, height = 0;
 };
 
@@ -74,7 +75,8 @@ class GBufferPass {
   PassContext context_;
   gl::Texture depth_, normal_, albedo_, emission_, finish_;
   gl::Framebuffer framebuffer_;
-  gl::Buffer camera_;
+  gl::Ring cameras_{"g-buffer/camera"};
+  gl::BufferSlice camera_; // of the last run
 };
 
 // 2. Shadow maps of VPLs and of emissive samples ---------------------------------------------------------------------
@@ -162,7 +164,8 @@ struct VplLights {
 
 class VplLightBuffer {
  public:
-  VplLightBuffer(PassContext context, StageId stage) : context_(context), stage_(stage) {}
+  VplLightBuffer(PassContext context, StageId stage)
+      : context_(context), stage_(stage), changes_(std::string(key(stage).name) + "/changed lights") {}
   /// Uploads the slots whose light differs from what the buffer holds.
   VplLights run(std::span<const VplLight> slots);
   uint32_t uploaded() const { return uploaded_; } // lights that differed in the last run
@@ -171,6 +174,7 @@ class VplLightBuffer {
   PassContext context_;
   StageId stage_;
   gl::Buffer buffer_;
+  gl::Ring changes_;
   std::vector<VplLight> mirror_; // in buffer order
   uint32_t count_ = 0, uploaded_ = 0;
 };
@@ -369,7 +373,7 @@ class DisplayPass {
   PassContext context_;
   gl::Texture display_, black_;
   gl::Framebuffer framebuffer_;
-  gl::Buffer sprites_;
+  gl::Ring sprites_{"display/vpls"};
   gl::VertexArray spriteArray_;
 };
 

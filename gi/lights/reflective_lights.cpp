@@ -67,8 +67,7 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
     std::vector<vec4> lenses(kMostMaps, vec4(0));
     for (uint32_t i = 0; i < mapCount; ++i)
       if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
-    const gl::Buffer lensBlock = gl::Buffer::of<vec4>("reflective lights/lenses", lenses);
-    lensBlock.bindUniform(3);
+    lenses_.write(lenses.size() * sizeof(vec4), lenses.data()).bindUniform(3);
     desc.defines.push_back("GRID");
     const gl::Program& program = context_.programs.get(desc);
     program.set("count", int(count_));

@@ -70,7 +70,7 @@ class ReflectiveMapPass {
   gl::Texture depth_, albedo_, position_, normal_, flux_;
   gl::Framebuffer surfaces_, fluxes_;
   std::vector<gl::Framebuffer> levels_;
-  gl::Buffer camera_;
+  gl::Ring cameras_{"reflective maps/cameras"};
 };
 
 /// Bytes that the sheet's textures may take; the resolution is halved until they fit.
@@ -91,6 +91,7 @@ class ReflectiveLightPass {
   PassContext context_;
   gl::Buffer lights_, compact_;
   gl::Texture compactView_;
+  gl::Ring lenses_{"reflective lights/lenses"};
   uint32_t count_ = 0;
 };
 

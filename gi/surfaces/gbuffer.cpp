@@ -46,10 +46,9 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
     finish_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
     framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &finish_}, &depth_)
                              : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
-    camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
   }
   const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
-  camera_.write(0, sizeof block, &block);
+  camera_ = cameras_.write(sizeof block, &block);
   camera_.bindUniform(0);
 
   framebuffer_.bind();

@@ -59,7 +59,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
   for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
     if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
-  instanceRows_.write(0, rows.size() * sizeof(vec4), rows.data());
+  changes_.upload(instanceRows_, 0, rows.size() * sizeof(vec4), rows.data());
 }
 
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
