@@ -27,6 +27,7 @@ struct Side {
   std::vector<std::string> order; // of rows
   std::map<std::string, std::vector<double>> rows;
   std::vector<double> retraced, traced, maps, texels; // shares of all
+  std::vector<double> draws, waits, readBacks;
   uint32_t mostWaiting = 0;
 
   void note(const std::string& row, double value) {
@@ -50,6 +51,9 @@ struct Side {
     const double mapTexels = double(settings.shadow.resolution) * settings.shadow.resolution;
     texels.push_back(share(double(s.mapTexelsDrawn), settings.smc.vpls * mapTexels));
     mostWaiting = std::max(mostWaiting, s.mapsWaiting);
+    draws.push_back(double(s.draws));
+    waits.push_back(double(s.waits));
+    readBacks.push_back(double(s.readBacks));
   }
 
   nlohmann::json figures() const {
@@ -63,6 +67,9 @@ struct Side {
     j["drawn_maps_share"] = of(maps);
     j["drawn_texels_share"] = of(texels);
     j["most_maps_waiting"] = mostWaiting;
+    j["draws"] = of(draws);
+    j["waits"] = of(waits);
+    j["read_backs"] = of(readBacks);
     return j;
   }
 };
@@ -78,6 +85,12 @@ void printShares(const Side& side) {
   line("VPL shadow maps drawn, in part or whole", side.maps);
   line("texels of VPL shadow maps drawn", side.texels);
   std::printf("  %-46s %u at most\n", "shadow maps that had to wait", side.mostWaiting);
+  const auto calls = [](const char* what, const std::vector<double>& v) {
+    std::printf("  %-46s %.0f (most %.0f)\n", what, median(v), v.empty() ? 0 : *std::max_element(v.begin(), v.end()));
+  };
+  calls("draw calls", side.draws);
+  calls("waits for the GPU", side.waits);
+  calls("read-backs from the GPU", side.readBacks);
 }
 
 void bench(const BenchOptions& options) {
