@@ -17,7 +17,7 @@ constexpr float kWidestSpotCos = 0.34f; // 70°
 
 /// A light with the views that its map needs: one, or six for a cube.
 struct LitMap {
-  PunctualLight light;
+  LightRecord light;
   std::vector<mat4> clipFromWorld;
 };
 
@@ -141,16 +141,16 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::ve
       target.drawn.assign(size_t(count), mat4(0));
     }
     if (!target.lights)
-      target.lights = gl::Buffer("light maps/lights", sizeof(PunctualLight) * kLightsPerBlock, nullptr);
+      target.lights = gl::Buffer("light maps/lights", sizeof(LightRecord) * kLightsPerBlock, nullptr);
     target.count = count;
-    std::vector<PunctualLight> lights;
+    std::vector<LightRecord> lights;
     for (int i = 0; i < count; ++i) {
       lights.push_back(maps[first + i].light);
       lights.back().intensityLayer.w = float(i);
     }
     if (lights.size() != target.held.size() ||
-        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(PunctualLight)) != 0) {
-      target.lights.write(0, lights.size() * sizeof(PunctualLight), lights.data());
+        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(LightRecord)) != 0) {
+      target.lights.write(0, lights.size() * sizeof(LightRecord), lights.data());
       target.held = std::move(lights);
     }
     drawMaps(target, maps, first, in);

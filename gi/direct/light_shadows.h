@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gi/contract/passes.h"
-#include "shaders/shared/punctual_light.h"
+#include "shaders/shared/light_record.h"
 
 namespace lambent {
 
@@ -14,7 +14,7 @@ struct LightBlock {
   gl::Texture maps; // DEPTH32F, reversed
   gl::Buffer lights;
   int count = 0;
-  std::vector<PunctualLight> held; // what `lights` holds
+  std::vector<LightRecord> held; // what `lights` holds
   std::vector<mat4> drawn;         // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
 };
 
