@@ -1,0 +1,109 @@
+// What texelFetch gives outside a texture is undefined. Here it gives a number, and pictures must not depend on which.
+#include "gi/gather/multires.h"
+#include "gi/lights/reflective_maps.h"
+#include "gl_fixture.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+namespace lambent::test {
+
+/// A copy of the shaders that fetch `outside` outside the mip level that they ask for.
+class StrictShaders {
+ public:
+  explicit StrictShaders(float outside)
+      : path(fs::temp_directory_path() / ("lambent-strict-" + std::to_string(getpid()))) {
+    fs::copy(gl::findShaderFolder(), path, fs::copy_options::recursive);
+    const std::string beyond = "vec4(" + std::to_string(outside) + ")";
+    for (const auto& entry : fs::directory_iterator(path)) {
+      if (!entry.is_regular_file()) continue;
+      std::stringstream read;
+      read << std::ifstream(entry.path()).rdbuf();
+      std::string text = read.str();
+      const std::string version = "#version 450\n";
+      if (!text.starts_with(version)) continue;
+      text.insert(version.size(), R"(
+vec4 strictFetch(sampler2D s, ivec2 p, int level) {
+  ivec2 size = textureSize(s, 0) >> level; // software Mesa takes one fragment's level for all of them
+  return any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, size)) ? BEYOND : texelFetch(s, p, level);
+}
+vec4 strictFetch(sampler2DArray s, ivec3 p, int level) {
+  ivec3 size = textureSize(s, 0); // no levels
+  return any(lessThan(p, ivec3(0))) || any(greaterThanEqual(p, size)) ? BEYOND : texelFetch(s, p, level);
+}
+vec4 strictFetch(samplerBuffer s, int p) { return p < 0 || p >= textureSize(s) ? BEYOND : texelFetch(s, p); }
+#define texelFetch strictFetch
+)");
+      for (size_t at = 0; (at = text.find("BEYOND", at)) != std::string::npos;) text.replace(at, 6, beyond);
+      std::ofstream(entry.path()) << text;
+    }
+  }
+  ~StrictShaders() { fs::remove_all(path); }
+  StrictShaders(const StrictShaders&) = delete;
+  StrictShaders& operator=(const StrictShaders&) = delete;
+  fs::path path;
+};
+
+class StrictFetchTest : public GlTest {
+ protected:
+  /// Indirect irradiance by every gather from reflective maps, whose passes read most textures.
+  std::vector<std::vector<vec4>> pictures(float outside) {
+    const StrictShaders shaders(outside);
+    gl::ProgramCache strict(shaders.path);
+    const PassContext context{strict, profiler};
+    std::vector<std::vector<vec4>> images;
+    for (const glm::ivec2 size : {glm::ivec2(64, 32), glm::ivec2(67, 39)}) { // patches fit, or reach beyond the picture
+      room.scene.camera.width = size.x;
+      room.scene.camera.height = size.y;
+      GpuScene gpu(strict, room.scene.assets);
+      gpu.place(room.scene.instances);
+      GBufferPass gbufferPass{context};
+      const GBuffer gbuffer = gbufferPass.run({gpu, room.scene.camera});
+      for (const VplSource source : {VplSource::Rsm, VplSource::Isr, VplSource::Hisr}) {
+        ReflectiveMapPass mapPass{context};
+        ReflectiveLightPass lightPass{context};
+        const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, source});
+        const LightTrees trees{maps, rsm};
+        const LightTrees* cut = source == VplSource::Hisr ? &trees : nullptr;
+        const VplLights vpls = cut ? VplLights{} : lightPass.run(maps, rsm, source);
+        std::vector<GatherMode> modes{GatherMode::Interleaved, GatherMode::Multires, GatherMode::MultiresInterleaved};
+        if (source == VplSource::Rsm) modes.insert(modes.end(), {GatherMode::Splat, GatherMode::SplatPerVpl});
+        for (const GatherMode mode : modes) {
+          const GatherSettings gather{.mode = mode};
+          MultiresPass multiresPass{context};
+          GatherPass gatherPass{context};
+          FilterPass filterPass{context};
+          const RawIndirect raw =
+              multiresolution(mode)
+                  ? multiresPass.run({gbuffer, vpls, nullptr, 1, gather, {.coarsest = 4}, FilterSettings{}, cut})
+                  : gatherPass.run({gbuffer, vpls, nullptr, 1, gather, cut});
+          images.push_back(readTexture(*filterPass.run({gbuffer, raw, FilterSettings{}}).irradiance));
+        }
+      }
+    }
+    return images;
+  }
+
+  Room room;
+  std::vector<LightView> lights;
+  const RsmSettings rsm{.resolution = 32, .vpls = 14, .coarsest = 8, .finest = 32};
+};
+
+TEST_F(StrictFetchTest, NoPictureDependsOnWhatLiesOutsideATexture) {
+  LightView point, sun;
+  point.position = vec3(0.3f, 0.5f, 0.4f);
+  point.intensity = vec3(1, 2, 3);
+  sun.type = LightType::Directional;
+  sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
+  sun.intensity = vec3(4);
+  lights = {point, sun};
+  const std::vector<std::vector<vec4>> zeros = pictures(0), large = pictures(1e6f);
+  ASSERT_EQ(zeros.size(), 22u);
+  for (size_t i = 0; i < zeros.size(); ++i) EXPECT_TRUE(zeros[i] == large[i]) << "picture " << i;
+}
+
+} // namespace lambent::test
