@@ -39,7 +39,8 @@ RawIndirect MultiresPass::run(const MultiresInputs& in) {
                              .orthoFrom = ortho ? 0 : 1,
                              .depthThreshold = in.multires.depth,
                              .normalThreshold = in.multires.normal,
-                             .balance = in.multires.balance});
+                             .balance = in.multires.balance,
+                             .edges = in.multires.edges});
   shape.coarsest = std::max(0, levels - shape.gridLevel());
   const int multiple = std::max(1 << levels, shape.grid);
   shape.base = (glm::ivec2(g.width, g.height) + multiple - 1) / multiple * multiple;

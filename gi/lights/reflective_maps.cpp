@@ -135,7 +135,8 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
                                .orthoFrom = int(firstParallel - maps_.begin()),
                                .depthThreshold = in.rsm.depth,
                                .normalThreshold = in.rsm.normal,
-                               .balance = false});
+                               .balance = false, // nothing is interpolated between clusters
+                               .edges = false});
   }
   return {.maps = maps_,
           .position = &position_,

@@ -40,6 +40,7 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
     program.set("orthoFrom", in.orthoFrom);
     program.set("columns", in.size.x / in.cell.x);
     program.set("balance", in.balance ? 1 : 0);
+    program.set("edges", in.edges ? 1 : 0);
     if (i == 0) {
       in.depth.bind(0);
       in.normal.bind(1);
