@@ -13,7 +13,7 @@ layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 3) uniform sampler2D normals;
 layout(binding = 4) uniform sampler2D fluxes;
 uniform ivec2 origin;    // of the map, texels
-uniform float threshold; // T of a texel, see tree_gather.cpp
+uniform float threshold; // see tree_gather.cpp
 uniform int coarsest; // mip levels
 uniform int finest;
 uniform ivec2 tileOrigin;
@@ -73,8 +73,7 @@ void main() {
       vec4 place = texelFetch(positions, cluster, at);
       vec3 fromLight = position - place.xyz;
       float distance2 = max(dot(fromLight, fromLight), 1e-12);
-      // r² ≤ T |V|² with R of this level: T grows fourfold with each.
-      if (place.a > 0.0 && at > finest && distance2 <= threshold * float(1 << (2 * at)) * place.a) {
+      if (place.a > 0.0 && at > finest && distance2 <= threshold * place.a) {
         --at;
         continue;
       }

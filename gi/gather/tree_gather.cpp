@@ -43,13 +43,15 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
     for (int i = 0; i < (in.gbuffer.finish ? 2 : 1); ++i)
       glClearNamedFramebufferfv(target.name(), GL_COLOR, i, nothing);
   }
-  // Paper 3, eq. 7: cluster j of solid angle ω brings at most C = I A/(π r² + A), A = ω |V|². C ≥ τ where
-  // r² ≤ ω |V|² (I/τ − 1)/π, its eq. 8 with ω = 4π/(6 R²). I is the light of a whole map over that of the brightest.
+  // Paper 3, eq. 7: a cluster of area A brings at most C = I A/(π r² + A), where I is the light of its whole map over
+  // that of the brightest. C ≥ τ where r² ≤ A (I/τ − 1)/π, its eq. 8. The paper's A is ω |V|² with all ω alike, so too
+  // small at the middle of a wide map; ours is a bound whatever the texel (rsm_pyramid.frag). gather.disk widens r² by
+  // more or less A.
   float brightest = 0;
   for (const ReflectiveMap& m : sheet.maps) brightest = std::max(brightest, m.power);
   for (size_t map = 0; map < sheet.maps.size(); ++map) {
     const ReflectiveMap& m = sheet.maps[map];
-    const float t = rsm.tau > 0 ? m.patchArea * std::max(0.0f, m.power / brightest / rsm.tau - 1) / kPi : 1e30f;
+    const float t = rsm.tau > 0 ? std::max(0.0f, m.power / brightest / rsm.tau / kPi - in.diskFactor) : 1e30f;
     program.set("origin", sheet.origin(map));
     program.set("threshold", t);
     for (int first = 0; first < roots; first += rootsPerDraw) {

@@ -24,8 +24,8 @@ struct ReflectiveMap {
 /// flux.
 struct ReflectiveMaps {
   std::span<const ReflectiveMap> maps;
-  const gl::Texture* position = nullptr; // RGBA32F: world; a: largest squared distance from the light, m² (1 for a
-                                         // sun), 0 where the map meets nothing
+  const gl::Texture* position = nullptr; // RGBA32F: world; a: bound of the area, m²: that of the largest texel times
+                                         // their number; 0 where the map meets nothing
   const gl::Texture* normal = nullptr;   // RGBA32F: on the lit side; unit at level 0, at others as long as the mean
   const gl::Texture* flux = nullptr;     // RGBA32F: reflected flux, W; a: area facing the light, m²
   const gl::Texture* depth = nullptr;    // reversed, level 0 only
@@ -95,7 +95,9 @@ class ReflectiveLightPass {
 };
 
 /// What drawGather draws in place of VPLs: irradiance from the trees of all maps. Each fragment descends from the
-/// coarsest clusters and stops where what a cluster may bring stays below τ (paper 3, eq. 7 and 8).
+/// coarsest clusters and stops where what a cluster may bring stays below τ (paper 3, eq. 7 and 8): P A/(π r² + A),
+/// with P the light of its map as a share of the brightest map's, A the bound of its area, r the distance of its mean
+/// place.
 struct LightTrees {
   const ReflectiveMaps& maps;
   const RsmSettings& rsm;

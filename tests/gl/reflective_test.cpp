@@ -173,6 +173,53 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
   EXPECT_EQ(coarsest.pixels, draw(1).pixels);
 }
 
+/// A spot over a dark floor with one bright cluster, which a ceiling faces from many distances. Where the picture is
+/// the one of coarsest clusters, the cluster was not refined, and its contribution (paper 3, eq. 6) must be below τ.
+TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
+  const float height = 2, tangent = std::tan(1.1f); // 63°: texels at the middle have five times the mean solid angle
+  LightView spot = spotLight(vec3(0, height, 0), vec3(0, -1, 0));
+  spot.outerConeCos = std::cos(1.1f);
+  spot.innerConeCos = std::cos(1.0f);
+  RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64};
+  const float side = 2 * tangent * height / 8; // of a cluster on the floor
+  for (const glm::ivec2 cluster : {glm::ivec2(4, 4), glm::ivec2(5, 3), glm::ivec2(6, 5)}) {
+    const float x = (float(cluster.x) - 4) * side, z = (float(cluster.y) - 4) * side, margin = 0.01f * side;
+    double largest = 0;
+    for (const float ceiling : {2.5f, 4.0f, 6.0f, 9.0f, 14.0f}) {
+      HandScene scene;
+      scene.quad(vec3(-30, 0, 30), vec3(60, 0, 0), vec3(0, 0, -60), scene.material(vec3(0)));
+      scene.quad(vec3(x + margin, 0.001f, z + side - margin), vec3(side - 2 * margin, 0, 0),
+                 vec3(0, 0, -side + 2 * margin), scene.material(vec3(1)));
+      scene.quad(vec3(-30, ceiling, -30), vec3(60, 0, 0), vec3(0, 0, 60), scene.material(vec3(0.5f)));
+      scene.camera = cameraAt(vec3(x + 0.5f * side, 0.5f * ceiling, z + 0.5f * side),
+                              vec3(x + 0.5f * side, ceiling, z + 0.5f * side), 1.0f, 32, 24);
+      place(scene);
+      rsm.finest = 8;
+      const Image coarse = gathered(scene, maps({spot}, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+      rsm.finest = 64;
+      for (const float tau : {0.001f, 0.003f, 0.01f, 0.03f}) {
+        rsm.tau = tau;
+        const ReflectiveMaps sheet = maps({spot}, rsm, VplSource::Hisr);
+        const glm::dvec4 cell = sum(*sheet.flux, sheet.levels - 1); // nothing else shines, but all has area
+        std::vector<vec4> clusters(64), places(64);
+        glGetTextureImage(sheet.flux->name(), sheet.levels - 1, GL_RGBA, GL_FLOAT, 64 * sizeof(vec4), clusters.data());
+        const vec4 bright =
+            *std::max_element(clusters.begin(), clusters.end(), [](const vec4& a, const vec4& b) { return a.x < b.x; });
+        ASSERT_GT(bright.x, 0.97 * cell.x) << "the bright square is one cluster";
+        const Image cut = gathered(scene, sheet, rsm, VplSource::Hisr);
+        for (size_t i = 0; i < cut.pixels.size(); ++i) {
+          // One alone may be the same by chance, where the sum over the parts passes the whole.
+          if (cut.pixels[i] != coarse.pixels[i] || cut.pixels[i ^ 1] != coarse.pixels[i ^ 1]) continue;
+          const double share = double(cut.pixels[i].x) * double(bright.a) / double(bright.x); // A cos cos/(π r² + A)
+          ASSERT_LE(share, 1.001 * double(tau)) << cluster.x << ' ' << cluster.y << ", " << ceiling << " m";
+          largest = std::max(largest, share / double(tau));
+        }
+      }
+    }
+    EXPECT_GT(largest, 0.5) << "or nothing near the bound was looked at";
+  }
+}
+
 TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
   // A spot over a small bright square in a dark floor; a wall sees the square.
   HandScene scene;
