@@ -48,6 +48,18 @@ void bindClusters(const ReflectiveMaps& maps) {
 
 } // namespace
 
+LightGrid lightGrid(int vpls, int maps) {
+  if (maps == 0) return {};
+  const int side = std::max(1, int(std::sqrt(double(vpls) / maps) + 1e-9));
+  LightGrid best;
+  for (const int columns : {side, side + 1}) {
+    const int rows = std::max(maps, vpls / columns); // of all maps
+    const LightGrid grid{columns, rows / maps, rows % maps, maps};
+    if (best.maps == 0 || (grid.count() > best.count() && grid.count() <= vpls)) best = grid;
+  }
+  return best;
+}
+
 void ReflectiveLightPass::reserve(uint32_t slots) {
   const uint64_t bytes = uint64_t(std::max(1u, (slots + kChunk - 1) / kChunk)) * kChunk * sizeof(VplLight);
   if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
@@ -59,8 +71,8 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
   const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));
   gl::ProgramDesc desc{.vertex = "rsm_light.vert", .captured = kLightFields};
   if (source == VplSource::Rsm) {
-    const int side = mapCount == 0 ? 0 : std::max(1, int(std::sqrt(double(rsm.vpls) / mapCount) + 1e-9));
-    count_ = mapCount * uint32_t(side * side);
+    const LightGrid grid = lightGrid(rsm.vpls, int(mapCount));
+    count_ = uint32_t(grid.count());
     reserve(count_);
     std::vector<vec4> lenses(kMostMaps, vec4(0));
     for (uint32_t i = 0; i < mapCount; ++i)
@@ -72,7 +84,9 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
     program.set("count", int(count_));
     program.set("resolution", maps.resolution);
     program.set("columns", maps.columns);
-    program.set("side", side);
+    program.set("gridColumns", grid.columns);
+    program.set("gridRows", grid.rows);
+    program.set("mapsWithOneMore", grid.mapsWithOneMore);
     program.set("exact", rsm.exact ? 1 : 0);
     bindClusters(maps);
     capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);

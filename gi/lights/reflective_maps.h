@@ -76,6 +76,15 @@ class ReflectiveMapPass {
 /// Bytes that the sheet's textures may take; the resolution is halved until they fit.
 inline constexpr uint64_t kReflectiveMapBudget = uint64_t(512) << 20;
 
+/// A regular grid over each of `maps` maps: `columns` × `rows` cells, one row more in the first ones.
+struct LightGrid {
+  int columns = 0, rows = 0, mapsWithOneMore = 0, maps = 0;
+  int count() const { return columns * (rows * maps + mapsWithOneMore); }
+};
+/// Nearly square cells, `vpls` of them or hardly fewer, at least one per map: 252 on the six maps of a point light for
+/// 256.
+LightGrid lightGrid(int vpls, int maps);
+
 class ReflectiveLightPass {
  public:
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}

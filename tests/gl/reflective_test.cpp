@@ -94,6 +94,44 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
   }
 }
 
+TEST(LightGrid, HardlyFewerVplsThanAskedFor) {
+  for (int maps = 1; maps <= 40; ++maps)
+    for (int vpls = maps; vpls <= 3000; ++vpls) {
+      const LightGrid grid = lightGrid(vpls, maps);
+      ASSERT_LE(grid.count(), vpls) << maps;
+      ASSERT_GE(grid.count(), vpls - std::sqrt(double(vpls) / maps) - 1) << maps << ' ' << vpls;
+      ASSERT_LT(grid.mapsWithOneMore, maps);
+      ASSERT_GE(grid.rows, 1);
+      ASSERT_LE(std::max(grid.rows, grid.columns), 2 * std::min(grid.rows + 1, grid.columns) + 1)
+          << maps << ' ' << vpls;
+    }
+  EXPECT_EQ(lightGrid(256, 1).columns, 16);
+  EXPECT_EQ(lightGrid(256, 1).rows, 16);
+  EXPECT_GE(lightGrid(256, 6).count(), 250);
+  EXPECT_EQ(lightGrid(2, 6).count(), 6) << "no map is left out";
+  EXPECT_EQ(lightGrid(256, 0).count(), 0);
+}
+
+/// Cells of unlike sizes, whose light is that of one texel times what they have of its solid angle.
+TEST_F(ReflectiveTest, AnyNumberOfVplsCarriesAllFlux) {
+  HandScene scene;
+  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f, 0.25f, 1)), true);
+  place(scene);
+  for (const bool exact : {true, false})
+    for (const int vpls : {6, 20, 256, 300, 1024}) {
+      const RsmSettings rsm{.resolution = 256, .vpls = vpls, .exact = exact};
+      const ReflectiveMaps sheet = maps({pointLight(vec3(0.01f, -0.02f, 0.03f), vec3(1, 2, 3))}, rsm, VplSource::Rsm);
+      const VplLights lights = lightPass.run(sheet, rsm, VplSource::Rsm);
+      EXPECT_LE(int(lights.count), vpls);
+      EXPECT_GE(int(lights.count), vpls - 8);
+      const glm::dvec3 flux = fluxOfLights();
+      const double sphere = 4 * double(kPi);
+      EXPECT_NEAR(flux.x, 0.5 * sphere, 1e-4 * flux.x) << vpls;
+      EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
+      EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
+    }
+}
+
 TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
   HandScene scene;
   scene.quad(vec3(-1, 0, 2), vec3(2, 0, 0), vec3(0, 0, -4), scene.material(vec3(0.5f)));
