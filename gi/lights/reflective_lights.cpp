@@ -18,23 +18,28 @@ constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
 /// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
-/// Runs the program over `vertices` points into `target` and returns how many it wrote.
-uint32_t capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
+/// Runs the program over `vertices` points into `target`.
+void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::VertexArray empty("points");
-  const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   program.use();
   glBindVertexArray(empty.name());
   glEnable(GL_RASTERIZER_DISCARD);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, target.name());
-  glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
   glBeginTransformFeedback(GL_POINTS);
   glDrawArrays(GL_POINTS, 0, GLsizei(vertices));
   glEndTransformFeedback();
-  glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
   gl::countDraws(1);
+}
+
+/// The same where the program decides how many it writes: returns it, for which it waits until the GPU is there.
+uint32_t captureCounted(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
+  const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
+  capture(program, target, vertices);
+  glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   GLuint count = 0;
   glGetQueryObjectuiv(written.name(), GL_QUERY_RESULT, &count);
   return count;
@@ -113,7 +118,7 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
   compact.set("coarsest", coarsest);
   bindClusters(maps);
   if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
-  count_ = most > 0 ? capture(compact, compact_, most) : 0;
+  count_ = most > 0 ? captureCounted(compact, compact_, most) : 0;
   reserve(count_);
   const gl::Program& order = context_.programs.get(desc);
   order.set("count", int(count_));

@@ -89,7 +89,8 @@ class ReflectiveLightPass {
  public:
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
   /// VPLs of the maps, as the gather reads them: on a regular grid of about `rsm.vpls` for VplSource::Rsm, one per
-  /// patch without discontinuity for Isr. Waits for the GPU to know how many these are.
+  /// patch without discontinuity that reflects light for Isr. Waits for the GPU to know how many these are; a grid does
+  /// not wait.
   VplLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;

@@ -169,6 +169,58 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(ofLights[c], flux[c], 1e-5 * flux[c]);
 }
 
+/// Calls that wait for a query's result.
+int waits = 0;
+decltype(epoxy_glGetQueryObjectuiv) resultOf = nullptr;
+void countedResult(GLuint id, GLenum name, GLuint* value) {
+  ++waits;
+  resultOf(id, name, value);
+}
+
+TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
+  const Room room;
+  place(room.scene);
+  std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
+  const RsmSettings rsm{.resolution = 32};
+  const gl::Query query(GL_SAMPLES_PASSED);
+  GLuint none = 0;
+  glBeginQuery(GL_SAMPLES_PASSED, query.name());
+  glEndQuery(GL_SAMPLES_PASSED);
+  glGetQueryObjectuiv(query.name(), GL_QUERY_RESULT, &none); // the first call resolves the function
+  resultOf = std::exchange(epoxy_glGetQueryObjectuiv, countedResult);
+  const auto waitsOf = [&](VplSource source) {
+    waits = 0;
+    lightPass.run(maps(lights, rsm, source), rsm, source);
+    return waits;
+  };
+  EXPECT_EQ(waitsOf(VplSource::Rsm), 0);
+  EXPECT_EQ(waitsOf(VplSource::Isr), 1);
+  EXPECT_EQ(waitsOf(VplSource::Isr), 0) << "nothing changed";
+  epoxy_glGetQueryObjectuiv = resultOf;
+}
+
+/// A lit square on a black floor: what reflects nothing is no VPL.
+TEST_F(ReflectiveTest, DarkClustersAreNoVpls) {
+  HandScene scene;
+  scene.quad(vec3(-2, 0, 2), vec3(4, 0, 0), vec3(0, 0, -4), scene.material(vec3(0)));
+  scene.quad(vec3(-0.5f, 0.001f, 0.5f), vec3(1, 0, 0), vec3(0, 0, -1), scene.material(vec3(0.5f)));
+  place(scene);
+  const std::vector<LightView> lights{spotLight(vec3(0, 2, 0), vec3(0, -1, 0))};
+  for (const float depth : {0.0f, 0.05f}) {
+    const RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64, .depth = depth};
+    const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Isr);
+    const glm::dvec4 flux = sum(*sheet.flux, 0);
+    const VplLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
+    EXPECT_GT(vpls.count, 0u);
+    EXPECT_LT(vpls.count, depth == 0 ? 300u : 20u); // a sixteenth of the map's 4096 texels, or of its 64 patches
+    for (const VplLight& light : lightPass.read()) {
+      ASSERT_GT(light.positionArea.w, 0);
+      ASSERT_GT(light.powerNormalX.x, 0);
+    }
+    EXPECT_NEAR(fluxOfLights().x, flux.x, 1e-5 * flux.x);
+  }
+}
+
 /// Every texel a light: grid, finest clusters and whole tree are the same sum.
 TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
   const Room room;
