@@ -1,7 +1,8 @@
 #version 450
 // Irradiance from the trees over reflective shadow maps, each fragment with clusters of its own choice (hierarchical
 // image-space radiosity, paper 3, section 3.5). The tree of a map is walked in Morton order without a stack: below a
-// cluster that is refined come its four parts, after one that is taken the next of its size or larger.
+// cluster that is refined come its four parts, after one that is taken the next of its size or larger. A draw may begin and
+// end within a tree: what is taken belongs to the draw in which it begins.
 // Variants PATCHES and GLOSSY as in gather.frag.
 #include "lib/gbuffer.glsl"
 #ifdef GLOSSY
@@ -23,6 +24,8 @@ uniform int level;
 uniform int firstRoot; // of the map's coarsest clusters this draw starts from
 uniform int endRoot;
 uniform int rootStep;
+uniform int firstLeaf; // of each tree, finest clusters
+uniform int endLeaf;
 uniform float diskFactor;
 uniform float largestG;
 uniform float spread; // GLOSSY
@@ -65,7 +68,7 @@ void main() {
 #endif
   int depthOfTree = coarsest - finest;
   for (int root = firstRoot; root < endRoot; root += rootStep) {
-    int m = root << (2 * depthOfTree), end = (root + 1) << (2 * depthOfTree); // in units of the finest clusters
+    int m = (root << (2 * depthOfTree)) + firstLeaf, end = (root << (2 * depthOfTree)) + endLeaf; // finest clusters
     int at = coarsest;
     while (m < end) {
       int shift = at - finest;
@@ -77,7 +80,8 @@ void main() {
         --at;
         continue;
       }
-      if (place.a > 0.0) {
+      int within = m & ((1 << (2 * shift)) - 1);
+      if (place.a > 0.0 && within == 0) {
         vec4 flux = texelFetch(fluxes, cluster, at);
         vec3 direction = fromLight * inversesqrt(distance2);
         vec3 n = texelFetch(normals, cluster, at).xyz;
@@ -90,7 +94,7 @@ void main() {
         glossy += light * glossyReflectance(receiver, -direction, widening);
 #endif
       }
-      m += 1 << (2 * shift);
+      m += (1 << (2 * shift)) - within;
       at = min(coarsest, finest + findLSB(m | (1 << (2 * depthOfTree))) / 2);
     }
   }

@@ -6,8 +6,25 @@
 namespace lambent {
 
 namespace {
-/// Software Mesa ends all loops of a fragment after 65 536 turns, whatever is left of them.
-constexpr int kMostTurns = 60000;
+
+/// How a map's trees are shared out to draws.
+struct TreeDraws {
+  int roots;  // each takes so many trees
+  int leaves; // and of each tree so many of the finest clusters, with what is coarser above them
+};
+
+/// `depth`: levels below a root.
+TreeDraws treeDraws(int depth, int mostTurns) {
+  const auto nodes = [](int levels) { return ((4 << (2 * levels)) - 1) / 3; };
+  int part = depth; // levels below the largest cluster whose parts are in one draw
+  while (part > 0 && nodes(part) + depth - part > mostTurns) --part;
+  const int parts = std::max(1, mostTurns / (nodes(part) + depth - part));
+  if (part == depth) return {parts, 1 << (2 * depth)};
+  return {1, parts << (2 * part)};
+}
+
+int stepsFor(int count, int perStep) { return (count + perStep - 1) / perStep; }
+
 } // namespace
 
 void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
@@ -15,9 +32,9 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   const RsmSettings& rsm = in.trees->rsm;
   const int coarsest = sheet.levels - 1, finest = std::min(sheet.levelOf(rsm.finest), coarsest);
   const int side = sheet.resolution >> coarsest, roots = side * side;
-  const int nodes = 4 * (1 << (2 * (coarsest - finest))) / 3 + 1; // below a root, at most
-  const int subsets = in.grid * in.grid;                          // each takes one root in so many
-  const int rootsPerDraw = std::max(1, kMostTurns / nodes) * subsets;
+  const int leaves = 1 << (2 * (coarsest - finest)); // of a root
+  const int subsets = in.grid * in.grid;             // each takes one root in so many
+  const TreeDraws draws = treeDraws(coarsest - finest, in.trees->mostTurns);
 
   gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindReceivers(in.gbuffer)};
   if (in.patches) desc.defines.push_back("PATCHES");
@@ -54,8 +71,12 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
     const float t = rsm.tau > 0 ? std::max(0.0f, m.power / brightest / rsm.tau / kPi - in.diskFactor) : 1e30f;
     program.set("origin", sheet.origin(map));
     program.set("threshold", t);
-    for (int first = 0; first < roots; first += rootsPerDraw) {
-      program.set("endRoot", std::min(roots, first + rootsPerDraw));
+    const int rootSteps = stepsFor(roots, draws.roots * subsets), leafSteps = stepsFor(leaves, draws.leaves);
+    for (int step = 0; step < rootSteps * leafSteps; ++step) {
+      const int first = step / leafSteps * draws.roots * subsets, firstLeaf = step % leafSteps * draws.leaves;
+      program.set("endRoot", std::min(roots, first + draws.roots * subsets));
+      program.set("firstLeaf", firstLeaf);
+      program.set("endLeaf", std::min(leaves, firstLeaf + draws.leaves));
       for (const GatherArea& area : in.areas) {
         program.set("firstRoot", first + area.subset.x + 4 * area.subset.y);
         program.set("subset", area.subset);

@@ -111,6 +111,9 @@ class ReflectiveLightPass {
 struct LightTrees {
   const ReflectiveMaps& maps;
   const RsmSettings& rsm;
+  /// Clusters that a fragment looks at in one draw: watchdogs stop a GPU that works on one for seconds, and software
+  /// Mesa leaves a loop after 65 536 turns.
+  int mostTurns = 4096;
 };
 
 } // namespace lambent

@@ -1,6 +1,7 @@
 // Reflective shadow maps, their VPLs, clusters and trees: flux against closed forms and against one another.
 #include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
+#include "shader_copy.h"
 #include "shaders/shared/solid_angle.h"
 
 namespace lambent::test {
@@ -307,6 +308,60 @@ TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
       }
     }
     EXPECT_GT(largest, 0.5) << "or nothing near the bound was looked at";
+  }
+}
+
+/// However deep the trees: draws that begin and end within one bring the same light.
+TEST_F(ReflectiveTest, TreesInPartsAreTheSameLight) {
+  Room room;
+  room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 16, 12);
+  place(room.scene);
+  const std::vector<LightView> lights{spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))};
+  const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+  for (const GatherMode mode : {GatherMode::Full, GatherMode::Interleaved})
+    for (const int coarsest : {1, 2, 16})
+      for (const float tau : {0.0f, 0.003f, 0.05f}) {
+        const RsmSettings rsm{.resolution = 64, .coarsest = coarsest, .finest = 64, .tau = tau};
+        const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Hisr);
+        const GatherSettings gather{.mode = mode};
+        Image whole;
+        for (const int mostTurns : {30000, 4096, 100, 22}) {
+          const LightTrees trees{sheet, rsm, mostTurns};
+          FrameResults results;
+          results.gbuffer = gbuffer;
+          results.raw = gatherPass.run({gbuffer, {}, nullptr, 1, gather, &trees});
+          const Image image = readBuffer(Buffer::Unfiltered, results);
+          if (mostTurns == 30000) whole = image;
+          for (size_t i = 0; i < image.pixels.size(); ++i)
+            ASSERT_NEAR(image.pixels[i].x, whole.pixels[i].x, 1e-5f * whole.pixels[i].x)
+                << coarsest << ' ' << mostTurns << ' ' << tau;
+        }
+      }
+}
+
+TEST_F(ReflectiveTest, NoFragmentTurnsForLong) {
+  const ShaderCopy shaders; // that draw how often they turn
+  shaders.replace("tree_gather.frag", "while (m < end) {", "while (m < end) {\n      ++turns;");
+  shaders.replace("tree_gather.frag", "for (int root", "int turns = 0;\n  for (int root");
+  shaders.replace("tree_gather.frag", "vec4(irradiance * float(rootStep), 1.0)",
+                  "vec4(turns > 4096 ? 1.0 : 0.0, float(turns), 0.0, 1.0)");
+  gl::ProgramCache counting(shaders.path);
+  GatherPass countingPass{PassContext{counting, profiler}};
+  Room room;
+  room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 8, 6);
+  place(room.scene);
+  const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+  for (const glm::ivec2 levels :
+       {glm::ivec2(32, 256), glm::ivec2(1, 256)}) { // as by default; one tree that is too deep
+    const RsmSettings rsm{.coarsest = levels.x, .finest = levels.y, .tau = 0};
+    const ReflectiveMaps sheet =
+        maps({spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))}, rsm, VplSource::Hisr);
+    const LightTrees trees{sheet, rsm};
+    const GatherSettings gather{.mode = GatherMode::Full};
+    for (const vec4& texel : readTexture(*countingPass.run({gbuffer, {}, nullptr, 1, gather, &trees}).irradiance)) {
+      ASSERT_EQ(texel.x, 0) << "draws in which a fragment turned more often";
+      ASSERT_GE(texel.y, 256 * 256);
+    }
   }
 }
 

@@ -2,31 +2,15 @@
 #include "gi/gather/multires.h"
 #include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <unistd.h>
+#include "shader_copy.h"
 
 namespace fs = std::filesystem;
 
 namespace lambent::test {
 
-/// A copy of the shaders that fetch `outside` outside the mip level that they ask for.
-class StrictShaders {
- public:
-  explicit StrictShaders(float outside)
-      : path(fs::temp_directory_path() / ("lambent-strict-" + std::to_string(getpid()))) {
-    fs::copy(gl::findShaderFolder(), path, fs::copy_options::recursive);
-    const std::string beyond = "vec4(" + std::to_string(outside) + ")";
-    for (const auto& entry : fs::directory_iterator(path)) {
-      if (!entry.is_regular_file()) continue;
-      std::stringstream read;
-      read << std::ifstream(entry.path()).rdbuf();
-      std::string text = read.str();
-      const std::string version = "#version 450\n";
-      if (!text.starts_with(version)) continue;
-      text.insert(version.size(), R"(
+/// Makes shaders fetch `outside` outside the mip level that they ask for.
+void makeStrict(const ShaderCopy& shaders, float outside) {
+  std::string fetches = R"(
 vec4 strictFetch(sampler2D s, ivec2 p, int level) {
   ivec2 size = textureSize(s, 0) >> level; // software Mesa takes one fragment's level for all of them
   return any(lessThan(p, ivec2(0))) || any(greaterThanEqual(p, size)) ? BEYOND : texelFetch(s, p, level);
@@ -37,22 +21,22 @@ vec4 strictFetch(sampler2DArray s, ivec3 p, int level) {
 }
 vec4 strictFetch(samplerBuffer s, int p) { return p < 0 || p >= textureSize(s) ? BEYOND : texelFetch(s, p); }
 #define texelFetch strictFetch
-)");
-      for (size_t at = 0; (at = text.find("BEYOND", at)) != std::string::npos;) text.replace(at, 6, beyond);
-      std::ofstream(entry.path()) << text;
-    }
+)";
+  for (size_t at = 0; (at = fetches.find("BEYOND", at)) != std::string::npos;)
+    fetches.replace(at, 6, "vec4(" + std::to_string(outside) + ")");
+  for (const auto& entry : fs::directory_iterator(shaders.path)) {
+    const std::string file = entry.path().filename().string(), version = "#version 450\n";
+    if (entry.is_regular_file() && shaders.read(file).starts_with(version))
+      shaders.replace(file, version, version + fetches);
   }
-  ~StrictShaders() { fs::remove_all(path); }
-  StrictShaders(const StrictShaders&) = delete;
-  StrictShaders& operator=(const StrictShaders&) = delete;
-  fs::path path;
-};
+}
 
 class StrictFetchTest : public GlTest {
  protected:
   /// Indirect irradiance by every gather from reflective maps, whose passes read most textures.
   std::vector<std::vector<vec4>> pictures(float outside) {
-    const StrictShaders shaders(outside);
+    const ShaderCopy shaders;
+    makeStrict(shaders, outside);
     gl::ProgramCache strict(shaders.path);
     const PassContext context{strict, profiler};
     std::vector<std::vector<vec4>> images;
