@@ -117,7 +117,8 @@ VplLights GiFrame::State::reflectiveLights(const ReflectiveMaps& sheet) {
     stats.vplsAlive = 0;
     return vplBuffer.run({});
   }
-  const VplLights shown = reflectiveLightPass.run(sheet, settings.rsm, source);
+  const VplLights shown = source == VplSource::Rsm ? reflectiveLightPass.runGrid(sheet, settings.rsm)
+                                                   : reflectiveLightPass.runClusters(sheet, settings.rsm);
   stats.vplsAlive = shown.count;
   if (settings.vpl.visibility == VplVisibility::None) return shown;
   const std::vector<VplLight> lights = reflectiveLightPass.read();
@@ -153,9 +154,14 @@ IndirectLight GiFrame::State::drawIndirect(const GBuffer& gbuffer) {
   ReflectiveMaps sheet;
   VplLights shown;
   if (reflective) {
-    sheet = reflectiveMapPass.run({*gpuScene, world.view.lights, world.view.boundsWorld,
-                                   world.view.changes.first || reflectiveMapsOld, disturbance.boxes(), settings.rsm,
-                                   settings.vpl.source});
+    sheet = reflectiveMapPass.run(
+        {*gpuScene,
+         world.view.lights,
+         world.view.boundsWorld,
+         world.view.changes.first || reflectiveMapsOld,
+         disturbance.boxes(),
+         settings.rsm,
+         {.clusters = settings.vpl.source != VplSource::Rsm, .patches = settings.vpl.source == VplSource::Isr}});
     reflectiveMapsOld = false;
     shown = reflectiveLights(sheet);
   }

@@ -1,4 +1,4 @@
-// VPLs of reflective shadow maps, made on the GPU: nothing is read back but their number (isr).
+// VPLs of reflective shadow maps, made on the GPU: nothing is read back but their number.
 #include "gi/lights/reflective_maps.h"
 
 #include "engine/core/error.h"
@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> kLightFields{"positionArea", "powerNormalX", "tangentNormalY", "bitangentNormalZ"};
 constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
-/// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
+/// Bounds the buffer of clusters (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
 /// Runs the program over `vertices` points into `target`.
@@ -45,6 +45,8 @@ uint32_t captureCounted(const gl::Program& program, const gl::Buffer& target, ui
   return count;
 }
 
+uint32_t mapsUsed(const ReflectiveMaps& maps) { return uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps)); }
+
 void bindClusters(const ReflectiveMaps& maps) {
   maps.position->bind(0);
   maps.normal->bind(1);
@@ -70,33 +72,38 @@ void ReflectiveLightPass::reserve(uint32_t slots) {
   if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
 }
 
-VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
-  if (!maps.changed && lights_) return {&lights_, count_};
+VplLights ReflectiveLightPass::runGrid(const ReflectiveMaps& maps, const RsmSettings& rsm) {
+  if (!maps.changed && lights_ && grid_) return {&lights_, count_};
   const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
-  const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));
-  gl::ProgramDesc desc{.vertex = "rsm_light.vert", .captured = kLightFields};
-  if (source == VplSource::Rsm) {
-    const LightGrid grid = lightGrid(rsm.vpls, int(mapCount));
-    count_ = uint32_t(grid.count());
-    reserve(count_);
-    std::vector<vec4> lenses(kMostMaps, vec4(0));
-    for (uint32_t i = 0; i < mapCount; ++i)
-      if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
-    const gl::Buffer lensBlock = gl::Buffer::of<vec4>("reflective lights/lenses", lenses);
-    lensBlock.bindUniform(3);
-    desc.defines.push_back("GRID");
-    const gl::Program& program = context_.programs.get(desc);
-    program.set("count", int(count_));
-    program.set("resolution", maps.resolution);
-    program.set("columns", maps.columns);
-    program.set("gridColumns", grid.columns);
-    program.set("gridRows", grid.rows);
-    program.set("mapsWithOneMore", grid.mapsWithOneMore);
-    program.set("exact", rsm.exact ? 1 : 0);
-    bindClusters(maps);
-    capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
-    return {&lights_, count_};
-  }
+  grid_ = true;
+  const uint32_t mapCount = mapsUsed(maps);
+  const LightGrid grid = lightGrid(rsm.vpls, int(mapCount));
+  count_ = uint32_t(grid.count());
+  reserve(count_);
+  std::vector<vec4> lenses(kMostMaps, vec4(0));
+  for (uint32_t i = 0; i < mapCount; ++i)
+    if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
+  const gl::Buffer lensBlock = gl::Buffer::of<vec4>("reflective lights/lenses", lenses);
+  lensBlock.bindUniform(3);
+  const gl::Program& program =
+      context_.programs.get({.vertex = "rsm_light.vert", .defines = {"GRID"}, .captured = kLightFields});
+  program.set("count", int(count_));
+  program.set("resolution", maps.resolution);
+  program.set("columns", maps.columns);
+  program.set("gridColumns", grid.columns);
+  program.set("gridRows", grid.rows);
+  program.set("mapsWithOneMore", grid.mapsWithOneMore);
+  program.set("exact", rsm.exact ? 1 : 0);
+  bindClusters(maps);
+  capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+  return {&lights_, count_};
+}
+
+VplLights ReflectiveLightPass::runClusters(const ReflectiveMaps& maps, const RsmSettings& rsm) {
+  if (!maps.changed && lights_ && !grid_) return {&lights_, count_};
+  const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
+  grid_ = false;
+  const uint32_t mapCount = mapsUsed(maps);
   const int coarsest = maps.levels - 1;
   int finest = std::min(maps.levelOf(rsm.finest), coarsest);
   const auto clusters = [&](int level) {
@@ -120,7 +127,7 @@ VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings
   if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
   count_ = most > 0 ? captureCounted(compact, compact_, most) : 0;
   reserve(count_);
-  const gl::Program& order = context_.programs.get(desc);
+  const gl::Program& order = context_.programs.get({.vertex = "rsm_light.vert", .captured = kLightFields});
   order.set("count", int(count_));
   compactView_.bind(0);
   capture(order, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);

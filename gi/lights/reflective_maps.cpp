@@ -93,7 +93,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
     resolution /= 2;
   const int columns = std::max(1, int(std::ceil(std::sqrt(double(maps.size()))))),
             rows = std::max(1, (int(maps.size()) + columns - 1) / columns);
-  const bool clustered = in.source != VplSource::Rsm;
+  const bool clustered = in.needs.clusters;
   const int coarsest = std::min(resolution, int(std::bit_floor(unsigned(in.rsm.coarsest))));
   const int levels = clustered ? int(std::bit_width(unsigned(resolution / coarsest))) : 1;
   for (ReflectiveMap& m : maps) complete(m, resolution, in.bounds);
@@ -103,7 +103,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
                     position_.height() != rows * resolution || position_.desc().levels != levels ||
                     maps.size() != maps_.size() || in.allChanged;
   if (anew) allocate(resolution, columns, rows, levels);
-  bool changed = anew || settings_ != in.rsm || source_ != in.source;
+  bool changed = anew || settings_ != in.rsm || needs_ != in.needs;
   mapsDrawn_ = 0;
   for (size_t i = 0; i < maps.size(); ++i) {
     const Frustum frustum = Frustum::ofClip(maps[i].clipFromWorld);
@@ -121,9 +121,9 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
     changed |= flux;
   }
   settings_ = in.rsm;
-  source_ = in.source;
+  needs_ = in.needs;
   if (changed && levels > 1) drawPyramid();
-  if (changed && in.source == VplSource::Isr) {
+  if (changed && in.needs.patches) {
     const auto firstParallel =
         std::find_if(maps_.begin(), maps_.end(), [](const ReflectiveMap& m) { return m.parallel; });
     patches_ = patchPass_.run({.depth = depth_,
@@ -146,7 +146,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
           .resolution = resolution,
           .columns = columns,
           .levels = levels,
-          .patches = in.source == VplSource::Isr ? patches_ : PatchPyramid{},
+          .patches = in.needs.patches ? patches_ : PatchPyramid{},
           .changed = changed};
 }
 

@@ -30,11 +30,18 @@ struct ReflectiveMaps {
   const gl::Texture* flux = nullptr;     // RGBA32F: reflected flux, W; a: area facing the light, m²
   const gl::Texture* depth = nullptr;    // reversed, level 0 only
   int resolution = 0, columns = 1, levels = 1;
-  PatchPyramid patches; // isr: level λ is mip level λ − 1, as everywhere
+  PatchPyramid patches; // if needed: level λ is mip level λ − 1, as everywhere
   bool changed = true;  // anything since the last run
 
   glm::ivec2 origin(size_t map) const { return resolution * glm::ivec2(int(map) % columns, int(map) / columns); }
   int levelOf(int patchesPerSide) const; // mip level with about so many clusters per side of a map
+};
+
+/// What is made of the maps besides themselves.
+struct ReflectiveNeeds {
+  bool clusters = false; // the coarser mip levels
+  bool patches = false;  // which clusters are smooth; only with clusters
+  bool operator==(const ReflectiveNeeds&) const = default;
 };
 
 struct ReflectiveMapInputs {
@@ -44,7 +51,7 @@ struct ReflectiveMapInputs {
   bool allChanged = false;
   std::span<const Aabb> moved; // where geometry changed: maps that show none of it stay
   const RsmSettings& rsm;
-  VplSource source; // decides what of the pyramid is needed
+  ReflectiveNeeds needs;
 };
 
 class ReflectiveMapPass {
@@ -63,7 +70,7 @@ class ReflectiveMapPass {
   PatchPass patchPass_{context_, StageId::LightPatches};
   std::vector<ReflectiveMap> maps_;
   RsmSettings settings_;
-  VplSource source_ = VplSource::Smc;
+  ReflectiveNeeds needs_;
   PatchPyramid patches_;
   int resolution_ = 0, columns_ = 1;
   uint32_t mapsDrawn_ = 0;
@@ -88,10 +95,11 @@ LightGrid lightGrid(int vpls, int maps);
 class ReflectiveLightPass {
  public:
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
-  /// VPLs of the maps, as the gather reads them: on a regular grid of about `rsm.vpls` for VplSource::Rsm, one per
-  /// patch without discontinuity that reflects light for Isr. Waits for the GPU to know how many these are; a grid does
-  /// not wait.
-  VplLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
+  // VPLs of the maps, as the gather reads them.
+  VplLights runGrid(const ReflectiveMaps& maps, const RsmSettings& rsm); // on a regular grid
+  /// One per patch without discontinuity that reflects light; needs the maps' patches. Waits for the GPU to know how
+  /// many these are.
+  VplLights runClusters(const ReflectiveMaps& maps, const RsmSettings& rsm);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;
 
@@ -99,6 +107,7 @@ class ReflectiveLightPass {
   void reserve(uint32_t slots);
 
   PassContext context_;
+  bool grid_ = false; // what `lights_` holds
   gl::Buffer lights_, compact_;
   gl::Texture compactView_;
   uint32_t count_ = 0;

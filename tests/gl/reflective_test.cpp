@@ -6,6 +6,8 @@
 
 namespace lambent::test {
 
+constexpr ReflectiveNeeds kGrid, kTrees{.clusters = true}, kClusters{.clusters = true, .patches = true};
+
 class ReflectiveTest : public GlTest {
  protected:
   void place(const HandScene& scene) {
@@ -13,8 +15,8 @@ class ReflectiveTest : public GlTest {
     gpu->place(scene.instances);
     bounds = scene.view().boundsWorld;
   }
-  ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, VplSource source) {
-    return mapPass.run({*gpu, lights, bounds, false, {}, rsm, source});
+  ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, ReflectiveNeeds needs) {
+    return mapPass.run({*gpu, lights, bounds, false, {}, rsm, needs});
   }
   /// Sum over a mip level of a texture, double precision.
   static glm::dvec4 sum(const gl::Texture& texture, int level) {
@@ -29,16 +31,19 @@ class ReflectiveTest : public GlTest {
     for (const VplLight& light : lightPass.read()) total += glm::dvec3(vec3(light.powerNormalX)) * double(kPi);
     return total;
   }
-  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, VplSource source) {
+  VplLights lightsOf(const ReflectiveMaps& sheet, const RsmSettings& rsm, ReflectiveNeeds needs) {
+    return needs.clusters ? lightPass.runClusters(sheet, rsm) : lightPass.runGrid(sheet, rsm);
+  }
+  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, ReflectiveNeeds needs) {
     const GBuffer gbuffer = gbufferPass.run({*gpu, scene.camera});
     const GatherSettings gather{.mode = GatherMode::Full};
     const LightTrees trees{sheet, rsm};
     FrameResults results;
     results.gbuffer = gbuffer;
-    if (source == VplSource::Hisr)
+    if (needs == kTrees)
       results.raw = gatherPass.run({gbuffer, {}, nullptr, 1, gather, &trees});
     else
-      results.raw = gatherPass.run({gbuffer, lightPass.run(sheet, rsm, source), nullptr, 1, gather});
+      results.raw = gatherPass.run({gbuffer, lightsOf(sheet, rsm, needs), nullptr, 1, gather});
     return readBuffer(Buffer::Unfiltered, results);
   }
 
@@ -85,7 +90,7 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
   place(scene);
   for (const bool exact : {true, false}) {
     const RsmSettings rsm{.resolution = 64, .exact = exact};
-    const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, VplSource::Hisr);
+    const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, kTrees);
     const glm::dvec3 flux(sum(*sheet.flux, 0));
     const double sphere = 4 * double(kPi);
     // The walls share no vertices, so a texel or two of 24 576 may fall between them.
@@ -121,8 +126,8 @@ TEST_F(ReflectiveTest, AnyNumberOfVplsCarriesAllFlux) {
   for (const bool exact : {true, false})
     for (const int vpls : {6, 20, 256, 300, 1024}) {
       const RsmSettings rsm{.resolution = 256, .vpls = vpls, .exact = exact};
-      const ReflectiveMaps sheet = maps({pointLight(vec3(0.01f, -0.02f, 0.03f), vec3(1, 2, 3))}, rsm, VplSource::Rsm);
-      const VplLights lights = lightPass.run(sheet, rsm, VplSource::Rsm);
+      const ReflectiveMaps sheet = maps({pointLight(vec3(0.01f, -0.02f, 0.03f), vec3(1, 2, 3))}, rsm, kGrid);
+      const VplLights lights = lightPass.runGrid(sheet, rsm);
       EXPECT_LE(int(lights.count), vpls);
       EXPECT_GE(int(lights.count), vpls - 8);
       const glm::dvec3 flux = fluxOfLights();
@@ -141,7 +146,7 @@ TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
   sun.type = LightType::Directional;
   sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
   sun.intensity = vec3(10);
-  const ReflectiveMaps sheet = maps({sun}, {.resolution = 512}, VplSource::Rsm);
+  const ReflectiveMaps sheet = maps({sun}, {.resolution = 512}, kGrid);
   // 8 m² across the light's way; the map counts whole texels along the edge.
   EXPECT_NEAR(sum(*sheet.flux, 0).x, 0.5 * 10 * 8 * double(-sun.direction.y), 0.3);
 }
@@ -156,14 +161,14 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
   const std::vector<LightView> lights{sun, pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3)),
                                       spotLight(vec3(-0.4f, 0.8f, 0.5f), vec3(0.2f, -1, -0.5f))};
   const RsmSettings rsm{.resolution = 128, .coarsest = 8, .finest = 64};
-  const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Isr);
+  const ReflectiveMaps sheet = maps(lights, rsm, kClusters);
   ASSERT_EQ(sheet.maps.size(), 8u);
   const glm::dvec4 flux = sum(*sheet.flux, 0);
   for (int level = 1; level < sheet.levels; ++level) {
     const glm::dvec4 clusters = sum(*sheet.flux, level);
     for (int c = 0; c < 4; ++c) EXPECT_NEAR(clusters[c], flux[c], 1e-5 * flux[c]) << level;
   }
-  const VplLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
+  const VplLights vpls = lightPass.runClusters(sheet, rsm);
   EXPECT_LT(vpls.count, 8u * 64 * 64 / 4) << "smooth patches are one VPL";
   EXPECT_GT(vpls.count, 8u * 64) << "steps are not";
   const glm::dvec3 ofLights = fluxOfLights();
@@ -189,14 +194,14 @@ TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
   glEndQuery(GL_SAMPLES_PASSED);
   glGetQueryObjectuiv(query.name(), GL_QUERY_RESULT, &none); // the first call resolves the function
   resultOf = std::exchange(epoxy_glGetQueryObjectuiv, countedResult);
-  const auto waitsOf = [&](VplSource source) {
+  const auto waitsOf = [&](ReflectiveNeeds needs) {
     waits = 0;
-    lightPass.run(maps(lights, rsm, source), rsm, source);
+    lightsOf(maps(lights, rsm, needs), rsm, needs);
     return waits;
   };
-  EXPECT_EQ(waitsOf(VplSource::Rsm), 0);
-  EXPECT_EQ(waitsOf(VplSource::Isr), 1);
-  EXPECT_EQ(waitsOf(VplSource::Isr), 0) << "nothing changed";
+  EXPECT_EQ(waitsOf(kGrid), 0);
+  EXPECT_EQ(waitsOf(kClusters), 1);
+  EXPECT_EQ(waitsOf(kClusters), 0) << "nothing changed";
   epoxy_glGetQueryObjectuiv = resultOf;
 }
 
@@ -209,9 +214,9 @@ TEST_F(ReflectiveTest, DarkClustersAreNoVpls) {
   const std::vector<LightView> lights{spotLight(vec3(0, 2, 0), vec3(0, -1, 0))};
   for (const float depth : {0.0f, 0.05f}) {
     const RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64, .depth = depth};
-    const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Isr);
+    const ReflectiveMaps sheet = maps(lights, rsm, kClusters);
     const glm::dvec4 flux = sum(*sheet.flux, 0);
-    const VplLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
+    const VplLights vpls = lightPass.runClusters(sheet, rsm);
     EXPECT_GT(vpls.count, 0u);
     EXPECT_LT(vpls.count, depth == 0 ? 300u : 20u); // a sixteenth of the map's 4096 texels, or of its 64 patches
     for (const VplLight& light : lightPass.read()) {
@@ -229,9 +234,9 @@ TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
   const std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
   const RsmSettings rsm{
       .resolution = 32, .vpls = 6 * 32 * 32, .coarsest = 8, .finest = 32, .depth = 0, .normal = 0, .tau = 0};
-  const Image grid = gathered(room.scene, maps(lights, rsm, VplSource::Rsm), rsm, VplSource::Rsm);
-  const Image clusters = gathered(room.scene, maps(lights, rsm, VplSource::Isr), rsm, VplSource::Isr);
-  const Image tree = gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image grid = gathered(room.scene, maps(lights, rsm, kGrid), rsm, kGrid);
+  const Image clusters = gathered(room.scene, maps(lights, rsm, kClusters), rsm, kClusters);
+  const Image tree = gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   for (size_t i = 0; i < grid.pixels.size(); ++i) {
     ASSERT_GT(grid.pixels[i].x, 0);
     ASSERT_NEAR(clusters.pixels[i].x, grid.pixels[i].x, 1e-4f * grid.pixels[i].x);
@@ -247,7 +252,7 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
   RsmSettings rsm{.resolution = 64, .coarsest = 4, .finest = 64, .tau = 0};
   const auto draw = [&](float tau) {
     rsm.tau = tau;
-    return gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+    return gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   };
   const Image whole = draw(0);
   double before = 0;
@@ -260,7 +265,7 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
     before = error;
   }
   rsm.finest = 4;
-  const Image coarsest = gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image coarsest = gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   EXPECT_EQ(coarsest.pixels, draw(1).pixels);
 }
 
@@ -286,18 +291,18 @@ TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
                               vec3(x + 0.5f * side, ceiling, z + 0.5f * side), 1.0f, 32, 24);
       place(scene);
       rsm.finest = 8;
-      const Image coarse = gathered(scene, maps({spot}, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+      const Image coarse = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
       rsm.finest = 64;
       for (const float tau : {0.001f, 0.003f, 0.01f, 0.03f}) {
         rsm.tau = tau;
-        const ReflectiveMaps sheet = maps({spot}, rsm, VplSource::Hisr);
+        const ReflectiveMaps sheet = maps({spot}, rsm, kTrees);
         const glm::dvec4 cell = sum(*sheet.flux, sheet.levels - 1); // nothing else shines, but all has area
         std::vector<vec4> clusters(64), places(64);
         glGetTextureImage(sheet.flux->name(), sheet.levels - 1, GL_RGBA, GL_FLOAT, 64 * sizeof(vec4), clusters.data());
         const vec4 bright =
             *std::max_element(clusters.begin(), clusters.end(), [](const vec4& a, const vec4& b) { return a.x < b.x; });
         ASSERT_GT(bright.x, 0.97 * cell.x) << "the bright square is one cluster";
-        const Image cut = gathered(scene, sheet, rsm, VplSource::Hisr);
+        const Image cut = gathered(scene, sheet, rsm, kTrees);
         for (size_t i = 0; i < cut.pixels.size(); ++i) {
           // One alone may be the same by chance, where the sum over the parts passes the whole.
           if (cut.pixels[i] != coarse.pixels[i] || cut.pixels[i ^ 1] != coarse.pixels[i ^ 1]) continue;
@@ -322,7 +327,7 @@ TEST_F(ReflectiveTest, TreesInPartsAreTheSameLight) {
     for (const int coarsest : {1, 2, 16})
       for (const float tau : {0.0f, 0.003f, 0.05f}) {
         const RsmSettings rsm{.resolution = 64, .coarsest = coarsest, .finest = 64, .tau = tau};
-        const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Hisr);
+        const ReflectiveMaps sheet = maps(lights, rsm, kTrees);
         const GatherSettings gather{.mode = mode};
         Image whole;
         for (const int mostTurns : {30000, 4096, 100, 22}) {
@@ -354,8 +359,7 @@ TEST_F(ReflectiveTest, NoFragmentTurnsForLong) {
   for (const glm::ivec2 levels :
        {glm::ivec2(32, 256), glm::ivec2(1, 256)}) { // as by default; one tree that is too deep
     const RsmSettings rsm{.coarsest = levels.x, .finest = levels.y, .tau = 0};
-    const ReflectiveMaps sheet =
-        maps({spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))}, rsm, VplSource::Hisr);
+    const ReflectiveMaps sheet = maps({spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))}, rsm, kTrees);
     const LightTrees trees{sheet, rsm};
     const GatherSettings gather{.mode = GatherMode::Full};
     for (const vec4& texel : readTexture(*countingPass.run({gbuffer, {}, nullptr, 1, gather, &trees}).irradiance)) {
@@ -377,7 +381,7 @@ TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
   spot.outerConeCos = std::cos(0.2f);
   spot.innerConeCos = std::cos(0.1f);
   const RsmSettings rsm{.resolution = 1024, .coarsest = 32, .finest = 256, .tau = 0};
-  const Image image = gathered(scene, maps({spot}, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image image = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
   const double flux = 3 * 0.01 / (1.999 * 1.999); // I ω of the square
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 16; ++x) {
@@ -397,8 +401,8 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
   scene.camera = cameraAt(vec3(0, 2, 0), vec3(0, 0, 0), 0.1f, 32, 24); // light hardly changes over the picture
   place(scene);
   const RsmSettings rsm{.resolution = 64, .coarsest = 16, .finest = 64};
-  const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, VplSource::Hisr);
-  const Image full = gathered(scene, sheet, rsm, VplSource::Hisr);
+  const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, kTrees);
+  const Image full = gathered(scene, sheet, rsm, kTrees);
   const GBuffer gbuffer = gbufferPass.run({*gpu, scene.camera});
   const GatherSettings gather{.mode = GatherMode::Interleaved};
   const LightTrees trees{sheet, rsm};
@@ -423,22 +427,22 @@ TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1)),
                                 spotLight(vec3(0, 0.9f, 0), vec3(0, -1, 0.1f))};
   const RsmSettings rsm{.resolution = 32};
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 7u);
-  EXPECT_FALSE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_FALSE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 0u);
   lights[0].intensity = vec3(2); // the same surfaces in another light
-  const double before = sum(*maps({lights[1]}, rsm, VplSource::Isr).flux, 0).x;
+  const double before = sum(*maps({lights[1]}, rsm, kClusters).flux, 0).x;
   EXPECT_GT(before, 0);
-  maps(lights, rsm, VplSource::Isr);
+  maps(lights, rsm, kClusters);
   lights[0].intensity = vec3(4);
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 0u);
   lights[1].position.x += 0.1f;
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 1u);
   const Aabb above{vec3(0.2f, 0.8f, 0.3f), vec3(0.4f, 0.9f, 0.5f)}; // what moved is above the point light
-  EXPECT_TRUE(mapPass.run({*gpu, lights, bounds, false, {&above, 1}, rsm, VplSource::Isr}).changed);
+  EXPECT_TRUE(mapPass.run({*gpu, lights, bounds, false, {&above, 1}, rsm, kClusters}).changed);
   EXPECT_GT(mapPass.mapsDrawn(), 0u);
   EXPECT_LT(mapPass.mapsDrawn(), 7u);
 }

@@ -47,15 +47,18 @@ class StrictFetchTest : public GlTest {
       gpu.place(room.scene.instances);
       GBufferPass gbufferPass{context};
       const GBuffer gbuffer = gbufferPass.run({gpu, room.scene.camera});
-      for (const VplSource source : {VplSource::Rsm, VplSource::Isr, VplSource::Hisr}) {
+      const ReflectiveNeeds grid, patches{true, true}, trees{true, false};
+      for (const ReflectiveNeeds needs : {grid, patches, trees}) {
         ReflectiveMapPass mapPass{context};
         ReflectiveLightPass lightPass{context};
-        const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, source});
-        const LightTrees trees{maps, rsm};
-        const LightTrees* cut = source == VplSource::Hisr ? &trees : nullptr;
-        const VplLights vpls = cut ? VplLights{} : lightPass.run(maps, rsm, source);
+        const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, needs});
+        const LightTrees tree{maps, rsm};
+        const LightTrees* cut = needs == trees ? &tree : nullptr;
+        VplLights vpls;
+        if (needs == grid) vpls = lightPass.runGrid(maps, rsm);
+        if (needs == patches) vpls = lightPass.runClusters(maps, rsm);
         std::vector<GatherMode> modes{GatherMode::Interleaved, GatherMode::Multires, GatherMode::MultiresInterleaved};
-        if (source == VplSource::Rsm) modes.insert(modes.end(), {GatherMode::Splat, GatherMode::SplatPerVpl});
+        if (needs == grid) modes.insert(modes.end(), {GatherMode::Splat, GatherMode::SplatPerVpl});
         for (const GatherMode mode : modes) {
           const GatherSettings gather{.mode = mode};
           MultiresPass multiresPass{context};
