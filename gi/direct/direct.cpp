@@ -1,6 +1,6 @@
 // Direct irradiance at the visible surfaces: punctual lights and the sky block by block, then emissive samples.
-#include "gi/gather/gather.h"
 #include "gi/direct/light_shadows.h"
+#include "gi/gather/gather.h"
 
 namespace lambent {
 
@@ -31,9 +31,9 @@ DirectLight DirectPass::run(const DirectInputs& in) {
   in.gbuffer.depth->bind(0);
   in.gbuffer.normal->bind(1);
   for (const LightBlock& block : in.shadows.blocks) {
-    const char* kind = block.kind == MapKind::Cube   ? "CUBE_MAPS"
-                       : block.kind == MapKind::Spot ? "SPOT_MAPS"
-                                                     : "SUN_MAPS";
+    const char* kind = block.kind == LightKind::Cube   ? "CUBE_MAPS"
+                       : block.kind == LightKind::Spot ? "SPOT_MAPS"
+                                                       : "SUN_MAPS";
     std::vector<std::string> defines = bindReceivers(in.gbuffer);
     defines.push_back(kind);
     const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = std::move(defines)});
