@@ -1,6 +1,7 @@
 #include "engine/platform/context_setup.h"
 
 #include "engine/core/error.h"
+#include "engine/gl/state_guard.h"
 
 #include <epoxy/gl.h>
 #include <spdlog/spdlog.h>
@@ -45,10 +46,7 @@ void setUpContext(DebugOutput debug) {
   glEnable(GL_DEBUG_OUTPUT);
   if (debug == DebugOutput::AtOnce) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(onDebugMessage, nullptr);
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl::setConventions();
 }
 
 } // namespace lambent

@@ -5,8 +5,8 @@
 
 namespace lambent {
 
-/// Checks version and limits (RunError), installs the debug callback, and sets the clip convention
-/// (lower left, depth 0..1) that every pass relies on.
+/// Checks version and limits (RunError), installs the debug callback, and sets the conventions that every pass relies
+/// on.
 void setUpContext(DebugOutput debug);
 
 } // namespace lambent

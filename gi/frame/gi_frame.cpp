@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/gl/state_guard.h"
 
 #include <utility>
 
@@ -22,6 +23,7 @@ GiFrame::~GiFrame() = default;
 
 const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(int, int)>& progress) {
   State& s = *state_;
+  const gl::StateGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   const gl::Counts before = gl::counts();
   s.finishUpdate();
@@ -141,15 +143,20 @@ Buffer bufferByName(const std::string& name) {
                    "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
 }
 
-Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results); }
+Image GiFrame::read(Buffer buffer) const {
+  const gl::StateGuard guard;
+  return readBuffer(buffer, state_->results);
+}
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
+  const gl::StateGuard guard;
   if (buffer == Buffer::Vpls) state_->finishUpdate();
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
   return state_->displayPass.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
   if (buffer == Buffer::Vpls) state_->finishUpdate();
   state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
   state_->displayPass.present(framebuffer, width, height);
@@ -158,6 +165,7 @@ void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {
   State& s = *state_;
+  const gl::StateGuard guard;
   s.finishUpdate();
   const std::vector<MapPose> poses = mapPoses(s.vpls);
   const ParaboloidMapInputs maps{*s.gpuScene,
