@@ -7,7 +7,7 @@ namespace lambent {
 Follower::Follower(const Settings& settings, const std::string& name, uint32_t seed, std::optional<GlContext>& context)
     : settings_(settings), seed_(seed) {
   run.name = name;
-  const bool reflective = fromReflectiveMaps(settings_.vpl.source);
+  const bool reflective = rowOf(settings_.vpl.source).reflective;
   if (!reflective) run.vpls = uint32_t(settings_.smc.vpls);
   if (!reflective && settings_.vpl.visibility != VplVisibility::Maps) return;
   if (!context) context.emplace(GlContext::headless());
@@ -21,7 +21,7 @@ std::vector<vec3> Follower::frame(const SceneView& view, const RayQuery& rays, c
   placeVpls(settings_.vpl.source, set_, {view, rays, lights, settings_.smc, seed_, settings_.vpl}, log);
   place(log.stages);
   RayCounts counts;
-  std::vector<vec3> out = irradianceByRays(rays, surfaces, set_.slots, settings_.gather, counts);
+  std::vector<vec3> out = irradianceByRays(rays, surfaces, lightsOf(set_), settings_.gather, counts);
   for (size_t i = 0; i < out.size(); ++i) out[i] *= surfaces[i].albedo / kPi;
   return out;
 }

@@ -3,6 +3,7 @@
 #include "engine/core/progress.h"
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
+#include "gi/vpl/smc.h"
 #include "gi/reference/state_file.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/linear_picture.h"

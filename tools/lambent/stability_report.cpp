@@ -1,5 +1,7 @@
 #include "tools/lambent/stability_report.h"
 
+#include "gi/plan/techniques.h"
+
 #include "gi/plan/settings.h"
 #include "tools/lambent/text.h"
 
@@ -41,7 +43,7 @@ std::string vplsText(const TechniqueRun& t) { return t.vpls > 0 ? format("%u", t
 const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   Settings settings;
   applyTechnique(settings, t.name);
-  const TechniqueRun* simplest = shot.technique(fromReflectiveMaps(settings.vpl.source) ? "rsm" : "ir");
+  const TechniqueRun* simplest = shot.technique(rowOf(settings.vpl.source).reflective ? "rsm" : "ir");
   return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 
