@@ -1,7 +1,7 @@
 #include "engine/platform/context_setup.h"
 
 #include "engine/core/error.h"
-#include "engine/platform/gl_context.h"
+#include "engine/gl/state_guard.h"
 
 #include <epoxy/gl.h>
 #include <spdlog/spdlog.h>
@@ -30,7 +30,7 @@ void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum sever
 
 uint64_t glDebugErrors() { return debugErrors; }
 
-void setUpContext() {
+void setUpContext(DebugOutput debug) {
   const int version = epoxy_gl_version();
   if (version < 45)
     throw RunError("OpenGL " + std::to_string(version / 10) + "." + std::to_string(version % 10) +
@@ -44,12 +44,9 @@ void setUpContext() {
     throw RunError("array textures have only " + std::to_string(layers) + " layers here (2048 are needed)");
 
   glEnable(GL_DEBUG_OUTPUT);
-  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  if (debug == DebugOutput::AtOnce) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(onDebugMessage, nullptr);
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl::setConventions();
 }
 
 } // namespace lambent

@@ -9,6 +9,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <cstdlib>
+
 namespace lambent {
 
 namespace {
@@ -28,8 +30,33 @@ struct EglRoute {
   EGLContext context = EGL_NO_CONTEXT;
 };
 
-/// A current surfaceless context on `display`, or nothing with the reason in `why`.
-EGLContext contextOn(EGLDisplay display, std::string& why) {
+std::vector<EGLDeviceEXT> eglDevices() {
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
+      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base"))
+    return {};
+  EGLint count = 0;
+  if (!eglQueryDevicesEXT(0, nullptr, &count) || count <= 0) return {};
+  std::vector<EGLDeviceEXT> devices(static_cast<size_t>(count));
+  if (!eglQueryDevicesEXT(count, devices.data(), &count)) return {};
+  devices.resize(size_t(count));
+  return devices;
+}
+
+DeviceDescription describe(EGLDeviceEXT device) {
+  const char* listed = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+  const std::string extensions = listed ? " " + std::string(listed) + " " : "";
+  const auto has = [&](const char* name) {
+    return extensions.find(" " + std::string(name) + " ") != std::string::npos;
+  };
+  if (has("EGL_MESA_device_software")) return {"software", true};
+  if (has("EGL_EXT_device_drm"))
+    if (const char* file = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT)) return {file, false};
+  return {has("EGL_NV_device_cuda") ? "GPU by NVIDIA" : "GPU", false};
+}
+
+/// A current context on `display`, or nothing with the reason in `why`. The display stays as it is for those who use it
+/// beside us.
+EGLContext contextOn(EGLDisplay display, Drawn drawn, std::string& why) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
     why = "no display";
     return EGL_NO_CONTEXT;
@@ -42,13 +69,28 @@ EGLContext contextOn(EGLDisplay display, std::string& why) {
   else if ((context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kContextAttributes)) ==
            EGL_NO_CONTEXT)
     why = "no OpenGL 4.5 core context";
-  else if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
-    return context;
-  else
+  else if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
     why = "context cannot be made current";
-  if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-  eglTerminate(display);
+  else if (const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+           drawn != Drawn::ByAny && drawnByCpu(renderer) != (drawn == Drawn::ByCpu))
+    why = (drawn == Drawn::ByCpu ? "not software: " : "only software: ") + renderer;
+  else
+    return context;
+  if (context != EGL_NO_CONTEXT) {
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+  }
   return EGL_NO_CONTEXT;
+}
+
+EGLDisplay displayOf(int device, const std::vector<EGLDeviceEXT>& devices) {
+  if (device != DeviceAttempt::kSurfaceless)
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")
+               ? eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[size_t(device)], nullptr)
+               : EGL_NO_DISPLAY;
+  return epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")
+             ? eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
+             : EGL_NO_DISPLAY;
 }
 
 std::string glText(GLenum name) {
@@ -71,9 +113,9 @@ struct GlContext::State {
 
   ~State() {
     if (egl.context != EGL_NO_CONTEXT) {
-      eglMakeCurrent(egl.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-      eglDestroyContext(egl.display, egl.context);
-      eglTerminate(egl.display);
+      if (eglGetCurrentContext() == egl.context)
+        eglMakeCurrent(egl.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+      eglDestroyContext(egl.display, egl.context); // its display may have other users, so it is not terminated
     }
     if (window) {
       glfwDestroyWindow(window);
@@ -87,33 +129,34 @@ GlContext::GlContext(GlContext&&) noexcept = default;
 GlContext& GlContext::operator=(GlContext&&) noexcept = default;
 GlContext::~GlContext() = default;
 
-GlContext GlContext::headless() {
-  auto state = std::make_unique<State>();
-  std::string whySurfaceless = "not offered", whyDevice = "not offered";
-
-  if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
-    state->egl.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    state->egl.context = contextOn(state->egl.display, whySurfaceless);
-    state->route = "EGL surfaceless";
-  }
-  if (state->egl.context == EGL_NO_CONTEXT && epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
-    EGLDeviceEXT devices[16];
-    EGLint count = 0;
-    eglQueryDevicesEXT(16, devices, &count);
-    for (EGLint i = 0; i < count && state->egl.context == EGL_NO_CONTEXT; ++i) {
-      state->egl.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
-      state->egl.context = contextOn(state->egl.display, whyDevice);
-      state->route = "EGL device " + std::to_string(i);
-    }
-  }
-  if (state->egl.context == EGL_NO_CONTEXT)
-    throw RunError("no OpenGL without a display (EGL surfaceless: " + whySurfaceless + "; EGL device: " + whyDevice +
-                   "); installing Mesa's drivers, libegl-mesa0 and libgl1-mesa-dri, cures this");
-  setUpContext();
-  return GlContext(std::move(state));
+std::vector<DeviceDescription> GlContext::devices() {
+  std::vector<DeviceDescription> descriptions;
+  for (const EGLDeviceEXT device : eglDevices()) descriptions.push_back(describe(device));
+  return descriptions;
 }
 
-GlContext GlContext::window(const std::string& title, int width, int height) {
+GlContext GlContext::headless(DebugOutput debug) {
+  const std::vector<EGLDeviceEXT> devices = eglDevices();
+  const std::vector<DeviceDescription> descriptions = GlContext::devices();
+  const DeviceWish wish = deviceWish(std::getenv("LAMBENT_DEVICE"), std::getenv("LIBGL_ALWAYS_SOFTWARE"));
+  auto state = std::make_unique<State>();
+  std::vector<std::string> reasons;
+  for (const DeviceAttempt& attempt : deviceAttempts(descriptions, wish)) {
+    const bool surfaceless = attempt.device == DeviceAttempt::kSurfaceless;
+    state->route = surfaceless ? "EGL surfaceless" : "EGL device " + std::to_string(attempt.device);
+    state->egl.display = displayOf(attempt.device, devices);
+    std::string why;
+    state->egl.context = contextOn(state->egl.display, attempt.drawn, why);
+    if (state->egl.context != EGL_NO_CONTEXT) {
+      setUpContext(debug);
+      return GlContext(std::move(state));
+    }
+    reasons.push_back(state->route + ": " + why);
+  }
+  throw RunError(noContextMessage(descriptions, wish, reasons));
+}
+
+GlContext GlContext::window(const std::string& title, int width, int height, DebugOutput debug) {
   static std::string lastError;
   glfwSetErrorCallback([](int, const char* text) { lastError = text; });
   if (!glfwInit()) throw RunError("no window system (" + lastError + "); use the headless commands, or xvfb-run -a");
@@ -131,7 +174,7 @@ GlContext GlContext::window(const std::string& title, int width, int height) {
     throw RunError("no window with OpenGL 4.5 (" + lastError + ")");
   }
   glfwMakeContextCurrent(state->window);
-  setUpContext();
+  setUpContext(debug);
   return GlContext(std::move(state));
 }
 

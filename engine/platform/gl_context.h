@@ -1,6 +1,8 @@
 // An OpenGL 4.5 core context by one of two routes behind one type: a GLFW window, or EGL without any display.
 #pragma once
 
+#include "engine/platform/device_choice.h"
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,13 +13,20 @@ struct GLFWwindow;
 
 namespace lambent {
 
+/// When the driver tells what it has to say: as it likes, perhaps on a thread of its own; or before the call that it is
+/// about returns, which keeps drivers from running ahead.
+enum class DebugOutput { Asynchronous, AtOnce };
+
 class GlContext {
  public:
-  /// EGL surfaceless, else the first EGL device that gives a context. Draw only into framebuffers of your own.
-  /// Throws RunError with a cure when the machine has neither.
-  static GlContext headless();
+  /// On an EGL device, GPUs first, else on Mesa's surfaceless platform (see device_choice.h). Draw only into
+  /// framebuffers of your own. Throws RunError with a cure when nothing gives a context.
+  static GlContext headless(DebugOutput debug = DebugOutput::Asynchronous);
   /// A resizable window. Throws RunError when there is no display or no OpenGL 4.5.
-  static GlContext window(const std::string& title, int width, int height);
+  static GlContext window(const std::string& title, int width, int height,
+                          DebugOutput debug = DebugOutput::Asynchronous);
+  /// EGL devices in the order of their numbers.
+  static std::vector<DeviceDescription> devices();
 
   GlContext(GlContext&&) noexcept;
   GlContext& operator=(GlContext&&) noexcept;

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/gl/state_guard.h"
 #include "gi/direct/direct_light.h"
 #include "gi/frame/picture.h"
 #include "gi/frame/world_keeper.h"
@@ -66,6 +67,7 @@ GiFrame::~GiFrame() = default;
 
 const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& progress,
                                const HostSurfaces* host) {
+  const gl::StateGuard guard;
   Kept& k = *kept_;
   const Settings& settings = k.settings;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
@@ -189,15 +191,20 @@ Buffer bufferByName(const std::string& name) {
                    "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
 }
 
-Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, kept_->results); }
+Image GiFrame::read(Buffer buffer) const {
+  const gl::StateGuard guard;
+  return readBuffer(buffer, kept_->results);
+}
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
+  const gl::StateGuard guard;
   if (buffer == Buffer::Vpls) vpls();
   kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
   return kept_->display.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
   if (buffer == Buffer::Vpls) vpls();
   kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
   kept_->display.present(framebuffer, width, height);
@@ -214,6 +221,7 @@ uint32_t GiFrame::texture(Buffer buffer) const {
 
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {
+  const gl::StateGuard guard;
   Kept& k = *kept_;
   const std::vector<VirtualLight> lights = lightsOf(vpls());
   std::vector<MapPose> poses;

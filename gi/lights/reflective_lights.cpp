@@ -22,14 +22,15 @@ constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 /// Runs the program over `vertices` points into `target`.
 void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::VertexArray empty("points");
+  const gl::TransformFeedback feedback("captured", target); // of its own: the default one may be in use
   program.use();
   glBindVertexArray(empty.name());
   glEnable(GL_RASTERIZER_DISCARD);
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, target.name());
+  feedback.bind();
   glBeginTransformFeedback(GL_POINTS);
   gl::drawArrays(GL_POINTS, int(vertices));
   glEndTransformFeedback();
-  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  gl::TransformFeedback::unbind();
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
 }

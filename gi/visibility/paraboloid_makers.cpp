@@ -143,7 +143,6 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   // In batches, so that the texels of 2048 maps need not wait in memory together (64 MiB at 128²).
   constexpr size_t kBatch = 64;
   std::vector<std::vector<uint16_t>> maps(std::min(kBatch, jobs.size()));
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 2); // rows of any number of texels
   for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
     const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
@@ -156,7 +155,6 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
                           t.x1 - t.x0, t.y1 - t.y0, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
     }
   }
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
 } // namespace lambent

@@ -21,6 +21,21 @@ TEST_F(ContextTest, TellsWhatItIs) {
   EXPECT_EQ(context().handle(), nullptr);
 }
 
+TEST_F(ContextTest, OnlyTestsHearOfErrorsAtOnce) {
+  EXPECT_TRUE(glIsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS));
+  {
+    const GlContext another = GlContext::headless();
+    EXPECT_TRUE(glIsEnabled(GL_DEBUG_OUTPUT));
+    EXPECT_FALSE(glIsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS));
+  }
+  context().makeCurrent(); // the end of another one leaves it whole
+  EXPECT_TRUE(glIsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS));
+}
+
+TEST_F(ContextTest, TellsWhichDevicesThereAre) {
+  for (const DeviceDescription& device : GlContext::devices()) EXPECT_FALSE(device.name.empty());
+}
+
 TEST_F(ContextTest, CountsMemoryByOwner) {
   const auto bytesOf = [](const std::string& owner) {
     for (const auto& [name, bytes] : gl::memoryByOwner())

@@ -32,7 +32,7 @@ class GlTest : public ::testing::Test {
     EXPECT_EQ(glDebugErrors(), errorsBefore_) << "the driver reported errors (logged above)";
   }
   static GlContext& context() {
-    static GlContext shared = GlContext::headless();
+    static GlContext shared = GlContext::headless(DebugOutput::AtOnce);
     return shared;
   }
 

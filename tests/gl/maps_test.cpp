@@ -18,6 +18,20 @@ class MapsTest : public GatherTest {
   std::vector<MapJob> jobs;
 };
 
+/// Rows of the rays' maps are packed as tightly as the convention says; another alignment for them was left behind.
+TEST_F(MapsTest, MakersLeaveThePixelStoreAlone) {
+  const Room room;
+  ParaboloidMapPass pass(passes, StageId::VplMaps);
+  poses = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}};
+  ParaboloidMapInputs in = inputs(room);
+  in.maker = ShadowMaker::Rays;
+  in.resolution = 33;
+  pass.run(in);
+  GLint alignment = 0;
+  glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
+  EXPECT_EQ(alignment, 1);
+}
+
 TEST_F(MapsTest, MakersAgree) {
   const Room room;
   const ParaboloidMapInputs in = inputs(room);

@@ -17,6 +17,8 @@ void doctor(const OutputOptions& output) {
   GlContext context = GlContext::headless();
   nlohmann::json j;
   std::vector<std::pair<std::string, std::string>> rows = context.info();
+  const std::vector<DeviceDescription> devices = GlContext::devices();
+  for (size_t i = 0; i < devices.size(); ++i) rows.emplace_back("device " + std::to_string(i), devices[i].name);
   rows.emplace_back("embree", EmbreeQuery::version());
   rows.emplace_back("cores", std::to_string(std::thread::hardware_concurrency()) + " (" +
                                  std::to_string(threadCount()) + " used)");

@@ -1,0 +1,288 @@
+#include "engine/gl/state_guard.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace lambent::gl {
+
+namespace {
+
+struct Switch {
+  GLenum what;
+  bool convention;
+};
+/// Those that have one value for all viewports and targets.
+constexpr Switch kSwitches[] = {
+    {GL_DEPTH_TEST, false},
+    {GL_DEPTH_CLAMP, false},
+    {GL_STENCIL_TEST, false},
+    {GL_CULL_FACE, false},
+    {GL_FRAMEBUFFER_SRGB, false},
+    {GL_RASTERIZER_DISCARD, false},
+    {GL_PROGRAM_POINT_SIZE, false},
+    {GL_TEXTURE_CUBE_MAP_SEAMLESS, true},
+    {GL_COLOR_LOGIC_OP, false},
+    {GL_PRIMITIVE_RESTART, false},
+    {GL_PRIMITIVE_RESTART_FIXED_INDEX, false},
+    {GL_MULTISAMPLE, true},
+    {GL_SAMPLE_ALPHA_TO_COVERAGE, false},
+    {GL_SAMPLE_ALPHA_TO_ONE, false},
+    {GL_SAMPLE_COVERAGE, false},
+    {GL_SAMPLE_MASK, false},
+    {GL_SAMPLE_SHADING, false},
+    {GL_POLYGON_OFFSET_FILL, false},
+    {GL_POLYGON_SMOOTH, false},
+    {GL_DITHER, true},
+    {GL_CLIP_DISTANCE0, false},
+    {GL_CLIP_DISTANCE1, false},
+    {GL_CLIP_DISTANCE2, false},
+    {GL_CLIP_DISTANCE3, false},
+    {GL_CLIP_DISTANCE4, false},
+    {GL_CLIP_DISTANCE5, false},
+    {GL_CLIP_DISTANCE6, false},
+    {GL_CLIP_DISTANCE7, false},
+};
+
+struct PixelStore {
+  GLenum what;
+  GLint convention;
+};
+constexpr PixelStore kPixelStore[] = {
+    {GL_PACK_ALIGNMENT, 1},      {GL_PACK_SWAP_BYTES, 0},    {GL_PACK_LSB_FIRST, 0},   {GL_PACK_ROW_LENGTH, 0},
+    {GL_PACK_IMAGE_HEIGHT, 0},   {GL_PACK_SKIP_PIXELS, 0},   {GL_PACK_SKIP_ROWS, 0},   {GL_PACK_SKIP_IMAGES, 0},
+    {GL_UNPACK_ALIGNMENT, 1},    {GL_UNPACK_SWAP_BYTES, 0},  {GL_UNPACK_LSB_FIRST, 0}, {GL_UNPACK_ROW_LENGTH, 0},
+    {GL_UNPACK_IMAGE_HEIGHT, 0}, {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_SKIP_ROWS, 0}, {GL_UNPACK_SKIP_IMAGES, 0},
+};
+
+/// Every target of a texture unit: binding no texture to a unit empties them all.
+constexpr GLenum kTextureTargets[] = {
+    GL_TEXTURE_BINDING_1D,
+    GL_TEXTURE_BINDING_2D,
+    GL_TEXTURE_BINDING_3D,
+    GL_TEXTURE_BINDING_1D_ARRAY,
+    GL_TEXTURE_BINDING_2D_ARRAY,
+    GL_TEXTURE_BINDING_RECTANGLE,
+    GL_TEXTURE_BINDING_CUBE_MAP,
+    GL_TEXTURE_BINDING_CUBE_MAP_ARRAY,
+    GL_TEXTURE_BINDING_BUFFER,
+    GL_TEXTURE_BINDING_2D_MULTISAMPLE,
+    GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY,
+};
+
+constexpr int kUnits = 10, kUniformBuffers = 4, kMostViewports = 16, kTargets = 8;
+constexpr GLuint kColorAttribute = 3; // GpuScene sets it for vertices without colour
+
+GLint get(GLenum what) {
+  GLint value = 0;
+  glGetIntegerv(what, &value);
+  return value;
+}
+GLint get(GLenum what, int index) {
+  GLint value = 0;
+  glGetIntegeri_v(what, GLuint(index), &value);
+  return value;
+}
+void set(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
+void set(GLenum what, int index, bool on) { on ? glEnablei(what, GLuint(index)) : glDisablei(what, GLuint(index)); }
+
+struct Viewport {
+  GLfloat rectangle[4] = {};
+  GLdouble depthRange[2] = {};
+  GLint scissor[4] = {};
+  bool scissored = false;
+};
+
+struct Target {
+  bool blended = false;
+  GLint source = 0, destination = 0, sourceAlpha = 0, destinationAlpha = 0, equation = 0, equationAlpha = 0;
+  GLboolean mask[4] = {};
+};
+
+struct Face {
+  GLint function = 0, reference = 0, mask = 0, writeMask = 0, fail = 0, depthFail = 0, pass = 0;
+};
+
+struct Unit {
+  GLint textures[std::size(kTextureTargets)] = {};
+  GLint sampler = 0;
+};
+
+struct UniformBuffer {
+  GLint name = 0;
+  GLint64 offset = 0, bytes = 0;
+};
+
+Face stencilOf(bool front) {
+  return {get(front ? GL_STENCIL_FUNC : GL_STENCIL_BACK_FUNC),
+          get(front ? GL_STENCIL_REF : GL_STENCIL_BACK_REF),
+          get(front ? GL_STENCIL_VALUE_MASK : GL_STENCIL_BACK_VALUE_MASK),
+          get(front ? GL_STENCIL_WRITEMASK : GL_STENCIL_BACK_WRITEMASK),
+          get(front ? GL_STENCIL_FAIL : GL_STENCIL_BACK_FAIL),
+          get(front ? GL_STENCIL_PASS_DEPTH_FAIL : GL_STENCIL_BACK_PASS_DEPTH_FAIL),
+          get(front ? GL_STENCIL_PASS_DEPTH_PASS : GL_STENCIL_BACK_PASS_DEPTH_PASS)};
+}
+
+void setStencil(GLenum face, const Face& s) {
+  glStencilFuncSeparate(face, GLenum(s.function), s.reference, GLuint(s.mask));
+  glStencilMaskSeparate(face, GLuint(s.writeMask));
+  glStencilOpSeparate(face, GLenum(s.fail), GLenum(s.depthFail), GLenum(s.pass));
+}
+
+} // namespace
+
+struct StateGuard::Saved {
+  std::array<bool, std::size(kSwitches)> switches;
+  std::array<GLint, std::size(kPixelStore)> pixelStore;
+  std::array<Viewport, kMostViewports> viewports;
+  std::array<Target, kTargets> targets;
+  std::array<Unit, kUnits> units;
+  std::array<UniformBuffer, kUniformBuffers> uniformBuffers;
+  int viewportCount = 0;
+  GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
+  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, polygonMode[2] = {};
+  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, activeUnit = 0;
+  GLint transformFeedback = 0;
+  bool feedbackRuns = false;
+  GLboolean depthMask = GL_FALSE;
+  Face front, back;
+  GLfloat pointSize = 1, color[4] = {};
+
+  Saved();
+  void restore() const;
+};
+
+StateGuard::Saved::Saved() {
+  for (size_t i = 0; i < switches.size(); ++i) switches[i] = glIsEnabled(kSwitches[i].what);
+  for (size_t i = 0; i < pixelStore.size(); ++i) pixelStore[i] = get(kPixelStore[i].what);
+  viewportCount = std::min(get(GL_MAX_VIEWPORTS), kMostViewports);
+  for (int i = 0; i < viewportCount; ++i) {
+    Viewport& v = viewports[size_t(i)];
+    glGetFloati_v(GL_VIEWPORT, GLuint(i), v.rectangle);
+    glGetDoublei_v(GL_DEPTH_RANGE, GLuint(i), v.depthRange);
+    glGetIntegeri_v(GL_SCISSOR_BOX, GLuint(i), v.scissor);
+    v.scissored = glIsEnabledi(GL_SCISSOR_TEST, GLuint(i));
+  }
+  for (int i = 0; i < kTargets; ++i) {
+    Target& t = targets[size_t(i)];
+    t.blended = glIsEnabledi(GL_BLEND, GLuint(i));
+    t.source = get(GL_BLEND_SRC_RGB, i);
+    t.destination = get(GL_BLEND_DST_RGB, i);
+    t.sourceAlpha = get(GL_BLEND_SRC_ALPHA, i);
+    t.destinationAlpha = get(GL_BLEND_DST_ALPHA, i);
+    t.equation = get(GL_BLEND_EQUATION_RGB, i);
+    t.equationAlpha = get(GL_BLEND_EQUATION_ALPHA, i);
+    glGetBooleani_v(GL_COLOR_WRITEMASK, GLuint(i), t.mask);
+  }
+  activeUnit = get(GL_ACTIVE_TEXTURE);
+  for (int i = 0; i < kUnits; ++i) {
+    glActiveTexture(GLenum(GL_TEXTURE0 + i));
+    for (size_t t = 0; t < std::size(kTextureTargets); ++t) units[size_t(i)].textures[t] = get(kTextureTargets[t]);
+    units[size_t(i)].sampler = get(GL_SAMPLER_BINDING);
+  }
+  uniformBuffer = get(GL_UNIFORM_BUFFER_BINDING);
+  for (int i = 0; i < kUniformBuffers; ++i) {
+    UniformBuffer& u = uniformBuffers[size_t(i)];
+    u.name = get(GL_UNIFORM_BUFFER_BINDING, i);
+    glGetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(i), &u.offset);
+    glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, GLuint(i), &u.bytes);
+  }
+  program = get(GL_CURRENT_PROGRAM);
+  vertexArray = get(GL_VERTEX_ARRAY_BINDING);
+  drawFramebuffer = get(GL_DRAW_FRAMEBUFFER_BINDING);
+  readFramebuffer = get(GL_READ_FRAMEBUFFER_BINDING);
+  depthFunction = get(GL_DEPTH_FUNC);
+  glGetBooleanv(GL_DEPTH_WRITEMASK, &depthMask);
+  clipOrigin = get(GL_CLIP_ORIGIN);
+  clipDepth = get(GL_CLIP_DEPTH_MODE);
+  frontFace = get(GL_FRONT_FACE);
+  glGetIntegerv(GL_POLYGON_MODE, polygonMode);
+  glGetFloatv(GL_POINT_SIZE, &pointSize);
+  front = stencilOf(true);
+  back = stencilOf(false);
+  packBuffer = get(GL_PIXEL_PACK_BUFFER_BINDING);
+  unpackBuffer = get(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  indirectBuffer = get(GL_DRAW_INDIRECT_BUFFER_BINDING);
+  glGetVertexAttribfv(kColorAttribute, GL_CURRENT_VERTEX_ATTRIB, color);
+  transformFeedback = get(GL_TRANSFORM_FEEDBACK_BINDING);
+  feedbackRuns = get(GL_TRANSFORM_FEEDBACK_ACTIVE) && !get(GL_TRANSFORM_FEEDBACK_PAUSED);
+  if (feedbackRuns) glPauseTransformFeedback(); // else no other program may be used
+  glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
+}
+
+void StateGuard::Saved::restore() const {
+  for (size_t i = 0; i < switches.size(); ++i) set(kSwitches[i].what, switches[i]);
+  for (size_t i = 0; i < pixelStore.size(); ++i) glPixelStorei(kPixelStore[i].what, pixelStore[i]);
+  for (int i = 0; i < viewportCount; ++i) {
+    const Viewport& v = viewports[size_t(i)];
+    glViewportIndexedfv(GLuint(i), v.rectangle);
+    glDepthRangeIndexed(GLuint(i), v.depthRange[0], v.depthRange[1]);
+    glScissorIndexedv(GLuint(i), v.scissor);
+    set(GL_SCISSOR_TEST, i, v.scissored);
+  }
+  for (int i = 0; i < kTargets; ++i) {
+    const Target& t = targets[size_t(i)];
+    const GLuint index = GLuint(i);
+    set(GL_BLEND, i, t.blended);
+    glBlendFuncSeparatei(index, GLenum(t.source), GLenum(t.destination), GLenum(t.sourceAlpha),
+                         GLenum(t.destinationAlpha));
+    glBlendEquationSeparatei(index, GLenum(t.equation), GLenum(t.equationAlpha));
+    glColorMaski(index, t.mask[0], t.mask[1], t.mask[2], t.mask[3]);
+  }
+  for (int i = 0; i < kUnits; ++i) {
+    const Unit& u = units[size_t(i)];
+    glBindTextureUnit(GLuint(i), 0);
+    for (const GLint texture : u.textures)
+      if (texture != 0) glBindTextureUnit(GLuint(i), GLuint(texture)); // to the target that it is of
+    glBindSampler(GLuint(i), GLuint(u.sampler));
+  }
+  glActiveTexture(GLenum(activeUnit));
+  for (int i = 0; i < kUniformBuffers; ++i) {
+    const UniformBuffer& u = uniformBuffers[size_t(i)];
+    if (u.bytes > 0)
+      glBindBufferRange(GL_UNIFORM_BUFFER, GLuint(i), GLuint(u.name), GLintptr(u.offset), GLsizeiptr(u.bytes));
+    else
+      glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(i), GLuint(u.name)); // none, or whole
+  }
+  glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniformBuffer));
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawFramebuffer));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(readFramebuffer));
+  glBindVertexArray(GLuint(vertexArray));
+  glDepthFunc(GLenum(depthFunction));
+  glDepthMask(depthMask);
+  glClipControl(GLenum(clipOrigin), GLenum(clipDepth));
+  glFrontFace(GLenum(frontFace));
+  glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygonMode[0]));
+  glPointSize(pointSize);
+  setStencil(GL_FRONT, front);
+  setStencil(GL_BACK, back);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(packBuffer));
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(unpackBuffer));
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirectBuffer));
+  glVertexAttrib4fv(kColorAttribute, color);
+  // One that was deleted while in use went for good when another took its place.
+  glUseProgram(glIsProgram(GLuint(program)) ? GLuint(program) : 0);
+  glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, GLuint(transformFeedback));
+  if (feedbackRuns) glResumeTransformFeedback();
+}
+
+void setConventions() {
+  for (const Switch& s : kSwitches) set(s.what, s.convention);
+  for (const PixelStore& p : kPixelStore) glPixelStorei(p.what, p.convention);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthRange(0, 1);
+  glFrontFace(GL_CCW);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glPointSize(1);
+  glBlendEquation(GL_FUNC_ADD);
+  for (GLuint unit = 0; unit < kUnits; ++unit) glBindSampler(unit, 0);
+}
+
+StateGuard::StateGuard() : saved_(std::make_unique<Saved>()) { setConventions(); }
+StateGuard::~StateGuard() { saved_->restore(); }
+
+} // namespace lambent::gl
