@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <optional>
 
 namespace lambent {
 
@@ -75,74 +74,29 @@ double numberOf(const Settings& settings, const std::string& setting) {
   return std::stod(settingText(settings, setting));
 }
 
-double gatherMs(const FrameStats& stats) {
-  double ms = 0;
-  for (const StageTime& t : stats.stages)
-    if (t.stage == key(StageId::Gather)) ms += std::max(t.cpuMs, t.gpuMs);
-  return ms;
-}
-
-/// Pictures of one view under changing settings.
-class Painter {
- public:
-  Painter(Stage& stage, const CurveKind& kind) : stage_(stage), kind_(kind), gi_(stage.settings, stage.seed) {}
-
-  Settings settingsFor(const std::string& technique) const {
-    Settings s = stage_.settings;
-    applyTechnique(s, technique);
-    kind_.prepare(s);
-    return s;
-  }
-
-  Image truth() {
-    Settings s = stage_.settings;
-    kind_.truth(s);
-    return draw(s);
-  }
-
-  /// Indirect radiance.
-  Image draw(Settings settings) {
-    settings.effects[EffectId::Redraw] = EffectMode::On;
-    if (settings.debug.timing == TimingMode::Auto) settings.debug.timing = TimingMode::Finish;
-    gi_.settings() = settings;
-    stats_ = gi_.run(stage_.at(0));
-    return gi_.read(Buffer::Indirect);
-  }
-
-  const FrameStats& stats() const { return stats_; }
-  float exposure() const { return gi_.exposure(); }
-
- private:
-  Stage& stage_;
-  const CurveKind& kind_;
-  GiFrame gi_;
-  FrameStats stats_;
-};
-
-std::string csvOf(const std::vector<Curve>& curves) {
-  std::string out = "technique,setting,value,in_use,rmse_share,rms_shown,bias,gather_ms,vpls\n";
+/// All points of the curves.
+nlohmann::json rowsOf(const std::vector<Curve>& curves) {
+  nlohmann::json rows = nlohmann::json::array();
   for (const Curve& c : curves)
     for (const CurvePoint& p : c.points)
-      out += c.sweep.technique + "," + c.sweep.setting +
-             format(",%g,%d,%.6g,%.6g,%.6g,%.3f,%u\n", p.value, int(p.inUse), p.rmseShare, p.rmsShown, p.bias,
-                    p.gatherMs, p.vpls);
-  return out;
+      rows.push_back({{"technique", c.sweep.technique},
+                      {"setting", c.sweep.setting},
+                      {"value", p.value},
+                      {"in_use", p.inUse},
+                      {"rmse_share", p.rmseShare},
+                      {"rms_shown", p.rmsShown},
+                      {"bias", p.bias},
+                      {"gather_ms", p.gatherMs},
+                      {"vpls", p.vpls}});
+  return rows;
 }
 
-nlohmann::json figuresOf(const std::vector<Curve>& curves) {
-  nlohmann::json j;
-  for (const Curve& c : curves)
-    for (const CurvePoint& p : c.points)
-      j["points"].push_back({{"technique", c.sweep.technique},
-                             {"setting", c.sweep.setting},
-                             {"value", p.value},
-                             {"in_use", p.inUse},
-                             {"rmse_share", p.rmseShare},
-                             {"rms_shown", p.rmsShown},
-                             {"bias", p.bias},
-                             {"gather_ms", p.gatherMs},
-                             {"vpls", p.vpls}});
-  return j;
+std::string csvOf(const nlohmann::json& rows) {
+  std::vector<TableColumn> columns;
+  for (const char* key :
+       {"technique", "setting", "value", "in_use", "rmse_share", "rms_shown", "bias", "gather_ms", "vpls"})
+    columns.push_back({key, key});
+  return csvText(columns, rows);
 }
 
 Plot plotOf(const Curve& curve) {
@@ -172,14 +126,6 @@ void print(const Curve& curve, const Settings& settings) {
                            : "  <- as set");
 }
 
-/// |a − b| on the display, eight times.
-Image magnifiedDifference(const Image& a, const Image& b) {
-  constexpr float kFactor = 8;
-  Image out = a;
-  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = kFactor * glm::abs(a.pixels[i] - b.pixels[i]);
-  return out;
-}
-
 } // namespace
 
 void accuracyCurve(const AccuracyOptions& options) {
@@ -193,60 +139,62 @@ void accuracyCurve(const AccuracyOptions& options) {
   const fs::path folder = reportFolder(options.output.out, "out/accuracy");
   GlContext context = GlContext::headless();
 
-  size_t total = 1;
+  std::vector<Variant> variants{{"truth", stage->settings, stage->seed}};
+  kind.truth(variants[0].settings);
+  std::vector<Curve> curves;
   for (Sweep& sweep : kind.sweeps) {
-    const double inUse = numberOf(stage->settings, sweep.setting);
+    Settings settings = stage->settings;
+    applyTechnique(settings, sweep.technique);
+    kind.prepare(settings);
+    const double inUse = numberOf(settings, sweep.setting);
     sweep.values.insert(std::ranges::lower_bound(sweep.values, inUse), inUse);
     sweep.values.erase(std::unique(sweep.values.begin(), sweep.values.end()), sweep.values.end());
-    total += sweep.values.size() + 1;
-  }
-  std::vector<Curve> curves;
-  {
-    Painter painter(*stage, kind);
-    Progress progress("curve of " + kind.name, options.output.quiet);
-    size_t done = 0;
-    const auto step = [&] {
-      if (interrupted) throw RunError("interrupted: nothing is written");
-      progress.update(int(++done), int(total));
-    };
-    const Image truth = painter.truth();
-    if (!(meanOf(truth) > 0))
-      throw InputError(launch.scene, "no light of reflective shadow maps reaches this view (another view or --point)");
-    const float exposure = painter.exposure();
-    const Image truthShown = shownImage(truth, exposure);
-    writeShown(folder / (kind.name + "-baseline.png"), truthShown);
-    step();
-    std::string pictured;
-    for (const Sweep& sweep : kind.sweeps) {
-      const Settings settings = painter.settingsFor(sweep.technique);
-      const Image asSet = shownImage(painter.draw(settings), exposure); // shaders are compiled after this
-      step();
-      if (pictured != sweep.technique) {
-        pictured = sweep.technique;
-        writeShown(folder / (kind.name + "-" + pictured + ".png"), asSet);
-        writeShown(folder / (kind.name + "-" + pictured + "-difference.png"), magnifiedDifference(asSet, truthShown));
-      }
-      curves.push_back({sweep, {}});
-      for (double value : sweep.values) {
-        Settings changed = settings;
-        applySetting(changed, sweep.setting, format("%.9g", value));
-        const Image picture = painter.draw(changed);
-        curves.back().points.push_back({.value = value,
-                                        .inUse = value == numberOf(settings, sweep.setting),
-                                        .rmseShare = rmseShare(picture, truth),
-                                        .rmsShown = rmse(shownImage(picture, exposure), truthShown),
-                                        .bias = meanOf(picture) / meanOf(truth) - 1,
-                                        .gatherMs = gatherMs(painter.stats()),
-                                        .vpls = painter.stats().vplsAlive});
-        step();
-      }
+    curves.push_back({sweep, {}});
+    for (double value : sweep.values) {
+      curves.back().points.push_back({.value = value, .inUse = value == inUse});
+      applySetting(variants.emplace_back(sweep.technique, settings, stage->seed).settings, sweep.setting,
+                   format("%.9g", value));
     }
   }
-  writeText(folder / (kind.name + ".csv"), csvOf(curves));
+  for (Variant& v : variants) v.settings.effects[EffectId::Redraw] = EffectMode::On;
+  Image truth;
+  float exposure = 1;
+  {
+    Progress progress("curve of " + kind.name, options.output.quiet);
+    RunPlan plan = stillPlan(*stage, progress, Buffer::Indirect);
+    const Measured every = measure({variants[0]}, plan)[0];
+    truth = every.picture;
+    exposure = every.exposure;
+    plan.frames = 2, plan.skip = 1; // shaders are compiled in the first
+    const Image truthShown = shownImage(truth, exposure);
+    if (!(pictureError(truth, truth).meanTruth > 0))
+      throw InputError(launch.scene, "no light of reflective shadow maps reaches this view (another view or --point)");
+    writeShown(folder / (kind.name + "-baseline.png"), truthShown);
+    const std::vector<Measured> runs = measure({variants.begin() + 1, variants.end()}, plan);
+    auto run = runs.begin();
+    std::string pictured;
+    for (Curve& curve : curves)
+      for (CurvePoint& p : curve.points) {
+        const PictureError error = pictureError(run->picture, truth);
+        const Image shown = shownImage(run->picture, exposure);
+        p.rmseShare = error.rmseShare();
+        p.rmsShown = pictureError(shown, truthShown).rmse;
+        p.bias = error.bias;
+        p.gatherMs = run->ms(StageId::Gather).median;
+        p.vpls = run->frames.back().vplsAlive;
+        ++run;
+        if (!p.inUse || pictured == curve.sweep.technique) continue;
+        pictured = curve.sweep.technique;
+        writeShown(folder / (kind.name + "-" + pictured + ".png"), shown);
+        writeShown(folder / (kind.name + "-" + pictured + "-difference.png"), absoluteDifference(shown, truthShown, 8));
+      }
+  }
+  const nlohmann::json rows = rowsOf(curves);
+  writeText(folder / (kind.name + ".csv"), csvOf(rows));
   std::vector<Plot> plots;
   for (const Curve& c : curves) plots.push_back(plotOf(c));
   writeText(folder / (kind.name + ".svg"), svgOf(plots));
-  writeJson(options.output.json, figuresOf(curves));
+  writeJson(options.output.json, {{"points", rows}});
   if (options.output.quiet) return;
   std::printf("%s, %d x %d\n", kind.title.c_str(), stage->camera.width, stage->camera.height);
   for (const Curve& c : curves) print(c, stage->settings);

@@ -1,6 +1,8 @@
 // What the two forms of `lambent bench` share.
 #pragma once
 
+#include "engine/core/progress.h"
+#include "gi/measure/runs/runs.h"
 #include "tools/lambent/commands.h"
 
 #include <string>
@@ -11,17 +13,14 @@ namespace lambent {
 struct BenchOptions {
   LaunchOptions launch; // its scene is empty where several are given
   OutputOptions output;
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, techniques;
   std::vector<std::string> against; // NAME=VALUE
-  bool multires = false;
+  bool multires = false, quick = false;
   int frames = 0, skip = 2;
 };
 
-/// The upper one of the two in the middle; 0 for none.
-double median(std::vector<double> values);
-
-/// Frames to run, those that do not count included. Throws InputError when none would be left.
-int framesOf(const BenchOptions& options, const Stage& stage);
+/// The frames to run of a stage, those that do not count included. Throws InputError when none would be left.
+RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress);
 
 /// Techniques multires-gather and multires-splat, scene by scene.
 void benchMultires(const BenchOptions& options);

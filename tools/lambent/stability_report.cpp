@@ -22,21 +22,6 @@ struct Published {
 constexpr std::array<Published, 5> kPublished{
     {{"office", 0.57}, {"citadel", 0.61}, {"maze", 0.57}, {"atrium", 0.32}, {"citadel-moving", 0.22}}};
 
-std::string publishedRatio(std::string shot) {
-  if (shot.ends_with("-small")) shot.resize(shot.size() - 6);
-  for (const Published& p : kPublished)
-    if (shot == p.shot) return format("%.2f", p.smcOverIr);
-  return "";
-}
-
-/// |E| over what it is while the scene stands still: marked, grid.
-std::string overStill(const ShotRun& shot, const TechniqueRun& t) {
-  if (!shot.still) return "";
-  return format("%.2f, %.2f", t.marked.error / t.stillMarked.error, t.grid.error / t.stillGrid.error);
-}
-
-std::string vplsText(const TechniqueRun& t) { return t.vpls > 0 ? format("%u", t.vpls) : "cut"; }
-
 /// What |E'| is held against: that of ir as in paper 1, among techniques from reflective maps that of rsm.
 const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   Settings settings;
@@ -45,22 +30,59 @@ const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 
-std::string latencyText(const Latency& l) {
-  return l.count ? format("%.0f, %.0f, %.0f %%", l.median, l.worstTenth, 100 * l.followed) : "";
+nlohmann::json figuresOf(const ShotRun& s, const TechniqueRun& t) {
+  nlohmann::json j{{"shot", s.name},
+                   {"technique", t.name},
+                   {"vpls", t.vpls},
+                   {"vpls_text", t.vpls > 0 ? std::to_string(t.vpls) : "cut"},
+                   {"frames", s.truth.size()},
+                   {"pixels_marked", s.marked},
+                   {"pixels_grid", s.truth.front().size() - s.marked},
+                   {"steps", s.steps},
+                   {"error_marked", t.marked.error},
+                   {"change_marked", t.marked.change},
+                   {"error_grid", t.grid.error},
+                   {"change_grid", t.grid.change},
+                   {"bias_grid", t.grid.bias},
+                   {"l90_median", t.latency.median},
+                   {"l90_worst_tenth", t.latency.worstTenth},
+                   {"l90_followed", t.latency.followed},
+                   {"l90_count", t.latency.count},
+                   {"place_ms", t.placeMs},
+                   {"truth_error", s.truthError}};
+  if (t.latency.count > 0) j["l90"] = {t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
+  if (const TechniqueRun* simplest = simplestOf(s, t))
+    j["change_over_simplest"] = t.grid.change / simplest->grid.change;
+  for (const Published& p : kPublished)
+    if (t.name == "smc" && (s.name == p.shot || s.name == p.shot + std::string("-small"))) j["paper_1"] = p.smcOverIr;
+  if (!s.still) return j;
+  j["error_still_marked"] = t.stillMarked.error;
+  j["error_still_grid"] = t.stillGrid.error;
+  j["error_over_still"] = {t.marked.error / t.stillMarked.error, t.grid.error / t.stillGrid.error};
+  return j;
 }
 
-std::string csv(const std::vector<ShotRun>& shots) {
-  std::ostringstream out;
-  out << "shot,technique,vpls,frames,error_marked,change_marked,error_grid,change_grid,bias_grid,error_still_marked,"
-         "error_still_grid,l90_median,l90_worst_tenth,l90_followed,l90_count,place_ms,truth_error\n";
-  for (const ShotRun& s : shots)
-    for (const TechniqueRun& t : s.techniques)
-      out << s.name << ',' << t.name << ',' << t.vpls << ',' << s.truth.size() << ',' << t.marked.error << ','
-          << t.marked.change << ',' << t.grid.error << ',' << t.grid.change << ',' << t.grid.bias << ','
-          << (s.still ? format("%g,%g,", t.stillMarked.error, t.stillGrid.error) : ",,") << t.latency.median << ','
-          << t.latency.worstTenth << ',' << t.latency.followed << ',' << t.latency.count << ','
-          << format("%.3f", t.placeMs) << ',' << s.truthError << '\n';
-  return out.str();
+const std::vector<TableColumn> kColumns{{"shot", "shot"},
+                                        {"technique", "technique"},
+                                        {"vpls_text", "N"},
+                                        {"error_marked", "\\|E\\| marked", "%.4f"},
+                                        {"change_marked", "\\|E'\\| marked", "%.4f"},
+                                        {"error_grid", "\\|E\\| grid", "%.4f"},
+                                        {"change_grid", "\\|E'\\| grid", "%.4f"},
+                                        {"bias_grid", "bias", "%+.4f"},
+                                        {"change_over_simplest", "\\|E'\\| over ir's, rsm's", "%.2f"},
+                                        {"paper_1", "paper 1", "%.2f"},
+                                        {"error_over_still", "\\|E\\| over still", "%.2f"},
+                                        {"l90", "L90, worst tenth, % followed", "%.0f"},
+                                        {"place_ms", "ms to place", "%.1f"}};
+
+std::string csv(const nlohmann::json& figures) {
+  std::vector<TableColumn> columns;
+  for (const char* key : {"shot", "technique", "vpls", "frames", "error_marked", "change_marked", "error_grid",
+                          "change_grid", "bias_grid", "error_still_marked", "error_still_grid", "l90_median",
+                          "l90_worst_tenth", "l90_followed", "l90_count", "place_ms", "truth_error"})
+    columns.push_back({key, key});
+  return csvText(columns, figures);
 }
 
 std::string seriesCsv(const ShotRun& s) {
@@ -115,23 +137,24 @@ std::string plot(const ShotRun& s, size_t pixel) {
   return out.str();
 }
 
-std::string html(const std::vector<ShotRun>& shots, const std::string& conditions) {
+std::string html(const std::vector<ShotRun>& shots, const nlohmann::json& figures, const std::string& conditions) {
   std::ostringstream out;
   out << "<!doctype html><meta charset='utf-8'><title>Temporal stability</title><style>body{font:14px sans-serif;"
          "max-width:75em;margin:2em auto}table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px "
          "solid #ddd;text-align:right}td:nth-child(-n+2){text-align:left}svg text{font:10px sans-serif}</style>\n"
       << "<h1>Temporal stability</h1><p>" << conditions
       << "</p><p>E = technique − truth in tone-mapped luminance, E' its change from frame to frame (paper 1, table 1). "
-         "L90: frames until 90 % of a step of the scene is followed.</p>\n<table><tr><th>shot<th>technique<th>N<th>|E| "
-         "marked<th>|E'| marked<th>|E| grid<th>|E'| grid<th>bias<th>|E| over still<th>L90 median, worst tenth, share "
-         "followed<th>ms to place</tr>\n";
-  for (const ShotRun& s : shots)
-    for (const TechniqueRun& t : s.techniques)
-      out << "<tr><td>" << s.name << "<td>" << t.name
-          << format("<td>%s<td>%.4f<td>%.4f<td>%.4f<td>%.4f<td>%+.4f", vplsText(t).c_str(), t.marked.error,
-                    t.marked.change, t.grid.error, t.grid.change, t.grid.bias)
-          << "<td>" << overStill(s, t) << "<td>" << latencyText(t.latency) << format("<td>%.1f</tr>\n", t.placeMs);
-  out << "</table>\n";
+         "L90: frames until 90 % of a step of the scene is followed.</p>\n<table><tr>";
+  for (const TableColumn& c : kColumns) {
+    std::string title = c.title;
+    std::erase(title, '\\');
+    out << "<th>" << title;
+  }
+  for (const nlohmann::json& row : figures) {
+    out << "</tr>\n<tr>";
+    for (const TableColumn& c : kColumns) out << "<td>" << cellText(c, row);
+  }
+  out << "</tr>\n</table>\n";
   for (const ShotRun& s : shots) {
     out << "<h2>" << s.name << "</h2><p><b>truth</b>";
     for (size_t t = 0; t < s.techniques.size(); ++t)
@@ -150,29 +173,20 @@ const TechniqueRun* ShotRun::technique(const std::string& wanted) const {
   return nullptr;
 }
 
-std::string stabilityTable(const std::vector<ShotRun>& shots) {
-  std::ostringstream out;
-  out << "| shot | technique | N | \\|E\\| marked | \\|E'\\| marked | \\|E\\| grid | \\|E'\\| grid | bias | \\|E'\\| "
-         "over ir's, rsm's | paper 1 | \\|E\\| over still | L90, worst tenth, followed | ms to place |\n"
-         "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const ShotRun& s : shots) {
-    for (const TechniqueRun& t : s.techniques) {
-      const TechniqueRun* simplest = simplestOf(s, t);
-      out << "| " << s.name << " | " << t.name << " | " << vplsText(t)
-          << format(" | %.4f | %.4f | %.4f | %.4f | %+.4f | ", t.marked.error, t.marked.change, t.grid.error,
-                    t.grid.change, t.grid.bias)
-          << (simplest ? format("%.2f", t.grid.change / simplest->grid.change) : "") << " | "
-          << (t.name == "smc" ? publishedRatio(s.name) : "") << " | " << overStill(s, t) << " | "
-          << latencyText(t.latency) << format(" | %.1f |\n", t.placeMs);
-    }
-  }
-  return out.str();
+nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots) {
+  nlohmann::json figures = nlohmann::json::array();
+  for (const ShotRun& s : shots)
+    for (const TechniqueRun& t : s.techniques) figures.push_back(figuresOf(s, t));
+  return figures;
 }
 
-void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const std::string& conditions) {
-  writeText(folder / "stability.csv", csv(shots));
-  writeText(folder / "stability.md", "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(shots));
-  writeText(folder / "stability.html", html(shots, conditions));
+std::string stabilityTable(const nlohmann::json& figures) { return tableText(kColumns, figures); }
+
+void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const nlohmann::json& figures,
+                          const std::string& conditions) {
+  writeText(folder / "stability.csv", csv(figures));
+  writeText(folder / "stability.md", "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures));
+  writeText(folder / "stability.html", html(shots, figures, conditions));
   for (const ShotRun& s : shots) writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
 }
 

@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <fstream>
@@ -18,6 +19,44 @@ std::string format(const char* pattern, ...) {
   std::vsnprintf(text, sizeof text, pattern, arguments);
   va_end(arguments);
   return text;
+}
+
+std::string cellText(const TableColumn& column, const nlohmann::json& row) {
+  if (!row.contains(column.key)) return "";
+  const nlohmann::json& value = row[column.key];
+  if (value.is_string()) return value;
+  std::string text;
+  for (const nlohmann::json& number : value.is_array() ? value : nlohmann::json::array({value})) {
+    const double n = number.is_boolean() ? number.get<bool>() : number.get<double>();
+    text += (text.empty() ? "" : ", ") + (std::isfinite(n) ? format(column.pattern, column.factor * n) : "–");
+  }
+  return text;
+}
+
+std::string tableText(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
+  std::string text = "|", rule = "|";
+  for (const TableColumn& c : columns) {
+    text += std::string(" ") + c.title + " |";
+    rule += "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const nlohmann::json& row : rows) {
+    text += "|";
+    for (const TableColumn& c : columns) text += " " + cellText(c, row) + " |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string csvText(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
+  std::string text;
+  for (const TableColumn& c : columns) text += (text.empty() ? "" : ",") + std::string(c.key);
+  for (const nlohmann::json& row : rows) {
+    std::string line;
+    for (const TableColumn& c : columns) line += (line.empty() ? "\n" : ",") + cellText({c.key, ""}, row);
+    text += line;
+  }
+  return text + "\n";
 }
 
 void writeText(const fs::path& file, const std::string& text) {
