@@ -32,6 +32,8 @@ void WatchedScene::update(const SceneView& view) {
   rays_->update(view);
   lights_ = collectLights(view);
   surfaces_ = surfacesAt(*rays_, view.camera, points_);
+  seen_.emplace_back();
+  for (const SurfaceHit& s : surfaces_) seen_.back().push_back(s.valid());
 }
 
 } // namespace lambent

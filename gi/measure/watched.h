@@ -37,12 +37,15 @@ class WatchedScene {
   const RayQuery& rays() const { return *rays_; }
   const LightSet& lights() const { return lights_; }
   std::span<const SurfaceHit> surfaces() const { return surfaces_; }
+  /// Whether the camera saw a surface: [frame][point], of all frames.
+  const std::vector<std::vector<bool>>& seen() const { return seen_; }
 
  private:
   std::vector<vec2> points_;
   std::unique_ptr<EmbreeQuery> rays_;
   LightSet lights_;
   std::vector<SurfaceHit> surfaces_;
+  std::vector<std::vector<bool>> seen_;
 };
 
 } // namespace lambent

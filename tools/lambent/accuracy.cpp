@@ -40,11 +40,11 @@ void accuracy(const AccuracyOptions& options) {
 } // namespace
 
 RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer) {
-  return {.view = [&stage](int) { return stage.at(0); },
-          .inTurn = false,
-          .picture = buffer,
-          .cancelled = [] { return interrupted.load(); },
-          .progress = [&progress](int done, int total) { progress.update(done, total); }};
+  RunPlan plan = planOf(stage, progress, 1);
+  plan.view = [&stage](int) { return stage.at(0); };
+  plan.inTurn = false;
+  plan.picture = buffer;
+  return plan;
 }
 
 void declareAccuracy(CLI::App& app) {

@@ -1,8 +1,6 @@
 // What the forms of `lambent accuracy` share.
 #pragma once
 
-#include "engine/core/progress.h"
-#include "gi/measure/runs/runs.h"
 #include "tools/lambent/commands.h"
 
 #include <optional>

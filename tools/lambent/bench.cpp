@@ -34,22 +34,22 @@ std::vector<Line> timeLines(const std::vector<Measured>& sides) {
   return lines;
 }
 
+double countOf(const Figure& figure) {
+  if (const uint64_t* n = std::get_if<uint64_t>(&figure)) return double(*n);
+  if (const RayCounts* rays = std::get_if<RayCounts>(&figure)) return double(rays->closest + rays->occlusion);
+  return 0; // a time, a text
+}
+
 /// Whatever the table of figures counts and some side did.
 std::vector<Line> countLines(const std::vector<Measured>& sides) {
-  struct Count {
-    double operator()(uint64_t n) const { return double(n); }
-    double operator()(const RayCounts& rays) const { return double(rays.closest + rays.occlusion); }
-    double operator()(bool) const { return -1; }
-    double operator()(double) const { return -1; }
-    double operator()(const std::string&) const { return -1; }
-  };
   std::vector<Line> lines;
   for (const FigureRow& row : figureTable()) {
-    if (row.name == std::string_view("frame")) continue; // a number, no count
     const auto of = [&row](const Measured& m) {
-      return m.of([&row](const FrameStats& s) { return std::visit(Count(), row.value(s)); });
+      return m.of([&row](const FrameStats& s) { return countOf(row.value(s)); });
     };
-    if (std::ranges::any_of(sides, [&](const Measured& m) { return of(m).most > 0; })) lines.push_back({row.name, of});
+    if (row.name != std::string_view("frame") && // a number, no count
+        std::ranges::any_of(sides, [&](const Measured& m) { return of(m).most > 0; }))
+      lines.push_back({row.name, of});
   }
   return lines;
 }
@@ -181,15 +181,10 @@ void bench(const BenchOptions& options) {
 } // namespace
 
 RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress) {
-  const int shotFrames = stage.shot ? stage.shot->frameCount() : 60;
-  const int frames = options.frames > 0 ? std::min(options.frames, shotFrames) : shotFrames;
-  if (frames <= options.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(frames));
-  const double fps = stage.shot ? stage.shot->fps : 30;
-  return {.view = [&stage, fps](int frame) { return stage.at(frame / fps); },
-          .frames = frames,
-          .skip = options.skip,
-          .cancelled = [] { return interrupted.load(); },
-          .progress = [&progress](int done, int total) { progress.update(done, total); }};
+  RunPlan plan = planOf(stage, progress, options.frames);
+  plan.skip = options.skip;
+  if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));
+  return plan;
 }
 
 void declareBench(CLI::App& app) {

@@ -1,8 +1,6 @@
 // What the two forms of `lambent bench` share.
 #pragma once
 
-#include "engine/core/progress.h"
-#include "gi/measure/runs/runs.h"
 #include "tools/lambent/commands.h"
 
 #include <string>
@@ -19,7 +17,7 @@ struct BenchOptions {
   int frames = 0, skip = 2;
 };
 
-/// The frames to run of a stage, those that do not count included. Throws InputError when none would be left.
+/// As the options say. Throws InputError when no frame would be left.
 RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress);
 
 /// Techniques multires-gather and multires-splat, scene by scene.

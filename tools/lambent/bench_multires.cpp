@@ -12,6 +12,8 @@
 
 namespace lambent {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 /// A row of the table: what the paper calls it in either half, and the stages of ours that it sums.
@@ -35,42 +37,24 @@ const std::vector<Row>& rows() {
   };
   return table;
 }
-constexpr size_t kLight = 4;
-
 enum { Gathering, Splatting, kHalves };
 constexpr const char* kTechniques[kHalves] = {"multires-gather", "multires-splat"};
 
-struct Column {
-  std::string file, name;
-  glm::ivec2 size{0}; // pixels
-  std::vector<Measured> halves;
-  double rmseShare = 0; // between the last frames' indirect radiance, share of its mean
-
-  const FrameStats& last() const { return halves[Gathering].frames.back(); }
-  /// Median milliseconds of a row.
-  double ms(int half, size_t row) const {
-    const auto sum = [](const FrameStats& s, size_t i) {
-      double ms = 0;
-      for (StageId stage : rows()[i].stages) ms += s.ms(stage);
-      return ms;
-    };
-    return halves[half]
-        .of([&](const FrameStats& s) {
-          double others = 0;
-          for (size_t i = 1; i < rows().size(); ++i) others += sum(s, i);
-          return row == 0 ? s.wallMs - others : sum(s, row);
-        })
-        .median;
-  }
-  double total(int half) const {
-    return halves[half].of([](const FrameStats& s) { return s.wallMs; }).median;
-  }
-  double lightRatio() const { return ratio(ms(Splatting, kLight), ms(Gathering, kLight)); }
-  double totalRatio() const { return ratio(total(Splatting), total(Gathering)); }
-
- private:
-  static double ratio(double a, double b) { return b > 0 ? a / b : 0; }
-};
+/// Median milliseconds of a row.
+double medianMs(const Measured& m, size_t row) {
+  const auto sum = [](const FrameStats& s, size_t i) {
+    double ms = 0;
+    for (StageId stage : rows()[i].stages) ms += s.ms(stage);
+    return ms;
+  };
+  return m
+      .of([&](const FrameStats& s) {
+        double others = 0;
+        for (size_t i = 1; i < rows().size(); ++i) others += sum(s, i);
+        return row == 0 ? s.wallMs - others : sum(s, row);
+      })
+      .median;
+}
 
 /// The view with every punctual light a ten-thousandth of the scene aside in every other frame, so that no map is kept
 /// and every stage runs in every frame.
@@ -88,7 +72,8 @@ SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
   return view;
 }
 
-Column columnOf(const BenchOptions& options, const std::string& file) {
+/// All figures of one scene: a column of the table.
+nlohmann::json columnOf(const BenchOptions& options, const std::string& file) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
   const auto stage = openStage(launch);
@@ -99,37 +84,42 @@ Column columnOf(const BenchOptions& options, const std::string& file) {
     variants.push_back({technique, stage->settings, stage->seed});
     applyTechnique(variants.back().settings, technique);
   }
-  const std::string name = std::filesystem::path(file).stem().string();
-  Progress progress(name, options.output.quiet);
+  Progress progress(fs::path(file).stem().string(), options.output.quiet);
   RunPlan plan = benchPlan(options, *stage, progress);
   std::vector<LightView> lights;
   plan.view = [&, steady = plan.view](int frame) { return unsteady(steady(frame), frame, lights); };
   plan.picture = Buffer::Indirect;
-  Column column{file, name, {stage->camera.width, stage->camera.height}, measure(variants, plan)};
-  column.rmseShare = pictureError(column.halves[Splatting].picture, column.halves[Gathering].picture).rmseShare();
-  return column;
-}
+  const std::vector<Measured> halves = measure(variants, plan);
 
-nlohmann::json figuresOf(const Column& c) {
-  nlohmann::json j{{"scene", c.file},
-                   {"size", {c.size.x, c.size.y}},
-                   {"frames", c.halves[0].frames.size()},
-                   {"vpls", c.last().vplsAlive},
-                   {"patches", c.last().patches},
-                   {"splat_over_gather", {{"light", c.lightRatio()}, {"total", c.totalRatio()}}},
-                   {"rmse_share", c.rmseShare}};
-  for (int k = 0; k < kHalves; ++k) {
-    nlohmann::json& half = j["median_ms"][kTechniques[k]];
-    for (size_t i = 0; i < rows().size(); ++i) half[rows()[i].key] = c.ms(k, i);
-    half["total"] = c.total(k);
+  nlohmann::json j{{"scene", file},
+                   {"size", {stage->camera.width, stage->camera.height}},
+                   {"frames", halves[0].frames.size()},
+                   {"vpls", halves[Gathering].frames.back().vplsAlive},
+                   {"patches", halves[Gathering].frames.back().patches}, // that gathered, in the last frame
+                   {"rmse_share", pictureError(halves[Splatting].picture, halves[Gathering].picture).rmseShare()}};
+  for (const Measured& half : halves) {
+    nlohmann::json& ms = j["median_ms"][half.variant.name];
+    for (size_t i = 0; i < rows().size(); ++i) ms[rows()[i].key] = medianMs(half, i);
+    ms["total"] = half.of([](const FrameStats& s) { return s.wallMs; }).median;
+  }
+  for (const char* row : {"light", "total"}) {
+    const auto ms = [&](int half) { return j["median_ms"][kTechniques[half]][row].get<double>(); };
+    j["splat_over_gather"][row] = ms(Gathering) > 0 ? ms(Splatting) / ms(Gathering) : 0;
   }
   return j;
 }
 
-void print(const std::vector<Column>& columns, const std::string& title,
-           const std::function<std::string(const Column&)>& cell) {
-  std::printf("  %-32s", title.c_str());
-  for (const Column& c : columns) std::printf(" %*s", int(std::max<size_t>(10, c.name.size())), cell(c).c_str());
+/// One line: of each column what stands at the path, as "/median_ms/multires-gather/light".
+void print(const nlohmann::json& columns, const char* title, const std::string& path, const char* pattern,
+           double factor = 1) {
+  std::printf("  %-32s", title);
+  for (const nlohmann::json& c : columns) {
+    const size_t width = std::max<size_t>(10, fs::path(c["scene"].get<std::string>()).stem().string().size());
+    const nlohmann::json& cell = c[nlohmann::json::json_pointer(path)];
+    std::printf(" %*s", int(width),
+                cell.is_string() ? fs::path(cell.get<std::string>()).stem().c_str()
+                                 : format(pattern, factor * cell.get<double>()).c_str());
+  }
   std::printf("\n");
 }
 
@@ -140,32 +130,28 @@ void benchMultires(const BenchOptions& options) {
     throw InputError("--technique " + options.launch.technique,
                      "cannot be chosen with --multires, which measures multires-gather and multires-splat");
   for (const std::string& file : options.scenes) // before minutes are spent on those before it
-    if (!std::filesystem::exists(file)) throw InputError(file, "no such file");
+    if (!fs::exists(file)) throw InputError(file, "no such file");
   GlContext context = GlContext::headless();
-  std::vector<Column> columns;
+  nlohmann::json columns;
   for (const std::string& file : options.scenes) columns.push_back(columnOf(options, file));
-
-  nlohmann::json j;
-  for (const Column& c : columns) j["scenes"].push_back(figuresOf(c));
-  writeJson(options.output.json, j);
+  writeJson(options.output.json, {{"scenes", columns}});
   if (options.output.quiet) return;
   std::printf(
       "%d x %d, medians in ms; lights waver by a ten-thousandth of the scene, so every stage runs in every frame\n",
-      columns[0].size.x, columns[0].size.y);
+      columns[0]["size"][0].get<int>(), columns[0]["size"][1].get<int>());
   for (int k = 0; k < kHalves; ++k) {
-    print(columns, kTechniques[k], [](const Column& c) { return c.name; });
-    for (size_t i = 0; i < rows().size(); ++i)
-      print(columns, k == Gathering ? rows()[i].gathering : rows()[i].splatting,
-            [&](const Column& c) { return format("%.2f", c.ms(k, i)); });
-    print(columns, "Total", [&](const Column& c) { return format("%.2f", c.total(k)); });
+    const std::string ms = std::string("/median_ms/") + kTechniques[k] + "/";
+    print(columns, kTechniques[k], "/scene", "");
+    for (const Row& row : rows()) print(columns, k == Gathering ? row.gathering : row.splatting, ms + row.key, "%.2f");
+    print(columns, "Total", ms + "total", "%.2f");
     std::printf("\n");
   }
-  print(columns, "splat over gather, light", [](const Column& c) { return format("%.2f", c.lightRatio()); });
-  print(columns, "splat over gather, total", [](const Column& c) { return format("%.2f", c.totalRatio()); });
-  print(columns, "VPLs", [](const Column& c) { return format("%u", c.last().vplsAlive); });
-  print(columns, "Patches", [](const Column& c) { return format("%llu", (unsigned long long)c.last().patches); });
-  print(columns, "RMSE of the two, % of mean", [](const Column& c) { return format("%.3f", 100 * c.rmseShare); });
-  print(columns, "frames", [](const Column& c) { return format("%zu", c.halves[0].frames.size()); });
+  print(columns, "splat over gather, light", "/splat_over_gather/light", "%.2f");
+  print(columns, "splat over gather, total", "/splat_over_gather/total", "%.2f");
+  print(columns, "VPLs", "/vpls", "%.0f");
+  print(columns, "Patches", "/patches", "%.0f");
+  print(columns, "RMSE of the two, % of mean", "/rmse_share", "%.3f", 100);
+  print(columns, "frames", "/frames", "%.0f");
 }
 
 } // namespace lambent

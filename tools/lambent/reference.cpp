@@ -58,36 +58,37 @@ void trackPixels(const ReferenceOptions& options) {
   const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
   const uint32_t samples = uint32_t(options.samples.value_or(kDefaultSamples));
   WatchedScene watched(tracked.points);
-  std::ostringstream rows;
-  Variant truth{"truth", settings, stage->seed, pathsAtPoints(watched, samples, options.clamped)};
-  const std::unique_ptr<Runner> paths = truth.make(truth);
-  const int total = stage->shot->frameCount();
-  int done = 0;
+  std::vector<std::vector<TrackedValue>> series;
   {
     Progress progress("tracing paths", options.output.quiet);
-    for (; done < total && !interrupted; progress.update(++done, total)) {
-      const SceneView view = stage->at(done / stage->shot->fps);
+    RunPlan plan = planOf(*stage, progress, 0);
+    plan.view = [&, shown = plan.view](int frame) {
+      const SceneView view = shown(frame);
       watched.update(view);
-      paths->run(view);
-      const std::vector<TrackedValue> values = paths->at(tracked.points);
-      for (size_t i = 0; i < values.size(); ++i) {
-        rows << done << ',' << i << ',' << (i < tracked.marked) << ',' << tracked.points[i].x << ','
-             << tracked.points[i].y << ',' << watched.surfaces()[i].valid();
-        for (int c = 0; c < 3; ++c) rows << ',' << values[i].radiance[c];
-        for (int c = 0; c < 3; ++c) rows << ',' << values[i].error[c];
-        rows << '\n';
-      }
-    }
+      return view;
+    };
+    plan.points = tracked.points;
+    series =
+        measure({{"truth", settings, stage->seed, pathsAtPoints(watched, samples, options.clamped)}}, plan)[0].series;
   }
+  std::ostringstream rows;
+  for (size_t f = 0; f < series.size(); ++f)
+    for (size_t i = 0; i < series[f].size(); ++i) {
+      const TrackedValue& v = series[f][i];
+      rows << f << ',' << i << ',' << (i < tracked.marked) << ',' << tracked.points[i].x << ',' << tracked.points[i].y
+           << ',' << watched.seen()[f][i];
+      for (const vec3& value : {v.radiance, v.error})
+        for (int c = 0; c < 3; ++c) rows << ',' << value[c];
+      rows << '\n';
+    }
   writeAtomically(options.pixels, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
     out << "frame,pixel,marked,u,v,surface,r,g,b,error_r,error_g,error_b\n" << rows.str();
     if (!out.flush()) throw RunError(options.pixels + ": cannot be written");
   });
   if (!options.output.quiet)
-    std::printf("%s: indirect radiance at %zu pixels (%zu marked) in %d frames, %u samples each\n",
-                options.pixels.c_str(), tracked.points.size(), tracked.marked, done, samples);
-  if (interrupted) throw RunError("interrupted: " + std::to_string(done) + " frames are written");
+    std::printf("%s: indirect radiance at %zu pixels (%zu marked) in %zu frames, %u samples each\n",
+                options.pixels.c_str(), tracked.points.size(), tracked.marked, series.size(), samples);
 }
 
 void reference(const ReferenceOptions& options) {

@@ -92,28 +92,21 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   shot.name = fs::path(file).stem().string();
   shot.fps = stage->shot->fps;
   shot.marked = tracked.marked;
-  const int length =
-      options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  const int total = stillAt ? kStillFrames : length;
-  StepFinder steps;
-  std::vector<std::vector<bool>> seen; // [frame][point]: a surface
   Progress progress(shot.name + (stillAt ? " standing still" : ""), options.output.quiet);
-  const std::vector<Measured> runs =
-      measure(variants, {.view =
-                             [&](int frame) {
-                               const SceneView view = stage->at((stillAt ? *stillAt * length : frame) / shot.fps);
-                               watched.update(view);
-                               if (steps.step(view)) shot.steps.push_back(size_t(frame));
-                               seen.emplace_back();
-                               for (const SurfaceHit& s : watched.surfaces()) seen.back().push_back(s.valid());
-                               return view;
-                             },
-                         .frames = total,
-                         .skip = std::min(1, total - 1), // the first warms up
-                         .points = tracked.points,
-                         .cancelled = [] { return interrupted.load(); },
-                         .progress = [&](int done, int all) { progress.update(done, all); }});
+  RunPlan plan = planOf(*stage, progress, options.frames);
+  StepFinder steps;
+  plan.view = [&, length = plan.frames](int frame) {
+    const SceneView view = stage->at((stillAt ? *stillAt * length : frame) / shot.fps);
+    watched.update(view);
+    if (steps.step(view)) shot.steps.push_back(size_t(frame));
+    return view;
+  };
+  if (stillAt) plan.frames = kStillFrames;
+  plan.skip = std::min(1, plan.frames - 1); // the first warms up
+  plan.points = tracked.points;
+  const std::vector<Measured> runs = measure(variants, plan);
 
+  const auto& seen = watched.seen();
   const auto& truth = runs[0].series;
   float exposure = stage->settings.image.exposure;
   if (exposure <= 0) {

@@ -7,6 +7,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <fstream>
+#include <map>
 
 namespace lambent {
 
@@ -28,35 +29,39 @@ std::string cellText(const TableColumn& column, const nlohmann::json& row) {
   std::string text;
   for (const nlohmann::json& number : value.is_array() ? value : nlohmann::json::array({value})) {
     const double n = number.is_boolean() ? number.get<bool>() : number.get<double>();
-    text += (text.empty() ? "" : ", ") + (std::isfinite(n) ? format(column.pattern, column.factor * n) : "–");
+    text += text.empty() ? "" : ", ";
+    text += n == 0 && column.ofZero ? column.ofZero
+            : std::isfinite(n)      ? format(column.pattern, column.factor * n)
+                                    : "–";
   }
   return text;
 }
 
 std::string tableText(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
-  std::string text = "|", rule = "|";
-  for (const TableColumn& c : columns) {
-    text += std::string(" ") + c.title + " |";
-    rule += "---|";
-  }
-  text += "\n" + rule + "\n";
+  std::string head = "|", rule = "|", text;
+  for (const TableColumn& c : columns) head += format(" %s |", c.title), rule += "---|";
   for (const nlohmann::json& row : rows) {
     text += "|";
     for (const TableColumn& c : columns) text += " " + cellText(c, row) + " |";
     text += "\n";
   }
-  return text;
+  return head + "\n" + rule + "\n" + text;
 }
 
-std::string csvText(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
+std::string csvText(const nlohmann::json& rows) {
+  std::map<std::string, bool> keys;
+  for (const nlohmann::json& row : rows)
+    for (const auto& [key, value] : row.items()) keys[key] |= value.is_structured();
   std::string text;
-  for (const TableColumn& c : columns) text += (text.empty() ? "" : ",") + std::string(c.key);
-  for (const nlohmann::json& row : rows) {
-    std::string line;
-    for (const TableColumn& c : columns) line += (line.empty() ? "\n" : ",") + cellText({c.key, ""}, row);
-    text += line;
-  }
-  return text + "\n";
+  const auto line = [&](const auto& cell) {
+    std::string cells;
+    for (const auto& [key, structured] : keys)
+      if (!structured) cells += "," + cell(key);
+    text += cells.substr(1) + "\n";
+  };
+  line([](const std::string& key) { return key; });
+  for (const nlohmann::json& row : rows) line([&](const std::string& key) { return cellText({key.c_str(), ""}, row); });
+  return text;
 }
 
 void writeText(const fs::path& file, const std::string& text) {

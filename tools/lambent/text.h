@@ -16,14 +16,15 @@ std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)
 /// lacks stays empty.
 struct TableColumn {
   const char *key, *title;
-  const char* pattern = "%g"; // of one number
-  double factor = 1;          // on it, as 100 for per cent
+  const char* pattern = "%g";   // of one number
+  double factor = 1;            // on it, as 100 for per cent
+  const char* ofZero = nullptr; // what stands for 0
 };
 std::string cellText(const TableColumn& column, const nlohmann::json& row);
 /// In Markdown.
 std::string tableText(const std::vector<TableColumn>& columns, const nlohmann::json& rows);
-/// Only the keys and values.
-std::string csvText(const std::vector<TableColumn>& columns, const nlohmann::json& rows);
+/// All that is one number or text, by key.
+std::string csvText(const nlohmann::json& rows);
 
 /// In one step: the file is the old or the new one. Throws RunError.
 void writeText(const std::filesystem::path& file, const std::string& text);
