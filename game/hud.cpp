@@ -9,7 +9,6 @@
 #include <imgui/imgui_stdlib.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace lambent {
 
@@ -17,13 +16,6 @@ namespace {
 
 constexpr double kMessageSeconds = 8;
 constexpr double kSmoothing = 0.1; // share of the newest frame in a shown time
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
 
 /// A list to choose from; true when another one was chosen.
 bool choose(const char* label, const std::vector<std::string>& names, std::string& chosen) {
@@ -87,9 +79,12 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   ImGui::PushItemWidth(-110);
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
-  std::string technique = techniqueOf(gi.settings());
-  if (choose("technique", techniqueNames(), technique)) applyTechnique(gi.settings(), technique);
-  if (choose("preset", presetNames(), model.preset)) applyPreset(gi.settings(), model.preset);
+  std::string technique = techniqueOf(gi.settings()).name;
+  if (choose("technique", techniqueNames(), technique))
+    change(gi.settings(), [&](Settings& s) { applyTechnique(s, technique); });
+  if (choose("preset", presetNames(), model.preset))
+    change(gi.settings(), [&](Settings& s) { applyPreset(s, model.preset); });
+  if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
 
   ImGui::Separator();
   ImGui::Checkbox("paused", &model.paused);
@@ -176,15 +171,21 @@ void Hud::drawStages(const FrameStats& stats) {
   ImGui::EndTable();
 }
 
+/// Settings change together or not at all: what contradicts itself is not taken, and the panel says why.
+void Hud::change(Settings& settings, const std::function<void(Settings&)>& edit) {
+  Settings wanted = settings;
+  try {
+    edit(wanted);
+    settingError_ = whyNot(wanted);
+  } catch (const InputError& e) {
+    settingError_ = e.what();
+  }
+  if (settingError_.empty()) settings = wanted;
+}
+
 void Hud::drawSettings(Settings& settings) {
-  if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
   const auto apply = [&](const std::string& name, const std::string& value) {
-    settingError_.clear();
-    try {
-      applySetting(settings, name, value);
-    } catch (const InputError& e) {
-      settingError_ = e.what();
-    }
+    change(settings, [&](Settings& s) { applySetting(s, name, value); });
   };
   std::string group;
   bool open = false;
@@ -198,8 +199,11 @@ void Hud::drawSettings(Settings& settings) {
     if (!open) continue;
     const std::string label = row.name.substr(dot + 1) + "##" + group;
     std::string value = settingText(settings, row.name);
-    if (row.range.find('|') != std::string::npos) {
-      if (choose(label.c_str(), split(row.range, '|'), value)) apply(row.name, value);
+    if (row.kind == SettingKind::Flag) {
+      bool on = row.get(settings) != 0;
+      if (ImGui::Checkbox(label.c_str(), &on)) apply(row.name, row.text(on));
+    } else if (!row.choices.empty()) {
+      if (choose(label.c_str(), row.choices, value)) apply(row.name, value);
     } else {
       // A value counts when Enter is pressed or the field is left, not while it is being typed.
       const auto typed = edited_.find(row.name);
@@ -209,8 +213,8 @@ void Hud::drawSettings(Settings& settings) {
       if (!ImGui::IsItemActive()) edited_.erase(row.name);
     }
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%s\nrange %s, default %s", row.name.c_str(), row.help.c_str(), row.range.c_str(),
-                        row.defaultText.c_str());
+      ImGui::SetTooltip("%s\n%s\nrange %s %s, default %s\nchanging it costs: %s", row.name.c_str(), row.help.c_str(),
+                        row.range().c_str(), row.unit, row.text(row.standard).c_str(), costText(row.change));
   }
   if (open) ImGui::TreePop();
 }

@@ -47,6 +47,7 @@ class Hud {
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawSettings(Settings& settings);
+  void change(Settings& settings, const std::function<void(Settings&)>& edit);
   void drawHelp() const;
   void drawMessages();
 

@@ -147,8 +147,19 @@ void Object::swap(Object& other) noexcept {
 Texture::Texture(const std::string& label, const TextureDesc& desc)
     : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
 
+Texture Texture::borrowed(GLuint name) {
+  Texture texture(0, name, {}); // of no kind: not ours to delete
+  if (!glIsTexture(name)) return texture;
+  GLint width = 0, height = 0, format = 0;
+  glGetTextureLevelParameteriv(name, 0, GL_TEXTURE_WIDTH, &width);
+  glGetTextureLevelParameteriv(name, 0, GL_TEXTURE_HEIGHT, &height);
+  glGetTextureLevelParameteriv(name, 0, GL_TEXTURE_INTERNAL_FORMAT, &format);
+  texture.desc_ = {.format = GLenum(format), .width = width, .height = height};
+  return texture;
+}
+
 Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer& buffer) {
-  Texture texture(make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }), label);
+  Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }), label);
   glTextureBuffer(texture.name(), format, buffer.name());
   return texture;
 }

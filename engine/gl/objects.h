@@ -64,6 +64,8 @@ class Texture : public detail::Object {
  public:
   Texture() = default;
   Texture(const std::string& label, const TextureDesc& desc);
+  /// A texture of somebody else, who keeps it alive: never deleted, its memory not counted.
+  static Texture borrowed(GLuint name);
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 
@@ -77,7 +79,7 @@ class Texture : public detail::Object {
   void limitLevels(int first, int last) const;
 
  private:
-  Texture(GLuint name, const std::string& label) : Object(GL_TEXTURE, name, label, 0) {}
+  Texture(GLenum kind, GLuint name, const std::string& label) : Object(kind, name, label, 0) {}
 
   TextureDesc desc_;
 };

@@ -1,8 +1,13 @@
 // Shadow maps of punctual lights and sky directions, as the direct pass reads them.
 #pragma once
 
-#include "gi/contract/passes.h"
+#include "gi/contract/pass_context.h"
+#include "gi/plan/settings.h"
+#include "gi/surfaces/gpu_scene.h"
 #include "shaders/shared/punctual_light.h"
+
+#include <memory>
+#include <span>
 
 namespace lambent {
 
@@ -37,5 +42,31 @@ SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters,
 
 /// `count` directions that light travels from a uniform sky, each standing for 4π/count of solid angle.
 std::vector<vec3> skyDirections(int count);
+
+struct LightShadowInputs {
+  const GpuScene& scene;
+  std::span<const LightView> lights;
+  bool sky = false; // draw the sky's maps
+  vec3 skyRadiance{0};
+  Aabb receivers;              // everything the camera sees; sun and sky maps are fitted to it
+  Aabb casters;                // box of the whole scene
+  bool allChanged = false;     // draw every map
+  std::span<const Aabb> moved; // where geometry changed: maps that show none of it stay
+  const ShadowSettings& shadow;
+};
+
+struct LightShadowState;
+class LightShadowPass {
+ public:
+  explicit LightShadowPass(PassContext context);
+  ~LightShadowPass();
+  /// Draws only maps whose light, fit or casters changed, and of cubes only the faces.
+  const LightShadows& run(const LightShadowInputs& in);
+  uint32_t mapsDrawn() const;    // in the last run
+  uint32_t skyMapsDrawn() const; // of these
+
+ private:
+  std::unique_ptr<LightShadowState> state_;
+};
 
 } // namespace lambent

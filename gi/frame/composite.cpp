@@ -1,5 +1,6 @@
 // The picture from its parts, and the exposure that suits it.
-#include "gi/gather/gather.h"
+#include "gi/frame/picture.h"
+#include "gi/gather/draw_gather.h"
 
 #include <cmath>
 
@@ -17,12 +18,9 @@ Picture CompositePass::run(const CompositeInputs& in) {
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});
   }
   const gl::Program& program =
-      context_.programs.get({.fragment = "composite.frag", .defines = bindReceivers(in.gbuffer)});
+      context_.programs.get({.fragment = "composite.frag", .defines = bindSurfaces(in.gbuffer)});
   program.use();
   program.set("skyRadiance", in.skyRadiance);
-  in.gbuffer.camera->bindUniform(0);
-  in.gbuffer.depth->bind(0);
-  in.gbuffer.normal->bind(1);
   in.gbuffer.albedo->bind(2);
   in.gbuffer.emission->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);

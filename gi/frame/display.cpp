@@ -1,6 +1,7 @@
 // Every buffer as a display shows it, and the views that exist only for looking.
 #include "gi/frame/gi_frame.h"
-#include "gi/gather/gather.h"
+#include "gi/frame/picture.h"
+#include "gi/gather/draw_gather.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   case Buffer::Emission:
     return {{"MODE 0"}, frame.gbuffer.emission, exposure};
   case Buffer::Patches:
-    if (!frame.patches) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
+    if (!frame.patches || !frame.patches->normalLo) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
     return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Nan:
     return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
@@ -107,10 +108,8 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
 
   View view = viewOf(buffer, frame, exposure);
   if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
-    const std::vector<std::string> glossy = bindReceivers(frame.gbuffer);
+    const std::vector<std::string> glossy = bindSurfaces(frame.gbuffer);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
-    frame.gbuffer.camera->bindUniform(0);
-    frame.gbuffer.normal->bind(1);
     (view.glossy ? view.glossy : &black_)->bind(8);
   }
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
@@ -120,10 +119,10 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   program.set("skyRadiance", frame.skyRadiance);
   program.set("tileSize", tileSize(frame.gbuffer));
   program.set("markNan", markNan || buffer == Buffer::Nan ? 1 : 0);
-  if (frame.patches) {
-    program.set("patchLevels", frame.patchLevels);
+  if (frame.patches && frame.patches->normalLo) {
+    program.set("patchLevels", frame.patches->levels);
     program.set("finestPatch", frame.raw.deinterleaved ? 2 : 0);
-    frame.patches->bind(5);
+    frame.patches->normalLo->bind(5);
   }
   (view.source ? view.source : &black_)->bind(2);
   frame.gbuffer.albedo->bind(3);

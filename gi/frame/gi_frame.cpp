@@ -1,124 +1,167 @@
-#include "gi/frame/gi_frame_state.h"
+#include "gi/frame/gi_frame.h"
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "gi/direct/direct_light.h"
+#include "gi/frame/picture.h"
+#include "gi/frame/world_keeper.h"
+#include "gi/gather/stages.h"
+#include "gi/lights/light_source.h"
+#include "gi/surfaces/surfaces.h"
+#include "gi/visibility/map_keeper.h"
 
-#include <utility>
+#include <chrono>
 
 namespace lambent {
 
 namespace {
 
-constexpr SceneChanges kAllChanged{true, true, true, true, true};
+/// GL draws since it was made.
+class DrawCount {
+ public:
+  uint64_t operator()() const { return gl::drawCount() - before_; }
 
-bool anyChange(const SceneChanges& c) { return c.first || c.camera || c.lights || c.geometry || c.instances; }
+ private:
+  uint64_t before_ = gl::drawCount();
+};
 
 } // namespace
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed) : state_(std::make_unique<State>(settings, seed)) {}
+/// The stages, in data-flow order. What one of them keeps from frame to frame is its own.
+struct GiFrame::Kept {
+  Settings settings;
+  uint32_t seed;
+
+  gl::ProgramCache programs;
+  gl::GpuProfiler profiler;
+  PassContext context{programs, profiler};
+  WorldKeeper world{programs};
+  SurfacePass surfaces{context};
+  PatchPass patches{context, StageId::Patches};
+  DirectLight direct{context};
+  MapKeeper keeper{context};
+  IndirectStages indirectStages{context};
+  FilterPass filter{context};
+  CompositePass composite{context};
+  DisplayPass display{context};
+  std::unique_ptr<LightSource> source; // below the world, which its update reads
+  VplSource sourceOf = VplSource::None;
+
+  float exposure = 0;
+  FrameResults results;
+  FrameStats stats;
+
+  Kept(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
+
+  void begin(const SceneView& given);
+  LightSource* sourceFor(VplSource wanted);
+  FilterSettings filterFor(const EffectPlan& plan) const;
+  void expose(const Picture& picture);
+};
+
+GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}
 GiFrame::~GiFrame() = default;
 
 // The frame -----------------------------------------------------------------------------------------------------------
 
-const FrameStats& GiFrame::run(const SceneView& view, const std::function<void(int, int)>& progress) {
-  State& s = *state_;
+const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& progress,
+                               const HostSurfaces* host) {
+  Kept& k = *kept_;
+  const Settings& settings = k.settings;
+  if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
+  if (host) checkHost(*host, given.camera);
   const auto begin = std::chrono::steady_clock::now();
-  s.finishUpdate();
-  s.begin(view);
-  s.planFrame(view);
-  s.placeWorld();
-  if (s.plan.on(EffectId::Indirect)) s.updateLight(progress);
-  if (s.plan.on(EffectId::Redraw)) s.draw();
-  s.countWork();
-  s.stats.wallMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  return s.stats;
+  LightSource* source = k.sourceFor(settings.vpl.source);
+  if (source) source->finish();
+  k.begin(given);
+  FrameStats& stats = k.stats;
+  const EffectPlan plan = k.world.plan(given, settings,
+                                       {.settled = source && source->settled(),
+                                        .mapsWaiting = k.keeper.waiting(),
+                                        .lightArrived = source && source->arrived()});
+  const World world = k.world.place(plan, stats);
+  stats.plan = plan;
+
+  VirtualLights lights;
+  if (source && plan.on(EffectId::Indirect))
+    lights = source->run({world, plan, settings, k.seed, k.world.settingsChanged(), progress}, stats);
+  stats.vplsAlive = lights.alive;
+
+  if (plan.on(EffectId::Redraw)) {
+    const DrawCount draws;
+    k.results = {};
+    const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
+    const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host});
+    Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
+    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings.shadow}, stats);
+    LightOnSurfaces gathered, indirect;
+    if (plan.on(EffectId::Indirect)) {
+      const DrawCount indirectDraws;
+      const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
+      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings}, stats);
+      const FilterSettings filter = k.filterFor(plan);
+      const DrawCount filterDraws;
+      indirect = k.filter.run({surfaces, gathered, filter});
+      if (filter.on) stats.of(EffectId::Filter) = filterDraws();
+      stats.of(EffectId::Indirect) += indirectDraws();
+    }
+    const Picture picture = k.composite.run({surfaces, direct, indirect, world.view.skyRadiance});
+    stats.of(EffectId::Redraw) = draws();
+    if (glossy) stats.of(EffectId::Glossy) = draws();
+    k.expose(picture);
+    k.results = {surfaces,       direct,        gathered,
+                 indirect,       picture,       k.keeper.maps(),
+                 patches.made(), source ? source->set() : nullptr, world.view.skyRadiance,
+                 world.reach};
+  }
+
+  for (const StageTime& row : k.profiler.takeRows()) stats.stages.push_back(row);
+  k.world.countWork(stats);
+  stats.wallMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return stats;
 }
 
-void GiFrame::State::begin(const SceneView& given) {
+/// New figures; the first time, how GPU times are taken; all anew for another scene.
+void GiFrame::Kept::begin(const SceneView& given) {
   CHECK(given.assets != nullptr);
-  const uint32_t frame = stats.frame + (assets ? 1 : 0);
+  const bool first = stats.timing.empty();
+  const uint32_t frame = first ? 0 : stats.frame + 1;
   stats = {};
   stats.frame = frame;
-  if (!calibrated) {
+  if (first) {
     if (settings.debug.timing == TimingMode::Auto)
       profiler.calibrate();
     else
       profiler.choose(settings.debug.timing == TimingMode::Queries ? gl::Timing::Queries : gl::Timing::Finish);
-    calibrated = true;
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
-  if (assets != given.assets) {
-    CpuScope scope(stats.stages, key(StageId::Scene));
-    assets = given.assets;
-    gpuScene = std::make_unique<GpuScene>(programs, *assets);
-    rays = std::make_unique<EmbreeQuery>(*assets);
-    vpls = {};
-    changes = {};
-    results = {};
-    world = {};
-    frozen = false;
-    missed = true;
-  }
-}
-
-void GiFrame::State::planFrame(const SceneView& given) {
-  missed |= settingsBefore.effects != settings.effects;
-  const bool drawingChanged = settingsBefore != settings || shadersChanged;
-  settingsChanged = settingsBefore.smc != settings.smc || settingsBefore.vpl != settings.vpl ||
-                    settingsBefore.effects != settings.effects || !results.picture.radiance;
-  settingsBefore = settings;
-  shadersChanged = false;
-  const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !world.instances.empty();
-  world.take(given, freeze);
-  if (frozen && !freeze) missed = true;
-  frozen = freeze;
-
-  const FrameFacts facts{.first = !results.picture.radiance,
-                         .settingsChanged = settingsChanged,
-                         .drawingChanged = drawingChanged,
-                         .settled = vpls.settling.settled(),
-                         .mapsWaiting = uint32_t(mapSchedule.waiting()),
-                         .lightArrived = lightArrived};
-  SceneView& view = world.view;
-  plan = planEffects(view, settings, facts);
-  const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
-  if (missed && everything()) {
-    view.changes = kAllChanged;
-    plan = planEffects(view, settings, facts);
-  }
-  missed = !everything() && (missed || anyChange(view.changes));
-  stats.plan = plan;
-}
-
-void GiFrame::State::placeWorld() {
   CpuScope scope(stats.stages, key(StageId::Scene));
-  const SceneView& view = world.view;
-  using enum EffectId;
-  const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Masked;
-  rays->setAlphaTest(alpha);
-  gpuScene->setAlphaTest(alpha);
-  rays->setTextures(plan.on(Textures));
-  work(Motion) = rays->update(view, plan.idle(Motion));
-  gpuScene->place(view.instances);
-  disturbance = Disturbance(view);
-  lights = collectLights(view);
-  if (!plan.on(Emissive)) {
-    lights.emitters.clear();
-    lights.triangles.clear();
-    lights.emission = false;
-  }
-  if (!plan.on(Sky)) lights.sky = vec3(0);
+  if (!world.open(*given.assets)) return;
+  if (source) source->forget();
+  results = {};
 }
 
-void GiFrame::State::countWork() {
-  const EmbreeQuery::Work done = rays->takeWork();
-  work(EffectId::Textures) = done.textureLookups;
-  const uint64_t draws = gpuScene->testedDraws();
-  work(EffectId::Alpha) = done.alphaTests + draws - std::exchange(testedDraws, draws);
+/// Sources of another kind are given up with all that they keep.
+LightSource* GiFrame::Kept::sourceFor(VplSource wanted) {
+  if (!source || !sameKind(wanted, sourceOf)) source = makeSource(wanted, context);
+  sourceOf = wanted;
+  return source.get();
 }
 
-// Looking at it
-// ---------------------------------------------------------------------------------------------------------
+FilterSettings GiFrame::Kept::filterFor(const EffectPlan& plan) const {
+  FilterSettings filter = settings.filter;
+  filter.on = filter.on && plan.on(EffectId::Filter);
+  return filter;
+}
+
+void GiFrame::Kept::expose(const Picture& picture) {
+  if (settings.image.exposure > 0)
+    exposure = settings.image.exposure;
+  else if (exposure <= 0)
+    exposure = measureExposure(picture);
+}
+
+// Looking at it -------------------------------------------------------------------------------------------------------
 
 namespace {
 const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect", "irradiance", "albedo",
@@ -136,47 +179,57 @@ Buffer bufferByName(const std::string& name) {
                    "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
 }
 
-Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, state_->results); }
+Image GiFrame::read(Buffer buffer) const { return readBuffer(buffer, kept_->results); }
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
-  if (buffer == Buffer::Vpls) state_->finishUpdate();
-  state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
-  return state_->displayPass.read();
+  if (buffer == Buffer::Vpls) vpls();
+  kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
+  return kept_->display.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
-  if (buffer == Buffer::Vpls) state_->finishUpdate();
-  state_->displayPass.run(buffer, state_->results, state_->exposure, state_->settings.debug.nan);
-  state_->displayPass.present(framebuffer, width, height);
+  if (buffer == Buffer::Vpls) vpls();
+  kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
+  kept_->display.present(framebuffer, width, height);
+}
+
+uint32_t GiFrame::texture(Buffer buffer) const {
+  const FrameResults& r = kept_->results;
+  const gl::Texture* texture = buffer == Buffer::Beauty       ? r.picture.radiance
+                               : buffer == Buffer::Direct     ? r.direct.irradiance
+                               : buffer == Buffer::Irradiance ? r.indirect.irradiance
+                                                              : nullptr;
+  return texture ? texture->name() : 0;
 }
 
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {
-  State& s = *state_;
-  s.finishUpdate();
-  const std::vector<MapPose> poses = mapPoses(s.vpls);
-  const ParaboloidMapInputs maps{*s.gpuScene,
-                                 s.rays.get(),
-                                 poses,
-                                 {},
-                                 view.boundsWorld.diameter(),
-                                 s.settings.shadow.resolution,
-                                 s.settings.shadow.maker};
-  return measureShadowAgreement(s.vplMapPass, maps, *s.rays, view.camera, s.vpls, s.settings, slots, points, progress);
+  Kept& k = *kept_;
+  const std::vector<VirtualLight> lights = lightsOf(vpls());
+  std::vector<MapPose> poses;
+  for (const VirtualLight& light : lights) poses.push_back(light.pose());
+  const ShadowSettings& shadow = k.settings.shadow;
+  const World world = k.world.again();
+  const ParaboloidMapInputs maps{world.gpu,         &world.rays,  poses, {}, view.boundsWorld.diameter(),
+                                 shadow.resolution, shadow.maker};
+  return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,
+                                progress);
 }
 
 std::vector<std::string> GiFrame::reloadShaders() {
-  std::vector<std::string> messages = state_->programs.reloadChanged();
-  state_->shadersChanged |= !messages.empty();
+  std::vector<std::string> messages = kept_->programs.reloadChanged();
+  if (!messages.empty()) kept_->world.shadersChanged();
   return messages;
 }
 
-Settings& GiFrame::settings() { return state_->settings; }
+Settings& GiFrame::settings() { return kept_->settings; }
 const VplSet& GiFrame::vpls() const {
-  state_->finishUpdate();
-  return state_->vpls;
+  static const VplSet none;
+  if (kept_->source) kept_->source->finish();
+  const VplSet* set = kept_->source ? kept_->source->set() : nullptr;
+  return set ? *set : none;
 }
-const RayQuery& GiFrame::rays() const { return *state_->rays; }
-float GiFrame::exposure() const { return state_->exposure; }
+const RayQuery& GiFrame::rays() const { return kept_->world.again().rays; }
+float GiFrame::exposure() const { return kept_->exposure; }
 
 } // namespace lambent

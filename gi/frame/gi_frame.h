@@ -1,16 +1,18 @@
-// Global illumination of one frame, read top to bottom in gi_frame.cpp:
-// SceneView → EffectPlan → VplChanges → VplLights → VplShadows → GBuffer → Direct → Indirect → image.
+// Global illumination as programs use it. The frame itself is read top to bottom in gi_frame.cpp:
+// world → plan → lights → surfaces → patches → direct → seen → gathered → indirect → picture.
+// Needs no OpenGL header; what it gives and takes of OpenGL's are names.
 #pragma once
 
 #include "engine/core/image.h"
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
-#include "gi/frame/figures.h"
+#include "gi/contract/figures.h"
+#include "gi/contract/surfaces.h"
 #include "gi/visibility/shadow_agreement.h"
 #include "gi/plan/settings.h"
+#include "gi/plan/techniques.h"
 #include "gi/vpl/vpl_set.h"
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -49,13 +51,19 @@ class GiFrame {
   /// changed and the VPLs have settled, nothing is computed and the last picture stays. With frame.overlap the VPLs of
   /// this view are still being updated when it returns.
   /// `progress` (may be empty) is called during the warm-up with done and total iterations.
-  const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {});
+  /// With `host` the surfaces are not drawn but taken over; they must be those of the view.
+  /// Throws InputError where settings contradict each other, or a host's texture does not fit.
+  const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
+                        const HostSurfaces* host = nullptr);
 
   /// The last frame as linear values: radiance (beauty, direct, indirect), irradiance, albedo, world normal, depth in
   /// metres along the view direction.
   Image read(Buffer buffer) const;
   /// The last frame as shown on a display: exposure, Reinhard, sRGB (albedo, normal, depth mapped to visible ranges).
   Image8 readDisplay(Buffer buffer) const;
+  /// Name of the texture that holds the last frame's radiance (beauty) or irradiance (direct, before albedo;
+  /// irradiance): RGBA32F, rows from the bottom, valid until the next run. 0 where it was not made.
+  uint32_t texture(Buffer buffer) const;
   /// Draws the last frame as shown on a display into the framebuffer bound as `framebuffer`, scaled to its size.
   void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
 
@@ -72,8 +80,8 @@ class GiFrame {
   float exposure() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Kept;
+  std::unique_ptr<Kept> kept_;
 };
 
 } // namespace lambent

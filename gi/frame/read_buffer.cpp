@@ -1,6 +1,7 @@
 // Buffers as linear values on the CPU.
 #include "gi/frame/gi_frame.h"
-#include "gi/gather/gather.h"
+#include "gi/frame/picture.h"
+#include "gi/gather/draw_gather.h"
 #include "shaders/shared/ggx.h"
 
 #include <algorithm>

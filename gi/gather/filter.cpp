@@ -2,36 +2,21 @@
 // positions. Our kernel is a tent of 7×7 (theirs a box), so that all 16 subsets weigh the same at every pixel. By
 // default it goes along rows, then columns: a bilateral kernel is not quite separable, so the whole one stays as a
 // setting (costs and errors of both: gi/README.md).
-#include "gi/gather/gather.h"
-
-#include <algorithm>
+#include "gi/gather/draw_gather.h"
+#include "gi/gather/stages.h"
 
 namespace lambent {
 
-IndirectLight FilterPass::run(const FilterInputs& in) {
-  // A full gather has nothing to mix: every pixel has seen every light.
-  if (!in.raw.deinterleaved) return {in.raw.irradiance, in.raw.glossy};
+LightOnSurfaces FilterPass::run(const FilterInputs& in) {
+  if (!in.raw.deinterleaved) return in.raw; // nothing to mix: every pixel has seen every light
   const gl::PassScope scope = context_.scope(StageId::Filter);
-  const int width = in.gbuffer.width, height = in.gbuffer.height;
-  bool resized = fitGlossy(glossy_, "filter/glossy", in.gbuffer, {width, height});
-  fitGlossy(glossyRows_, "filter/glossy rows", in.gbuffer, {width, height});
-  if (!irradiance_ || irradiance_.width() != width || irradiance_.height() != height) {
-    irradiance_ = gl::Texture("filter/irradiance", {.format = GL_RGBA32F, .width = width, .height = height});
-    rows_ = gl::Texture("filter/rows", {.format = GL_RGBA32F, .width = width, .height = height});
-    resized = true;
-  }
-  if (resized) {
-    framebuffer_ = framebufferOf("filter", irradiance_, glossy_);
-    rowsFramebuffer_ = framebufferOf("filter rows", rows_, glossyRows_);
-  }
-  in.gbuffer.camera->bindUniform(0);
-  in.gbuffer.depth->bind(0);
-  in.gbuffer.normal->bind(1);
-  const auto draw = [&](const gl::Texture& source, const gl::Texture* glossy, std::vector<std::string> defines,
-                        const glm::ivec2& reach, const gl::Framebuffer& target) {
-    if (glossy) {
-      glossy->bind(3);
-      in.gbuffer.finish->bind(7);
+  target_.fit(in.gbuffer);
+  rows_.fit(in.gbuffer);
+  bindSurfaces(in.gbuffer);
+  const auto draw = [&](const LightOnSurfaces& from, std::vector<std::string> defines, const glm::ivec2& reach,
+                        const LightTarget& to) {
+    if (from.glossy) {
+      from.glossy->bind(3);
       defines.push_back("GLOSSY");
     }
     const gl::Program& program = context_.programs.get({.fragment = "filter.frag", .defines = std::move(defines)});
@@ -40,36 +25,20 @@ IndirectLight FilterPass::run(const FilterInputs& in) {
     program.set("reach", reach);
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
-    source.bind(2);
-    target.bind();
-    gl::PipelineState{.width = width, .height = height}.apply();
+    from.irradiance->bind(2);
+    to.bind();
+    gl::PipelineState{.width = in.gbuffer.width, .height = in.gbuffer.height}.apply();
     gl::drawFullscreen();
   };
   if (!in.filter.on) {
-    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS"}, {0, 0}, framebuffer_);
+    draw(in.raw, {"SUBSETS"}, {0, 0}, target_);
   } else if (in.filter.kernel == FilterKernel::Whole) {
-    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS", "FILTER"}, {3, 3}, framebuffer_);
+    draw(in.raw, {"SUBSETS", "FILTER"}, {3, 3}, target_);
   } else {
-    draw(*in.raw.irradiance, in.raw.glossy, {"SUBSETS", "FILTER"}, {3, 0}, rowsFramebuffer_);
-    draw(rows_, orNull(glossyRows_), {"FILTER"}, {0, 3}, framebuffer_);
+    draw(in.raw, {"SUBSETS", "FILTER"}, {3, 0}, rows_);
+    draw(rows_.light(), {"FILTER"}, {0, 3}, target_);
   }
-  return {&irradiance_, orNull(glossy_)};
-}
-
-IndirectLight IndirectUpload::run(const Image& irradiance, const Image* glossy) {
-  const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
-  const auto upload = [](gl::Texture& texture, const char* label, const Image& image) {
-    if (!texture || texture.width() != image.width || texture.height() != image.height)
-      texture = gl::Texture(label, {.format = GL_RGBA32F, .width = image.width, .height = image.height});
-    std::vector<vec3> bottomUp(image.pixels.size());
-    for (int y = 0; y < image.height; ++y)
-      std::copy_n(&image.pixels[size_t(y) * image.width], image.width,
-                  &bottomUp[size_t(image.height - 1 - y) * image.width]);
-    glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, bottomUp.data());
-    return &texture;
-  };
-  return {upload(irradiance_, "irradiance upload/image", irradiance),
-          glossy ? upload(glossy_, "irradiance upload/glossy", *glossy) : nullptr};
+  return target_.light();
 }
 
 } // namespace lambent

@@ -2,7 +2,6 @@
 #include "gi/gather/splat.h"
 
 #include "engine/core/error.h"
-#include "gi/gather/multires.h"
 #include "shaders/shared/patches.h"
 
 #include <algorithm>
@@ -16,26 +15,9 @@ constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeo
 
 /// Variant of vpl_shading.glsl, and its textures and numbers.
 std::vector<std::string> shadingDefines(const GatherDraw& draw) {
-  std::vector<std::string> defines = bindReceivers(draw.gbuffer);
-  if (draw.maps) defines.push_back("SHADOWS");
+  std::vector<std::string> defines = bindSurfaces(draw.gbuffer);
+  if (draw.seen.maps) defines.push_back("SHADOWS");
   return defines;
-}
-
-void setShading(const gl::Program& program, const GatherDraw& draw) {
-  program.set("diskFactor", draw.diskFactor);
-  program.set("largestG", draw.largestG);
-  program.set("spread", draw.spread);
-  if (draw.maps) {
-    program.set("farDistance", draw.maps->farDistance);
-    program.set("mapResolution", float(draw.maps->resolution));
-    program.set("biasTexels", draw.biasTexels);
-  }
-}
-
-void bindSurfaces(const GatherDraw& draw) {
-  draw.gbuffer.camera->bindUniform(0);
-  draw.gbuffer.depth->bind(0);
-  draw.gbuffer.normal->bind(1);
 }
 
 /// Where a slot's light lies: shaders/shared/vpl_light.h.
@@ -50,17 +32,17 @@ struct LightPlace {
 };
 
 void bindLights(const GatherDraw& draw, uint32_t chunk, int block) {
-  draw.lights.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
-  if (!draw.maps) return;
-  CHECK_LT(chunk, draw.maps->arrays.size());
-  draw.maps->arrays[chunk].bind(2);
+  draw.seen.lights.packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
+  if (!draw.seen.maps) return;
+  CHECK_LT(chunk, draw.seen.maps->arrays.size());
+  draw.seen.maps->arrays[chunk].bind(2);
 }
 
 } // namespace
 
 void SplatPass::refine(const SplatInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Refine);
-  bindSurfaces(in.draw);
+  bindSurfaces(in.draw.gbuffer);
   const auto program = [&](std::vector<std::string> defines) -> const gl::Program& {
     return context_.programs.get({.vertex = "splat_refine.vert",
                                   .defines = std::move(defines),
@@ -71,7 +53,7 @@ void SplatPass::refine(const SplatInputs& in) {
 }
 
 void SplatPass::refineFor(const SplatInputs& in, uint32_t slot) {
-  bindSurfaces(in.draw);
+  bindSurfaces(in.draw.gbuffer);
   const LightPlace place(slot);
   bindLights(in.draw, place.chunk, place.block);
   const auto program = [&](bool first) -> const gl::Program& {
@@ -137,7 +119,7 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
 
 void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
   const gl::PassScope scope = context_.scope(StageId::Splat);
-  const uint32_t count = in.draw.lights.count;
+  const uint32_t count = in.draw.seen.lights.packed.count;
   for (uint32_t chunk = 0; chunk * kChunk < count; ++chunk) {
     const int perClass = int(std::min(kChunk, count - chunk * kChunk) + kLightClasses - 1) / kLightClasses;
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block)
@@ -148,7 +130,7 @@ void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
 void SplatPass::splatOne(const SplatInputs& in, const gl::Framebuffer& atlas, uint32_t slot) {
   const LightPlace place(slot);
   const int perClass =
-      int(std::min(kChunk, in.draw.lights.count - place.chunk * kChunk) + kLightClasses - 1) / kLightClasses;
+      int(std::min(kChunk, in.draw.seen.lights.packed.count - place.chunk * kChunk) + kLightClasses - 1) / kLightClasses;
   const int index = place.light / kLightsPerClass * perClass + place.light % kLightsPerClass;
   drawPoints(in, atlas, place.chunk, place.block, index, 1);
 }
@@ -162,11 +144,11 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   program.set("base", in.shape.base);
   program.set("inverseSize", 1.0f / vec2(size));
   program.set("perClass",
-              int(std::min(kChunk, in.draw.lights.count - chunk * kChunk) + kLightClasses - 1) / kLightClasses);
+              int(std::min(kChunk, in.draw.seen.lights.packed.count - chunk * kChunk) + kLightClasses - 1) / kLightClasses);
   program.set("firstLight", firstLight);
   program.set("blockClass", block * kClassesPerLightBlock);
   program.use();
-  bindSurfaces(in.draw);
+  bindSurfaces(in.draw.gbuffer);
   bindLights(in.draw, chunk, block);
   atlas.bind();
   gl::PipelineState{.add = true, .width = size.x, .height = size.y}.apply();

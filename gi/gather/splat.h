@@ -2,12 +2,9 @@
 // buffer.
 #pragma once
 
-#include "gi/gather/gather.h"
+#include "gi/gather/patch_atlas.h"
 
 namespace lambent {
-
-struct PatchPyramid;
-struct AtlasShape;
 
 struct SplatInputs {
   const GatherDraw& draw; // areas are not used

@@ -1,4 +1,5 @@
 // The gather that cuts light trees (hisr): paper 3, section 3.5.
+#include "gi/gather/draw_gather.h"
 #include "gi/lights/reflective_maps.h"
 
 #include <algorithm>
@@ -11,15 +12,15 @@ constexpr int kMostTurns = 60000;
 } // namespace
 
 void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
-  const ReflectiveMaps& sheet = in.trees->maps;
-  const RsmSettings& rsm = in.trees->rsm;
+  const ReflectiveMaps& sheet = in.seen.lights.trees->maps;
+  const RsmSettings& rsm = in.seen.lights.trees->rsm;
   const int coarsest = sheet.levels - 1, finest = std::min(sheet.levelOf(rsm.finest), coarsest);
   const int side = sheet.resolution >> coarsest, roots = side * side;
   const int nodes = 4 * (1 << (2 * (coarsest - finest))) / 3 + 1; // below a root, at most
   const int subsets = in.grid * in.grid;                          // each takes one root in so many
   const int rootsPerDraw = std::max(1, kMostTurns / nodes) * subsets;
 
-  gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindReceivers(in.gbuffer)};
+  gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindSurfaces(in.gbuffer)};
   if (in.patches) desc.defines.push_back("PATCHES");
   const gl::Program& program = programs.get(desc);
   program.use();
@@ -27,12 +28,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   program.set("finest", finest);
   program.set("stride", in.grid);
   program.set("rootStep", subsets);
-  program.set("diskFactor", in.diskFactor);
-  program.set("largestG", in.largestG);
-  program.set("spread", in.spread);
-  in.gbuffer.camera->bindUniform(0);
-  in.gbuffer.depth->bind(0);
-  in.gbuffer.normal->bind(1);
+  setShading(program, in);
   sheet.position->bind(2);
   sheet.normal->bind(3);
   sheet.flux->bind(4);

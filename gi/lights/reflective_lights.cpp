@@ -2,6 +2,7 @@
 #include "gi/lights/reflective_maps.h"
 
 #include "engine/core/error.h"
+#include "gi/lights/packed_lights.h"
 
 #include <algorithm>
 
@@ -53,7 +54,7 @@ void ReflectiveLightPass::reserve(uint32_t slots) {
   if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
 }
 
-VplLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
+PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
   if (!maps.changed && lights_) return {&lights_, count_};
   const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
   const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));

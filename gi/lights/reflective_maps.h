@@ -5,7 +5,8 @@
 //   drawTreeGather       clusters of all sizes, chosen by every fragment (hisr)           tree_gather.cpp
 #pragma once
 
-#include "gi/gather/multires.h"
+#include "gi/contract/virtual_lights.h"
+#include "gi/surfaces/surfaces.h"
 
 namespace lambent {
 
@@ -81,7 +82,7 @@ class ReflectiveLightPass {
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
   /// VPLs of the maps, as the gather reads them: on a regular grid of about `rsm.vpls` for VplSource::Rsm, one per
   /// patch without discontinuity for Isr. Waits for the GPU to know how many these are.
-  VplLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
+  PackedLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;
 

@@ -1,6 +1,5 @@
 #include "gi/plan/effects.h"
 
-
 #include <cmath>
 #include <utility>
 
@@ -106,7 +105,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                         : std::move(answer.second);
     return e.on;
   };
-  const bool reflective = fromReflectiveMaps(settings.vpl.source);
+  const SourceRow& source = rowOf(settings.vpl.source);
+  const bool reflective = source.reflective;
   const auto whyNoIndirect = [&](bool light) -> Answer {
     if (smc.bounces < 1) return {false, "smc.bounces is 0"};
     if (reflective && scene.punctual == 0) return {false, "no punctual light, so no reflective shadow map"};
@@ -127,23 +127,24 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                               : "no material has an alpha mask"});
   const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
   const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
-  const Answer none{false, "no indirect light"};
+  const bool lights = indirect && (source.sampled || reflective);
+  const Answer none{false, indirect ? "the technique has no virtual lights" : "no indirect light"};
   const Answer oneBounce{false, "reflective shadow maps show one bounce"};
-  decide(EffectId::Bounces, !indirect         ? none
+  decide(EffectId::Bounces, !lights           ? none
                             : reflective      ? oneBounce
                             : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
                             : !seeOneAnother  ? Answer{false, "all that reflects lies in one plane"}
                                               : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
-  decide(EffectId::Textures, !indirect            ? none
+  decide(EffectId::Textures, !lights              ? none
                              : reflective         ? Answer{false, "no light path is traced"}
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
   decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
                                 : settings.shadow.emitterSamples > 1 ? Answer{true, count(scene.emissive, "lamp")}
                                                                      : Answer{false, "shadow.emitterSamples is 1"});
-  decide(EffectId::Filter, !indirect                                        ? none
+  decide(EffectId::Filter, !lights                                          ? none
                            : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
-                           : !interleaved(settings.gather.mode)             ? Answer{false, "every pixel sees all VPLs"}
+                           : !rowOf(settings.gather.mode).subsets           ? Answer{false, "every pixel sees all VPLs"}
                            : !settings.filter.on                            ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});
 
@@ -159,15 +160,15 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool motion =
       decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
   const bool moved = geometry && motion;
-  decide(EffectId::MapRefresh, !indirect               ? none
+  decide(EffectId::MapRefresh, !lights                 ? none
                                : reflective            ? Answer{false, "maps are drawn with the VPLs"}
                                : moved                 ? Answer{true, movers}
                                : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
                                                        : Answer{false, "nothing moved"});
-  const bool placedAnew = settings.vpl.source != VplSource::Smc && !reflective; // every frame, by photons or chains
+  const bool placedAnew = source.sampled && !source.persistent; // every frame, by photons or chains
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
-  decide(EffectId::Relight, !indirect               ? none
+  decide(EffectId::Relight, !lights                 ? none
                             : reflective            ? fromMaps
                             : placedAnew            ? Answer{true, "the technique lights its VPLs anew in every frame"}
                             : changes.first         ? Answer{true, "the scene is new"}
@@ -177,7 +178,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : !smc.cache && !(still && facts.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
-  decide(EffectId::Replace, !indirect                ? none
+  decide(EffectId::Replace, !lights                  ? none
                             : reflective             ? fromMaps
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}

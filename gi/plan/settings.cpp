@@ -7,258 +7,282 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <functional>
+#include <optional>
+#include <type_traits>
 
 namespace lambent {
 
 namespace {
 
-struct Entry {
-  SettingRow row;
-  std::function<bool(Settings&, std::string_view)> set; // false: not a value of the range
-  std::function<std::string(const Settings&)> get;
-};
+constexpr double kNoLimit = 1e30; // ranges up to here are said to have no end
+using enum Scale;
+using enum ChangeCost;
 
-std::string numberText(float v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", double(v));
-  return text;
-}
+/// Range, unit and steps of a number.
+struct Span {
+  double low, high;
+  const char* unit = "";
+  Scale scale = Linear;
+};
 
 class Table {
  public:
   Table() {
-    constexpr float big = 1e30f;
-    choice("vpl.source", &Settings::vpl, &VplSettings::source, {"smc", "ir", "mir", "tcas", "rsm", "isr", "hisr"},
+    choice("vpl.source", &Settings::vpl, &VplSettings::source, namesOf(kSources), Set,
            "who places virtual lights; named techniques set it");
-    choice("vpl.visibility", &Settings::vpl, &VplSettings::visibility, {"maps", "rays", "none"},
+    choice("vpl.visibility", &Settings::vpl, &VplSettings::visibility, namesOf(kVisibilities), Maps,
            "who tests VPLs against pixels: shadow maps, a ray for every pair (seconds per frame), or nobody");
-    whole("vpl.mirCandidates", &Settings::vpl, &VplSettings::mirCandidates, 1, 1024,
-          "mir: light paths per VPL slot to choose from; its time and memory grow with it");
-    whole("vpl.tcasIterations", &Settings::vpl, &VplSettings::tcasIterations, 0, 1024,
-          "tcas: Metropolis-Hastings iterations per VPL and frame, a ray each");
-    whole("smc.vpls", &Settings::smc, &SmcSettings::vpls, 1, 65536, "VPL slots N; time of every stage grows with it");
-    whole("smc.moves", &Settings::smc, &SmcSettings::moves, 0, 32768,
-          "M_max, VPLs replaced per frame; each costs a shadow map");
-    whole("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, 1, 256, "rays per candidate drawn");
-    whole("smc.poolFrames", &Settings::smc, &SmcSettings::poolFrames, 1, 64,
-          "frames that a candidate is kept, so that N/poolFrames are drawn per frame, twice that in motion; 1 = all, "
-          "as paper 1");
-    flag("smc.cache", &Settings::smc, &SmcSettings::cache,
+    number("vpl.mirCandidates", &Settings::vpl, &VplSettings::mirCandidates, {1, 1024, "paths", PowersOfTwo}, Light,
+           "mir: light paths per VPL slot to choose from; its time and memory grow with it");
+    number("vpl.tcasIterations", &Settings::vpl, &VplSettings::tcasIterations, {0, 1024, "rays", PowersOfTwo}, Light,
+           "tcas: Metropolis-Hastings iterations per VPL and frame, a ray each");
+    number("smc.vpls", &Settings::smc, &SmcSettings::vpls, {1, 65536, "lights", PowersOfTwo}, Maps,
+           "VPL slots N; time of every stage grows with it");
+    number("smc.moves", &Settings::smc, &SmcSettings::moves, {0, 32768, "lights", PowersOfTwo}, Light,
+           "M_max, VPLs replaced per frame; each costs a shadow map");
+    number("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, {1, 256, "rays", PowersOfTwo}, Light,
+           "rays per candidate drawn");
+    number("smc.poolFrames", &Settings::smc, &SmcSettings::poolFrames, {1, 64, "frames", PowersOfTwo}, Light,
+           "frames that a candidate is kept, so that N/poolFrames are drawn per frame, twice that in motion; 1 = all, "
+           "as paper 1");
+    flag("smc.cache", &Settings::smc, &SmcSettings::cache, Light,
          "keep light paths until something that they touch moves; same results, 0.5 kB per path");
-    whole("smc.paths", &Settings::smc, &SmcSettings::paths, 1, 4096, "light paths per VPL and candidate");
-    whole("smc.bounces", &Settings::smc, &SmcSettings::bounces, 0, 32, "indirect bounces B; 0 = direct light only");
-    whole("smc.points", &Settings::smc, &SmcSettings::points, 1, 1 << 20, "camera rays that find visible points");
-    whole("smc.validationRays", &Settings::smc, &SmcSettings::validationRays, 0, 1024,
-          "V, rays per visible point and round towards unverified VPLs");
-    whole("smc.warmup", &Settings::smc, &SmcSettings::warmup, 0, 100000, "iterations before the first picture");
-    whole("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, 0, 1024,
-          "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
-    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"},
+    number("smc.paths", &Settings::smc, &SmcSettings::paths, {1, 4096, "paths", PowersOfTwo}, Light,
+           "light paths per VPL and candidate");
+    number("smc.bounces", &Settings::smc, &SmcSettings::bounces, {0, 32}, Light,
+           "indirect bounces B; 0 = direct light only");
+    number("smc.points", &Settings::smc, &SmcSettings::points, {1, 1 << 20, "rays", PowersOfTwo}, Light,
+           "camera rays that find visible points");
+    number("smc.validationRays", &Settings::smc, &SmcSettings::validationRays, {0, 1024, "rays", PowersOfTwo}, Light,
+           "V, rays per visible point and round towards unverified VPLs");
+    number("smc.warmup", &Settings::smc, &SmcSettings::warmup, {0, 100000, "frames"}, Light,
+           "iterations before the first picture");
+    number("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, {0, 1024, "lights"}, Light,
+           "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
+    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"}, Light,
            "what a VPL stands for: paper 1's density, the same by neighbours on its side, or the cell around it");
-    whole("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, 16, 2048,
-          "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
-    choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"},
+    number("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Maps,
+           "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
+    choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"}, Nothing,
            "who draws VPL maps; auto measures both once and keeps the faster");
-    real("shadow.bias", &Settings::shadow, &ShadowSettings::bias, 0, 100,
-         "depth bias of VPL maps, texels at the receiver");
-    whole("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, 0, 32768,
-          "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
-    whole("shadow.motionRays", &Settings::shadow, &ShadowSettings::motionRays, 0, 1024,
-          "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
-    whole("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, 0, 16384,
-          "texels per side of a directional light's map; 0 = 2w, w the picture's width rounded up to a power of two");
-    whole("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution, 0, 8192,
-          "texels per side of a point light's cube face; 0 = w/2");
-    whole("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution, 0, 8192,
-          "texels per side of a spot light's map; 0 = w");
-    whole("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples, 1, 1024,
-          "shadowed samples for all emissive surfaces in direct light");
-    whole("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution, 16, 2048,
-          "texels per side of their maps");
-    whole("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, 1, 512,
-          "directions of the sky in direct light");
-    whole("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, 16, 2048,
-          "texels per side of their maps");
-    choice("gather.mode", &Settings::gather, &GatherSettings::mode,
-           {"interleaved", "full", "multires", "multires-interleaved", "splat", "splat-per-vpl"},
+    number("shadow.bias", &Settings::shadow, &ShadowSettings::bias, {0, 100, "texels"}, Nothing,
+           "depth bias of VPL maps, texels at the receiver");
+    number("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, {0, 32768, "maps", PowersOfTwo}, Nothing,
+           "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
+    number("shadow.motionRays", &Settings::shadow, &ShadowSettings::motionRays, {0, 1024, "rays", PowersOfTwo}, Nothing,
+           "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
+    number("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, {0, 16384, "texels", PowersOfTwo},
+           Maps,
+           "texels per side of a directional light's map; 0 = 2w, w the picture's width rounded up to a power of two");
+    number("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution,
+           {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a point light's cube face; 0 = w/2");
+    number("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution,
+           {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a spot light's map; 0 = w");
+    number("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples,
+           {1, 1024, "samples", PowersOfTwo}, Maps, "shadowed samples for all emissive surfaces in direct light");
+    number("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution,
+           {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
+    number("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, {1, 512, "maps", PowersOfTwo}, Maps,
+           "directions of the sky in direct light");
+    number("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, {16, 2048, "texels", PowersOfTwo},
+           Maps, "texels per side of their maps");
+    choice("gather.mode", &Settings::gather, &GatherSettings::mode, namesOf(kGathers), Nothing,
            "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the picture; "
            "patches of each subset; VPLs splatted into patches, or each into patches of its own");
-    real("gather.disk", &Settings::gather, &GatherSettings::disk, 0, 1000,
-         "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
-    real("gather.clamp", &Settings::gather, &GatherSettings::clamp, 0, big,
-         "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
-    flag("gather.glossy", &Settings::gather, &GatherSettings::glossy,
+    number("gather.disk", &Settings::gather, &GatherSettings::disk, {0, 1000}, Nothing,
+           "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
+    number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
+           "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    flag("gather.glossy", &Settings::gather, &GatherSettings::glossy, Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
-    real("gather.spread", &Settings::gather, &GatherSettings::spread, 0, 1000,
-         "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
-    whole("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, 1, 1024,
-          "patches along the picture's longer side at the coarsest level");
-    real("multires.depth", &Settings::multires, &MultiresSettings::depth, 0, big,
-         "deviation from its plane that splits a patch, share of the view distance; 0 = every pixel is gathered");
-    real("multires.normal", &Settings::multires, &MultiresSettings::normal, 0, big,
-         "range of a component of the normal, 0 to 2, that splits a patch");
-    flag("multires.balance", &Settings::multires, &MultiresSettings::balance,
+    number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,
+           "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
+    number("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, {1, 1024, "patches", PowersOfTwo},
+           Nothing, "patches along the picture's longer side at the coarsest level");
+    number("multires.depth", &Settings::multires, &MultiresSettings::depth, {0, kNoLimit}, Nothing,
+           "deviation from its plane that splits a patch, share of the view distance; 0 = every pixel is gathered");
+    number("multires.normal", &Settings::multires, &MultiresSettings::normal, {0, kNoLimit}, Nothing,
+           "range of a component of the normal, 0 to 2, that splits a patch");
+    flag("multires.balance", &Settings::multires, &MultiresSettings::balance, Nothing,
          "patches side by side differ by one level at most");
-    real("multires.detail", &Settings::multires, &MultiresSettings::detail, 0, 1,
-         "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");
-    real("multires.light", &Settings::multires, &MultiresSettings::light, 0, big,
-         "splat-per-vpl: range of a VPL's light that splits a patch, share of what it brings to a surface facing it");
-    whole("rsm.resolution", &Settings::rsm, &RsmSettings::resolution, 16, 4096,
-          "texels per side of a light's reflective shadow map, of each face of a point light's");
-    whole("rsm.vpls", &Settings::rsm, &RsmSettings::vpls, 1, 1 << 20,
-          "rsm: VPLs on a regular grid over all maps, about so many");
-    flag("rsm.exact", &Settings::rsm, &RsmSettings::exact,
+    number(
+        "multires.detail", &Settings::multires, &MultiresSettings::detail, {0, 1}, Nothing,
+        "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");
+    number("multires.light", &Settings::multires, &MultiresSettings::light, {0, kNoLimit}, Nothing,
+           "splat-per-vpl: range of a VPL's light that splits a patch, share of what it brings to a surface facing it");
+    number("rsm.resolution", &Settings::rsm, &RsmSettings::resolution, {16, 4096, "texels", PowersOfTwo}, Light,
+           "texels per side of a light's reflective shadow map, of each face of a point light's");
+    number("rsm.vpls", &Settings::rsm, &RsmSettings::vpls, {1, 1 << 20, "lights", PowersOfTwo}, Light,
+           "rsm: VPLs on a regular grid over all maps, about so many");
+    flag("rsm.exact", &Settings::rsm, &RsmSettings::exact, Light,
          "every texel's own solid angle, instead of a map's mean (the papers')");
-    whole("rsm.coarsest", &Settings::rsm, &RsmSettings::coarsest, 1, 256,
-          "isr, hisr: patches per side of a map at the coarsest level, a power of two");
-    whole("rsm.finest", &Settings::rsm, &RsmSettings::finest, 1, 1024,
-          "isr, hisr: patches per side of a map at the finest level, a power of two");
-    real("rsm.depth", &Settings::rsm, &RsmSettings::depth, 0, big,
-         "isr: deviation from its plane that splits a patch of a map, share of the distance; 0 splits all");
-    real("rsm.normal", &Settings::rsm, &RsmSettings::normal, 0, big,
-         "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
-    real("rsm.tau", &Settings::rsm, &RsmSettings::tau, 0, 1,
-         "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
-    flag("filter.on", &Settings::filter, &FilterSettings::on, "cross-bilateral filter over the 4x4 subsets");
-    choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"},
+    number("rsm.coarsest", &Settings::rsm, &RsmSettings::coarsest, {1, 256, "patches", PowersOfTwo}, Light,
+           "isr, hisr: patches per side of a map at the coarsest level, a power of two");
+    number("rsm.finest", &Settings::rsm, &RsmSettings::finest, {1, 1024, "patches", PowersOfTwo}, Light,
+           "isr, hisr: patches per side of a map at the finest level, a power of two");
+    number("rsm.depth", &Settings::rsm, &RsmSettings::depth, {0, kNoLimit}, Light,
+           "isr: deviation from its plane that splits a patch of a map, share of the distance; 0 splits all");
+    number("rsm.normal", &Settings::rsm, &RsmSettings::normal, {0, kNoLimit}, Light,
+           "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
+    number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Light,
+           "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
+    flag("filter.on", &Settings::filter, &FilterSettings::on, Nothing, "cross-bilateral filter over the 4x4 subsets");
+    choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"}, Nothing,
            "7x7 filter along rows then columns, or all 49 taps at once");
-    real("filter.normalPower", &Settings::filter, &FilterSettings::normalPower, 0, 1024, "weight max(0, n.n')^power");
-    real("filter.distance", &Settings::filter, &FilterSettings::distance, 1e-6f, 10,
-         "deviation from the pixel's plane, share of its view distance");
-    real("image.exposure", &Settings::image, &ImageSettings::exposure, 0, big,
-         "factor on radiance before Reinhard; 0 = measured at the first picture");
-    flag("frame.overlap", &Settings::frame, &FrameSettings::overlap,
+    number("filter.normalPower", &Settings::filter, &FilterSettings::normalPower, {0, 1024}, Nothing,
+           "weight max(0, n.n')^power");
+    number("filter.distance", &Settings::filter, &FilterSettings::distance, {1e-6, 10}, Nothing,
+           "deviation from the pixel's plane, share of its view distance");
+    number("image.exposure", &Settings::image, &ImageSettings::exposure, {0, kNoLimit}, Nothing,
+           "factor on radiance before Reinhard; 0 = measured at the first picture");
+    flag("frame.overlap", &Settings::frame, &FrameSettings::overlap, Nothing,
          "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");
     for (size_t i = 0; i < kEffects; ++i) effect(EffectId(i));
-    flag("debug.nan", &Settings::debug, &DebugSettings::nan, "paint NaN magenta and infinity cyan");
-    choice("debug.timing", &Settings::debug, &DebugSettings::timing, {"auto", "queries", "finish"},
+    flag("debug.nan", &Settings::debug, &DebugSettings::nan, Nothing, "paint NaN magenta and infinity cyan");
+    choice("debug.timing", &Settings::debug, &DebugSettings::timing, {"auto", "queries", "finish"}, Nothing,
            "GPU times by timer queries, or by finishing each pass");
   }
 
-  std::vector<Entry> entries;
+  std::vector<SettingRow> rows;
 
  private:
-  template <class Group, class Value> auto member(Group Settings::*group, Value Group::*value) {
-    return [=](auto& s) -> auto& { return s.*group.*value; };
+  template <class Row, size_t N> static std::vector<std::string> namesOf(const Row (&table)[N]) {
+    std::vector<std::string> names;
+    for (const Row& row : table) names.push_back(row.name);
+    return names;
+  }
+
+  template <class Group, class Value>
+  void add(SettingRow row, Group Settings::*group, Value Group::*value, ChangeCost change, const char* help) {
+    row.get = [=](const Settings& s) { return double(s.*group.*value); };
+    row.set = [=](Settings& s, double v) { s.*group.*value = Value(v); };
+    row.standard = row.get(Settings{});
+    row.change = change;
+    row.help = help;
+    rows.push_back(std::move(row));
+  }
+
+  template <class Group, class Value>
+  void number(const char* name, Group Settings::*group, Value Group::*value, Span span, ChangeCost change,
+              const char* help) {
+    add({.name = name,
+         .kind = std::is_integral_v<Value> ? SettingKind::Whole : SettingKind::Real,
+         .low = double(Value(span.low)),
+         .high = span.high,
+         .unit = span.unit,
+         .scale = span.scale},
+        group, value, change, help);
   }
 
   template <class Group>
-  void whole(const char* name, Group Settings::*group, int Group::*value, int lo, int hi, const char* help) {
-    const auto at = member(group, value);
-    add(
-        name, help, std::to_string(lo) + ".." + std::to_string(hi),
-        [=](Settings& s, std::string_view text) {
-          int v = 0;
-          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-          if (error != std::errc() || end != text.data() + text.size() || v < lo || v > hi) return false;
-          at(s) = v;
-          return true;
-        },
-        [=](const Settings& s) { return std::to_string(at(s)); });
-  }
-
-  template <class Group>
-  void real(const char* name, Group Settings::*group, float Group::*value, float lo, float hi, const char* help) {
-    const auto at = member(group, value);
-    add(
-        name, help, hi >= 1e30f ? "at least " + numberText(lo) : numberText(lo) + ".." + numberText(hi),
-        [=](Settings& s, std::string_view text) {
-          float v = 0;
-          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-          if (error != std::errc() || end != text.data() + text.size() || !(v >= lo && v <= hi)) return false;
-          at(s) = v;
-          return true;
-        },
-        [=](const Settings& s) { return numberText(at(s)); });
-  }
-
-  template <class Group> void flag(const char* name, Group Settings::*group, bool Group::*value, const char* help) {
-    const auto at = member(group, value);
-    add(
-        name, help, "on|off",
-        [=](Settings& s, std::string_view text) {
-          if (text != "on" && text != "off") return false;
-          at(s) = text == "on";
-          return true;
-        },
-        [=](const Settings& s) { return std::string(at(s) ? "on" : "off"); });
+  void flag(const char* name, Group Settings::*group, bool Group::*value, ChangeCost change, const char* help) {
+    add({.name = name, .kind = SettingKind::Flag, .high = 1, .choices = {"off", "on"}}, group, value, change, help);
   }
 
   template <class Group, class Enum>
   void choice(const char* name, Group Settings::*group, Enum Group::*value, std::vector<std::string> names,
-              const char* help) {
-    const auto at = member(group, value);
-    named(
-        name, help, std::move(names), [=](Settings& s, size_t i) { at(s) = Enum(i); },
-        [=](const Settings& s) { return size_t(at(s)); });
+              ChangeCost change, const char* help) {
+    const double last = double(names.size() - 1);
+    add({.name = name, .kind = SettingKind::Choice, .high = last, .choices = std::move(names)}, group, value, change,
+        help);
   }
 
   void effect(EffectId id) {
-    const EffectRow& row = effectRow(id);
-    named(
-        "effects." + std::string(row.name), row.help, {"auto", "on", "off"},
-        [id](Settings& s, size_t i) { s.effects[id] = EffectMode(i); },
-        [id](const Settings& s) { return size_t(s.effects[id]); });
-  }
-
-  void named(const std::string& name, const char* help, std::vector<std::string> names,
-             std::function<void(Settings&, size_t)> set, std::function<size_t(const Settings&)> get) {
-    std::string range;
-    for (const std::string& n : names) range += (range.empty() ? "" : "|") + n;
-    add(
-        name, help, range,
-        [names, set](Settings& s, std::string_view text) {
-          const auto found = std::find(names.begin(), names.end(), text);
-          if (found != names.end()) set(s, size_t(found - names.begin()));
-          return found != names.end();
-        },
-        [names, get](const Settings& s) { return names[get(s)]; });
-  }
-
-  void add(const std::string& name, const char* help, std::string range,
-           std::function<bool(Settings&, std::string_view)> set, std::function<std::string(const Settings&)> get) {
-    const std::string defaultText = get(Settings{});
-    entries.push_back({{name, help, defaultText, std::move(range)}, std::move(set), std::move(get)});
+    rows.push_back({.name = "effects." + std::string(effectRow(id).name),
+                    .help = effectRow(id).help,
+                    .kind = SettingKind::Choice,
+                    .high = 2,
+                    .change = Maps,
+                    .choices = {"auto", "on", "off"},
+                    .get = [id](const Settings& s) { return double(s.effects[id]); },
+                    .set = [id](Settings& s, double v) { s.effects[id] = EffectMode(int(v)); }});
   }
 };
 
-const std::vector<Entry>& entries() {
-  static const Table table;
-  return table.entries;
+/// A number that is all of `text`; nothing otherwise.
+template <class Value> std::optional<double> numberOf(std::string_view text) {
+  Value v{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return double(v);
 }
 
-const Entry& entryOf(std::string_view name) {
+/// The value that a text stands for; nothing where it is none of the row's range.
+std::optional<double> valueOf(const SettingRow& row, std::string_view text) {
+  if (!row.choices.empty()) {
+    const auto found = std::find(row.choices.begin(), row.choices.end(), text);
+    if (found == row.choices.end()) return std::nullopt;
+    return double(found - row.choices.begin());
+  }
+  const std::optional<double> v = row.kind == SettingKind::Whole ? numberOf<int>(text) : numberOf<float>(text);
+  if (!v || !(*v >= row.low && *v <= row.high)) return std::nullopt;
+  return v;
+}
+
+std::string shortest(float v) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, v).ptr};
+}
+
+} // namespace
+
+const char* costText(ChangeCost cost) {
+  constexpr const char* texts[] = {"nothing", "light paths again", "maps again", "another set of lights"};
+  return texts[int(cost)];
+}
+
+std::string SettingRow::text(double value) const {
+  if (!choices.empty()) return choices[size_t(value)];
+  return kind == SettingKind::Whole ? std::to_string(int(value)) : shortest(float(value));
+}
+
+std::string SettingRow::range() const {
+  if (kind == SettingKind::Flag) return "on|off";
+  std::string range;
+  for (const std::string& c : choices) range += (range.empty() ? "" : "|") + c;
+  if (!range.empty()) return range;
+  return high >= kNoLimit ? "at least " + text(low) : text(low) + ".." + text(high);
+}
+
+const std::vector<SettingRow>& settingsTable() {
+  static const Table table;
+  return table.rows;
+}
+
+const SettingRow& settingRow(std::string_view name) {
   if (name == "gather") name = "gather.mode"; // the short form that the papers' variants are named by: gather=full
-  for (const Entry& e : entries())
-    if (e.row.name == name) return e;
   std::vector<std::string> names;
-  for (const Entry& e : entries()) names.push_back(e.row.name);
+  for (const SettingRow& row : settingsTable()) {
+    if (row.name == name) return row;
+    names.push_back(row.name);
+  }
   const std::string near = nearestName(name, names);
   throw InputError("setting " + std::string(name),
                    "no such setting (" + (near.empty() ? "see `lambent settings`" : "did you mean " + near + "?") +
                        ")");
 }
 
-} // namespace
-
-const std::vector<SettingRow>& settingsTable() {
-  static const std::vector<SettingRow> rows = [] {
-    std::vector<SettingRow> r;
-    for (const Entry& e : entries()) r.push_back(e.row);
-    return r;
-  }();
-  return rows;
-}
-
 void applySetting(Settings& settings, std::string_view name, std::string_view value) {
-  const Entry& e = entryOf(name);
-  if (!e.set(settings, value))
-    throw InputError("setting " + e.row.name, "cannot be '" + std::string(value) + "' (" + e.row.range + ")");
+  const SettingRow& row = settingRow(name);
+  const std::optional<double> v = valueOf(row, value);
+  if (!v) throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + row.range() + ")");
+  row.set(settings, *v);
 }
 
-std::string settingText(const Settings& settings, std::string_view name) { return entryOf(name).get(settings); }
+std::string settingText(const Settings& settings, std::string_view name) {
+  const SettingRow& row = settingRow(name);
+  return row.text(row.get(settings));
+}
+
+Axes axesOf(const Settings& s) {
+  const GatherRow& gather = rowOf(s.gather.mode);
+  const bool filtered = gather.subsets && s.filter.on;
+  return {s.vpl.source, s.vpl.visibility, s.gather.mode,
+          gather.patches ? (filtered ? Reconstruction::UpsampleFilter : Reconstruction::Upsample)
+                         : (filtered ? Reconstruction::Filter : Reconstruction::None)};
+}
+
+std::string whyNot(const Settings& settings) { return whyNot(axesOf(settings)); }
 
 const std::vector<std::string>& presetNames() {
   static const std::vector<std::string> names{"low", "medium", "high", "ultra"};
@@ -274,79 +298,14 @@ void applyPreset(Settings& settings, const std::string& name) {
                                     {2048, 2048, 16, 128, GatherMode::Interleaved},
                                     {8192, 4096, 16, 128, GatherMode::Interleaved},
                                     {2048, 4096, 16, 128, GatherMode::Multires}};
-  for (size_t i = 0; i < presetNames().size(); ++i) {
-    if (presetNames()[i] != name) continue;
-    settings.smc.vpls = presets[i].vpls;
-    settings.smc.points = presets[i].points;
-    settings.smc.paths = presets[i].paths;
-    settings.shadow.resolution = presets[i].resolution;
-    settings.gather.mode = presets[i].mode;
-    return;
-  }
-  throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
-}
-
-namespace {
-
-/// Choices that belong together: a row of the table of techniques.
-struct Technique {
-  VplSource source;
-  GatherMode mode;
-};
-constexpr Technique kTechniques[] = {
-    {VplSource::Smc, GatherMode::Interleaved}, {VplSource::Ir, GatherMode::Interleaved},
-    {VplSource::Mir, GatherMode::Interleaved}, {VplSource::Tcas, GatherMode::Interleaved},
-    {VplSource::Rsm, GatherMode::Full},        {VplSource::Rsm, GatherMode::Splat},
-    {VplSource::Rsm, GatherMode::Multires},    {VplSource::Isr, GatherMode::Multires},
-    {VplSource::Hisr, GatherMode::Multires},
-};
-
-} // namespace
-
-const std::vector<std::string>& techniqueNames() {
-  static const std::vector<std::string> names{"smc", "ir",  "mir", "tcas", "rsm", "multires-splat", "multires-gather",
-                                              "isr", "hisr"}; // as kTechniques
-  return names;
-}
-
-void applyTechnique(Settings& settings, const std::string& name) {
-  for (size_t i = 0; i < techniqueNames().size(); ++i) {
-    if (techniqueNames()[i] != name) continue;
-    const Technique& t = kTechniques[i];
-    // The first four share visibility and gather, whatever these are; those from reflective maps have their own.
-    const bool own = fromReflectiveMaps(t.source);
-    if (own || fromReflectiveMaps(settings.vpl.source)) {
-      settings.vpl.visibility = own ? VplVisibility::None : VplVisibility::Maps;
-      settings.gather.mode = t.mode;
-    }
-    settings.vpl.source = t.source;
-    return;
-  }
-  const std::string near = nearestName(name, techniqueNames());
-  std::string all;
-  for (const std::string& n : techniqueNames()) all += (all.empty() ? "" : ", ") + n;
-  throw InputError("--technique " + name,
-                   "no such technique (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
-}
-
-const std::string& techniqueOf(const Settings& settings) {
-  size_t first = std::size(kTechniques); // row of this source
-  for (size_t i = std::size(kTechniques); i-- > 0;) {
-    if (kTechniques[i].source != settings.vpl.source) continue;
-    first = i;
-    if (kTechniques[i].mode == settings.gather.mode) break;
-  }
-  return techniqueNames()[first];
-}
-
-void checkSettings(const Settings& settings) {
-  if (settings.vpl.source != VplSource::Hisr) return;
-  if (settings.vpl.visibility != VplVisibility::None)
-    throw InputError("vpl.visibility " + settingText(settings, "vpl.visibility"),
-                     "hisr has clusters of all sizes, and no shadow maps of them (none)");
-  if (settings.gather.mode == GatherMode::Splat || settings.gather.mode == GatherMode::SplatPerVpl)
-    throw InputError("gather.mode " + settingText(settings, "gather.mode"),
-                     "hisr's clusters are chosen by who gathers (multires, multires-interleaved, interleaved or full)");
+  const auto found = std::find(presetNames().begin(), presetNames().end(), name);
+  if (found == presetNames().end()) throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
+  const Preset& preset = presets[found - presetNames().begin()];
+  settings.smc.vpls = preset.vpls;
+  settings.smc.points = preset.points;
+  settings.smc.paths = preset.paths;
+  settings.shadow.resolution = preset.resolution;
+  if (rowOf(settings.vpl.source).sampled) settings.gather.mode = preset.mode; // others have a gather of their own
 }
 
 } // namespace lambent

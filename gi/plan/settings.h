@@ -3,26 +3,15 @@
 #pragma once
 
 #include "engine/core/math.h"
+#include "gi/plan/axes.h"
 
+#include <functional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace lambent {
 
-/// Who places the virtual lights: gi/vpl/sources.h, and from reflective shadow maps a regular grid, clusters, or a tree
-/// that every fragment cuts for itself (gi/lights/reflective_maps.h).
-enum class VplSource : int { Smc, Ir, Mir, Tcas, Rsm, Isr, Hisr };
-inline bool fromReflectiveMaps(VplSource source) { return source >= VplSource::Rsm; }
-enum class VplVisibility : int { Maps, Rays, None }; // paraboloid maps | exhaustive ray casts (paper 1, fig. 8) | all
-/// 4×4 interleaved subsets + filter | every VPL at every pixel | every VPL at every patch of the multiresolution buffer
-/// | patches of each of the 16 subsets + filter | VPLs splatted into the patches | each VPL into patches of its own.
-enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl };
-inline bool interleaved(GatherMode mode) {
-  return mode == GatherMode::Interleaved || mode == GatherMode::MultiresInterleaved;
-}
-inline bool multiresolution(GatherMode mode) { return mode >= GatherMode::Multires; }
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
@@ -154,7 +143,10 @@ struct DebugSettings {
   bool operator==(const DebugSettings&) const = default;
 };
 
+struct Technique; // gi/plan/techniques.h
+
 struct Settings {
+  const Technique* own = nullptr; // a technique whose stage is its own; null: the axes below say everything
   VplSettings vpl;
   SmcSettings smc;
   ShadowSettings shadow;
@@ -169,35 +161,47 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// One row: how a setting is named, what it may be, and what it costs.
+/// The axes that the settings amount to.
+Axes axesOf(const Settings& settings);
+/// Why the settings contradict each other; empty where they do not.
+std::string whyNot(const Settings& settings);
+
+enum class SettingKind { Flag, Whole, Real, Choice };
+enum class Scale { Linear, PowersOfTwo }; // steps that make sense: of a slider, of a sweep
+/// What changing a setting costs while frames run, beyond drawing the picture again.
+enum class ChangeCost { Nothing, Light, Maps, Set }; // light paths again | maps again too | another set of lights
+const char* costText(ChangeCost cost);
+
+/// One setting. Values are numbers: 0 and 1 of a flag, the index of a choice.
 struct SettingRow {
   std::string name; // "smc.vpls"
-  std::string help; // meaning, unit, cost, one line
-  std::string defaultText;
-  std::string range; // "1..65536" or "maps|rays"
+  std::string help; // meaning and cost, one line
+  SettingKind kind = SettingKind::Real;
+  double low = 0, high = 0, standard = 0;
+  const char* unit = "";
+  Scale scale = Scale::Linear;
+  ChangeCost change = ChangeCost::Nothing;
+  std::vector<std::string> choices; // also of a flag
+  std::function<double(const Settings&)> get;
+  std::function<void(Settings&, double)> set; // a value of the range
+
+  std::string text(double value) const; // as applySetting reads it
+  std::string range() const;            // "1..65536", "maps|rays|none"
 };
 const std::vector<SettingRow>& settingsTable();
+/// Throws InputError with the nearest name.
+const SettingRow& settingRow(std::string_view name);
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);
+/// Text of the present value.
+std::string settingText(const Settings& settings, std::string_view name);
+
 /// Names of the presets, cheapest first. Each is a point of the measured front of error against time
 /// (docs/measurements).
 const std::vector<std::string>& presetNames();
-/// Sets what the preset is about (numbers of VPLs, paths, map texels, gather) and leaves everything else. Throws
-/// InputError that names the presets.
+/// Sets what the preset is about (numbers of VPLs, paths, map texels; of a technique that samples its lights also the
+/// gather) and leaves everything else. Throws InputError that names the presets.
 void applyPreset(Settings& settings, const std::string& name);
-
-/// Names of the techniques: choices of settings that belong together (gi/README.md, "Comparators").
-const std::vector<std::string>& techniqueNames();
-/// Throws InputError that gives the nearest name, or all of them.
-void applyTechnique(Settings& settings, const std::string& name);
-/// The technique that the settings amount to.
-const std::string& techniqueOf(const Settings& settings);
-
-/// Throws InputError where settings contradict each other.
-void checkSettings(const Settings& settings);
-
-/// Text of the present value.
-std::string settingText(const Settings& settings, std::string_view name);
 
 } // namespace lambent

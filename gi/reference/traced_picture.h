@@ -22,12 +22,12 @@ struct TracePlan {
 };
 
 struct TracedPicture {
-  ReferencePicture picture;
+  ReferencePicture picture = {};
   uint32_t samples = 0; // 0: cancelled before the first
   int bounces = 0;
   float clamp = 0;    // 1/m²; 0 = none
   float exposure = 1; // as set, or as GiFrame would measure it
-  RayCounts rays;
+  RayCounts rays = {};
 };
 
 /// Glossy where the settings say so, except irradiance, which does not depend on how it is reflected. Throws InputError

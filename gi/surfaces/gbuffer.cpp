@@ -1,5 +1,7 @@
 // Depth, normal, albedo, emission, and on demand roughness and metalness of what the camera sees.
-#include "gi/contract/passes.h"
+#include "gi/surfaces/surfaces.h"
+
+#include "engine/core/error.h"
 
 #include <cmath>
 
@@ -32,10 +34,19 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
   };
 }
 
-GBuffer GBufferPass::run(const GBufferInputs& in) {
+GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Surfaces);
   const int width = in.camera.width, height = in.camera.height;
-  if (depth_.width() != width || depth_.height() != height || !depth_ || in.glossy != bool(finish_)) {
+  const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
+  if (!camera_) camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
+  camera_.write(0, sizeof block, &block);
+  camera_.bindUniform(0);
+  if (in.host) {
+    GBuffer adopted = adopt(in);
+    adopted.block = block;
+    return adopted;
+  }
+  if (!depth_ || depth_.width() != width || depth_.height() != height || in.glossy != bool(finish_)) {
     const auto make = [&](const char* label, GLenum format) {
       return gl::Texture(label, {.format = format, .width = width, .height = height});
     };
@@ -46,12 +57,7 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
     finish_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
     framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &finish_}, &depth_)
                              : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
-    camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
   }
-  const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
-  camera_.write(0, sizeof block, &block);
-  camera_.bindUniform(0);
-
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
   const float zero[4] = {0, 0, 0, 0};
@@ -59,6 +65,47 @@ GBuffer GBufferPass::run(const GBufferInputs& in) {
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.draw(in.glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
   return {&depth_, &normal_, &albedo_, &emission_, in.glossy ? &finish_ : nullptr, &camera_, block, width, height};
+}
+
+void checkHost(const HostSurfaces& host, const CameraView& camera) {
+  const auto check = [&](const char* what, uint32_t name, bool needed) {
+    const std::string which = std::string("host's ") + what + " texture " + std::to_string(name);
+    if (name == 0 && !needed) return;
+    const gl::Texture texture = gl::Texture::borrowed(name);
+    if (texture.width() == camera.width && texture.height() == camera.height && name != 0) return;
+    throw InputError(which, "has " + std::to_string(texture.width()) + "x" + std::to_string(texture.height()) +
+                                " texels (" + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                                ", as the camera)");
+  };
+  check("depth", host.depth, true);
+  check("normal", host.normal, true);
+  check("albedo", host.albedo, true);
+  check("emission", host.emission, false);
+  check("finish", host.finish, false);
+}
+
+GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
+  const int width = in.camera.width, height = in.camera.height;
+  const auto take = [&](gl::Texture& ours, uint32_t name) -> const gl::Texture* {
+    ours = name != 0 ? gl::Texture::borrowed(name) : gl::Texture();
+    return name != 0 ? &ours : nullptr;
+  };
+  const HostSurfaces& host = *in.host;
+  GBuffer out{take(hosts_[0], host.depth),
+              take(hosts_[1], host.normal),
+              take(hosts_[2], host.albedo),
+              take(hosts_[3], host.emission),
+              in.glossy ? take(hosts_[4], host.finish) : nullptr,
+              &camera_,
+              {},
+              width,
+              height};
+  if (!out.emission) {
+    hosts_[3] = gl::Texture("g-buffer/emission", {.format = GL_RGBA16F, .width = width, .height = height});
+    hosts_[3].clear();
+    out.emission = &hosts_[3];
+  }
+  return out;
 }
 
 } // namespace lambent

@@ -2,7 +2,10 @@
 // on floors seen at a grazing angle (paper 2 says so), or their derivatives. Here a patch keeps a plane and a bound of
 // the distance to it, merged from its parts: no plane ever fires, no step is missed. Normals are ranges, as in paper
 // 2, 3.2.
-#include "gi/gather/multires.h"
+#include "gi/surfaces/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lambent {
 
@@ -55,6 +58,22 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
   }
   for (const gl::Texture* t : {&plane_, &normalLo_, &normalHi_}) t->limitLevels(0, in.levels - 1);
   return {&plane_, &normalLo_, &normalHi_, in.levels, padded};
+}
+
+PatchPyramid PatchPass::run(const GBuffer& surfaces, const MultiresSettings& settings) {
+  const float longer = float(std::max(surfaces.width, surfaces.height));
+  const CameraBlock& camera = surfaces.block;
+  const bool ortho = camera.lens.w > 0;
+  return run({.depth = *surfaces.depth,
+              .normal = *surfaces.normal,
+              .size = {surfaces.width, surfaces.height},
+              .cell = {surfaces.width, surfaces.height},
+              .levels = std::clamp(int(std::lround(std::log2(longer / float(settings.coarsest)))), 0, 10),
+              .orthoScale = ortho ? (camera.lens.w - camera.lens.z) / camera.lens.y : 0,
+              .orthoFrom = ortho ? 0 : 1,
+              .depthThreshold = settings.depth,
+              .normalThreshold = settings.normal,
+              .balance = settings.balance});
 }
 
 } // namespace lambent

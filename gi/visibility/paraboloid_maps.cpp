@@ -1,6 +1,7 @@
 // Distance maps of VPLs and emissive samples: bookkeeping and the choice of the maker. Paper 1, section 4.4, draws them
 // on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
-#include "gi/visibility/paraboloid_maps.h"
+#include "gi/visibility/paraboloid_makers.h"
+
 #include "engine/core/error.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -21,13 +22,6 @@ double secondsOf(const std::function<void()>& work) {
 }
 
 } // namespace
-
-std::vector<MapPose> mapPoses(const VplSet& set) {
-  std::vector<MapPose> poses;
-  poses.reserve(set.slots.size());
-  for (const Vpl& vpl : set.slots) poses.push_back({vpl.position, vpl.normal, vpl.geometricNormal});
-  return poses;
-}
 
 ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   const gl::PassScope scope = context_.scope(stage_);

@@ -1,6 +1,8 @@
 #include "gi/visibility/shadow_agreement.h"
 
 #include "engine/core/parallel.h"
+#include "gi/visibility/paraboloid_maps.h"
+#include "gi/vpl/smc.h"
 #include "shaders/shared/shadow_lookup.h"
 
 #include <algorithm>
@@ -36,19 +38,20 @@ bool lit(const std::vector<float>& map, const ParaboloidMapInputs& maps, const v
 } // namespace
 
 ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const ParaboloidMapInputs& maps, const RayQuery& rays,
-                                       const CameraView& camera, const VplSet& set, const Settings& settings, int slots,
-                                       int points, const std::function<void(int, int)>& progress) {
+                                       const CameraView& camera, std::span<const VirtualLight> lights,
+                                       const Settings& settings, int slots, int points,
+                                       const std::function<void(int, int)>& progress) {
   const std::vector<SurfaceHit> receivers = visibleSurfaces(rays, camera, points);
   std::vector<uint32_t> alive;
-  for (uint32_t i = 0; i < set.slots.size(); ++i)
-    if (set.slots[i].alive) alive.push_back(i);
+  for (uint32_t i = 0; i < lights.size(); ++i)
+    if (lights[i].alive) alive.push_back(i);
   ShadowAgreement result;
   double total = 0, makers = 0, raster = 0, cast = 0;
   const int count = std::min<int>(slots, int(alive.size()));
   for (int k = 0; k < count; ++k) {
     if (progress) progress(k, count);
     const uint32_t slot = alive[size_t(k) * alive.size() / count];
-    const Vpl& v = set.slots[slot];
+    const VirtualLight& v = lights[slot];
     const MakerComparison comparison = pass.compareMakers(maps, maps.poses[slot]);
     vec3 tangent, bitangent;
     basisAround(v.normal, tangent, bitangent);

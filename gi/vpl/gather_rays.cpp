@@ -25,7 +25,7 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
 }
 
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts,
+                                   std::span<const VirtualLight> lights, const GatherSettings& settings, RayCounts& counts,
                                    GlossyGather* glossy) {
   constexpr size_t kGrain = 16;
   if (glossy) glossy->radiance.assign(surfaces.size(), vec3(0));
@@ -43,7 +43,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       segments.clear();
       values.clear();
       spreads.clear();
-      for (const Vpl& v : vpls) {
+      for (const VirtualLight& v : lights) {
         if (!v.alive || maxComponent(v.radiance) <= 0) continue;
         const vec3 d = v.position - h.position;
         const float r2 = glm::dot(d, d);
@@ -74,13 +74,13 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
   return irradiance;
 }
 
-std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
+std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
                                const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy) {
   std::vector<vec2> centres;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
   counts.closest += centres.size();
-  return irradianceByRays(rays, surfacesAt(rays, camera, centres), vpls, settings, counts, glossy);
+  return irradianceByRays(rays, surfacesAt(rays, camera, centres), lights, settings, counts, glossy);
 }
 
 } // namespace lambent

@@ -215,18 +215,18 @@ struct GlossyGather {
   std::vector<vec3> radiance; // filled: W/(m² sr) over glossyTint (shaders/shared/ggx.h)
 };
 
-/// Irradiance at the camera's primary hits from all VPLs with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
+/// Irradiance at the camera's primary hits from all lights with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
 /// ray tracing"). Row 0 at the top; zero where the camera sees nothing.
-std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const Vpl> vpls,
+std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
                                const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr);
 
 /// What the camera sees at points (u, v) of its picture, v down, in [0, 1]. Rays start at the near plane, as the
 /// rasteriser's.
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points);
 
-/// Irradiance at surfaces from all VPLs, a ray for every pair; zero where there is none.
+/// Irradiance at surfaces from all lights, a ray for every pair; zero where there is none.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const Vpl> vpls, const GatherSettings& settings, RayCounts& counts,
+                                   std::span<const VirtualLight> lights, const GatherSettings& settings, RayCounts& counts,
                                    GlossyGather* glossy = nullptr);
 
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/core/math.h"
+#include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/settling.h"
@@ -22,7 +23,8 @@ struct SurfacePlace {
   bool back = false; // on the back of the triangle
 };
 
-/// A small diffuse patch that stands for all light reflected around it. World space.
+/// A small diffuse patch that stands for all light reflected around it, with all that the sampler knows of it. World
+/// space.
 struct Vpl {
   vec3 position{0};     // on the surface
   vec3 normal{0, 1, 0}; // shading normal, towards the lit side
@@ -43,6 +45,11 @@ struct Vpl {
   /// Intensity I = L/p up to the factor N (paper 1, eq. 6): radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
 };
+
+/// What rendering needs of it.
+inline VirtualLight lightOf(const Vpl& v) {
+  return {v.position, v.normal, v.geometricNormal, v.radiance, v.alive ? v.area : 0, v.alive};
+}
 
 /// A point of the surface near a VPL, with what decides whose cell it lies in. World space.
 struct CellPoint {
@@ -74,6 +81,14 @@ struct VplSet {
   Settling settling;
   bool sampledLate = false; // something changed while the sampler was left out
 };
+
+/// By slot.
+inline std::vector<VirtualLight> lightsOf(const VplSet& set) {
+  std::vector<VirtualLight> lights;
+  lights.reserve(set.slots.size());
+  for (const Vpl& v : set.slots) lights.push_back(lightOf(v));
+  return lights;
+}
 
 /// What one update did: which slots need a new shadow map, and figures for the frame log.
 struct VplChanges {

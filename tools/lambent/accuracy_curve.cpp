@@ -55,10 +55,6 @@ CurveKind curveKind(const std::string& name) {
           lightByEveryTexel};
 }
 
-double numberOf(const Settings& settings, const std::string& setting) {
-  return std::stod(settingText(settings, setting));
-}
-
 /// Of the points of one sweep.
 Plot plotOf(const nlohmann::json& points) {
   Plot plot;
@@ -77,7 +73,7 @@ Plot plotOf(const nlohmann::json& points) {
 
 std::string tableOf(nlohmann::json points, const Settings& settings) {
   const std::string setting = points[0]["setting"];
-  const bool standard = numberOf(settings, setting) == numberOf(Settings{}, setting);
+  const bool standard = settingText(settings, setting) == settingText(Settings{}, setting);
   for (nlohmann::json& p : points) p["use"] = !p["in_use"] ? "" : standard ? "<- default" : "<- as set";
   return tableText({{"technique", "technique"},
                     {"value", setting.c_str()},
@@ -121,7 +117,7 @@ void accuracyCurve(const AccuracyOptions& options) {
     Settings settings = stage->settings;
     applyTechnique(settings, sweep.technique);
     kind.prepare(settings);
-    const double inUse = numberOf(settings, sweep.setting);
+    const double inUse = std::stod(settingText(settings, sweep.setting));
     if (std::ranges::count(sweep.values, inUse) == 0)
       sweep.values.insert(std::ranges::lower_bound(sweep.values, inUse), inUse);
     std::vector<Variant> variants;

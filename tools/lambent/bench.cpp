@@ -144,7 +144,7 @@ void bench(const BenchOptions& options) {
     throw InputError(options.scenes[1], "one scene or shot is enough (several go with --multires)");
   const auto stage = openStage(options.launch);
   const std::vector<Variant> variants = sidesOf(options, *stage);
-  if (std::ranges::any_of(variants, [](const Variant& v) { return fromReflectiveMaps(v.settings.vpl.source); }))
+  if (std::ranges::any_of(variants, [](const Variant& v) { return rowOf(v.settings.vpl.source).reflective; }))
     needPunctualLight(*stage);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();

@@ -52,7 +52,7 @@ void addSeed(std::vector<TechniqueRun>& techniques, TechniqueRun run, int seeds)
 constexpr int kStillFrames = 6; // to measure each time at which a shot stands still
 
 bool drawsWholeFrames(const Settings& settings) {
-  return fromReflectiveMaps(settings.vpl.source) || settings.vpl.visibility == VplVisibility::Maps;
+  return settings.own || rowOf(settings.vpl.source).reflective || settings.vpl.visibility == VplVisibility::Maps;
 }
 
 /// The truth first, then each technique with each seed.
@@ -136,7 +136,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     if (&m == &runs[0]) continue;
     TechniqueRun run;
     run.name = m.variant.name;
-    run.vpls = fromReflectiveMaps(m.variant.settings.vpl.source)
+    run.vpls = rowOf(m.variant.settings.vpl.source).reflective
                    ? uint32_t(m.of([](const FrameStats& s) { return s.vplsAlive; }).most)
                    : uint32_t(m.variant.settings.smc.vpls);
     run.series = toneMapped(m);
@@ -195,7 +195,7 @@ void stability(const StabilityOptions& options) {
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
     std::printf("%s%s\nreport: %s\n", stabilityTable(figures).c_str(), conditions.c_str(),
-                (folder / "stability.html").c_str());
+                (folder / "stability.md").c_str());
 }
 
 } // namespace

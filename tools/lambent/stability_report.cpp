@@ -1,10 +1,9 @@
 #include "tools/lambent/stability_report.h"
 
-#include "gi/plan/settings.h"
+#include "gi/plan/techniques.h"
+#include "tools/lambent/plot.h"
 #include "tools/lambent/text.h"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -22,7 +21,7 @@ const std::map<std::string, double> kPublished{
 const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   Settings settings;
   applyTechnique(settings, t.name);
-  const TechniqueRun* simplest = shot.technique(fromReflectiveMaps(settings.vpl.source) ? "rsm" : "ir");
+  const TechniqueRun* simplest = shot.technique(rowOf(settings.vpl.source).reflective ? "rsm" : "ir");
   return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 
@@ -85,70 +84,21 @@ std::string seriesCsv(const ShotRun& s) {
   return out.str();
 }
 
-const char* colourOf(size_t technique) {
-  static const char* const colours[] = {"#d62728", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b", "#e377c2"};
-  return colours[technique % std::size(colours)];
-}
-
-/// Luminance of one pixel over time, as paper 1, fig. 7.
-std::string plot(const ShotRun& s, size_t pixel) {
-  constexpr double width = 420, height = 150, left = 40, bottom = 18;
-  float lo = kInfinity, hi = -kInfinity;
-  const auto widen = [&](const PixelSeries& series) {
-    for (const auto& frame : series)
-      if (!std::isnan(frame[pixel])) lo = std::min(lo, frame[pixel]), hi = std::max(hi, frame[pixel]);
-  };
-  widen(s.truth);
-  for (const TechniqueRun& t : s.techniques) widen(t.series);
-  if (!(hi >= lo)) return ""; // never on a surface
-  hi = std::max(hi, lo + 1e-3f);
-  std::ostringstream out;
-  out << format("<svg width='%.0f' height='%.0f'><rect x='%.0f' y='0' width='%.0f' height='%.0f' fill='none' "
-                "stroke='#ccc'/>",
-                width + left, height + bottom, left, width, height);
-  const auto line = [&](const PixelSeries& series, const char* colour, double strength) {
-    out << "<polyline fill='none' stroke='" << colour << "' stroke-width='" << strength << "' points='";
-    for (size_t f = 0; f < series.size(); ++f)
-      if (!std::isnan(series[f][pixel]))
-        out << format("%.1f,%.1f ", left + width * double(f) / double(std::max<size_t>(1, series.size() - 1)),
-                      height * (1 - double(series[f][pixel] - lo) / double(hi - lo)));
-    out << "'/>";
-  };
-  for (size_t t = 0; t < s.techniques.size(); ++t) line(s.techniques[t].series, colourOf(t), 1);
-  line(s.truth, "#000", 1.6);
-  out << format("<text x='0' y='12'>%.3f</text><text x='0' y='%.0f'>%.3f</text><text x='%.0f' y='%.0f'>0 s</text>"
-                "<text x='%.0f' y='%.0f' text-anchor='end'>%.2g s</text></svg>\n",
-                double(hi), height, double(lo), left, height + 14, left + width, height + 14,
-                double(s.truth.size() - 1) / s.fps);
-  return out.str();
-}
-
-std::string html(const std::vector<ShotRun>& shots, const nlohmann::json& figures, const std::string& conditions) {
-  std::ostringstream out;
-  out << "<!doctype html><meta charset='utf-8'><title>Temporal stability</title><style>body{font:14px sans-serif;"
-         "max-width:75em;margin:2em auto}table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px "
-         "solid #ddd;text-align:right}td:nth-child(-n+2){text-align:left}svg text{font:10px sans-serif}</style>\n"
-      << "<h1>Temporal stability</h1><p>" << conditions
-      << "</p><p>E = technique − truth in tone-mapped luminance, E' its change from frame to frame (paper 1, table 1). "
-         "L90: frames until 90 % of a step of the scene is followed.</p>\n<table><tr>";
-  for (const TableColumn& c : kColumns) {
-    std::string title = c.title;
-    std::erase(title, '\\');
-    out << "<th>" << title;
+/// Tone-mapped luminance of each marked pixel over time, as paper 1, fig. 7.
+std::vector<Plot> plotsOf(const ShotRun& s) {
+  std::vector<Plot> plots;
+  for (size_t p = 0; p < s.marked; ++p) {
+    Plot plot{format("%s, pixel %zu", s.name.c_str(), p), "seconds", "tone-mapped luminance", {}, {}, true, {}};
+    const auto add = [&](const std::string& name, const PixelSeries& series, const char* colour) {
+      plot.series.push_back({name, {}, colour});
+      for (const auto& frame : series) plot.series.back().y.push_back(frame[p]);
+    };
+    for (size_t f = 0; f < s.truth.size(); ++f) plot.x.push_back(double(f) / s.fps);
+    for (const TechniqueRun& t : s.techniques) add(t.name, t.series, nullptr);
+    add("truth", s.truth, "#000");
+    plots.push_back(std::move(plot));
   }
-  for (const nlohmann::json& row : figures) {
-    out << "</tr>\n<tr>";
-    for (const TableColumn& c : kColumns) out << "<td>" << cellText(c, row);
-  }
-  out << "</tr>\n</table>\n";
-  for (const ShotRun& s : shots) {
-    out << "<h2>" << s.name << "</h2><p><b>truth</b>";
-    for (size_t t = 0; t < s.techniques.size(); ++t)
-      out << " <b style='color:" << colourOf(t) << "'>" << s.techniques[t].name << "</b>";
-    out << "; one plot per marked pixel</p>\n";
-    for (size_t p = 0; p < s.marked; ++p) out << plot(s, p);
-  }
-  return out.str();
+  return plots;
 }
 
 } // namespace
@@ -171,9 +121,14 @@ std::string stabilityTable(const nlohmann::json& figures) { return tableText(kCo
 void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const nlohmann::json& figures,
                           const std::string& conditions) {
   writeText(folder / "stability.csv", csvText(figures));
-  writeText(folder / "stability.md", "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures));
-  writeText(folder / "stability.html", html(shots, figures, conditions));
-  for (const ShotRun& s : shots) writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
+  std::string page = "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures);
+  for (const ShotRun& s : shots) {
+    writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
+    if (s.marked == 0) continue;
+    writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
+    page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
+  }
+  writeText(folder / "stability.md", page);
 }
 
 } // namespace lambent

@@ -1,4 +1,4 @@
-// What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots and tables in one HTML page.
+// What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots.
 #pragma once
 
 #include "gi/measure/stability.h"
@@ -40,7 +40,7 @@ struct ShotRun {
 nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots);
 /// The rows as Markdown.
 std::string stabilityTable(const nlohmann::json& figures);
-/// stability.csv, stability.md, stability.html and one series-SHOT.csv per shot, each in one step.
+/// stability.csv, stability.md and of each shot series-SHOT.csv and plots of its marked pixels, each in one step.
 void writeStabilityReport(const std::filesystem::path& folder, const std::vector<ShotRun>& shots,
                           const nlohmann::json& figures, const std::string& conditions);
 

@@ -1,5 +1,7 @@
 #include "tools/launch/launch.h"
 
+#include "gi/plan/techniques.h"
+
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/sampling.h"
@@ -154,7 +156,7 @@ void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lac
 
 /// Reflective shadow maps see light of some kinds only.
 void tellWhatIsLeftOut(Stage& stage, const SceneView& view) {
-  const std::string technique = "technique " + techniqueOf(stage.settings);
+  const std::string technique = "technique " + std::string(techniqueOf(stage.settings).name);
   if (view.lights.empty() && (hasEmitters(stage.scene) || luminance(view.skyRadiance) > 0))
     stage.notes.push_back(technique +
                           " reflects punctual lights only, and there is none: no indirect light (--point, --sun)");
@@ -173,14 +175,14 @@ void chooseSettings(Stage& stage, const LaunchOptions& options) {
     applySetting(stage.settings, text.substr(0, equals), text.substr(equals + 1));
   }
   if (options.bounces) applySetting(stage.settings, "smc.bounces", std::to_string(*options.bounces));
-  checkSettings(stage.settings);
+  if (const std::string reason = whyNot(stage.settings); !reason.empty()) throw InputError("settings", reason);
 }
 
 } // namespace
 
 void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   std::string techniques; // but the first
-  for (size_t i = 1; i < techniqueNames().size(); ++i) techniques += (i > 1 ? ", " : "") + techniqueNames()[i];
+  for (const Technique& t : techniqueTable().subspan(1)) techniques += (techniques.empty() ? "" : ", ") + std::string(t.name);
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
@@ -237,7 +239,7 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
-  if (fromReflectiveMaps(stage->settings.vpl.source)) tellWhatIsLeftOut(*stage, view);
+  if (rowOf(stage->settings.vpl.source).reflective) tellWhatIsLeftOut(*stage, view);
   return stage;
 }
 

@@ -56,7 +56,7 @@ class RaysAtPoints final : public AtPoints {
     stats_.stages = log.stages;
     RayCounts counts;
     const std::span<const SurfaceHit> surfaces = watched_.surfaces();
-    const std::vector<vec3> irradiance = irradianceByRays(watched_.rays(), surfaces, set_.slots, s.gather, counts);
+    const std::vector<vec3> irradiance = irradianceByRays(watched_.rays(), surfaces, lightsOf(set_), s.gather, counts);
     values_.assign(irradiance.size(), {});
     for (size_t i = 0; i < irradiance.size(); ++i) values_[i].radiance = irradiance[i] * (surfaces[i].albedo / kPi);
     return stats_;

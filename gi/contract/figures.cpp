@@ -1,4 +1,4 @@
-#include "gi/frame/figures.h"
+#include "gi/contract/figures.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,0 +1,88 @@
+// The picture, and looking at everything that led to it.
+#pragma once
+
+#include "engine/core/image.h"
+#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/pass_context.h"
+#include "gi/contract/patches.h"
+#include "gi/contract/virtual_lights.h"
+
+#include <optional>
+
+namespace lambent {
+
+enum class Buffer : int; // gi/frame/gi_frame.h
+struct VplSet;
+
+/// Radiance towards the camera, W/(m² sr).
+struct Picture {
+  const gl::Texture* radiance = nullptr; // RGBA32F; a = 1 on surfaces, 0 on background
+};
+
+struct CompositeInputs {
+  const GBuffer& gbuffer;
+  const LightOnSurfaces& direct;
+  const LightOnSurfaces& indirect;
+  vec3 skyRadiance{0};
+};
+
+class CompositePass {
+ public:
+  explicit CompositePass(PassContext context) : context_(context) {}
+  /// emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
+  Picture run(const CompositeInputs& in);
+
+ private:
+  PassContext context_;
+  gl::Texture radiance_, black_;
+  gl::Framebuffer framebuffer_;
+};
+
+/// Factor that brings the log-average luminance of the picture's surfaces (black ones left out) to 0.18; 1 when there
+/// is no light. Reads the picture back: meant to run once.
+float measureExposure(const Picture& picture);
+
+// 7. Looking at it ----------------------------------------------------------------------------------------------------
+
+/// Everything a frame made, for read-back and views. Null where a stage did not run.
+struct FrameResults {
+  GBuffer gbuffer;
+  LightOnSurfaces direct;
+  LightOnSurfaces raw; // indirect, as gathered
+  LightOnSurfaces indirect;
+  Picture picture;
+  ParaboloidMaps vplMaps;
+  std::optional<PatchPyramid> patches; // where somebody asked for them
+  const VplSet* vpls = nullptr;
+  vec3 skyRadiance{0};
+  float sceneDiameter = 1; // metres; scales the depth view
+};
+
+class DisplayPass {
+ public:
+  explicit DisplayPass(PassContext context) : context_(context) {}
+
+  /// Draws `buffer` as a display shows it into a texture (RGBA8, sRGB-encoded) of the picture's size.
+  /// `markNan`: paint NaN magenta and infinity cyan in every radiometric view.
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan);
+  /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height.
+  void present(uint32_t framebuffer, int width, int height);
+  /// The texture of the last run.
+  Image8 read() const;
+
+ private:
+  void drawVpls(const FrameResults& frame);
+
+  PassContext context_;
+  gl::Texture display_, black_;
+  gl::Framebuffer framebuffer_;
+  gl::Buffer sprites_;
+  gl::VertexArray spriteArray_;
+};
+
+/// Linear values of a buffer: radiance for beauty, direct (emission and background included: beauty − indirect),
+/// indirect, emission; irradiance (indirect, filtered) and unfiltered; albedo; world normal; depth in metres along the
+/// view direction, 0 on background. The other views give beauty. Stages that did not run read as black.
+Image readBuffer(Buffer buffer, const FrameResults& frame);
+
+} // namespace lambent

@@ -1,0 +1,76 @@
+#include "gi/plan/techniques.h"
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+
+namespace lambent {
+
+namespace {
+
+using enum VplSource;
+using enum GatherMode;
+using V = VplVisibility;
+using R = Reconstruction;
+
+constexpr Technique kTechniques[] = {
+    {"smc", "sequential Monte Carlo instant radiosity (paper 1), the default", {Smc, V::Maps, Interleaved, R::Filter}},
+    {"ir", "instant radiosity: photons from the lights", {Ir, V::Maps, Interleaved, R::Filter}},
+    {"mir", "Metropolis instant radiosity: paths from the camera", {Mir, V::Maps, Interleaved, R::Filter}},
+    {"tcas", "temporally coherent sampling of reflective maps", {Tcas, V::Maps, Interleaved, R::Filter}},
+    {"rsm", "reflective shadow maps, every light at every pixel", {Rsm, V::None, Full, R::None}},
+    {"multires-splat", "the same lights splatted into patches (paper 2)", {Rsm, V::None, Splat, R::Upsample}},
+    {"multires-gather", "the same lights gathered at patches (paper 3)", {Rsm, V::None, Multires, R::Upsample}},
+    {"isr",
+     "image-space radiosity: clusters of reflective maps (paper 3)",
+     {Isr, V::None, Multires, R::Upsample},
+     "the number of its lights, where a map changed"},
+    {"hisr",
+     "hierarchical image-space radiosity: a cut of the trees per patch (paper 3)",
+     {Hisr, V::None, Multires, R::Upsample}},
+};
+
+} // namespace
+
+std::span<const Technique> techniqueTable() { return kTechniques; }
+
+std::vector<std::string> techniqueNames() {
+  std::vector<std::string> names;
+  for (const Technique& t : kTechniques) names.push_back(t.name);
+  return names;
+}
+
+const Technique& techniqueByName(const std::string& name) {
+  std::string all;
+  for (const Technique& t : kTechniques) {
+    if (t.name == name) return t;
+    all += (all.empty() ? "" : ", ") + std::string(t.name);
+  }
+  const std::string near = nearestName(name, techniqueNames());
+  throw InputError("--technique " + name,
+                   "no such technique (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
+}
+
+void applyTechnique(Settings& settings, const Technique& technique) {
+  if (!rowOf(settings.vpl.source).sampled || !rowOf(technique.axes.source).sampled) {
+    settings.vpl.visibility = technique.axes.visibility;
+    settings.gather.mode = technique.axes.gather;
+  }
+  settings.vpl.source = technique.axes.source;
+  settings.own = technique.make ? &technique : nullptr;
+}
+
+void applyTechnique(Settings& settings, const std::string& name) { applyTechnique(settings, techniqueByName(name)); }
+
+const Technique& techniqueOf(const Settings& settings) {
+  if (settings.own) return *settings.own;
+  const Technique* nearest = nullptr;
+  for (const Technique& t : kTechniques) {
+    if (t.axes.source != settings.vpl.source) continue;
+    if (t.axes.gather == settings.gather.mode) return t;
+    if (!nearest) nearest = &t;
+  }
+  CHECK(nearest != nullptr);
+  return *nearest;
+}
+
+} // namespace lambent

@@ -1,0 +1,93 @@
+#include "gi/frame/world_keeper.h"
+
+#include <utility>
+
+namespace lambent {
+
+namespace {
+
+constexpr SceneChanges kAllChanged{true, true, true, true, true};
+
+bool anyChange(const SceneChanges& c) { return c.first || c.camera || c.lights || c.geometry || c.instances; }
+
+/// All maps are drawn anew when their reach changes, so it leaves room to grow.
+float reachOf(const SceneView& view, float before) {
+  const float wanted = view.boundsWorld.diameter();
+  if (wanted <= before && wanted >= 0.5f * before) return before;
+  return view.changes.geometry && before > 0 ? 1.25f * wanted : wanted;
+}
+
+} // namespace
+
+bool WorldKeeper::open(const SceneAssets& assets) {
+  if (assets_ == &assets) return false;
+  assets_ = &assets;
+  gpu_ = std::make_unique<GpuScene>(programs_, assets);
+  rays_ = std::make_unique<EmbreeQuery>(assets);
+  view_ = {};
+  drawn_ = frozen_ = false;
+  missed_ = true;
+  testedDraws_ = 0;
+  return true;
+}
+
+EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
+  missed_ |= before_.effects != settings.effects;
+  const bool drawingChanged = before_ != settings || shadersChanged_;
+  settingsChanged_ =
+      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || !drawn_;
+  before_ = settings;
+  shadersChanged_ = false;
+  const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !view_.view().instances.empty();
+  view_.take(given, freeze);
+  if (frozen_ && !freeze) missed_ = true;
+  frozen_ = freeze;
+
+  const FrameFacts facts{.first = !drawn_,
+                         .settingsChanged = settingsChanged_,
+                         .drawingChanged = drawingChanged,
+                         .settled = in.settled,
+                         .mapsWaiting = in.mapsWaiting,
+                         .lightArrived = in.lightArrived};
+  SceneView& view = view_.view();
+  EffectPlan plan = planEffects(view, settings, facts);
+  const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
+  if (missed_ && everything()) {
+    view.changes = kAllChanged;
+    plan = planEffects(view, settings, facts);
+  }
+  missed_ = !everything() && (missed_ || anyChange(view.changes));
+  drawn_ |= plan.on(EffectId::Redraw);
+  return plan;
+}
+
+World WorldKeeper::place(const EffectPlan& plan, FrameStats& stats) {
+  CpuScope scope(stats.stages, key(StageId::Scene));
+  using enum EffectId;
+  const SceneView& view = view_.view();
+  const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Masked;
+  rays_->setAlphaTest(alpha);
+  gpu_->setAlphaTest(alpha);
+  rays_->setTextures(plan.on(Textures));
+  stats.of(Motion) = rays_->update(view, plan.idle(Motion));
+  gpu_->place(view.instances);
+  moved_ = Disturbance(view);
+  lights_ = collectLights(view);
+  if (!plan.on(Emissive)) {
+    lights_.emitters.clear();
+    lights_.triangles.clear();
+    lights_.emission = false;
+  }
+  if (!plan.on(Sky)) lights_.sky = vec3(0);
+  if (plan.on(Redraw)) reach_ = reachOf(view, reach_);
+  return again();
+}
+
+void WorldKeeper::countWork(FrameStats& stats) {
+  const EmbreeQuery::Work done = rays_->takeWork();
+  stats.of(EffectId::Textures) = done.textureLookups;
+  const uint64_t draws = gpu_->testedDraws();
+  stats.of(EffectId::Alpha) = done.alphaTests + draws - std::exchange(testedDraws_, draws);
+}
+
+} // namespace lambent

@@ -1,0 +1,58 @@
+// The scene from frame to frame: taken over, placed for rays and for drawing as far as the plan goes; and the plan.
+#pragma once
+
+#include "engine/gl/program.h"
+#include "engine/trace/embree_query.h"
+#include "gi/contract/figures.h"
+#include "gi/contract/world.h"
+#include "gi/plan/settings.h"
+#include "gi/surfaces/gpu_scene.h"
+#include "gi/vpl/disturbance.h"
+#include "gi/vpl/light_set.h"
+
+namespace lambent {
+
+/// What a plan depends on besides the view and the settings.
+struct PlanInputs {
+  bool settled = false;      // the virtual lights have
+  uint32_t mapsWaiting = 0;  // of virtual lights
+  bool lightArrived = false; // that no picture shows yet
+};
+
+class WorldKeeper {
+ public:
+  explicit WorldKeeper(gl::ProgramCache& programs) : programs_(programs) {}
+
+  /// Makes ready for another scene. Says whether it is one.
+  bool open(const SceneAssets& assets);
+  /// Takes the view over and decides what is done in this frame. What no stage was told of stays a change until all
+  /// hear of it.
+  EffectPlan plan(const SceneView& given, const Settings& settings, const PlanInputs& in);
+  /// The view as the plan lets it be; valid until the next plan.
+  World place(const EffectPlan& plan, FrameStats& stats);
+  /// Figures of what rays and draws met since the last call.
+  void countWork(FrameStats& stats);
+
+  bool settingsChanged() const { return settingsChanged_; } // of VPLs or effects
+  void shadersChanged() { shadersChanged_ = true; }
+  /// As last placed.
+  World again() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, reach_}; }
+
+ private:
+  gl::ProgramCache& programs_;
+  const SceneAssets* assets_ = nullptr;
+  std::unique_ptr<GpuScene> gpu_;
+  std::unique_ptr<EmbreeQuery> rays_;
+  ViewCopy view_;
+  Disturbance moved_;
+  LightSet lights_;
+  Settings before_;
+  float reach_ = 0;
+  uint64_t testedDraws_ = 0; // the scene's count when last asked
+  bool settingsChanged_ = true, shadersChanged_ = false;
+  bool drawn_ = false;  // a picture was
+  bool frozen_ = false; // objects stand where they stood
+  bool missed_ = false; // something changed that not all stages were told of
+};
+
+} // namespace lambent

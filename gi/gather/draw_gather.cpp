@@ -1,0 +1,100 @@
+// Irradiance from virtual lights. Paper 1, section 4.5: interleaved sampling, each pixel of a 4×4 block reads one of 16
+// subsets. We draw the pixels of a subset side by side (de-interleaved): every fragment of a draw then runs the same
+// lights, 10–25 % faster on software Mesa and kinder to GPU caches.
+#include "gi/gather/draw_gather.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
+
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid) {
+  if (grid == 1) return {{.origin = {0, 0}, .size = {gbuffer.width, gbuffer.height}}};
+  std::vector<GatherArea> areas;
+  const glm::ivec2 tile = tileSize(gbuffer);
+  for (int c = 0; c < kLightClasses; ++c) {
+    const glm::ivec2 subset(c % grid, c / grid);
+    areas.push_back({.origin = subset * tile, .size = tile, .subset = subset});
+  }
+  return areas;
+}
+
+std::vector<std::string> bindSurfaces(const GBuffer& gbuffer) {
+  gbuffer.camera->bindUniform(0);
+  gbuffer.depth->bind(0);
+  gbuffer.normal->bind(1);
+  if (!gbuffer.finish) return {};
+  gbuffer.albedo->bind(6);
+  gbuffer.finish->bind(7);
+  return {"GLOSSY"};
+}
+
+void setShading(const gl::Program& program, const GatherDraw& draw) {
+  program.set("diskFactor", draw.bounds.disk / kPi);
+  program.set("largestG", draw.bounds.clamp > 0 ? draw.bounds.clamp : kInfinity);
+  program.set("spread", draw.bounds.spread);
+  if (!draw.seen.maps) return;
+  program.set("farDistance", draw.seen.maps->farDistance);
+  program.set("mapResolution", float(draw.seen.maps->resolution));
+  program.set("biasTexels", draw.biasTexels);
+}
+
+void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
+  if (in.seen.lights.trees) {
+    drawTreeGather(programs, target, in);
+    return;
+  }
+  const PackedLights& packed = in.seen.lights.packed;
+  const ParaboloidMaps* maps = in.seen.maps;
+  gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.gbuffer)};
+  if (in.patches) desc.defines.push_back("PATCHES");
+  if (maps) desc.defines.push_back("SHADOWS");
+  if (maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
+  const gl::Program& program = programs.get(desc);
+  program.use();
+  setShading(program, in);
+  const bool subsets = in.grid > 1;
+  program.set("stride", in.grid);
+  program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
+  program.set("scale", subsets ? float(kLightClasses) : 1.0f);
+  target.bind();
+  glBindSampler(2, in.smoothShadows ? in.smoothShadows->name() : 0);
+
+  constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
+  constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
+  const uint32_t chunks = std::max(1u, (packed.count + kChunk - 1) / kChunk);
+  for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    const uint32_t lights = std::min(kChunk, packed.count - chunk * kChunk);
+    program.set("perClass", int((lights + kLightClasses - 1) / kLightClasses));
+    if (maps && lights > 0) {
+      CHECK_LT(chunk, maps->arrays.size());
+      maps->arrays[chunk].bind(2);
+    }
+    for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
+      packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
+      program.set("blockClass", block * kClassesPerLightBlock);
+      for (const GatherArea& area : in.areas) {
+        const int lightClass = area.subset.x + 4 * area.subset.y;
+        if (subsets && lightClass / kClassesPerLightBlock != block) continue;
+        program.set("firstClass", subsets ? lightClass % kClassesPerLightBlock : 0);
+        program.set("subset", area.subset);
+        program.set("tileOrigin", area.origin);
+        program.set("level", area.level);
+        gl::PipelineState{.add = in.addToTarget || chunk > 0 || (!subsets && block > 0),
+                          .stencil = in.patches ? gl::Stencil::Marked : gl::Stencil::Off,
+                          .x = area.origin.x,
+                          .y = area.origin.y,
+                          .width = area.size.x,
+                          .height = area.size.y}
+            .apply();
+        gl::drawFullscreen();
+      }
+    }
+  }
+  glBindSampler(2, 0);
+}
+
+} // namespace lambent

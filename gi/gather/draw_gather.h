@@ -1,0 +1,50 @@
+// The draw that all gathers of virtual lights and the direct pass's emissive samples share.
+#pragma once
+
+#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/pass_context.h"
+#include "gi/contract/virtual_lights.h"
+#include "gi/plan/settings.h"
+
+namespace lambent {
+
+/// A rectangle of the target whose fragments are the pixels of one sub-image, or patches of it.
+struct GatherArea {
+  glm::ivec2 origin, size; // texels of the target
+  glm::ivec2 subset{0};    // which sub-image, and of which class of lights; (0, 0) and every light if there is one only
+  int level = 0;           // of the patches: see shaders/shared/patches.h
+};
+
+struct GatherDraw {
+  const GBuffer& gbuffer;
+  SeenLights seen;
+  const gl::Sampler* smoothShadows = nullptr; // bilinear depth comparison; null: nearest texel
+  std::span<const GatherArea> areas;
+  int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
+  bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
+  bool addToTarget = false; // instead of overwriting it
+  float biasTexels = 1;
+  GatherSettings bounds = {}; // of near lights, and of lobes; the mode is not read
+};
+
+/// Size of one of the 16 sub-images of a de-interleaved picture.
+glm::ivec2 tileSize(const GBuffer& gbuffer);
+
+/// Pixels of the picture as they are, or as 16 tiles.
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid);
+
+/// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
+/// G-buffer has finishes, else none.
+std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);
+
+/// What shaders/lib/vpl_shading.glsl reads besides lights and surfaces.
+void setShading(const gl::Program& program, const GatherDraw& draw);
+
+/// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has finishes, gets the glossy
+/// light. From trees patches must be black before.
+void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
+
+/// The draw of lights that are trees.
+void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
+
+} // namespace lambent

@@ -1,0 +1,49 @@
+// The multiresolution buffer of papers 2 and 3, flattened: light at patches of all sizes side by side, and the way from
+// there to pixels.
+#pragma once
+
+#include "gi/gather/draw_gather.h"
+#include "gi/contract/indirect_stage.h"
+
+namespace lambent {
+
+/// See shaders/shared/patches.h.
+struct AtlasShape {
+  glm::ivec2 base{0}; // level 0, texels
+  int coarsest = 0;   // level
+  int grid = 1;       // sub-images per axis
+  bool glossy = false;
+
+  glm::ivec2 sub(int level) const { return base / grid / (1 << level); }
+  int gridLevel() const { return grid == 4 ? 2 : 0; }
+  bool operator==(const AtlasShape&) const = default;
+};
+
+class PatchAtlas {
+ public:
+  explicit PatchAtlas(PassContext context) : context_(context) {}
+
+  /// Lays the atlas out for the picture's patches, or with `subsets` for those of each of the 16 sub-images.
+  void fit(const GBuffer& surfaces, const PatchPyramid& patches, bool subsets);
+  const AtlasShape& shape() const { return shape_; }
+  const gl::Framebuffer& framebuffer() const { return framebuffer_; } // with the stencil
+  const gl::Texture& stencil() const { return stencil_; }
+
+  /// Black everywhere.
+  void clear() const;
+  void clearLight() const { target_.clear(); }
+  /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
+  void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);
+  LightOnSurfaces light() const { return target_.light(shape_.grid > 1); }
+
+ private:
+  PassContext context_;
+  AtlasShape shape_;
+  gl::Texture atlas_, stencil_, levels_;   // levels_: level l ≥ 1 made whole is mip level l − 1
+  gl::Texture atlasGlossy_, levelsGlossy_; // beside them, when the G-buffer has finishes
+  gl::Framebuffer framebuffer_;
+  std::vector<gl::Framebuffer> levelFramebuffers_;
+  LightTarget target_{"multires"};
+};
+
+} // namespace lambent

@@ -1,0 +1,98 @@
+// Indirect irradiance gathered at patches. Paper 3, section 3.2: one pass marks the patches in a stencil buffer, the
+// gather runs on these only. Beyond the paper: neighbours differ by one level at most, any set of lights with its
+// shadow maps, and subsets of interleaved sampling (paper 1, 4.5), each with a multiresolution buffer of its own over
+// every fourth pixel; a patch of such a buffer lies within a smooth block of the picture, so that all subsets have the
+// same patches.
+#include "gi/gather/patch_atlas.h"
+#include "gi/gather/stages.h"
+#include "shaders/shared/patches.h"
+
+namespace lambent {
+
+namespace {
+
+class PatchGather : public IndirectStage {
+ public:
+  explicit PatchGather(PassContext context) : context_(context) {}
+
+  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+    const PatchPyramid& patches = in.patches.pyramid();
+    atlas_.fit(in.surfaces, patches, rowOf(in.settings.gather.mode).subsets);
+    mark(in.surfaces, patches);
+    gather(in);
+    const gl::PassScope scope = context_.scope(StageId::Upsample);
+    atlas_.upsample(in.surfaces, in.settings);
+    if (marks_) glGetQueryObjectui64v(marks_.name(), GL_QUERY_RESULT_NO_WAIT, &marked_); // untouched if not yet known
+    stats.patches = marked_;
+    return atlas_.light();
+  }
+
+ private:
+  /// Sets the stencil where a patch gathers.
+  void mark(const GBuffer& surfaces, const PatchPyramid& patches) {
+    const gl::PassScope scope = context_.scope(StageId::Stencil);
+    const AtlasShape& shape = atlas_.shape();
+    const gl::Texture& stencil = atlas_.stencil();
+    if (stencilOf_ != stencil.name()) {
+      stencilFramebuffer_ = gl::Framebuffer("multires stencil", {}, &stencil);
+      stencilOf_ = stencil.name();
+    }
+    stencilFramebuffer_.bind();
+    gl::PipelineState{.stencil = gl::Stencil::Mark, .width = stencil.width(), .height = stencil.height()}.apply();
+    const GLint zero = 0;
+    glClearNamedFramebufferiv(stencilFramebuffer_.name(), GL_STENCIL, 0, &zero);
+    const gl::Program& program = context_.programs.get({.fragment = "refine.frag"});
+    program.use();
+    program.set("base", shape.base);
+    program.set("coarsest", shape.coarsest);
+    program.set("grid", shape.grid);
+    program.set("gridLevel", shape.gridLevel());
+    program.set("size", glm::ivec2(surfaces.width, surfaces.height));
+    surfaces.depth->bind(0);
+    if (patches.plane) {
+      patches.plane->bind(1);
+      patches.normalLo->bind(2);
+    }
+    if (!marks_) marks_ = gl::Query(GL_SAMPLES_PASSED);
+    glBeginQuery(GL_SAMPLES_PASSED, marks_.name());
+    gl::drawFullscreen();
+    glEndQuery(GL_SAMPLES_PASSED);
+  }
+
+  void gather(const IndirectInputs& in) {
+    const gl::PassScope scope = context_.scope(StageId::Gather);
+    const AtlasShape& shape = atlas_.shape();
+    atlas_.clear();
+    std::vector<GatherArea> areas;
+    for (int level = 0; level <= shape.coarsest; ++level) {
+      const glm::ivec2 sub = shape.sub(level);
+      for (int c = 0; c < shape.grid * shape.grid; ++c) {
+        const glm::ivec2 subset(c % shape.grid, c / shape.grid);
+        areas.push_back(
+            {.origin = atlasOrigin(shape.base, level) + subset * sub, .size = sub, .subset = subset, .level = level});
+      }
+    }
+    drawGather(context_.programs, atlas_.framebuffer(),
+               {.gbuffer = in.surfaces,
+                .seen = in.seen,
+                .areas = areas,
+                .grid = shape.grid,
+                .patches = true,
+                .addToTarget = true,
+                .biasTexels = in.settings.shadow.bias,
+                .bounds = in.settings.gather});
+  }
+
+  PassContext context_;
+  PatchAtlas atlas_{context_};
+  gl::Framebuffer stencilFramebuffer_;
+  GLuint stencilOf_ = 0; // texture that it draws into
+  gl::Query marks_;
+  uint64_t marked_ = 0; // in the last run that is known of
+};
+
+} // namespace
+
+std::unique_ptr<IndirectStage> makePatchGather(PassContext context) { return std::make_unique<PatchGather>(context); }
+
+} // namespace lambent

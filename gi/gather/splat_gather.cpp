@@ -1,0 +1,56 @@
+// Lights splatted into patches (paper 2), all into the same, or each into patches of its own.
+#include "gi/gather/splat.h"
+#include "gi/gather/stages.h"
+
+namespace lambent {
+
+namespace {
+
+class SplatGather : public IndirectStage {
+ public:
+  explicit SplatGather(PassContext context) : context_(context) {}
+
+  LightOnSurfaces run(const IndirectInputs& in, FrameStats&) override {
+    const PatchPyramid& patches = in.patches.pyramid();
+    atlas_.fit(in.surfaces, patches, false);
+    const GatherDraw draw{.gbuffer = in.surfaces,
+                          .seen = in.seen,
+                          .biasTexels = in.settings.shadow.bias,
+                          .bounds = in.settings.gather};
+    const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
+    if (in.settings.gather.mode == GatherMode::SplatPerVpl) {
+      splatEach(in, splats);
+      return atlas_.light();
+    }
+    splat_.refine(splats);
+    atlas_.clear();
+    splat_.splat(splats, atlas_.framebuffer());
+    const gl::PassScope scope = context_.scope(StageId::Upsample);
+    atlas_.upsample(in.surfaces, in.settings);
+    return atlas_.light();
+  }
+
+ private:
+  /// What of a texel's light came from which patches is known only while one light is looked at, so each is made whole
+  /// by itself.
+  void splatEach(const IndirectInputs& in, const SplatInputs& splats) {
+    const gl::PassScope scope = context_.scope(StageId::SplatPerVpl);
+    atlas_.clearLight();
+    for (uint32_t slot = 0; slot < in.seen.lights.packed.count; ++slot) {
+      splat_.refineFor(splats, slot);
+      atlas_.clear();
+      splat_.splatOne(splats, atlas_.framebuffer(), slot);
+      atlas_.upsample(in.surfaces, in.settings, true);
+    }
+  }
+
+  PassContext context_;
+  PatchAtlas atlas_{context_};
+  SplatPass splat_{context_};
+};
+
+} // namespace
+
+std::unique_ptr<IndirectStage> makeSplatGather(PassContext context) { return std::make_unique<SplatGather>(context); }
+
+} // namespace lambent

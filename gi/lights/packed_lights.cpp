@@ -1,0 +1,70 @@
+#include "gi/lights/packed_lights.h"
+
+#include "shaders/shared/paraboloid.h"
+
+#include <cstring>
+
+namespace lambent {
+
+namespace {
+
+const VplLight kNoLight{vec4(0), vec4(0), vec4(0), vec4(0)};
+constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
+
+} // namespace
+
+uint32_t lightOrder(uint32_t slot) {
+  return slot / kChunk * kChunk + slot % kLightClasses * kLightsPerClass + slot % kChunk / kLightClasses;
+}
+
+VplLight pack(const VirtualLight& light) {
+  const vec3 power = light.radiance * light.area;
+  // A light that is empty, black or not a number must not reach the loop: one NaN there blackens a whole subset.
+  if (!light.alive || !(light.area > 0) || !(maxComponent(power) > 0) || !isFinite(power) ||
+      !isFinite(light.position) || !isFinite(light.normal))
+    return kNoLight;
+  vec3 tangent, bitangent;
+  basisAround(light.normal, tangent, bitangent);
+  return {vec4(light.position, light.area), vec4(power, light.normal.x), vec4(tangent, light.normal.y),
+          vec4(bitangent, light.normal.z)};
+}
+
+VirtualLight unpack(const VplLight& packed) {
+  VirtualLight light;
+  if (!(packed.positionArea.w > 0)) return light;
+  light.position = vec3(packed.positionArea);
+  light.normal = light.geometricNormal =
+      vec3(packed.powerNormalX.w, packed.tangentNormalY.w, packed.bitangentNormalZ.w);
+  light.area = packed.positionArea.w;
+  light.radiance = vec3(packed.powerNormalX) / light.area;
+  light.alive = true;
+  return light;
+}
+
+PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
+  const gl::PassScope scope = context_.scope(stage_);
+  const size_t chunks = std::max<size_t>(1, (slots.size() + kChunk - 1) / kChunk);
+  const bool fresh = mirror_.size() != chunks * kChunk;
+  if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
+  uploaded_ = 0;
+  std::vector<bool> dirtyChunks(chunks, fresh);
+  const auto put = [&](uint32_t slot, const VplLight& light) {
+    VplLight& held = mirror_[lightOrder(slot)];
+    if (std::memcmp(&held, &light, sizeof light) == 0) return;
+    held = light;
+    dirtyChunks[slot / kChunk] = true;
+    ++uploaded_;
+  };
+  for (uint32_t i = 0; i < slots.size(); ++i) put(i, pack(slots[i]));
+  for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
+  count_ = uint32_t(slots.size());
+
+  if (fresh) buffer_ = gl::Buffer(std::string(key(stage_).name) + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
+  // Whole chunks of 128 KiB: one transfer costs less than many small ones.
+  for (size_t chunk = 0; chunk < chunks; ++chunk)
+    if (dirtyChunks[chunk])
+      buffer_.write(chunk * kChunk * sizeof(VplLight), kChunk * sizeof(VplLight), &mirror_[chunk * kChunk]);
+  return {&buffer_, count_};
+}
+
+} // namespace lambent

@@ -1,0 +1,33 @@
+// Lights of reflective shadow maps (papers 2 and 3), drawn on the GPU.
+#include "gi/lights/reflective_source.h"
+
+#include "gi/vpl/disturbance.h"
+
+namespace lambent {
+
+VirtualLights ReflectiveSource::run(const SourceInputs& in, FrameStats& stats) {
+  if (!in.plan.on(EffectId::Redraw)) return {};
+  const World& world = in.world;
+  const uint64_t draws = gl::drawCount();
+  const VplSource source = in.settings.vpl.source;
+  sheet_ = mapPass_.run({world.gpu, world.view.lights, world.view.boundsWorld, world.view.changes.first || old_,
+                         world.moved.boxes(), in.settings.rsm, source});
+  old_ = false;
+  VirtualLights lights;
+  if (rowOf(source).tree) {
+    trees_.emplace(LightTrees{sheet_, in.settings.rsm});
+    lights.trees = &*trees_;
+  } else {
+    lights.packed = lightPass_.run(sheet_, in.settings.rsm, source);
+    lights.alive = lights.packed.count;
+    if (in.settings.vpl.visibility != VplVisibility::None) { // shadow maps and rays are made from the CPU's side
+      shown_.clear();
+      for (const VplLight& light : lightPass_.read()) shown_.push_back(unpack(light));
+      lights.slots = shown_;
+    }
+  }
+  stats.of(EffectId::Indirect) += gl::drawCount() - draws;
+  return lights;
+}
+
+} // namespace lambent

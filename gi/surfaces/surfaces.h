@@ -1,0 +1,67 @@
+// Surfaces of the picture: drawn, or taken over from a host; and the pyramid of their smooth patches.
+#pragma once
+
+#include "gi/contract/pass_context.h"
+#include "gi/contract/patches.h"
+#include "gi/contract/surfaces.h"
+#include "gi/plan/settings.h"
+#include "gi/surfaces/gpu_scene.h"
+
+namespace lambent {
+
+/// The block of a camera; `orthoFar` is the far plane of an orthographic one, metres.
+CameraBlock cameraBlock(const CameraView& camera, float orthoFar);
+
+struct SurfaceInputs {
+  const GpuScene& scene;
+  const CameraView& camera;
+  bool glossy = false;                // with `finish`: the passes that follow then add glossy reflection
+  const HostSurfaces* host = nullptr; // taken over instead of drawing
+};
+
+/// Throws InputError when a host's texture is missing or has not the camera's size.
+void checkHost(const HostSurfaces& host, const CameraView& camera);
+
+class SurfacePass {
+ public:
+  explicit SurfacePass(PassContext context) : context_(context) {}
+  GBuffer run(const SurfaceInputs& in);
+
+ private:
+  GBuffer adopt(const SurfaceInputs& in);
+
+  PassContext context_;
+  gl::Texture depth_, normal_, albedo_, emission_, finish_;
+  gl::Texture hosts_[5]; // a host's, as ours
+  gl::Framebuffer framebuffer_;
+  gl::Buffer camera_;
+};
+
+struct PatchInputs {
+  const gl::Texture& depth;  // reversed, affine on planes; 0 where nothing is seen
+  const gl::Texture& normal; // unit
+  glm::ivec2 size;           // pixels
+  glm::ivec2 cell;           // of one map; `size` for a picture
+  int levels = 0;
+  float orthoScale = 0;    // depth range over half the width of maps by parallel rays
+  int orthoFrom = 1 << 20; // the first of these, row by row; all before it have a perspective
+  float depthThreshold, normalThreshold;
+  bool balance = true;
+};
+
+class PatchPass {
+ public:
+  PatchPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
+  PatchPyramid run(const PatchInputs& in);
+  /// Of a picture.
+  PatchPyramid run(const GBuffer& surfaces, const MultiresSettings& settings);
+
+ private:
+  PassContext context_;
+  StageId stage_;
+  std::string name_;
+  gl::Texture plane_, normalLo_, normalHi_;
+  std::vector<gl::Framebuffer> framebuffers_; // by mip level
+};
+
+} // namespace lambent
