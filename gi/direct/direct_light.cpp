@@ -72,8 +72,8 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
     const std::vector<MapJob> jobs = jobsAtOnce(poses, emitterPoses_, samples, world.moved.boxes(),
                                                 world.view.changes.first, shadow.emitterResolution);
     emitterPoses_ = std::move(poses);
-    maps = emitterMaps_.run({world.gpu, &world.rays, emitterPoses_, jobs, world.reach, shadow.emitterResolution,
-                             shadow.maker});
+    maps = emitterMaps_.run(
+        {world.gpu, &world.rays, emitterPoses_, jobs, world.reach, shadow.emitterResolution, shadow.maker});
     stats.mapsDrawn += emitterMaps_.mapsDrawn();
     stats.of(EffectId::Emissive) += emitterMaps_.mapsDrawn();
     stats.of(EffectId::SoftShadows) = in.plan.on(EffectId::SoftShadows) ? samples.size() : 0;
@@ -110,9 +110,9 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
 /// Nothing needs the box where no map is fitted to it.
 void DirectLight::fitReceivers(const DirectInputs& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
-  const bool fitted = in.plan.on(EffectId::Sky) || std::any_of(view.lights.begin(), view.lights.end(), [](const auto& l) {
-                        return l.type == LightType::Directional;
-                      });
+  const bool fitted =
+      in.plan.on(EffectId::Sky) || std::any_of(view.lights.begin(), view.lights.end(),
+                                               [](const auto& l) { return l.type == LightType::Directional; });
   if (!fitted) {
     receivers_ = {};
     return;

@@ -109,9 +109,15 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
     k.expose(picture);
-    k.results = {surfaces,       direct,        gathered,
-                 indirect,       picture,       k.keeper.maps(),
-                 patches.made(), source ? source->set() : nullptr, world.view.skyRadiance,
+    k.results = {surfaces,
+                 direct,
+                 gathered,
+                 indirect,
+                 picture,
+                 k.keeper.maps(),
+                 patches.made(),
+                 source ? source->set() : nullptr,
+                 world.view.skyRadiance,
                  world.reach};
   }
 
@@ -210,7 +216,7 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   for (const VirtualLight& light : lights) poses.push_back(light.pose());
   const ShadowSettings& shadow = k.settings.shadow;
   const World world = k.world.again();
-  const ParaboloidMapInputs maps{world.gpu,         &world.rays,  poses, {}, view.boundsWorld.diameter(),
+  const ParaboloidMapInputs maps{world.gpu,         &world.rays, poses, {}, view.boundsWorld.diameter(),
                                  shadow.resolution, shadow.maker};
   return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,
                                 progress);

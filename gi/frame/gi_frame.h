@@ -8,9 +8,9 @@
 #include "engine/trace/ray_query.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/surfaces.h"
-#include "gi/visibility/shadow_agreement.h"
 #include "gi/plan/settings.h"
 #include "gi/plan/techniques.h"
+#include "gi/visibility/shadow_agreement.h"
 #include "gi/vpl/vpl_set.h"
 
 #include <functional>

@@ -2,8 +2,8 @@
 // there to pixels.
 #pragma once
 
-#include "gi/gather/draw_gather.h"
 #include "gi/contract/indirect_stage.h"
+#include "gi/gather/draw_gather.h"
 
 namespace lambent {
 

@@ -130,7 +130,8 @@ void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
 void SplatPass::splatOne(const SplatInputs& in, const gl::Framebuffer& atlas, uint32_t slot) {
   const LightPlace place(slot);
   const int perClass =
-      int(std::min(kChunk, in.draw.seen.lights.packed.count - place.chunk * kChunk) + kLightClasses - 1) / kLightClasses;
+      int(std::min(kChunk, in.draw.seen.lights.packed.count - place.chunk * kChunk) + kLightClasses - 1) /
+      kLightClasses;
   const int index = place.light / kLightsPerClass * perClass + place.light % kLightsPerClass;
   drawPoints(in, atlas, place.chunk, place.block, index, 1);
 }
@@ -143,8 +144,8 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   const glm::ivec2 size = atlasSize(in.shape.base, in.shape.coarsest);
   program.set("base", in.shape.base);
   program.set("inverseSize", 1.0f / vec2(size));
-  program.set("perClass",
-              int(std::min(kChunk, in.draw.seen.lights.packed.count - chunk * kChunk) + kLightClasses - 1) / kLightClasses);
+  program.set("perClass", int(std::min(kChunk, in.draw.seen.lights.packed.count - chunk * kChunk) + kLightClasses - 1) /
+                              kLightClasses);
   program.set("firstLight", firstLight);
   program.set("blockClass", block * kClassesPerLightBlock);
   program.use();

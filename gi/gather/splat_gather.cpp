@@ -13,10 +13,8 @@ class SplatGather : public IndirectStage {
   LightOnSurfaces run(const IndirectInputs& in, FrameStats&) override {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, false);
-    const GatherDraw draw{.gbuffer = in.surfaces,
-                          .seen = in.seen,
-                          .biasTexels = in.settings.shadow.bias,
-                          .bounds = in.settings.gather};
+    const GatherDraw draw{
+        .gbuffer = in.surfaces, .seen = in.seen, .biasTexels = in.settings.shadow.bias, .bounds = in.settings.gather};
     const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
     if (in.settings.gather.mode == GatherMode::SplatPerVpl) {
       splatEach(in, splats);

@@ -8,11 +8,11 @@ namespace lambent {
 IndirectStage& IndirectStages::of(const Settings& settings) {
   const GatherRow& gather = rowOf(settings.gather.mode);
   const bool rays = settings.vpl.visibility == VplVisibility::Rays;
-  const Make make = settings.own      ? settings.own->make
-                    : rays            ? makeRayGather
-                    : gather.splats   ? makeSplatGather
-                    : gather.patches  ? makePatchGather
-                                      : makePixelGather;
+  const Make make = settings.own     ? settings.own->make
+                    : rays           ? makeRayGather
+                    : gather.splats  ? makeSplatGather
+                    : gather.patches ? makePatchGather
+                                     : makePixelGather;
   for (const auto& [by, stage] : made_)
     if (by == make) return *stage;
   made_.emplace_back(make, make(context_));

@@ -59,7 +59,8 @@ PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
   for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
-  if (fresh) buffer_ = gl::Buffer(std::string(key(stage_).name) + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
+  if (fresh)
+    buffer_ = gl::Buffer(std::string(key(stage_).name) + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
   // Whole chunks of 128 KiB: one transfer costs less than many small ones.
   for (size_t chunk = 0; chunk < chunks; ++chunk)
     if (dirtyChunks[chunk])

@@ -58,8 +58,7 @@ VirtualLights SampledSource::run(const SourceInputs& in, FrameStats& stats) {
   const bool persistent = rowOf(in.settings.vpl.source).persistent;
   const bool needed = kept_.set.slots.empty() || called(Replace) || (persistent && (called(Relight) || called(Motion)));
   // Forced by settings though nothing calls for it: done on a copy that is thrown away.
-  const bool pretended =
-      !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
+  const bool pretended = !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
   const bool beside = in.settings.frame.overlap && needed && !kept_.set.slots.empty();
   std::vector<uint32_t> carried;
   if (beside && persistent) { // others place theirs anew

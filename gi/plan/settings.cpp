@@ -282,7 +282,11 @@ Axes axesOf(const Settings& s) {
                          : (filtered ? Reconstruction::Filter : Reconstruction::None)};
 }
 
-std::string whyNot(const Settings& settings) { return whyNot(axesOf(settings)); }
+std::string whyNot(const Settings& settings) {
+  if (!settings.own && settings.gather.mode == GatherMode::Own)
+    return "gather.mode own: no technique with a stage of its own is chosen (--technique)";
+  return whyNot(axesOf(settings));
+}
 
 const std::vector<std::string>& presetNames() {
   static const std::vector<std::string> names{"low", "medium", "high", "ultra"};

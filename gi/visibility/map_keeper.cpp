@@ -18,8 +18,13 @@ SeenLights MapKeeper::see(const KeeperInputs& in, const EffectPlan& plan, FrameS
   poses.reserve(in.lights.slots.size());
   for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose());
   std::swap(poses_, poses); // `poses` are those before
-  ParaboloidMapInputs maps{in.world.gpu,        &in.world.rays,           poses_, {}, in.world.reach,
-                           in.settings.shadow.resolution, in.settings.shadow.maker};
+  ParaboloidMapInputs maps{in.world.gpu,
+                           &in.world.rays,
+                           poses_,
+                           {},
+                           in.world.reach,
+                           in.settings.shadow.resolution,
+                           in.settings.shadow.maker};
   std::vector<MapJob> jobs;
   if (!in.lights.mayWait) {
     jobs = jobsAtOnce(poses_, poses, in.lights.slots, in.world.moved.boxes(), in.world.view.changes.first || old_,

@@ -1,7 +1,7 @@
 // The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/test_maps.cpp checks.
+#include "gi/visibility/paraboloid_makers.h"
 #include "engine/core/parallel.h"
 #include "engine/trace/ray_query.h"
-#include "gi/visibility/paraboloid_makers.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <cmath>

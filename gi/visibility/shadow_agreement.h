@@ -1,5 +1,5 @@
-// How well paraboloid shadow maps tell what light of a virtual light reaches a pixel: the two makers against each other,
-// and each against rays. Weighted by contribution (docs: visibility error).
+// How well paraboloid shadow maps tell what light of a virtual light reaches a pixel: the two makers against each
+// other, and each against rays. Weighted by contribution (docs: visibility error).
 #pragma once
 
 #include <cstdint>

@@ -25,8 +25,8 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
 }
 
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const VirtualLight> lights, const GatherSettings& settings, RayCounts& counts,
-                                   GlossyGather* glossy) {
+                                   std::span<const VirtualLight> lights, const GatherSettings& settings,
+                                   RayCounts& counts, GlossyGather* glossy) {
   constexpr size_t kGrain = 16;
   if (glossy) glossy->radiance.assign(surfaces.size(), vec3(0));
   std::vector<vec3> irradiance(surfaces.size(), vec3(0));

@@ -97,6 +97,8 @@ struct EmitterPatch {
 /// emitter's surface, the same every time. Double-sided emitters give one patch per side. The patches of an emitter add
 /// up to its power exactly.
 std::vector<EmitterPatch> emitterPatches(const LightSet& lights, int count);
-inline VirtualLight lightOf(const EmitterPatch& p) { return {p.position, p.normal, p.normal, p.radiance, p.area, true}; }
+inline VirtualLight lightOf(const EmitterPatch& p) {
+  return {p.position, p.normal, p.normal, p.radiance, p.area, true};
+}
 
 } // namespace lambent

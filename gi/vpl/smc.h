@@ -167,7 +167,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
 /// Candidates that were taken are marked alive.
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
 
-/// Parts of an update that may be left out or forced (gi/plan/effects.h). As they stand, all is done that changes call for.
+/// Parts of an update that may be left out or forced (gi/plan/effects.h). As they stand, all is done that changes call
+/// for.
 struct VplEffects {
   bool replace = true;     // false: slots once filled keep their VPLs, and no candidates are looked for
   bool relight = true;     // false: only VPLs that are new are lit
@@ -226,8 +227,8 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
 
 /// Irradiance at surfaces from all lights, a ray for every pair; zero where there is none.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
-                                   std::span<const VirtualLight> lights, const GatherSettings& settings, RayCounts& counts,
-                                   GlossyGather* glossy = nullptr);
+                                   std::span<const VirtualLight> lights, const GatherSettings& settings,
+                                   RayCounts& counts, GlossyGather* glossy = nullptr);
 
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
 /// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².

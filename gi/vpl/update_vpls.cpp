@@ -281,7 +281,8 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
 void mergeStages(std::vector<StageTime>& stages) {
   std::vector<StageTime> merged;
   for (const StageTime& s : stages) {
-    const auto same = std::find_if(merged.begin(), merged.end(), [&](const StageTime& m) { return m.stage == s.stage; });
+    const auto same =
+        std::find_if(merged.begin(), merged.end(), [&](const StageTime& m) { return m.stage == s.stage; });
     if (same == merged.end())
       merged.push_back(s);
     else

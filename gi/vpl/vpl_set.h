@@ -83,12 +83,13 @@ struct VplSet {
 };
 
 /// By slot.
-inline std::vector<VirtualLight> lightsOf(const VplSet& set) {
+inline std::vector<VirtualLight> lightsOf(std::span<const Vpl> slots) {
   std::vector<VirtualLight> lights;
-  lights.reserve(set.slots.size());
-  for (const Vpl& v : set.slots) lights.push_back(lightOf(v));
+  lights.reserve(slots.size());
+  for (const Vpl& v : slots) lights.push_back(lightOf(v));
   return lights;
 }
+inline std::vector<VirtualLight> lightsOf(const VplSet& set) { return lightsOf(set.slots); }
 
 /// What one update did: which slots need a new shadow map, and figures for the frame log.
 struct VplChanges {

@@ -75,7 +75,7 @@ test::Mean meanOverSeeds(World& world, uint32_t seeds) {
     world.set = {};
     world.update(seed);
     double mean = 0;
-    for (const vec3& e : gatherByRays(world.rays, world.view.camera, world.set.slots, exact, counts))
+    for (const vec3& e : gatherByRays(world.rays, world.view.camera, lightsOf(world.set), exact, counts))
       mean += double(e.x) / 40;
     means.push_back(mean);
   }

@@ -52,7 +52,7 @@ struct LitRoom {
 
   std::vector<vec3> irradiance(const VplSet& set) {
     RayCounts counts;
-    return irradianceByRays(*rays, seen, set.slots, {}, counts);
+    return irradianceByRays(*rays, seen, lightsOf(set), {}, counts);
   }
 };
 

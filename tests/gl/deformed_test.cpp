@@ -32,7 +32,7 @@ class DeformedDraw : public GlTest {
     scene.reshape(1, waves(scene.assets.meshes[1], 0.35f, phase));
     scene.reshape(2, waves(scene.assets.meshes[2], 0.25f, 2 * phase));
   }
-  void expectAgreesWithRays(GBufferPass& pass, GpuScene& gpu) {
+  void expectAgreesWithRays(SurfacePass& pass, GpuScene& gpu) {
     EmbreeQuery rays(scene.assets);
     rays.update(scene.view());
     gpu.place(scene.instances);
@@ -64,7 +64,7 @@ class DeformedDraw : public GlTest {
 
 TEST_F(DeformedDraw, GBufferAgreesWithRaysAsTheShapeChanges) {
   GpuScene gpu(programs, scene.assets);
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   for (const float phase : {0.0f, 1.0f, 2.5f}) {
     reshape(phase);
     expectAgreesWithRays(pass, gpu);
@@ -81,7 +81,7 @@ TEST_F(DeformedDraw, GBufferAgreesWithRaysAsTheShapeChanges) {
 
 TEST_F(DeformedDraw, DepthMapsShowTheSameShape) {
   GpuScene gpu(programs, scene.assets);
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   reshape(1.5f);
   gpu.place(scene.instances);
   const GBuffer gbuffer = pass.run({gpu, scene.camera});
@@ -102,7 +102,7 @@ TEST_F(DeformedDraw, DepthMapsShowTheSameShape) {
 
 TEST_F(DeformedDraw, PicturesOfRigidScenesDoNotDependOnThem) {
   GpuScene gpu(programs, scene.assets), fresh(programs, scene.assets);
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   const auto normals = [&](GpuScene& on) {
     on.place(scene.instances);
     return readTexture(*pass.run({on, scene.camera}).normal);

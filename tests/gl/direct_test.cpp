@@ -1,5 +1,5 @@
 // Direct light against closed forms, and shadow maps that are drawn only when they must be.
-#include "gi/direct/light_shadows.h"
+#include "gi/direct/direct_light.h"
 #include "gl_fixture.h"
 
 namespace lambent::test {
@@ -15,46 +15,23 @@ ShadowSettings fixedResolutions() {
 
 class DirectTest : public GlTest {
  protected:
-  /// Direct irradiance of the picture, row 0 at the top.
-  Image irradianceOf(const HandScene& scene, const std::vector<EmitterPatch>& emitters = {}) {
-    const SceneView view = scene.view();
-    GpuScene gpu(programs, scene.assets);
-    gpu.place(view.instances);
-    GBufferPass gbufferPass(passes);
-    LightShadowPass shadowPass(passes);
-    DirectPass directPass(passes);
-    VplLightBuffer lightBuffer(passes, StageId::Emitters);
-    ParaboloidMapPass mapPass(passes, StageId::EmitterMaps);
-    const GBuffer gbuffer = gbufferPass.run({gpu, view.camera});
-    const LightShadows& shadows = shadowPass.run({gpu,
-                                                  view.lights,
-                                                  maxComponent(view.skyRadiance) > 0,
-                                                  view.skyRadiance,
-                                                  view.boundsWorld,
-                                                  view.boundsWorld,
-                                                  true,
-                                                  {},
-                                                  settings});
-    std::vector<VplLight> lights;
-    std::vector<MapPose> poses;
-    for (const EmitterPatch& sample : emitters) {
-      lights.push_back(emitterLight(sample));
-      poses.push_back(emitterPose(sample));
-    }
-    const VplLights uploaded = lightBuffer.run(lights);
-    const ParaboloidMaps maps = mapPass.run({.scene = gpu,
-                                             .poses = poses,
-                                             .jobs = {},
-                                             .farDistance = view.boundsWorld.diameter(),
-                                             .resolution = settings.emitterResolution});
-    DirectInputs in{gbuffer, shadows, nullptr, nullptr, settings};
-    if (!lights.empty()) {
-      in.emitters = &uploaded;
-      in.emitterMaps = &maps;
-    }
+  /// Direct irradiance of the picture, row 0 at the top; with emissive surfaces if there are some.
+  Image irradianceOf(const HandScene& scene, const LightSet& emitters = {}) {
+    Settings all;
+    all.shadow = settings;
+    all.effects[EffectId::Emissive] = emitters.emitters.empty() ? EffectMode::Off : EffectMode::On;
+    all.effects[EffectId::SoftShadows] = EffectMode::On;
+    LightSet lights = emitters;
+    lights.sky = scene.sky;
+    PlacedScene placed(programs, scene);
+    const World world = placed.world(lights);
+    SurfacePass surfaces(passes);
+    DirectLight direct(passes);
+    FrameStats stats;
     FrameResults results;
-    results.gbuffer = gbuffer;
-    results.indirect = {directPass.run(in).irradiance}; // reads as irradiance, without albedo
+    results.gbuffer = surfaces.run({world.gpu, world.view.camera});
+    // reads as irradiance, without albedo
+    results.indirect = direct.run({world, results.gbuffer, planEffects(world.view, all, {}), settings}, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 
@@ -139,9 +116,12 @@ TEST_F(DirectTest, MoreLightsThanABlockHolds) {
 
 TEST_F(DirectTest, EmissiveSampleOnAPlane) {
   Floor floor;
-  const EmitterPatch sample{.position = {0, 1.2f, 0}, .normal = {0, -1, 0}, .radiance = vec3(5), .area = 0.3f};
-  expectFloor(floor, irradianceOf(floor.scene, {sample}), [](const vec3& p) {
-    const vec3 d = vec3(0, 1.2f, 0) - p;
+  settings.emitterSamples = 1;
+  const LightSet lamp = emitterAt({0, 1.2f, 0}, {0, -1, 0}, vec3(5), 0.3f);
+  const EmitterPatch sample = emitterPatches(lamp, 1).at(0);
+  EXPECT_NEAR(sample.area, 0.3f, 1e-6f);
+  expectFloor(floor, irradianceOf(floor.scene, lamp), [&](const vec3& p) {
+    const vec3 d = sample.position - p;
     const float r2 = glm::dot(d, d), cosine = d.y / std::sqrt(r2);
     return 5 * 0.3f * cosine * cosine / (r2 + 0.3f / kPi);
   });

@@ -11,7 +11,11 @@ class DisplayTest : public GlTest {
     gpu->place(room.scene.instances);
     FrameResults frame;
     frame.gbuffer = gbufferPass.run({*gpu, room.scene.camera});
-    frame.indirect = upload.run(radiance);
+    texture = gl::Texture("radiance", {.format = GL_RGBA32F, .width = radiance.width, .height = radiance.height});
+    for (int y = 0; y < radiance.height; ++y) // rows from the bottom
+      glTextureSubImage2D(texture.name(), 0, 0, radiance.height - 1 - y, radiance.width, 1, GL_RGB, GL_FLOAT,
+                          &radiance.pixels[size_t(y) * radiance.width]);
+    frame.indirect = {&texture};
     frame.picture = {frame.indirect.irradiance};
     frame.sceneDiameter = 3.5f;
     return frame;
@@ -23,8 +27,8 @@ class DisplayTest : public GlTest {
 
   Room room;
   std::unique_ptr<GpuScene> gpu;
-  GBufferPass gbufferPass{passes};
-  IndirectUpload upload{passes};
+  SurfacePass gbufferPass{passes};
+  gl::Texture texture;
   DisplayPass displayPass{passes};
 };
 

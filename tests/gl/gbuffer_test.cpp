@@ -6,14 +6,14 @@ namespace lambent::test {
 using GBufferTest = GlTest;
 
 /// Draws `scene` and gives the frame results that readBuffer needs.
-FrameResults drawn(GBufferPass& pass, GpuScene& gpu, const HandScene& scene) {
+FrameResults drawn(SurfacePass& pass, GpuScene& gpu, const HandScene& scene) {
   gpu.place(scene.instances);
   FrameResults results;
   results.gbuffer = pass.run({gpu, scene.camera});
   return results;
 }
 
-void expectAgreesWithRays(GBufferPass& pass, gl::ProgramCache& programs, const Room& room) {
+void expectAgreesWithRays(SurfacePass& pass, gl::ProgramCache& programs, const Room& room) {
   GpuScene gpu(programs, room.scene.assets);
   const FrameResults frame = drawn(pass, gpu, room.scene);
   const Image depth = readBuffer(Buffer::Depth, frame), normal = readBuffer(Buffer::Normal, frame);
@@ -32,12 +32,12 @@ void expectAgreesWithRays(GBufferPass& pass, gl::ProgramCache& programs, const R
 }
 
 TEST_F(GBufferTest, PerspectiveAgreesWithRays) {
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   expectAgreesWithRays(pass, programs, Room());
 }
 
 TEST_F(GBufferTest, OrthographicAgreesWithRays) {
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   Room room;
   room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.85f), vec3(0, -0.1f, -1), 1);
   room.scene.camera.orthoHalfHeight = 0.6f; // all rays start inside the room
@@ -45,7 +45,7 @@ TEST_F(GBufferTest, OrthographicAgreesWithRays) {
 }
 
 TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   const Room room;
   GpuScene gpu(programs, room.scene.assets);
   const FrameResults frame = drawn(pass, gpu, room.scene);
@@ -69,7 +69,7 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   mirror[3][0] = 2; // x → 2 - x keeps the quad in its place
   scene.instances[2].worldFromObject = mirror;
   scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.6f);
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   GpuScene gpu(programs, scene.assets);
   const FrameResults frame = drawn(pass, gpu, scene);
   const Image emission = readBuffer(Buffer::Emission, frame), normal = readBuffer(Buffer::Normal, frame);
@@ -106,7 +106,7 @@ TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   scene.quad(vec3(-2, -3, 0), vec3(4, 0, 0), vec3(0, 2, 0), plain);
   scene.assets.meshes[2].colors.assign(4, vec4(0.25f, 0.5f, 0.75f, 1));
   scene.camera = cameraAt(vec3(0, 0, 5), vec3(0), 1.0f);
-  GBufferPass pass(passes);
+  SurfacePass pass(passes);
   GpuScene gpu(programs, scene.assets);
   const FrameResults frame = drawn(pass, gpu, scene);
   const Image albedo = readBuffer(Buffer::Albedo, frame), depth = readBuffer(Buffer::Depth, frame);

@@ -7,7 +7,13 @@
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
 #include "gi/frame/gi_frame.h"
-#include "gi/contract/passes.h"
+#include "gi/frame/picture.h"
+#include "gi/gather/stages.h"
+#include "gi/lights/packed_lights.h"
+#include "gi/surfaces/surfaces.h"
+#include "gi/vpl/disturbance.h"
+#include "gi/vpl/light_set.h"
+#include "shaders/shared/paraboloid.h"
 #include "tests/support/hand_scene.h"
 
 #include <gtest/gtest.h>
@@ -78,6 +84,85 @@ struct Room {
     rays.addBox(blockLo, blockHi, {.albedo = white});
     scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f);
   }
+};
+
+/// A virtual light that faces one way.
+inline VirtualLight lightAt(const vec3& position, const vec3& normal, const vec3& radiance, float area) {
+  return {position, normal, normal, radiance, area, true};
+}
+
+/// Light of one emissive triangle around `centre` that faces `normal`, and the single sample that stands for it.
+inline LightSet emitterAt(const vec3& centre, const vec3& normal, const vec3& radiance, float area) {
+  vec3 tangent, bitangent;
+  basisAround(normal, tangent, bitangent);
+  const float side = std::sqrt(2 * area);
+  const vec3 corner = centre - side / 3 * (tangent + bitangent);
+  LightSet lights;
+  addEmitter(lights, 0, 0, {makeEmitterTriangle(corner, corner + side * tangent, corner + side * bitangent, radiance)},
+             false);
+  return lights;
+}
+
+/// A scene as the stages of a frame see it when nothing moves.
+class PlacedScene {
+ public:
+  PlacedScene(gl::ProgramCache& programs, const HandScene& scene) : gpu_(programs, scene.assets), view_(scene.view()) {
+    gpu_.place(scene.instances);
+  }
+  const GpuScene& gpu() const { return gpu_; }
+  World world(const LightSet& lights = {}) {
+    lights_ = lights;
+    return {view_, gpu_, rays_, kNothingMoved, lights_, view_.boundsWorld.diameter()};
+  }
+
+ private:
+  GpuScene gpu_;
+  SceneView view_;
+  AnalyticQuery rays_;
+  LightSet lights_;
+};
+
+/// Surfaces of a scene, and light gathered on them from virtual lights by the stage that settings ask for.
+class GatherTest : public GlTest {
+ protected:
+  GBuffer surfaces(const HandScene& scene, bool glossy = false) {
+    placed = std::make_unique<PlacedScene>(programs, scene);
+    return surfacePass.run({placed->gpu(), scene.camera, glossy});
+  }
+  LightOnSurfaces gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
+                           const ParaboloidMaps* maps = nullptr) {
+    Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
+    const LightOnSurfaces light =
+        stages.of(settings).run({placed->world(), gbuffer, pyramid, {lights, maps}, settings}, stats);
+    patches = pyramid.made();
+    return light;
+  }
+  LightOnSurfaces gathered(const GBuffer& gbuffer, std::span<const VirtualLight> lights, const Settings& settings,
+                           const ParaboloidMaps* maps = nullptr) {
+    return gathered(gbuffer, VirtualLights{.packed = lightBuffer.run(lights), .slots = lights}, settings, maps);
+  }
+  static Settings with(GatherMode mode) {
+    Settings settings;
+    settings.gather.mode = mode;
+    return settings;
+  }
+  static Image read(Buffer buffer, const GBuffer& gbuffer, const LightOnSurfaces& raw,
+                    const LightOnSurfaces& indirect = {}) {
+    FrameResults results;
+    results.gbuffer = gbuffer;
+    results.raw = raw;
+    results.indirect = indirect;
+    return readBuffer(buffer, results);
+  }
+
+  std::unique_ptr<PlacedScene> placed;
+  SurfacePass surfacePass{passes};
+  PackedLightBuffer lightBuffer{passes, StageId::Vpls};
+  PatchPass patchPass{passes, StageId::Patches};
+  IndirectStages stages{passes};
+  FilterPass filterPass{passes};
+  FrameStats stats;
+  std::optional<PatchPyramid> patches; // of the last gather
 };
 
 /// A horizontal plane y = 0 of 20 m × 20 m seen from straight above at 4 m.

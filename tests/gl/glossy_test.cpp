@@ -1,7 +1,8 @@
 // Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
 #include "engine/trace/embree_query.h"
-#include "gi/reference/path_tracer.h"
+#include "gi/direct/direct_light.h"
 #include "gi/direct/light_shadows.h"
+#include "gi/reference/path_tracer.h"
 #include "gl_fixture.h"
 #include "shaders/shared/ggx.h"
 #include "tests/support/images.h"
@@ -10,7 +11,7 @@
 
 namespace lambent::test {
 
-class GlossyTest : public GlTest {
+class GlossyTest : public GatherTest {
  protected:
   /// The floor of one material, seen askew so that views, lights and lobes differ from pixel to pixel.
   struct GlossyFloor : Floor {
@@ -30,36 +31,11 @@ class GlossyTest : public GlTest {
     }
   };
 
-  GBuffer surfaces(const HandScene& scene, bool glossy = true) {
-    gpu = std::make_unique<GpuScene>(programs, scene.assets);
-    gpu->place(scene.instances);
-    return gbufferPass.run({*gpu, scene.camera, glossy});
-  }
-  RawIndirect gathered(const GBuffer& gbuffer, const std::vector<VplLight>& lights, GatherMode mode) {
-    const VplLights uploaded = lightBuffer.run(lights);
-    return gatherPass.run({gbuffer, uploaded, nullptr, 1, {.mode = mode}});
-  }
-  Image indirectRadiance(const GBuffer& gbuffer, const IndirectLight& indirect) {
-    FrameResults results;
-    results.gbuffer = gbuffer;
-    results.indirect = indirect;
-    return readBuffer(Buffer::Indirect, results);
-  }
-  static VplLight lamp(const vec3& position, const vec3& normal, const vec3& radiance, float area) {
-    Vpl vpl;
-    vpl.position = position;
-    vpl.normal = vpl.geometricNormal = normal;
-    vpl.radiance = radiance;
-    vpl.area = area;
-    vpl.alive = true;
-    return vplLight(vpl);
+  GBuffer surfaces(const HandScene& scene, bool glossy = true) { return GatherTest::surfaces(scene, glossy); }
+  Image indirectRadiance(const GBuffer& gbuffer, const LightOnSurfaces& indirect) {
+    return read(Buffer::Indirect, gbuffer, {}, indirect);
   }
 
-  std::unique_ptr<GpuScene> gpu;
-  GBufferPass gbufferPass{passes};
-  VplLightBuffer lightBuffer{passes, StageId::Vpls};
-  GatherPass gatherPass{passes};
-  FilterPass filterPass{passes};
   CompositePass compositePass{passes};
 };
 
@@ -79,8 +55,9 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
   for (const Finish& f : kFinishes) {
     const GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
     const GBuffer gbuffer = surfaces(floor.scene);
-    const RawIndirect raw = gathered(gbuffer, {lamp(position, normal, radiance, kArea)}, GatherMode::Full);
-    const IndirectLight indirect = filterPass.run({gbuffer, raw, {}});
+    const std::vector lights{lightAt(position, normal, radiance, kArea)};
+    const LightOnSurfaces raw = gathered(gbuffer, lights, with(GatherMode::Full));
+    const LightOnSurfaces indirect = filterPass.run({gbuffer, raw, {}});
     const Image image = indirectRadiance(gbuffer, indirect);
     const Picture picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
     FrameResults results;
@@ -113,9 +90,9 @@ TEST_F(GlossyTest, InterleavedMeansTheSameAsFull) {
   const GlossyFloor floor(vec3(0.9f, 0.6f, 0.2f), 0.3f, 0.5f);
   const GBuffer gbuffer = surfaces(floor.scene);
   // The same light in every slot: each subset of 16 sees as much as all of them together.
-  const std::vector<VplLight> lights(2048, lamp({-0.6f, 0.9f, -1.2f}, {0, -1, 0}, vec3(1, 2, 3), 0.01f));
+  const std::vector<VirtualLight> lights(2048, lightAt({-0.6f, 0.9f, -1.2f}, {0, -1, 0}, vec3(1, 2, 3), 0.01f));
   const auto radianceOf = [&](GatherMode mode) {
-    const RawIndirect raw = gathered(gbuffer, lights, mode);
+    const LightOnSurfaces raw = gathered(gbuffer, lights, with(mode));
     return indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = false}}));
   };
   const Image full = radianceOf(GatherMode::Full), interleaved = radianceOf(GatherMode::Interleaved);
@@ -143,7 +120,7 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
   glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
   for (const bool on : {true, false})
     for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
-      const RawIndirect raw{&black, true, &constant};
+      const LightOnSurfaces raw{&black, &constant, true};
       const Image image = indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = on, .kernel = kernel}}));
       for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x)
@@ -160,18 +137,17 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
     floor.scene.lights.push_back({.type = LightType::Point, .position = position, .intensity = intensity});
     floor.scene.lights.push_back({.type = LightType::Directional, .direction = sunDirection, .intensity = sun});
-    const SceneView view = floor.scene.view();
-    const GBuffer gbuffer = surfaces(floor.scene);
-    LightShadowPass shadowPass(passes);
-    const LightShadows& shadows =
-        shadowPass.run({*gpu, view.lights, false, vec3(0), view.boundsWorld, view.boundsWorld, true, {}, shadow});
-    DirectInputs in{gbuffer, shadows, nullptr, nullptr, shadow};
-    const VplLights lamps = lightBuffer.run(std::vector{emitterLight({{0.5f, 1, -1}, {0, -1, 0}, vec3(6), 0.04f})});
-    in.emitters = &lamps;
-    DirectPass directPass(passes);
+    const LightSet lamp = emitterAt({0.5f, 1, -1}, {0, -1, 0}, vec3(6), 0.04f);
+    const EmitterPatch sample = emitterPatches(lamp, 1).at(0);
+    Settings settings;
+    settings.shadow = shadow;
+    settings.gather.glossy = true;
+    settings.effects[EffectId::Emissive] = EffectMode::On;
     FrameResults results;
-    results.gbuffer = gbuffer;
-    results.direct = directPass.run(in);
+    results.gbuffer = surfaces(floor.scene);
+    const World world = placed->world(lamp);
+    DirectLight direct(passes);
+    results.direct = direct.run({world, results.gbuffer, planEffects(world.view, settings, {}), shadow}, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
@@ -180,7 +156,7 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
         const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
           return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
         };
-        const vec3 d = position - at, e = vec3(0.5f, 1, -1) - at;
+        const vec3 d = position - at, e = sample.position - at;
         const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
         const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
                             reflected(sun * -sunDirection.y, -sunDirection) +
@@ -228,16 +204,17 @@ TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
     RayCounts counts;
     const GBuffer gbuffer = surfaces(scene);
     const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0};
+    Settings all;
+    all.gather = settings;
     std::vector<double> means;
     for (uint32_t set = 0; set < 32; ++set) {
       std::vector<Vpl> vpls = spreadOverBox(size, albedo, 2000, set);
-      std::vector<VplLight> shown;
+      std::vector<VirtualLight> shown;
       for (Vpl& v : vpls) {
         v.radiance = albedo / kPi * punctualIrradiance(point, v.position, v.normal).irradiance;
-        shown.push_back(vplLight(v));
+        shown.push_back(lightOf(v));
       }
-      const VplLights uploaded = lightBuffer.run(shown);
-      const RawIndirect raw = gatherPass.run({gbuffer, uploaded, nullptr, 1, settings});
+      const LightOnSurfaces raw = gathered(gbuffer, shown, all);
       means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
     }
     const ReferenceInputs in{rays, lights, view.camera, 1, settings.clamp, 1, &view};

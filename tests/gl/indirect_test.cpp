@@ -5,41 +5,10 @@
 
 namespace lambent::test {
 
-class IndirectTest : public GlTest {
- protected:
-  RawIndirect gathered(const GBuffer& gbuffer, const std::vector<VplLight>& lights, const GatherSettings& settings,
-                       const ParaboloidMaps* maps = nullptr) {
-    const VplLights uploaded = lightBuffer.run(lights);
-    return gatherPass.run({gbuffer, uploaded, maps, 1, settings});
-  }
-  GBuffer surfaces(const HandScene& scene) {
-    gpu = std::make_unique<GpuScene>(programs, scene.assets);
-    gpu->place(scene.instances);
-    return gbufferPass.run({*gpu, scene.camera});
-  }
-  Image read(Buffer buffer, const GBuffer& gbuffer, const RawIndirect& raw, const IndirectLight& indirect = {}) {
-    FrameResults results;
-    results.gbuffer = gbuffer;
-    results.raw = raw;
-    results.indirect = indirect;
-    return readBuffer(buffer, results);
-  }
+using IndirectTest = GatherTest;
 
-  std::unique_ptr<GpuScene> gpu;
-  GBufferPass gbufferPass{passes};
-  VplLightBuffer lightBuffer{passes, StageId::Vpls};
-  GatherPass gatherPass{passes};
-  FilterPass filterPass{passes};
-};
-
-Vpl lamp(const vec3& position, const vec3& normal, float radiance, float area) {
-  Vpl vpl;
-  vpl.position = position;
-  vpl.normal = vpl.geometricNormal = normal;
-  vpl.radiance = vec3(radiance);
-  vpl.area = area;
-  vpl.alive = true;
-  return vpl;
+VirtualLight lamp(const vec3& position, const vec3& normal, float radiance, float area) {
+  return lightAt(position, normal, vec3(radiance), area);
 }
 
 TEST_F(IndirectTest, OneVplOnAPlane) {
@@ -48,8 +17,11 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
   const vec3 position(0.3f, 1, -0.2f), normal = glm::normalize(vec3(0.3f, -1, 0));
   for (const float disk : {4.0f, 1.0f, 0.0f})
     for (const float clamp : {0.0f, 0.3f}) {
-      const RawIndirect raw = gathered(gbuffer, {vplLight(lamp(position, normal, 4, 0.2f))},
-                                       {.mode = GatherMode::Full, .disk = disk, .clamp = clamp});
+      Settings settings = with(GatherMode::Full);
+      settings.gather.disk = disk;
+      settings.gather.clamp = clamp;
+      const std::vector lights{lamp(position, normal, 4, 0.2f)};
+      const LightOnSurfaces raw = gathered(gbuffer, lights, settings);
       const Image image = read(Buffer::Unfiltered, gbuffer, raw);
       for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
@@ -68,13 +40,10 @@ TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
   floor.scene.camera.width = 37;
   floor.scene.camera.height = 27;
   const GBuffer gbuffer = surfaces(floor.scene);
-  std::vector<VplLight> lights;
-  std::vector<Vpl> vpls;
-  for (int i = 0; i < 40; ++i) {
+  std::vector<VirtualLight> vpls;
+  for (int i = 0; i < 40; ++i)
     vpls.push_back(lamp(vec3(0.1f * float(i) - 2, 1 + 0.05f * float(i), 0.3f), vec3(0, -1, 0), 1 + float(i), 0.1f));
-    lights.push_back(vplLight(vpls.back()));
-  }
-  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {}));
+  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, vpls, Settings{}));
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const int fromBottom = image.height - 1 - y;
@@ -94,9 +63,9 @@ TEST_F(IndirectTest, InterleavedMeansTheSameAsFull) {
   const GBuffer gbuffer = surfaces(floor.scene);
   // The same light in all of 2100 slots (two chunks): every subset of 16 sees as much as all of them together.
   const size_t count = 4096;
-  const std::vector<VplLight> lights(count, vplLight(lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.01f)));
-  const Image full = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
-  const Image interleaved = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {}));
+  const std::vector<VirtualLight> lights(count, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.01f));
+  const Image full = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, with(GatherMode::Full)));
+  const Image interleaved = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, Settings{}));
   for (size_t i = 0; i < full.pixels.size(); ++i)
     ASSERT_NEAR(interleaved.pixels[i].x, full.pixels[i].x, 1e-4f * full.pixels[i].x);
 }
@@ -104,25 +73,23 @@ TEST_F(IndirectTest, InterleavedMeansTheSameAsFull) {
 TEST_F(IndirectTest, EmptyBlackAndBrokenLightsBringNothing) {
   const Floor floor;
   const GBuffer gbuffer = surfaces(floor.scene);
-  std::vector<Vpl> vpls(5, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
-  vpls[0].alive = false;
-  vpls[1].area = 0;
-  vpls[2].radiance = vec3(std::nanf(""));
-  vpls[3].normal = vec3(std::nanf(""));
-  vpls[4].area = kInfinity;
-  std::vector<VplLight> lights;
-  for (const Vpl& v : vpls) lights.push_back(vplLight(v));
-  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, {.mode = GatherMode::Full}));
+  std::vector<VirtualLight> lights(5, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
+  lights[0].alive = false;
+  lights[1].area = 0;
+  lights[2].radiance = vec3(std::nanf(""));
+  lights[3].normal = vec3(std::nanf(""));
+  lights[4].area = kInfinity;
+  const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, with(GatherMode::Full)));
   for (const vec3& e : image.pixels) ASSERT_EQ(e.x, 0);
 }
 
 TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
-  std::vector<VplLight> lights(100, vplLight(lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f)));
+  std::vector<VirtualLight> lights(100, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
   lightBuffer.run(lights);
   EXPECT_EQ(lightBuffer.uploaded(), 100u);
   lightBuffer.run(lights);
   EXPECT_EQ(lightBuffer.uploaded(), 0u);
-  lights[7] = vplLight(lamp(vec3(0, 3, 0), vec3(0, -1, 0), 1, 0.1f));
+  lights[7] = lamp(vec3(0, 3, 0), vec3(0, -1, 0), 1, 0.1f);
   lightBuffer.run(lights);
   EXPECT_EQ(lightBuffer.uploaded(), 1u);
   lights.resize(50);
@@ -138,7 +105,7 @@ TEST_F(IndirectTest, FilterKeepsConstants) {
   const gl::Texture constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 44});
   const float value[4] = {0.3f, 1.7f, 4000, 1};
   glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
-  const RawIndirect raw{&constant, true};
+  const LightOnSurfaces raw{&constant, nullptr, true};
   for (const bool on : {true, false}) {
     const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {.on = on}}));
     for (const vec3& e : image.pixels) {
@@ -157,7 +124,7 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
-  const RawIndirect raw{&tiles, true};
+  const LightOnSurfaces raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 3; y < 45; ++y)
     for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
@@ -176,7 +143,7 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
       texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
-  const RawIndirect raw{&tiles, true};
+  const LightOnSurfaces raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x)
@@ -188,13 +155,13 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   scene.quad(vec3(-1, -10, 0), vec3(2, 0, 0), vec3(0, 20, 0), scene.material(vec3(0.5f, 0.25f, 1), vec3(0, 2, 0)));
   scene.camera = cameraAt(vec3(0, 0, 3), vec3(0), 1.2f);
   const GBuffer gbuffer = surfaces(scene);
-  Image irradiance(64, 48, vec3(0));
+  const gl::Texture irradiance("irradiance", {.format = GL_RGBA32F, .width = 64, .height = 48});
+  std::vector<vec3> texels(64 * 48);
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) irradiance.at(x, y) = vec3(float(y + 1));
-  IndirectUpload upload(passes);
+    for (int x = 0; x < 64; ++x) texels[size_t(47 - y) * 64 + x] = vec3(float(y + 1)); // rows from the bottom
+  glTextureSubImage2D(irradiance.name(), 0, 0, 0, 64, 48, GL_RGB, GL_FLOAT, texels.data());
   CompositePass composite(passes);
-  const IndirectLight indirect = upload.run(irradiance);
-  const DirectLight direct{indirect.irradiance};
+  const LightOnSurfaces indirect{&irradiance}, direct{&irradiance};
   FrameResults results;
   results.gbuffer = gbuffer;
   results.direct = direct;

@@ -1,10 +1,11 @@
 // Paraboloid maps: the two makers agree, and both agree with closed forms.
+#include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
 #include "shaders/shared/paraboloid.h"
 
 namespace lambent::test {
 
-class MapsTest : public GlTest {
+class MapsTest : public GatherTest {
  protected:
   ParaboloidMapInputs inputs(const Room& room) {
     gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
@@ -96,33 +97,19 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
   Room room;
   room.scene.camera.width = 96;
   room.scene.camera.height = 72;
-  Vpl vpl;
-  vpl.position = {0.6f, -1, 0};
-  vpl.normal = vpl.geometricNormal = {0, 1, 0};
-  vpl.radiance = vec3(1);
-  vpl.area = 0.01f;
-  vpl.alive = true;
-  poses = {{vpl.position, vpl.normal, vpl.geometricNormal}};
+  const VirtualLight vpl = lightAt({0.6f, -1, 0}, {0, 1, 0}, vec3(1), 0.01f);
+  poses = {vpl.pose()};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
     ParaboloidMapInputs in = inputs(room);
     in.resolution = 128;
     in.maker = maker;
     ParaboloidMapPass mapPass(passes, StageId::VplMaps);
-    GBufferPass gbufferPass(passes);
-    VplLightBuffer lightBuffer(passes, StageId::Vpls);
-    GatherPass gatherPass(passes);
-    const GBuffer gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+    const GBuffer gbuffer = surfaces(room.scene);
     const ParaboloidMaps maps = mapPass.run(in);
-    const VplLight light = vplLight(vpl);
-    const VplLights lights = lightBuffer.run({&light, 1});
-    FrameResults results;
-    results.gbuffer = gbuffer;
-    const GatherSettings full{.mode = GatherMode::Full};
-    results.raw = gatherPass.run({gbuffer, lights, &maps, 1, full});
-    const Image lit = readBuffer(Buffer::Unfiltered, results);
-    results.raw = gatherPass.run({gbuffer, lights, nullptr, 1, full});
-    const Image open = readBuffer(Buffer::Unfiltered, results);
-    const Image depth = readBuffer(Buffer::Depth, results);
+    const Settings full = with(GatherMode::Full);
+    const Image lit = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, {&vpl, 1}, full, &maps));
+    const Image open = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, {&vpl, 1}, full));
+    const Image depth = read(Buffer::Depth, gbuffer, {});
 
     int acne = 0, leaks = 0, free = 0, blocked = 0;
     const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);

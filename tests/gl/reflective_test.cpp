@@ -5,15 +5,14 @@
 
 namespace lambent::test {
 
-class ReflectiveTest : public GlTest {
+class ReflectiveTest : public GatherTest {
  protected:
   void place(const HandScene& scene) {
-    gpu = std::make_unique<GpuScene>(programs, scene.assets);
-    gpu->place(scene.instances);
+    placed = std::make_unique<PlacedScene>(programs, scene);
     bounds = scene.view().boundsWorld;
   }
   ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, VplSource source) {
-    return mapPass.run({*gpu, lights, bounds, false, {}, rsm, source});
+    return mapPass.run({placed->gpu(), lights, bounds, false, {}, rsm, source});
   }
   /// Sum over a mip level of a texture, double precision.
   static glm::dvec4 sum(const gl::Texture& texture, int level) {
@@ -28,25 +27,21 @@ class ReflectiveTest : public GlTest {
     for (const VplLight& light : lightPass.read()) total += glm::dvec3(vec3(light.powerNormalX)) * double(kPi);
     return total;
   }
-  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, VplSource source) {
-    const GBuffer gbuffer = gbufferPass.run({*gpu, scene.camera});
-    const GatherSettings gather{.mode = GatherMode::Full};
+  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, VplSource source,
+                 GatherMode mode = GatherMode::Full) {
+    const GBuffer gbuffer = surfacePass.run({placed->gpu(), scene.camera});
     const LightTrees trees{sheet, rsm};
-    FrameResults results;
-    results.gbuffer = gbuffer;
+    VirtualLights lights;
     if (source == VplSource::Hisr)
-      results.raw = gatherPass.run({gbuffer, {}, nullptr, 1, gather, &trees});
+      lights.trees = &trees;
     else
-      results.raw = gatherPass.run({gbuffer, lightPass.run(sheet, rsm, source), nullptr, 1, gather});
-    return readBuffer(Buffer::Unfiltered, results);
+      lights.packed = lightPass.run(sheet, rsm, source);
+    return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, with(mode)));
   }
 
-  std::unique_ptr<GpuScene> gpu;
   Aabb bounds;
   ReflectiveMapPass mapPass{passes};
   ReflectiveLightPass lightPass{passes};
-  GBufferPass gbufferPass{passes};
-  GatherPass gatherPass{passes};
 };
 
 LightView pointLight(const vec3& position, const vec3& intensity) {
@@ -124,7 +119,7 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
     const glm::dvec4 clusters = sum(*sheet.flux, level);
     for (int c = 0; c < 4; ++c) EXPECT_NEAR(clusters[c], flux[c], 1e-5 * flux[c]) << level;
   }
-  const VplLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
+  const PackedLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
   EXPECT_LT(vpls.count, 8u * 64 * 64 / 4) << "smooth patches are one VPL";
   EXPECT_GT(vpls.count, 8u * 64) << "steps are not";
   const glm::dvec3 ofLights = fluxOfLights();
@@ -207,13 +202,7 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
   const RsmSettings rsm{.resolution = 64, .coarsest = 16, .finest = 64};
   const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, VplSource::Hisr);
   const Image full = gathered(scene, sheet, rsm, VplSource::Hisr);
-  const GBuffer gbuffer = gbufferPass.run({*gpu, scene.camera});
-  const GatherSettings gather{.mode = GatherMode::Interleaved};
-  const LightTrees trees{sheet, rsm};
-  FrameResults results;
-  results.gbuffer = gbuffer;
-  results.raw = gatherPass.run({gbuffer, {}, nullptr, 1, gather, &trees});
-  const Image subsets = readBuffer(Buffer::Unfiltered, results);
+  const Image subsets = gathered(scene, sheet, rsm, VplSource::Hisr, GatherMode::Interleaved);
   for (int by = 0; by < 6; ++by)
     for (int bx = 0; bx < 8; ++bx) {
       double sum = 0, wanted = 0;
@@ -246,7 +235,7 @@ TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 1u);
   const Aabb above{vec3(0.2f, 0.8f, 0.3f), vec3(0.4f, 0.9f, 0.5f)}; // what moved is above the point light
-  EXPECT_TRUE(mapPass.run({*gpu, lights, bounds, false, {&above, 1}, rsm, VplSource::Isr}).changed);
+  EXPECT_TRUE(mapPass.run({placed->gpu(), lights, bounds, false, {&above, 1}, rsm, VplSource::Isr}).changed);
   EXPECT_GT(mapPass.mapsDrawn(), 0u);
   EXPECT_LT(mapPass.mapsDrawn(), 7u);
 }

@@ -31,6 +31,7 @@ void declareStability(CLI::App& app);
 void declareBench(CLI::App& app);
 void declareContent(CLI::App& app);
 void declareSettings(CLI::App& app);
+void declareTechniques(CLI::App& app);
 
 void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp);
 /// Notes and warnings of a stage on stderr, unless quiet.

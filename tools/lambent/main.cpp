@@ -24,6 +24,7 @@ int runProgram(int argc, char** argv) {
   declareBench(app);
   declareContent(app);
   declareSettings(app);
+  declareTechniques(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

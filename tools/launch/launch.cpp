@@ -182,7 +182,8 @@ void chooseSettings(Stage& stage, const LaunchOptions& options) {
 
 void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   std::string techniques; // but the first
-  for (const Technique& t : techniqueTable().subspan(1)) techniques += (techniques.empty() ? "" : ", ") + std::string(t.name);
+  for (const Technique& t : techniqueTable().subspan(1))
+    techniques += (techniques.empty() ? "" : ", ") + std::string(t.name);
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");

@@ -1,0 +1,104 @@
+// Settings as typed rows, presets, and what goes together on the four axes.
+#include "gi/plan/settings.h"
+
+#include "engine/core/error.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent {
+
+TEST(Settings, TextsAndValuesOfEveryRowAgree) {
+  for (const SettingRow& row : settingsTable()) {
+    Settings s;
+    EXPECT_EQ(row.get(s), row.standard) << row.name;
+    for (const double value : {row.low, row.standard, std::min(row.high, 3e4)}) {
+      applySetting(s, row.name, row.text(value));
+      EXPECT_EQ(row.get(s), value) << row.name << " = " << row.text(value);
+      EXPECT_EQ(settingText(s, row.name), row.text(value));
+    }
+    EXPECT_LE(row.low, row.standard) << row.name;
+    EXPECT_LE(row.standard, row.high) << row.name;
+    EXPECT_FALSE(row.help.empty()) << row.name;
+    for (const char* wrong : {"", "x", "nan", "inf", "1e39", "-1e30", "1 "})
+      EXPECT_THROW(applySetting(s, row.name, wrong), InputError) << row.name << " = '" << wrong << "'";
+    if (row.kind == SettingKind::Whole) {
+      EXPECT_THROW(applySetting(s, row.name, std::to_string(int64_t(row.high) + 1)), InputError) << row.name;
+      EXPECT_THROW(applySetting(s, row.name, "1.5"), InputError) << row.name;
+    }
+  }
+  EXPECT_THROW(settingRow("smc.vlps"), InputError);
+  EXPECT_EQ(settingRow("gather").name, "gather.mode");
+}
+
+TEST(Settings, RangesReadAsTheyAreTyped) {
+  EXPECT_EQ(settingRow("smc.vpls").range(), "1..65536");
+  EXPECT_EQ(settingRow("gather.clamp").range(), "at least 0");
+  EXPECT_EQ(settingRow("smc.cache").range(), "on|off");
+  EXPECT_EQ(settingRow("vpl.visibility").range(), "maps|rays|none");
+  EXPECT_EQ(settingRow("filter.distance").range(), "1e-06..10");
+  EXPECT_EQ(settingText({}, "multires.depth"), "0.02");
+}
+
+TEST(Settings, PresetsSetWhatTheySayAndNoMore) {
+  for (const std::string& name : presetNames()) {
+    Settings odd;
+    for (const SettingRow& row : settingsTable())
+      row.set(odd, row.choices.empty() ? std::min(row.high, row.standard + 1) : row.standard == 0 ? 1 : 0);
+    odd.vpl.source = VplSource::Ir;
+    Settings set = odd;
+    applyPreset(set, name);
+    std::vector<std::string> changed;
+    for (const SettingRow& row : settingsTable())
+      if (row.get(set) != row.get(odd)) changed.push_back(row.name);
+    for (const std::string& c : changed)
+      EXPECT_TRUE(c == "smc.vpls" || c == "smc.points" || c == "smc.paths" || c == "shadow.resolution" ||
+                  c == "gather.mode")
+          << name << " changes " << c;
+    EXPECT_GE(changed.size(), 4u) << name;
+  }
+  // A technique with a gather of its own keeps it.
+  Settings isr;
+  isr.vpl.source = VplSource::Isr;
+  isr.gather.mode = GatherMode::Multires;
+  applyPreset(isr, "low");
+  EXPECT_EQ(isr.gather.mode, GatherMode::Multires);
+  EXPECT_EQ(isr.smc.vpls, 512);
+  EXPECT_THROW(applyPreset(isr, "lowest"), InputError);
+}
+
+TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
+  int fine = 0, refused = 0;
+  for (int source = 0; source <= int(VplSource::None); ++source)
+    for (int visibility = 0; visibility <= int(VplVisibility::None); ++visibility)
+      for (int gather = 0; gather <= int(GatherMode::Own); ++gather)
+        for (int reconstruction = 0; reconstruction <= int(Reconstruction::UpsampleFilter); ++reconstruction) {
+          const Axes axes{VplSource(source), VplVisibility(visibility), GatherMode(gather),
+                          Reconstruction(reconstruction)};
+          const std::string reason = whyNot(axes);
+          (reason.empty() ? fine : refused)++;
+          const GatherRow& g = rowOf(axes.gather);
+          const bool upsampled = reconstruction >= int(Reconstruction::Upsample);
+          const bool filtered = reconstruction % 2 == 1;
+          const bool lights = axes.source != VplSource::None;
+          bool sense = upsampled == g.patches && (!filtered || g.subsets) && lights == (axes.gather != GatherMode::Own);
+          if (axes.source == VplSource::Hisr) sense = sense && axes.visibility == VplVisibility::None && !g.splats;
+          EXPECT_EQ(reason.empty(), sense) << source << visibility << gather << reconstruction << ' ' << reason;
+        }
+  EXPECT_GT(fine, 100);
+  EXPECT_GT(refused, 100);
+}
+
+TEST(Axes, SettingsSayTheirAxes) {
+  Settings s;
+  EXPECT_EQ(axesOf(s).reconstruction, Reconstruction::Filter);
+  s.filter.on = false;
+  EXPECT_EQ(axesOf(s).reconstruction, Reconstruction::None);
+  s.gather.mode = GatherMode::MultiresInterleaved;
+  EXPECT_EQ(axesOf(s).reconstruction, Reconstruction::Upsample);
+  s.filter.on = true;
+  EXPECT_EQ(axesOf(s).reconstruction, Reconstruction::UpsampleFilter);
+  s.gather.mode = GatherMode::Own;
+  EXPECT_FALSE(whyNot(s).empty()) << "no technique has given a stage";
+}
+
+} // namespace lambent

@@ -1,0 +1,179 @@
+// Techniques as rows: every row draws, what does not go together is refused everywhere alike, a technique of one's own
+// needs a file and a row, and a host may bring its surfaces.
+#include "ambient.h"
+#include "engine/core/error.h"
+#include "gl_fixture.h"
+#include "tests/support/images.h"
+
+namespace lambent::test {
+
+class TechniqueTest : public GlTest {
+ protected:
+  TechniqueTest() {
+    room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    settings.smc.vpls = 128;
+    settings.smc.points = 256;
+    settings.smc.warmup = 4;
+    settings.shadow.resolution = 32;
+    settings.shadow.maker = ShadowMaker::Rays;
+    settings.vpl.mirCandidates = 4;
+    settings.rsm.resolution = 64;
+    settings.image.exposure = 1;
+  }
+  SceneView still() const {
+    SceneView view = room.scene.view();
+    view.changes = {false, false, false, false, false};
+    return view;
+  }
+
+  Room room;
+  Settings settings;
+};
+
+TEST_F(TechniqueTest, EveryRowHasItsAxesAndDraws) {
+  for (const Technique& t : techniqueTable()) {
+    Settings s = settings;
+    applyTechnique(s, t);
+    EXPECT_EQ(whyNot(t.axes), "") << t.name;
+    EXPECT_EQ(whyNot(s), "") << t.name;
+    const Axes axes = axesOf(s);
+    EXPECT_EQ(axes.source, t.axes.source) << t.name;
+    EXPECT_EQ(axes.visibility, t.axes.visibility) << t.name;
+    EXPECT_EQ(axes.gather, t.axes.gather) << t.name;
+    EXPECT_EQ(axes.reconstruction, t.axes.reconstruction) << t.name;
+    EXPECT_EQ(std::string(techniqueOf(s).name), t.name);
+    GiFrame gi(s);
+    const FrameStats& stats = gi.run(room.scene.view());
+    const Image image = gi.read(Buffer::Irradiance);
+    EXPECT_GT(meanLuminance(image), 0.01) << t.name;
+    for (const vec3& e : image.pixels) ASSERT_TRUE(isFinite(e)) << t.name;
+    EXPECT_EQ(stats.raysRadiosity.closest > 0,
+              rowOf(t.axes.source).sampled && t.axes.source != VplSource::Tcas && t.axes.source != VplSource::Ir)
+        << t.name;
+  }
+}
+
+TEST_F(TechniqueTest, ATechniqueOfOnesOwnIsAFileAndARow) {
+  applyTechnique(settings, kAmbient);
+  EXPECT_EQ(&techniqueOf(settings), &kAmbient);
+  GiFrame gi(settings);
+  const FrameStats& stats = gi.run(room.scene.view());
+  for (const vec3& e : gi.read(Buffer::Irradiance).pixels) ASSERT_EQ(e, vec3(1));
+  EXPECT_EQ(stats.vplsAlive, 0u);
+  EXPECT_EQ(stats.mapsDrawn, 0u);
+  EXPECT_FALSE(stats.plan.on(EffectId::Replace));
+  EXPECT_TRUE(gi.vpls().slots.empty());
+  // To a technique with lights and back.
+  applyTechnique(gi.settings(), "smc");
+  gi.run(still());
+  const Image smc = gi.read(Buffer::Irradiance);
+  EXPECT_GT(gi.vpls().slots.size(), 0u);
+  applyTechnique(gi.settings(), kAmbient);
+  gi.run(still());
+  for (const vec3& e : gi.read(Buffer::Irradiance).pixels) ASSERT_EQ(e, vec3(1));
+  EXPECT_NE(smc.pixels[0], vec3(1));
+}
+
+TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
+  const auto refused = [&](const std::function<void(Settings&)>& edit) -> std::string {
+    Settings s = settings;
+    edit(s);
+    GiFrame gi(s);
+    try {
+      gi.run(room.scene.view());
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(refused([](Settings&) {}), "");
+  EXPECT_NE(refused([](Settings& s) { s.vpl.source = VplSource::Hisr; }).find("vpl.visibility maps"),
+            std::string::npos);
+  EXPECT_NE(refused([](Settings& s) {
+              applyTechnique(s, "hisr");
+              s.gather.mode = GatherMode::Splat;
+            }).find("gather.mode splat"),
+            std::string::npos);
+  EXPECT_NE(refused([](Settings& s) { s.vpl.source = VplSource::None; }).find("vpl.source none"), std::string::npos);
+  EXPECT_NE(refused([](Settings& s) { s.gather.mode = GatherMode::Own; }).find("gather.mode own"), std::string::npos);
+  EXPECT_NE(refused([](Settings& s) {
+              applyTechnique(s, kAmbient);
+              s.gather.mode = GatherMode::Full;
+            }).find("vpl.source none"),
+            std::string::npos);
+}
+
+/// What one frame drew is another's host.
+TEST_F(TechniqueTest, AHostsSurfacesGiveTheSamePicture) {
+  const SceneView view = room.scene.view();
+  GpuScene gpu(programs, room.scene.assets);
+  gpu.place(view.instances);
+  SurfacePass surfaces(passes);
+  const GBuffer drawn = surfaces.run({gpu, view.camera});
+  HostSurfaces host{drawn.depth->name(), drawn.normal->name(), drawn.albedo->name(), drawn.emission->name()};
+  for (const char* technique : {"smc", "multires-gather"}) {
+    applyTechnique(settings, technique);
+    GiFrame ours(settings), theirs(settings);
+    ours.run(view);
+    theirs.run(view, {}, &host);
+    EXPECT_EQ(ours.read(Buffer::Beauty).pixels, theirs.read(Buffer::Beauty).pixels) << technique;
+    EXPECT_NE(theirs.texture(Buffer::Beauty), 0u);
+    EXPECT_NE(theirs.texture(Buffer::Irradiance), 0u);
+  }
+  EXPECT_TRUE(glIsTexture(host.depth)) << "a host's texture stays the host's";
+  GiFrame gi(settings);
+  host.emission = 0;
+  gi.run(view, {}, &host);
+  for (const vec3& e : gi.read(Buffer::Emission).pixels) ASSERT_EQ(e, vec3(0));
+  const auto refused = [&](HostSurfaces wrong) {
+    EXPECT_THROW(gi.run(view, {}, &wrong), InputError);
+    gi.run(view, {}, &host); // and goes on
+  };
+  refused({.depth = 0, .normal = host.normal, .albedo = host.albedo});
+  const gl::Texture small("small", {.format = GL_RGBA16F, .width = 8, .height = 8});
+  refused({.depth = host.depth, .normal = small.name(), .albedo = host.albedo});
+}
+
+/// What the table of settings says of the cost of a change is what a running frame pays.
+TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
+  room.scene.lights.push_back({.type = LightType::Directional, .direction = {0, -1, 0}});
+  room.scene.lights.push_back(
+      {.type = LightType::Spot, .position = {0, 0.9f, 0}, .direction = {0, -1, 0}, .intensity = vec3(1)});
+  room.scene.sky = vec3(0.1f);
+  room.scene.quad({-0.2f, 0.95f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, room.scene.material(vec3(0), vec3(2)));
+  settings.smc.moves = 0; // what moves is the setting's doing
+  for (const SettingRow& row : settingsTable()) {
+    if (row.name.starts_with("debug.") || row.name == "shadow.maker") continue; // how it is done, not what
+    Settings s = settings;
+    if (row.name.starts_with("rsm.")) applyTechnique(s, row.name == "rsm.vpls" ? "rsm" : "isr");
+    GiFrame gi(s);
+    gi.run(room.scene.view());
+    const double now = row.get(gi.settings());
+    double other = row.choices.empty() ? (now > 0 ? now / 2 : 2) : (now == 0 ? 1 : 0);
+    if (row.kind == SettingKind::Whole) other = std::max(row.low, std::floor(other));
+    if (other == now) other = now + 1;
+    row.set(gi.settings(), other);
+    const FrameStats& stats = gi.run(still());
+    const bool light = stats.vplsRelit >= 64 || stats.pathsTraced > 0 || stats.ms(StageId::ReflectiveMaps) > 0 ||
+                       row.name == "rsm.tau";
+    const bool maps = stats.mapsDrawn + stats.lightMapsDrawn > 0;
+    switch (row.change) {
+    case ChangeCost::Nothing:
+      EXPECT_FALSE(light && !row.name.starts_with("rsm.")) << row.name << ": light";
+      EXPECT_FALSE(maps) << row.name << ": maps";
+      break;
+    case ChangeCost::Light:
+      EXPECT_TRUE(light) << row.name;
+      EXPECT_FALSE(maps) << row.name << ": maps " << stats.mapsDrawn << ' ' << stats.lightMapsDrawn;
+      break;
+    case ChangeCost::Maps:
+      EXPECT_TRUE(maps) << row.name;
+      break;
+    case ChangeCost::Set:
+      EXPECT_GE(stats.vplsMoved, 64u) << row.name;
+      break;
+    }
+  }
+}
+
+} // namespace lambent::test
