@@ -1,6 +1,7 @@
 // The walkthrough: a window on a scene, a player with a lamp, and a panel over it. Each turn of the loop in
 // Walkthrough::frame reads input, poses the scene, runs GI and shows the result.
 #include "engine/core/error.h"
+#include "engine/gl/objects.h"
 #include "engine/platform/gl_context.h"
 #include "game/hud.h"
 #include "game/interaction.h"
@@ -179,11 +180,7 @@ class Walkthrough {
     Image8 picture;
     picture.width = width;
     picture.height = height;
-    picture.rgb.resize(size_t(3) * width * height);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    glReadBuffer(GL_BACK);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, picture.rgb.data());
+    picture.rgb = gl::readWindow(width, height);
     const size_t row = size_t(3) * width;
     for (int y = 0; y < height / 2; ++y) // GL's first row is the lowest
       std::swap_ranges(picture.rgb.begin() + y * row, picture.rgb.begin() + (y + 1) * row,

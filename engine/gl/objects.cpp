@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 
+#include <limits>
 #include <map>
 #include <mutex>
 
@@ -171,14 +172,24 @@ void Texture::limitLevels(int first, int last) const {
   glTextureParameteri(name(), GL_TEXTURE_MAX_LEVEL, last);
 }
 
+void Texture::readBytes(int level, int layer, GLenum format, GLenum type, size_t bytes, void* to) const {
+  CHECK_LE(bytes, size_t(std::numeric_limits<GLsizei>::max()));
+  if (layer == kAllLayers)
+    glGetTextureImage(name(), level, format, type, GLsizei(bytes), to);
+  else
+    glGetTextureSubImage(name(), level, 0, 0, layer, width(), height(), 1, format, type, GLsizei(bytes), to);
+  ++detail::countsSoFar().readBacks;
+}
+
 void Texture::clear() const { glClearTexImage(name(), 0, GL_RGBA, GL_FLOAT, nullptr); }
 
 Buffer::Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags)
     : Object(GL_BUFFER, makeBuffer(bytes, data, flags), label, bytes) {}
 
-void Buffer::write(uint64_t offset, uint64_t size, const void* data) const {
+void Buffer::readBytes(uint64_t offset, uint64_t size, void* to) const {
   CHECK_LE(offset + size, bytes());
-  if (size > 0) glNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), data);
+  glGetNamedBufferSubData(name(), GLintptr(offset), GLsizeiptr(size), to);
+  ++detail::countsSoFar().readBacks;
 }
 
 void Buffer::bindUniform(int binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name()); }
@@ -233,6 +244,22 @@ void TransformFeedback::unbind() { glBindTransformFeedback(GL_TRANSFORM_FEEDBACK
 Query::Query(GLenum target)
     : Object(GL_QUERY, make([target](GLsizei n, GLuint* names) { glCreateQueries(target, n, names); }), {}, 0) {}
 
+std::optional<uint64_t> Query::known() const {
+  GLuint ready = 0;
+  glGetQueryObjectuiv(name(), GL_QUERY_RESULT_AVAILABLE, &ready);
+  if (!ready) return std::nullopt;
+  GLuint64 value = 0;
+  glGetQueryObjectui64v(name(), GL_QUERY_RESULT, &value);
+  return value;
+}
+
+uint64_t Query::result() const {
+  GLuint64 value = 0;
+  glGetQueryObjectui64v(name(), GL_QUERY_RESULT, &value);
+  ++detail::countsSoFar().waits;
+  return value;
+}
+
 void PipelineState::apply() const {
   const auto set = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
   // Depth writes happen only with the test enabled, so a pass that writes without testing uses GL_ALWAYS.
@@ -257,20 +284,15 @@ void PipelineState::apply() const {
   glScissor(x, y, width, height);
 }
 
-void drawFullscreen() {
-  // The core profile wants a vertex array even for a draw without attributes. Names belong to a context, and making an
-  // empty one costs nothing next to the draw, so nothing is kept.
-  const VertexArray empty("fullscreen");
-  glBindVertexArray(empty.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
-  countDraws(1);
+std::vector<uint8_t> readWindow(int width, int height) {
+  std::vector<uint8_t> rgb(size_t(3) * width * height);
+  GLint bound = 0;
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, rgb.data()); // a window's read buffer is its back one
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound));
+  ++detail::countsSoFar().readBacks;
+  return rgb;
 }
-
-namespace {
-uint64_t drawsSoFar = 0; // contexts are used from one thread
-}
-uint64_t drawCount() { return drawsSoFar; }
-void countDraws(uint32_t n) { drawsSoFar += n; }
 
 } // namespace lambent::gl

@@ -2,10 +2,13 @@
 // its owner ("vpl maps/faces"), under which its memory is counted.
 #pragma once
 
+#include "engine/gl/counts.h"
+
 #include <epoxy/gl.h>
 
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -78,7 +81,20 @@ class Texture : public detail::Object {
   /// Samplers see only these levels, numbered from `first`: while another one is drawn into, reading is well defined.
   void limitLevels(int first, int last) const;
 
+  /// Copies all texels of a level to `texels`, whose size must be theirs in `format` and `type`. Waits for the GPU, as
+  /// all that reads back.
+  template <class T> void read(std::span<T> texels, GLenum format, GLenum type, int level = 0) const {
+    readBytes(level, kAllLayers, format, type, texels.size_bytes(), texels.data());
+  }
+  /// The same of one layer of level 0.
+  template <class T> void readLayer(int layer, std::span<T> texels, GLenum format, GLenum type) const {
+    readBytes(0, layer, format, type, texels.size_bytes(), texels.data());
+  }
+
  private:
+  static constexpr int kAllLayers = -1;
+  void readBytes(int level, int layer, GLenum format, GLenum type, size_t bytes, void* to) const;
+
   Texture(GLenum kind, GLuint name, const std::string& label) : Object(kind, name, label, 0) {}
 
   TextureDesc desc_;
@@ -90,15 +106,21 @@ int texelBytes(GLenum format);
 class Buffer : public detail::Object {
  public:
   Buffer() = default;
-  /// `data` may be null. `flags` as for glNamedBufferStorage; dynamic storage by default.
-  Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+  /// `data` may be null. `flags` as for glNamedBufferStorage. What the CPU changes later goes through a Ring.
+  Buffer(const std::string& label, uint64_t bytes, const void* data, GLbitfield flags = 0);
 
   template <class T> static Buffer of(const std::string& label, std::span<const T> data, GLbitfield flags = 0) {
     return Buffer(label, data.size_bytes(), data.data(), flags);
   }
-  void write(uint64_t offset, uint64_t bytes, const void* data) const;
+  /// Copies the bytes from `offset` on to `values`.
+  template <class T> void read(uint64_t offset, std::span<T> values) const {
+    readBytes(offset, values.size_bytes(), values.data());
+  }
   void bindUniform(int binding) const;
   void bindUniform(int binding, uint64_t offset, uint64_t bytes) const;
+
+ private:
+  void readBytes(uint64_t offset, uint64_t bytes, void* to) const;
 };
 
 class Framebuffer : public detail::Object {
@@ -140,6 +162,12 @@ class Query : public detail::Object {
  public:
   Query() = default;
   explicit Query(GLenum target);
+
+  /// The result if the GPU has come to it.
+  std::optional<uint64_t> known() const;
+  /// The result; waits for it, and counts as a wait whether the GPU was there already or not: on another machine it
+  /// would not have been.
+  uint64_t result() const;
 };
 
 /// Mark: every fragment that is kept sets the stencil to 1. Marked: only where it is 1.
@@ -158,11 +186,7 @@ struct PipelineState {
   void apply() const;
 };
 
-/// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
-void drawFullscreen();
-
-/// Draw calls of this process so far, and how those that call GL themselves report theirs.
-uint64_t drawCount();
-void countDraws(uint32_t n);
+/// RGB of the lower left width × height pixels of what the window is about to show, from the lowest row up.
+std::vector<uint8_t> readWindow(int width, int height);
 
 } // namespace lambent::gl

@@ -30,19 +30,16 @@ Timing GpuProfiler::calibrate() {
     double wallMs, queryMs;
   };
   const auto time = [&](int blits) -> Times {
-    glFinish();
+    finishToMeasure();
     const auto start = std::chrono::steady_clock::now();
     glQueryCounter(begin.name(), GL_TIMESTAMP);
     for (int i = 0; i < blits; ++i)
       glBlitNamedFramebuffer(source.name(), target.name(), 0, 0, 256, 256, 0, 0, 512, 512, GL_COLOR_BUFFER_BIT,
                              GL_LINEAR);
     glQueryCounter(end.name(), GL_TIMESTAMP);
-    glFinish();
+    finishToMeasure();
     const double wallMs = msSince(start);
-    GLuint64 t0 = 0, t1 = 0;
-    glGetQueryObjectui64v(begin.name(), GL_QUERY_RESULT, &t0);
-    glGetQueryObjectui64v(end.name(), GL_QUERY_RESULT, &t1);
-    return {wallMs, double(t1 - t0) * 1e-6};
+    return {wallMs, double(end.known().value_or(0) - begin.known().value_or(0)) * 1e-6};
   };
   // As many as take 5 ms, so that the cost of waiting does not blur the answer; the first round pays for shaders.
   int blits = 4;
@@ -68,13 +65,9 @@ std::vector<StageTime> GpuProfiler::takeRows() {
 void GpuProfiler::collectFinishedQueries() {
   while (!pending_.empty()) {
     Pending& oldest = pending_.front();
-    GLuint ready = 0;
-    glGetQueryObjectuiv(oldest.end.name(), GL_QUERY_RESULT_AVAILABLE, &ready);
-    if (!ready) return;
-    GLuint64 t0 = 0, t1 = 0;
-    glGetQueryObjectui64v(oldest.begin.name(), GL_QUERY_RESULT, &t0);
-    glGetQueryObjectui64v(oldest.end.name(), GL_QUERY_RESULT, &t1);
-    latestGpuMs_[oldest.stage.id] = double(t1 - t0) * 1e-6;
+    const std::optional<uint64_t> from = oldest.begin.known(), to = oldest.end.known();
+    if (!from || !to) return;
+    latestGpuMs_[oldest.stage.id] = double(*to - *from) * 1e-6;
     freeQueries_.emplace_back(std::move(oldest.begin), std::move(oldest.end));
     pending_.pop_front();
   }
@@ -83,7 +76,7 @@ void GpuProfiler::collectFinishedQueries() {
 PassScope::PassScope(GpuProfiler& profiler, StageKey stage) : profiler_(profiler), stage_(stage) {
   glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, stage_.name);
   if (profiler_.timing_ == Timing::Finish) {
-    glFinish();
+    finishToMeasure();
   } else {
     if (profiler_.freeQueries_.empty()) {
       beginQuery_ = Query(GL_TIMESTAMP);
@@ -105,7 +98,7 @@ PassScope::~PassScope() {
     cpuMs = msSince(begin_);
     profiler_.pending_.push_back({stage_, std::move(beginQuery_), std::move(endQuery_)});
   } else {
-    glFinish();
+    finishToMeasure();
     cpuMs = gpuMs = msSince(begin_);
   }
   profiler_.rows_.push_back({stage_, cpuMs, gpuMs});

@@ -1,7 +1,7 @@
 // Light that surfaces of the picture receive: what every stage of direct and indirect light gives.
 #pragma once
 
-#include "engine/gl/objects.h"
+#include "engine/gl/ring.h"
 #include "gi/contract/surfaces.h"
 
 namespace lambent {

@@ -8,19 +8,19 @@
 namespace lambent {
 
 namespace gl {
-class Buffer;
 class Texture;
+struct BufferSlice;
 } // namespace gl
 
 /// World position follows from `depth` and `camera` (shaders/lib/gbuffer.glsl).
 struct GBuffer {
-  const gl::Texture* depth = nullptr;    // DEPTH32F, reversed: 0 where nothing is seen
-  const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer
-  const gl::Texture* albedo = nullptr;   // RGBA16F
-  const gl::Texture* emission = nullptr; // RGBA16F radiance emitted towards the viewer, W/(m² sr)
-  const gl::Texture* finish = nullptr;   // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
-  const gl::Buffer* camera = nullptr;    // uniform block CameraBlock (shaders/shared/camera_block.h)
-  CameraBlock block;                     // what `camera` holds
+  const gl::Texture* depth = nullptr;      // DEPTH32F, reversed: 0 where nothing is seen
+  const gl::Texture* normal = nullptr;     // RGBA16F world shading normal, turned to the viewer
+  const gl::Texture* albedo = nullptr;     // RGBA16F
+  const gl::Texture* emission = nullptr;   // RGBA16F radiance emitted towards the viewer, W/(m² sr)
+  const gl::Texture* finish = nullptr;     // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
+  const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)
+  CameraBlock block;                       // what `camera` holds
   int width = 0, height = 0;
 };
 

@@ -111,6 +111,7 @@ struct LightShadowState {
 
   PassContext context;
   gl::Framebuffer framebuffer;
+  gl::Ring changedLights{"light maps/changed lights"};
   LightShadows shadows;
   std::vector<SunFit> sunFits, skyFits;
   uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
@@ -150,7 +151,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::ve
     }
     if (lights.size() != target.held.size() ||
         std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(PunctualLight)) != 0) {
-      target.lights.write(0, lights.size() * sizeof(PunctualLight), lights.data());
+      changedLights.upload(target.lights, 0, lights.size() * sizeof(PunctualLight), lights.data());
       target.held = std::move(lights);
     }
     drawMaps(target, maps, first, in);
@@ -191,6 +192,7 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
   const gl::PassScope scope = s.context.scope(StageId::LightMaps);
   s.mapsDrawn = 0;
+  s.changedLights.reserve((in.lights.size() + size_t(in.shadow.skyMaps)) * sizeof(PunctualLight));
   // Casters nearer than this to a light's point are its own housing as often as not; relative, since scenes come in all
   // sizes.
   const float near = std::max(1e-6f, 1e-4f * in.casters.diameter());

@@ -36,8 +36,7 @@ Picture CompositePass::run(const CompositeInputs& in) {
 float measureExposure(const Picture& picture) {
   const int width = picture.radiance->width(), height = picture.radiance->height();
   std::vector<vec4> texels(size_t(width) * height);
-  glGetTextureImage(picture.radiance->name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)),
-                    texels.data());
+  picture.radiance->read(std::span(texels), GL_RGBA, GL_FLOAT);
   double logSum = 0;
   size_t count = 0;
   for (const vec4& texel : texels) {

@@ -135,12 +135,9 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
 void DisplayPass::drawVpls(const FrameResults& frame) {
   const std::vector<Sprite> sprites = spritesOf(*frame.vpls);
   if (sprites.empty()) return;
-  const uint64_t bytes = sprites.size() * sizeof(Sprite);
-  if (!sprites_ || sprites_.bytes() < bytes) {
-    sprites_ = gl::Buffer("display/vpls", bytes, nullptr);
+  if (!spriteArray_) {
     spriteArray_ = gl::VertexArray("display/vpls");
     const GLuint array = spriteArray_.name();
-    glVertexArrayVertexBuffer(array, 0, sprites_.name(), 0, sizeof(Sprite));
     glEnableVertexArrayAttrib(array, 0);
     glVertexArrayAttribFormat(array, 0, 4, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(array, 0, 0);
@@ -148,7 +145,8 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
     glVertexArrayAttribFormat(array, 1, 1, GL_FLOAT, GL_FALSE, offsetof(Sprite, age));
     glVertexArrayAttribBinding(array, 1, 0);
   }
-  sprites_.write(0, bytes, sprites.data());
+  const gl::BufferSlice slice = sprites_.write(sprites.size() * sizeof(Sprite), sprites.data());
+  glVertexArrayVertexBuffer(spriteArray_.name(), 0, slice.buffer->name(), GLintptr(slice.offset), sizeof(Sprite));
   const gl::Program& program = context_.programs.get({.vertex = "vpl_sprite.vert", .fragment = "vpl_sprite.frag"});
   program.use();
   program.set("diameterPixels", std::max(5.0f, float(frame.gbuffer.height) / 72));
@@ -156,7 +154,7 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
   frame.gbuffer.depth->bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
   glBindVertexArray(spriteArray_.name());
-  glDrawArrays(GL_POINTS, 0, GLsizei(sprites.size()));
+  gl::drawArrays(GL_POINTS, int(sprites.size()));
   glBindVertexArray(0);
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
@@ -175,7 +173,7 @@ void DisplayPass::present(uint32_t framebuffer, int width, int height) {
 Image8 DisplayPass::read() const {
   const int width = display_.width(), height = display_.height();
   std::vector<uint8_t> bottomUp(size_t(width) * height * 3);
-  glGetTextureImage(display_.name(), 0, GL_RGB, GL_UNSIGNED_BYTE, GLsizei(bottomUp.size()), bottomUp.data());
+  display_.read(std::span(bottomUp), GL_RGB, GL_UNSIGNED_BYTE);
   Image8 image{width, height, std::vector<uint8_t>(bottomUp.size())};
   const size_t row = size_t(width) * 3;
   for (int y = 0; y < height; ++y)

@@ -19,10 +19,10 @@ namespace {
 /// GL draws since it was made.
 class DrawCount {
  public:
-  uint64_t operator()() const { return gl::drawCount() - before_; }
+  uint64_t operator()() const { return gl::counts().draws - before_; }
 
  private:
-  uint64_t before_ = gl::drawCount();
+  uint64_t before_ = gl::counts().draws;
 };
 
 } // namespace
@@ -71,6 +71,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   if (host) checkHost(*host, given.camera);
   const auto begin = std::chrono::steady_clock::now();
+  const gl::Counts before = gl::counts();
   LightSource* source = k.sourceFor(settings.vpl.source);
   if (source) source->finish();
   k.begin(given);
@@ -123,6 +124,10 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
 
   for (const StageTime& row : k.profiler.takeRows()) stats.stages.push_back(row);
   k.world.countWork(stats);
+  const gl::Counts asked = gl::counts() - before;
+  stats.draws = asked.draws;
+  stats.waits = asked.waits;
+  stats.readBacks = asked.readBacks;
   stats.wallMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return stats;
 }

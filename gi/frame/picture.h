@@ -76,7 +76,7 @@ class DisplayPass {
   PassContext context_;
   gl::Texture display_, black_;
   gl::Framebuffer framebuffer_;
-  gl::Buffer sprites_;
+  gl::Ring sprites_{"display/vpls"};
   gl::VertexArray spriteArray_;
 };
 

@@ -15,7 +15,7 @@ Image rgbOf(const gl::Texture* texture, int width, int height) {
   Image image(width, height);
   if (!texture) return image;
   std::vector<vec3> bottomUp(size_t(texture->width()) * texture->height());
-  glGetTextureImage(texture->name(), 0, GL_RGB, GL_FLOAT, GLsizei(bottomUp.size() * sizeof(vec3)), bottomUp.data());
+  texture->read(std::span(bottomUp), GL_RGB, GL_FLOAT);
   for (int y = 0; y < height; ++y)
     std::copy_n(&bottomUp[size_t(height - 1 - y) * texture->width()], width, &image.at(0, y));
   return image;
@@ -38,8 +38,7 @@ Image rawOf(const FrameResults& frame, int width, int height) {
 Image depthOf(const FrameResults& frame) {
   const GBuffer& g = frame.gbuffer;
   std::vector<float> bottomUp(size_t(g.width) * g.height);
-  glGetTextureImage(g.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(bottomUp.size() * sizeof(float)),
-                    bottomUp.data());
+  g.depth->read(std::span(bottomUp), GL_DEPTH_COMPONENT, GL_FLOAT);
   Image image(g.width, g.height);
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {

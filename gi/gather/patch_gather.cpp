@@ -3,6 +3,7 @@
 // shadow maps, and subsets of interleaved sampling (paper 1, 4.5), each with a multiresolution buffer of its own over
 // every fourth pixel; a patch of such a buffer lies within a smooth block of the picture, so that all subsets have the
 // same patches.
+#include "engine/gl/query_ring.h"
 #include "gi/gather/patch_atlas.h"
 #include "gi/gather/stages.h"
 #include "shaders/shared/patches.h"
@@ -22,8 +23,7 @@ class PatchGather : public IndirectStage {
     gather(in);
     const gl::PassScope scope = context_.scope(StageId::Upsample);
     atlas_.upsample(in.surfaces, in.settings);
-    if (marks_) glGetQueryObjectui64v(marks_.name(), GL_QUERY_RESULT_NO_WAIT, &marked_); // untouched if not yet known
-    stats.patches = marked_;
+    stats.patches = marks_.latest().value_or(0);
     return atlas_.light();
   }
 
@@ -53,10 +53,9 @@ class PatchGather : public IndirectStage {
       patches.plane->bind(1);
       patches.normalLo->bind(2);
     }
-    if (!marks_) marks_ = gl::Query(GL_SAMPLES_PASSED);
-    glBeginQuery(GL_SAMPLES_PASSED, marks_.name());
+    marks_.begin();
     gl::drawFullscreen();
-    glEndQuery(GL_SAMPLES_PASSED);
+    marks_.end();
   }
 
   void gather(const IndirectInputs& in) {
@@ -87,8 +86,7 @@ class PatchGather : public IndirectStage {
   PatchAtlas atlas_{context_};
   gl::Framebuffer stencilFramebuffer_;
   GLuint stencilOf_ = 0; // texture that it draws into
-  gl::Query marks_;
-  uint64_t marked_ = 0; // in the last run that is known of
+  gl::QueryRing marks_{GL_SAMPLES_PASSED};
 };
 
 } // namespace

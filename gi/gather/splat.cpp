@@ -106,12 +106,11 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
     feedbacks_[list_].bind();
     glBeginTransformFeedback(GL_POINTS);
     if (begin)
-      glDrawArrays(GL_POINTS, 0, side.x * side.y);
+      gl::drawArrays(GL_POINTS, side.x * side.y);
     else
-      glDrawTransformFeedback(GL_POINTS, feedbacks_[from].name());
+      gl::drawFeedback(GL_POINTS, feedbacks_[from]);
     glEndTransformFeedback();
     gl::TransformFeedback::unbind();
-    gl::countDraws(1);
   }
   glBindVertexArray(0);
   glDisable(GL_RASTERIZER_DISCARD);
@@ -154,9 +153,8 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   atlas.bind();
   gl::PipelineState{.add = true, .width = size.x, .height = size.y}.apply();
   glBindVertexArray(arrays_[list_].name());
-  glDrawTransformFeedbackInstanced(GL_POINTS, feedbacks_[list_].name(), lights);
+  gl::drawFeedback(GL_POINTS, feedbacks_[list_], lights);
   glBindVertexArray(0);
-  gl::countDraws(1);
 }
 
 } // namespace lambent

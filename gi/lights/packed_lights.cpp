@@ -47,7 +47,7 @@ PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
   const bool fresh = mirror_.size() != chunks * kChunk;
   if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
   uploaded_ = 0;
-  std::vector<bool> dirtyChunks(chunks, fresh);
+  std::vector<bool> dirtyChunks(chunks);
   const auto put = [&](uint32_t slot, const VplLight& light) {
     VplLight& held = mirror_[lightOrder(slot)];
     if (std::memcmp(&held, &light, sizeof light) == 0) return;
@@ -59,12 +59,16 @@ PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
   for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
-  if (fresh)
-    buffer_ = gl::Buffer(std::string(key(stage_).name) + "/lights", mirror_.size() * sizeof(VplLight), nullptr);
-  // Whole chunks of 128 KiB: one transfer costs less than many small ones.
+  constexpr uint64_t kBytes = kChunk * sizeof(VplLight);
+  if (fresh) {
+    buffer_ = gl::Buffer::of<VplLight>(std::string(key(stage_).name) + "/lights", mirror_);
+    return {&buffer_, count_};
+  }
+  // Copied into a buffer that stays: most chunks do not change, and every fragment of the gather reads them all, so
+  // they belong in the GPU's own memory. Whole chunks of 128 KiB: one transfer costs less than many small ones.
+  changes_.reserve(chunks * kBytes);
   for (size_t chunk = 0; chunk < chunks; ++chunk)
-    if (dirtyChunks[chunk])
-      buffer_.write(chunk * kChunk * sizeof(VplLight), kChunk * sizeof(VplLight), &mirror_[chunk * kChunk]);
+    if (dirtyChunks[chunk]) changes_.upload(buffer_, chunk * kBytes, kBytes, &mirror_[chunk * kChunk]);
   return {&buffer_, count_};
 }
 

@@ -1,6 +1,7 @@
 // Virtual lights as the gather reads them: uniform-block chunks ordered by interleaving class.
 #pragma once
 
+#include "engine/gl/ring.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/virtual_lights.h"
 
@@ -16,7 +17,8 @@ VirtualLight unpack(const VplLight& light);
 
 class PackedLightBuffer {
  public:
-  PackedLightBuffer(PassContext context, StageId stage) : context_(context), stage_(stage) {}
+  PackedLightBuffer(PassContext context, StageId stage)
+      : context_(context), stage_(stage), changes_(std::string(key(stage).name) + "/changed lights") {}
   /// Uploads the slots whose light differs from what the buffer holds.
   PackedLights run(std::span<const VirtualLight> slots);
   uint32_t uploaded() const { return uploaded_; } // lights that differed in the last run
@@ -25,6 +27,7 @@ class PackedLightBuffer {
   PassContext context_;
   StageId stage_;
   gl::Buffer buffer_;
+  gl::Ring changes_;
   std::vector<VplLight> mirror_; // in buffer order
   uint32_t count_ = 0, uploaded_ = 0;
 };

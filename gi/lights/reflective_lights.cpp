@@ -19,26 +19,28 @@ constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
 /// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
-/// Runs the program over `vertices` points into `target` and returns how many it wrote.
-uint32_t capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
+/// Runs the program over `vertices` points into `target`.
+void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::VertexArray empty("points");
-  const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   program.use();
   glBindVertexArray(empty.name());
   glEnable(GL_RASTERIZER_DISCARD);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, target.name());
-  glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
   glBeginTransformFeedback(GL_POINTS);
-  glDrawArrays(GL_POINTS, 0, GLsizei(vertices));
+  gl::drawArrays(GL_POINTS, int(vertices));
   glEndTransformFeedback();
-  glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
-  gl::countDraws(1);
-  GLuint count = 0;
-  glGetQueryObjectuiv(written.name(), GL_QUERY_RESULT, &count);
-  return count;
+}
+
+/// The same, and waits for the GPU to say how many it wrote.
+uint32_t captureCounted(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
+  const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
+  capture(program, target, vertices);
+  glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  return uint32_t(written.result());
 }
 
 void bindClusters(const ReflectiveMaps& maps) {
@@ -66,8 +68,7 @@ PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSetti
     std::vector<vec4> lenses(kMostMaps, vec4(0));
     for (uint32_t i = 0; i < mapCount; ++i)
       if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
-    const gl::Buffer lensBlock = gl::Buffer::of<vec4>("reflective lights/lenses", lenses);
-    lensBlock.bindUniform(3);
+    lenses_.write(lenses.size() * sizeof(vec4), lenses.data()).bindUniform(3);
     desc.defines.push_back("GRID");
     const gl::Program& program = context_.programs.get(desc);
     program.set("count", int(count_));
@@ -100,7 +101,7 @@ PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSetti
   compact.set("coarsest", coarsest);
   bindClusters(maps);
   if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
-  count_ = most > 0 ? capture(compact, compact_, most) : 0;
+  count_ = most > 0 ? captureCounted(compact, compact_, most) : 0;
   reserve(count_);
   const gl::Program& order = context_.programs.get(desc);
   order.set("count", int(count_));
@@ -112,7 +113,7 @@ PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSetti
 std::vector<VplLight> ReflectiveLightPass::read() const {
   const uint32_t chunks = std::max(1u, (count_ + kChunk - 1) / kChunk);
   std::vector<VplLight> ordered(size_t(chunks) * kChunk), slots(count_);
-  glGetNamedBufferSubData(lights_.name(), 0, GLsizeiptr(ordered.size() * sizeof(VplLight)), ordered.data());
+  lights_.read(0, std::span(ordered));
   for (uint32_t slot = 0; slot < count_; ++slot) slots[slot] = ordered[lightOrder(slot)];
   return slots;
 }

@@ -105,6 +105,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
   if (anew) allocate(resolution, columns, rows, levels);
   bool changed = anew || settings_ != in.rsm || source_ != in.source;
   mapsDrawn_ = 0;
+  cameras_.reserve(maps.size() * sizeof(CameraBlock));
   for (size_t i = 0; i < maps.size(); ++i) {
     const Frustum frustum = Frustum::ofClip(maps[i].clipFromWorld);
     const bool surfaces =
@@ -113,12 +114,15 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
     const bool flux = surfaces || settings_.exact != in.rsm.exact || !sameLight(maps[i].light, maps_[i].light);
     if (i >= maps_.size()) maps_.push_back(maps[i]);
     maps_[i] = maps[i];
+    if (!flux) continue;
+    changed = true;
+    const CameraBlock camera = cameraBlock(maps[i].view, in.bounds.diameter() + 2 * maps[i].view.near);
+    cameras_.write(sizeof camera, &camera).bindUniform(0);
     if (surfaces) {
       drawSurfaces(in, i);
       ++mapsDrawn_;
     }
-    if (flux) drawFlux(in, i);
-    changed |= flux;
+    drawFlux(in, i);
   }
   settings_ = in.rsm;
   source_ = in.source;
@@ -169,14 +173,10 @@ void ReflectiveMapPass::allocate(int resolution, int columns, int rows, int leve
   for (int level = 1; level < levels; ++level)
     levels_.emplace_back("reflective maps level",
                          std::initializer_list<const gl::Texture*>{&position_, &normal_, &flux_}, nullptr, level);
-  if (!camera_) camera_ = gl::Buffer("reflective maps/camera", sizeof(CameraBlock), nullptr);
 }
 
 void ReflectiveMapPass::drawSurfaces(const ReflectiveMapInputs& in, size_t index) {
   const ReflectiveMap& map = maps_[index];
-  const CameraBlock block = cameraBlock(map.view, in.bounds.diameter() + 2 * map.view.near);
-  camera_.write(0, sizeof block, &block);
-  camera_.bindUniform(0);
   const glm::ivec2 origin = resolution_ * glm::ivec2(int(index) % columns_, int(index) / columns_);
   surfaces_.bind();
   gl::PipelineState{
@@ -190,9 +190,6 @@ void ReflectiveMapPass::drawSurfaces(const ReflectiveMapInputs& in, size_t index
 
 void ReflectiveMapPass::drawFlux(const ReflectiveMapInputs& in, size_t index) {
   const ReflectiveMap& map = maps_[index];
-  const CameraBlock block = cameraBlock(map.view, in.bounds.diameter() + 2 * map.view.near);
-  camera_.write(0, sizeof block, &block);
-  camera_.bindUniform(0);
   const glm::ivec2 origin = resolution_ * glm::ivec2(int(index) % columns_, int(index) / columns_);
   const LightView& light = map.light;
   const gl::Program& program = context_.programs.get({.fragment = "rsm.frag"});

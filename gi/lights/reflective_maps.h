@@ -71,7 +71,7 @@ class ReflectiveMapPass {
   gl::Texture depth_, albedo_, position_, normal_, flux_;
   gl::Framebuffer surfaces_, fluxes_;
   std::vector<gl::Framebuffer> levels_;
-  gl::Buffer camera_;
+  gl::Ring cameras_{"reflective maps/cameras"};
 };
 
 /// Bytes that the sheet's textures may take; the resolution is halved until they fit.
@@ -81,7 +81,7 @@ class ReflectiveLightPass {
  public:
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
   /// VPLs of the maps, as the gather reads them: on a regular grid of about `rsm.vpls` for VplSource::Rsm, one per
-  /// patch without discontinuity for Isr. Waits for the GPU to know how many these are.
+  /// patch without discontinuity for Isr, which waits for the GPU to know how many these are.
   PackedLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;
@@ -92,6 +92,7 @@ class ReflectiveLightPass {
   PassContext context_;
   gl::Buffer lights_, compact_;
   gl::Texture compactView_;
+  gl::Ring lenses_{"reflective lights/lenses"};
   uint32_t count_ = 0;
 };
 

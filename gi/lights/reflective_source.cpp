@@ -8,7 +8,7 @@ namespace lambent {
 VirtualLights ReflectiveSource::run(const SourceInputs& in, FrameStats& stats) {
   if (!in.plan.on(EffectId::Redraw)) return {};
   const World& world = in.world;
-  const uint64_t draws = gl::drawCount();
+  const uint64_t draws = gl::counts().draws;
   const VplSource source = in.settings.vpl.source;
   sheet_ = mapPass_.run({world.gpu, world.view.lights, world.view.boundsWorld, world.view.changes.first || old_,
                          world.moved.boxes(), in.settings.rsm, source});
@@ -26,7 +26,7 @@ VirtualLights ReflectiveSource::run(const SourceInputs& in, FrameStats& stats) {
       lights.slots = shown_;
     }
   }
-  stats.of(EffectId::Indirect) += gl::drawCount() - draws;
+  stats.of(EffectId::Indirect) += gl::counts().draws - draws;
   return lights;
 }
 

@@ -38,8 +38,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Surfaces);
   const int width = in.camera.width, height = in.camera.height;
   const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
-  if (!camera_) camera_ = gl::Buffer("g-buffer/camera", sizeof(CameraBlock), nullptr);
-  camera_.write(0, sizeof block, &block);
+  camera_ = cameras_.write(sizeof block, &block);
   camera_.bindUniform(0);
   if (in.host) {
     GBuffer adopted = adopt(in);

@@ -59,7 +59,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
   for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
     if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
-  instanceRows_.write(0, rows.size() * sizeof(vec4), rows.data());
+  changes_.upload(instanceRows_, 0, rows.size() * sizeof(vec4), rows.data());
 }
 
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
@@ -107,10 +107,10 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
     }
     if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
       glBindVertexArray(array = wanted);
-    glDrawElementsInstancedBaseVertexBaseInstance(
-        GL_TRIANGLES, GLsizei(item.range.indexCount), GL_UNSIGNED_INT,
-        reinterpret_cast<const void*>(uintptr_t(item.range.firstIndex) * sizeof(uint32_t)), 1,
-        GLint(item.range.baseVertex), item.instance);
+    gl::drawIndexed({.count = item.range.indexCount,
+                     .firstIndex = item.range.firstIndex,
+                     .baseVertex = int(item.range.baseVertex),
+                     .baseInstance = item.instance});
     ++draws;
     testedDraws_ += tested(material);
   }
@@ -118,7 +118,6 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   glBindSampler(3, 0);
   glBindSampler(4, 0);
   glBindVertexArray(0);
-  gl::countDraws(draws);
   return draws;
 }
 

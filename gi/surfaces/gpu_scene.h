@@ -4,6 +4,7 @@
 
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
+#include "engine/gl/ring.h"
 #include "engine/scene/scene_view.h"
 #include "shaders/shared/material_block.h"
 
@@ -98,6 +99,7 @@ class GpuScene {
 
   gl::ProgramCache& programs_;
   gl::Buffer positions_, normals_, uvs_, colors_, indices_, instanceRows_, materials_;
+  gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
   gl::VertexArray vertexArray_;
   std::vector<gl::Texture> textures_;
   std::map<uint32_t, gl::Sampler> samplers_; // by packed wrap and filter modes

@@ -34,6 +34,7 @@ void GpuScene::layOutDeformed(std::span<const InstanceView> instances) {
   deformed_ = {};
   deformed_.baseVertex = std::move(baseVertex);
   if (total == 0) return;
+  changes_.reserve(total * (sizeof(vec3) + sizeof(uint64_t)) + instances.size() * 3 * sizeof(vec4));
   deformed_.positions = roomFor("scene/deformed positions", positions_, total, sizeof(vec3));
   deformed_.normals = roomFor("scene/deformed normals", normals_, total, sizeof(uint64_t));
   deformed_.uvs = roomFor("scene/deformed uvs", uvs_, total, sizeof(vec4));
@@ -62,8 +63,9 @@ void GpuScene::uploadDeformed(std::span<const InstanceView> instances) {
     normals.clear();
     for (const vec3& n : shape->normals) normals.push_back(glm::packSnorm4x16(vec4(n, 0)));
     const uint64_t base = deformed_.baseVertex[i];
-    deformed_.positions.write(base * sizeof(vec3), shape->positions.size() * sizeof(vec3), shape->positions.data());
-    deformed_.normals.write(base * sizeof(uint64_t), normals.size() * sizeof(uint64_t), normals.data());
+    changes_.upload(deformed_.positions, base * sizeof(vec3), shape->positions.size() * sizeof(vec3),
+                    shape->positions.data());
+    changes_.upload(deformed_.normals, base * sizeof(uint64_t), normals.size() * sizeof(uint64_t), normals.data());
   }
 }
 

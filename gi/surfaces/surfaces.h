@@ -1,6 +1,7 @@
 // Surfaces of the picture: drawn, or taken over from a host; and the pyramid of their smooth patches.
 #pragma once
 
+#include "engine/gl/ring.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
 #include "gi/contract/surfaces.h"
@@ -34,7 +35,8 @@ class SurfacePass {
   gl::Texture depth_, normal_, albedo_, emission_, finish_;
   gl::Texture hosts_[5]; // a host's, as ours
   gl::Framebuffer framebuffer_;
-  gl::Buffer camera_;
+  gl::Ring cameras_{"g-buffer/camera"};
+  gl::BufferSlice camera_; // of the last run
 };
 
 struct PatchInputs {

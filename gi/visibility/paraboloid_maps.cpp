@@ -14,10 +14,10 @@ namespace lambent {
 namespace {
 
 double secondsOf(const std::function<void()>& work) {
-  glFinish();
+  gl::finishToMeasure();
   const auto begin = std::chrono::steady_clock::now();
   work();
-  glFinish();
+  gl::finishToMeasure();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -100,8 +100,7 @@ std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {
 std::vector<float> readMap(const gl::Texture& array, int layer, float farDistance) {
   const int resolution = array.width();
   std::vector<uint16_t> values(size_t(resolution) * resolution);
-  glGetTextureSubImage(array.name(), 0, 0, 0, layer, resolution, resolution, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT,
-                       GLsizei(values.size() * sizeof(uint16_t)), values.data());
+  array.readLayer(layer, std::span(values), GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT);
   std::vector<float> distances(values.size());
   for (size_t i = 0; i < values.size(); ++i)
     distances[i] = values[i] == 65535 ? kInfinity : float(values[i]) / 65535.0f * farDistance;

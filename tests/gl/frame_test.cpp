@@ -63,6 +63,33 @@ TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
   EXPECT_NEAR(meanLuminance(interleaved), meanLuminance(rays), 0.02 * meanLuminance(rays));
 }
 
+/// What is said of techniques that wait (isr) is in counts_test.cpp; all others never stand still after the first
+/// frame, which measures the exposure.
+TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
+  HandScene scene;
+  furnish(scene);
+  Settings settings = quick();
+  settings.smc.vpls = settings.smc.points = 64;
+  settings.smc.warmup = 2;
+  settings.shadow.resolution = 32;
+  scene.camera.width = 48;
+  scene.camera.height = 36;
+  settings.image.exposure = 0;
+  for (const VplSource source : {VplSource::Smc, VplSource::Rsm, VplSource::Hisr})
+    for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {
+      settings.vpl.source = source;
+      settings.vpl.visibility = source == VplSource::Smc ? VplVisibility::Maps : VplVisibility::None;
+      settings.gather.mode = mode;
+      GiFrame gi(settings);
+      const FrameStats first = gi.run(scene.view());
+      EXPECT_EQ(first.readBacks, 1u);
+      const FrameStats second = gi.run(scene.view());
+      EXPECT_GT(second.draws, 3u);
+      EXPECT_EQ(second.waits, 0u);
+      EXPECT_EQ(second.readBacks, 0u);
+    }
+}
+
 TEST_F(FrameTest, TheSameTwice) {
   HandScene scene;
   furnish(scene);

@@ -87,11 +87,9 @@ nlohmann::json figuresOf(const Measured& m, const std::vector<Line>& times, cons
     j["median_ms"][line.name] = s.median;
     j["quartiles_ms"][line.name] = {s.quarter, s.threeQuarters};
   }
-  for (const Line& line : counts) j["median_count"][line.name] = line.of(m).median;
-  for (const Share& share : kShares) {
-    const Spread s = spreadOf(share, m);
-    j[share.key] = {{"median", s.median}, {"most", s.most}};
-  }
+  const auto of = [](const Spread& s) { return nlohmann::json{{"median", s.median}, {"most", s.most}}; };
+  for (const Line& line : counts) j["counts"][line.name] = of(line.of(m));
+  for (const Share& share : kShares) j[share.key] = of(spreadOf(share, m));
   j["most_maps_waiting"] = uint64_t(mostWaiting(m));
   return j;
 }

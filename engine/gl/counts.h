@@ -1,0 +1,48 @@
+// What was asked of GL: draws, and the places where the CPU stands still for the GPU. Everything above engine/gl draws,
+// reads back and waits through the functions of this folder (tools/check_layers), so that nothing is missed.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstdint>
+
+namespace lambent::gl {
+
+class TransformFeedback;
+
+/// Calls so far in this process. A read-back waits too, but counts only as what it is.
+struct Counts {
+  uint64_t draws = 0;     // draw calls; those of a multi-draw are one
+  uint64_t waits = 0;     // for a query's result or a fence that were not known to be there
+  uint64_t readBacks = 0; // copies from the GPU's memory
+
+  Counts operator-(const Counts& since) const {
+    return {draws - since.draws, waits - since.waits, readBacks - since.readBacks};
+  }
+};
+const Counts& counts();
+
+namespace detail {
+Counts& countsSoFar(); // contexts are used from one thread
+} // namespace detail
+
+void drawArrays(GLenum mode, int count);
+/// As many vertices as `feedback` was given last.
+void drawFeedback(GLenum mode, const TransformFeedback& feedback, int instances = 1);
+
+/// Triangles of 32-bit indices of the bound vertex array: the form that GL reads from an indirect buffer.
+struct IndexedDraw {
+  uint32_t count = 0, instances = 1, firstIndex = 0;
+  int32_t baseVertex = 0;
+  uint32_t baseInstance = 0;
+};
+void drawIndexed(const IndexedDraw& draw);
+
+/// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
+void drawFullscreen();
+
+/// Ends all that was asked of the GPU, so that a clock beside it tells the truth. For measuring only: a frame that is
+/// not measured never does this, so it is not counted.
+void finishToMeasure();
+
+} // namespace lambent::gl

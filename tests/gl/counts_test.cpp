@@ -1,0 +1,101 @@
+// Draws, waits and read-backs are counted wherever they happen, and a frame makes no more of the last two than it
+// needs.
+#include "engine/gl/query_ring.h"
+#include "gi/lights/reflective_maps.h"
+#include "gl_fixture.h"
+
+namespace lambent::test {
+
+class CountsTest : public GlTest {
+ protected:
+  gl::Counts sinceBefore() const { return gl::counts() - before; }
+  void SetUp() override {
+    GlTest::SetUp();
+    before = gl::counts();
+  }
+  gl::Counts before;
+};
+
+TEST_F(CountsTest, EveryWayToReadBackCounts) {
+  const gl::Texture texture(
+      "counts/texture", {.kind = gl::TextureKind::Array, .format = GL_RGBA32F, .width = 2, .height = 2, .layers = 2});
+  const float two[] = {1, 2, 3, 4};
+  glTextureSubImage3D(texture.name(), 0, 1, 1, 1, 1, 1, 1, GL_RGBA, GL_FLOAT, two);
+  std::vector<vec4> all(8), layer(4);
+  texture.read(std::span(all), GL_RGBA, GL_FLOAT);
+  texture.readLayer(1, std::span(layer), GL_RGBA, GL_FLOAT);
+  EXPECT_EQ(all[7], vec4(1, 2, 3, 4));
+  EXPECT_EQ(layer[3], vec4(1, 2, 3, 4));
+  const uint32_t values[] = {7, 8, 9};
+  const gl::Buffer buffer = gl::Buffer::of<uint32_t>("counts/buffer", values);
+  uint32_t last = 0;
+  buffer.read(8, std::span(&last, 1));
+  EXPECT_EQ(last, 9u);
+  EXPECT_EQ(sinceBefore().readBacks, 3u);
+  EXPECT_EQ(sinceBefore().waits, 0u);
+}
+
+TEST_F(CountsTest, OnlyTheResultOfAQueryWaits) {
+  const gl::Query query(GL_TIMESTAMP);
+  glQueryCounter(query.name(), GL_TIMESTAMP);
+  query.known();
+  EXPECT_EQ(sinceBefore().waits, 0u);
+  const uint64_t time = query.result();
+  EXPECT_EQ(sinceBefore().waits, 1u);
+  EXPECT_EQ(query.known(), time);
+  EXPECT_EQ(sinceBefore().waits, 1u);
+}
+
+/// Frame i marks i fragments. Whatever the GPU has come to by then, what is heard is the count of a frame that was
+/// drawn, never of an earlier one than was heard before, and at last that of the last frame that asked.
+TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
+  const gl::Texture target("ring/target", {.format = GL_RGBA8, .width = 64, .height = 1});
+  const gl::Framebuffer framebuffer("ring", {&target});
+  gl::QueryRing ring(GL_SAMPLES_PASSED);
+  EXPECT_EQ(ring.latest(), std::nullopt);
+  programs.get({.fragment = "present.frag"}).use();
+  framebuffer.bind();
+  uint64_t heard = 0;
+  for (int i = 1; i <= 40; ++i) {
+    gl::PipelineState{.width = i, .height = 1}.apply();
+    ring.begin();
+    gl::drawFullscreen();
+    ring.end();
+    const uint64_t now = ring.latest().value_or(0);
+    EXPECT_GE(now, heard);
+    EXPECT_LE(now, uint64_t(i));
+    heard = now;
+  }
+  EXPECT_EQ(sinceBefore().waits, 0u);
+  glFinish();
+  EXPECT_GT(ring.latest().value_or(0), 0u);
+  ring.begin();
+  gl::drawFullscreen();
+  ring.end();
+  glFinish();
+  EXPECT_EQ(ring.latest(), 40u);
+}
+
+TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
+  Room room;
+  GpuScene gpu(programs, room.scene.assets);
+  gpu.place(room.scene.instances);
+  LightView light;
+  light.position = vec3(0.3f, 0.6f, 0.5f);
+  light.intensity = vec3(1);
+  const std::vector<LightView> lights{light};
+  const auto waits = [&](VplSource source) {
+    ReflectiveMapPass mapPass{passes};
+    ReflectiveLightPass lightPass{passes};
+    const RsmSettings rsm{.resolution = 32};
+    const uint64_t begin = gl::counts().waits;
+    const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, source});
+    lightPass.run(maps, rsm, source);
+    return gl::counts().waits - begin;
+  };
+  EXPECT_EQ(waits(VplSource::Rsm), 0u);
+  EXPECT_EQ(waits(VplSource::Isr), 1u);
+  EXPECT_EQ(sinceBefore().readBacks, 0u);
+}
+
+} // namespace lambent::test
