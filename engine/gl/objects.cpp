@@ -219,6 +219,13 @@ Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const T
   CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
 }
 
+Framebuffer Framebuffer::empty(const std::string& label) {
+  Framebuffer framebuffer(label);
+  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_WIDTH, 1);
+  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, 1);
+  return framebuffer;
+}
+
 void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {
   glNamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture.name(), 0, layer);
 }

@@ -132,6 +132,10 @@ class Framebuffer : public detail::Object {
   Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr,
               int level = 0);
 
+  /// Without attachments: for draws that only capture. A context without a window has no complete framebuffer of its
+  /// own.
+  static Framebuffer empty(const std::string& label);
+
   /// Attaches one layer (cube face: 6·cube + face) as depth.
   void attachDepthLayer(const Texture& texture, int layer) const;
   void bind() const;

@@ -145,6 +145,7 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
   for (const SettingRow& row : settingsTable()) {
     if (row.name.starts_with("debug.") || row.name == "shadow.maker") continue; // how it is done, not what
     Settings s = settings;
+    if (row.name == "vpl.visibility") s.vpl.visibility = VplVisibility::Rays; // and back to maps
     if (row.name.starts_with("rsm.")) applyTechnique(s, row.name == "rsm.vpls" ? "rsm" : "isr");
     GiFrame gi(s);
     gi.run(room.scene.view());
@@ -154,6 +155,7 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
     if (other == now) other = now + 1;
     row.set(gi.settings(), other);
     const FrameStats& stats = gi.run(still());
+    ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << row.name << " = " << row.text(other);
     const bool light = stats.vplsRelit >= 64 || stats.pathsTraced > 0 || stats.ms(StageId::ReflectiveMaps) > 0 ||
                        row.name == "rsm.tau";
     const bool maps = stats.mapsDrawn + stats.lightMapsDrawn > 0;
@@ -164,7 +166,8 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
       break;
     case ChangeCost::Light:
       EXPECT_TRUE(light) << row.name;
-      EXPECT_FALSE(maps) << row.name << ": maps " << stats.mapsDrawn << ' ' << stats.lightMapsDrawn;
+      EXPECT_LE(stats.mapsDrawn, 2u) << row.name << ": more than those of VPLs that were replaced";
+      EXPECT_EQ(stats.lightMapsDrawn, 0u) << row.name;
       break;
     case ChangeCost::Maps:
       EXPECT_TRUE(maps) << row.name;
