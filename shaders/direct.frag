@@ -6,9 +6,9 @@
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
-#include "shared/punctual_light.h"
+#include "shared/light_record.h"
 
-layout(std140, binding = 1) uniform Lights { PunctualLight lights[kLightsPerBlock]; };
+layout(std140, binding = 1) uniform Lights { LightRecord lights[kLightsPerBlock]; };
 #ifdef CUBE_MAPS
 layout(binding = 2) uniform samplerCubeArrayShadow maps;
 #else
@@ -21,7 +21,7 @@ layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
 #endif
 
 /// glTF: smooth range window and cone (KHR_lights_punctual, reference formulas), over r².
-float attenuation(PunctualLight light, vec3 towardsLight, float distance2) {
+float attenuation(LightRecord light, vec3 towardsLight, float distance2) {
   float window = clamp(1.0 - distance2 * distance2 * light.positionRange.w, 0.0, 1.0);
   float cone = clamp(dot(light.directionTexel.xyz, -towardsLight) * light.coneNear.x + light.coneNear.y, 0.0, 1.0);
   return window * cone * cone / distance2;
@@ -63,7 +63,7 @@ void main() {
 #endif
 
   for (int i = 0; i < lightCount; ++i) {
-    PunctualLight light = lights[i];
+    LightRecord light = lights[i];
     float layer = light.intensityLayer.w;
 #ifdef SUN_MAPS
     vec3 towardsLight = -light.directionTexel.xyz;

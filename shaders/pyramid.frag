@@ -1,8 +1,9 @@
 #version 450
 // One level of the pyramid of patches, from the level below; FIRST: from pixels. A patch keeps the plane that fits it, as
 // inverse depth over the picture (affine for every plane, however steep), a bound of how far its pixels lie from that
-// plane, and the range of their normals. It is split where these pass the thresholds, and where a patch beside it is split
-// twice over (2:1 balance). Serves the camera's picture, and light maps that lie side by side (cells).
+// plane, and the range of their normals. It is split where these pass the thresholds, for balance where a patch beside it is
+// split twice over (2:1), and, if larger than 2 × 2 pixels, where an edge runs along it. Serves the camera's picture, and
+// light maps that lie side by side (cells).
 layout(binding = 0) uniform sampler2D depthMap;  // FIRST: reversed depth, 0 where nothing is seen
 layout(binding = 1) uniform sampler2D normalMap; // FIRST
 layout(binding = 0) uniform sampler2D planes;    // else: the level below
@@ -16,7 +17,8 @@ uniform float normalThreshold; // MultiresSettings::normal
 uniform float orthoScale;      // depth range over half the width, of maps by parallel rays: depths are not inverse there
 uniform int orthoFrom;         // the first of these, row by row
 uniform int columns;           // of maps
-uniform int balance;
+uniform int balance;           // MultiresSettings::balance
+uniform int edges;             // MultiresSettings::edges
 layout(location = 0) out vec4 outPlane;    // inverse depth at the centre (0: background, −1: outside), slope per pixel,
                                            // largest deviation
 layout(location = 1) out vec4 outNormalLo; // a: 1 = to be split
@@ -118,7 +120,7 @@ void main() {
 #ifdef FIRST
     // Patches may end where an edge runs, and have none inside. Light changes fast along it, and what is beyond says nothing
     // about this side, so patches next to it stay small.
-    if (balance != 0 && !split) {
+    if (edges != 0 && !split) {
       ivec2 origin = map * cell;
       bool edge = false;
       for (int i = 0; i < 16; ++i) {
@@ -135,7 +137,7 @@ void main() {
 #endif
   }
 #ifndef FIRST
-  // A split child makes this one split, or one with an edge along its border; so does, for balance, a split one beside.
+  // A split child makes this one split, as does one with an edge along its border, and, for balance, a split one beside.
   ivec2 origin = first / cell * cell;
   int ring = balance;
   for (int y = -ring; y < 2 + ring; ++y) {

@@ -24,7 +24,7 @@ void main() {
   vec3 position = positionFromDepth(pixel - origin, depth);
   vec3 reflectance = texelFetch(albedo, pixel, 0).rgb;
   if (camera.lens.w > 0.0) { // parallel
-    outPosition = vec4(position, 1.0);
+    outPosition = vec4(position, texelMean);
     outFlux = vec4(reflectance * intensity * texelMean, texelMean);
     return;
   }
@@ -37,6 +37,7 @@ void main() {
   }
   float window = clamp(1.0 - distance2 * distance2 * range4, 0.0, 1.0);
   float angular = clamp(dot(lightDirection, fromLight) * inversesqrt(distance2) * cone.x + cone.y, 0.0, 1.0);
-  outPosition = vec4(position, distance2);
-  outFlux = vec4(reflectance * intensity * (window * angular * angular * solidAngle), solidAngle * distance2);
+  float area = solidAngle * distance2;
+  outPosition = vec4(position, area);
+  outFlux = vec4(reflectance * intensity * (window * angular * angular * solidAngle), area);
 }

@@ -1,6 +1,6 @@
 #version 450
 // Image-space radiosity's clusters in one pass (paper 3, section 3.4): of all finest clusters those survive that are the
-// first of a patch without discontinuity, which they stand for.
+// first of a patch without discontinuity, which they stand for, and that reflect light.
 layout(points) in;
 layout(points, max_vertices = 1) out;
 #include "lib/rsm_light.glsl"
@@ -25,9 +25,7 @@ void main() {
     if (split(level)) return;
     ivec2 at = texel[0] >> shift;
     vec4 flux = texelFetch(fluxes, at, level);
-    if (!(flux.a > 0.0)) return;
-    setLight(texelFetch(positions, at, level).xyz, texelFetch(normals, at, level).xyz, flux.rgb, flux.a);
-    EmitVertex();
+    if (setLight(texelFetch(positions, at, level).xyz, texelFetch(normals, at, level).xyz, flux.rgb, flux.a)) EmitVertex();
     return;
   }
 }

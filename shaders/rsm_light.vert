@@ -11,7 +11,9 @@ layout(binding = 1) uniform sampler2D normals;
 layout(binding = 2) uniform sampler2D fluxes;
 uniform int resolution; // texels per side of a map
 uniform int columns;    // of maps
-uniform int side;       // of the grid, cells per map
+uniform int gridColumns; // LightGrid
+uniform int gridRows;
+uniform int mapsWithOneMore;
 uniform int exact;
 layout(std140, binding = 3) uniform Lenses { vec4 lens[1024]; }; // by map: tangent of half the field of view; 0: parallel
 #else
@@ -24,16 +26,25 @@ void main() {
   setNoLight();
   if (slot >= count) return;
 #ifdef GRID
-  int map = slot / (side * side), cell = slot % (side * side);
-  ivec2 at = ivec2(cell % side, cell / side);
-  ivec2 local = ivec2((vec2(at) + 0.5) * float(resolution) / float(side));
+  ivec2 grid = ivec2(gridColumns, gridRows + 1);
+  int map = 0, cell = slot - grid.x * grid.y * mapsWithOneMore;
+  if (cell < 0) {
+    cell = slot;
+  } else {
+    grid.y = gridRows;
+    map = mapsWithOneMore;
+  }
+  map += cell / (grid.x * grid.y);
+  cell %= grid.x * grid.y;
+  ivec2 at = ivec2(cell % grid.x, cell / grid.x);
+  ivec2 local = ivec2((vec2(at) + 0.5) * float(resolution) / vec2(grid));
   ivec2 texel = resolution * ivec2(map % columns, map / columns) + local;
   vec4 flux = texelFetch(fluxes, texel, 0);
-  float cellTexels = float(resolution) / float(side);
-  float share = cellTexels * cellTexels;
+  vec2 cellTexels = float(resolution) / vec2(grid);
+  float share = cellTexels.x * cellTexels.y;
   float tangent = lens[map].x;
   if (tangent > 0.0 && exact != 0) {
-    vec2 step = vec2(2.0 * tangent / float(side)), texelStep = vec2(2.0 * tangent / float(resolution));
+    vec2 step = 2.0 * tangent / vec2(grid), texelStep = vec2(2.0 * tangent / float(resolution));
     vec2 lo = vec2(at) * step - tangent, texelLo = vec2(local) * texelStep - tangent;
     share = rectSolidAngle(lo, lo + step) / rectSolidAngle(texelLo, texelLo + texelStep);
   }

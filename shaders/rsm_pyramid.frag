@@ -1,6 +1,7 @@
 #version 450
 // Clusters of 2 × 2 of the level below: flux and area add up, position and normal are means weighted by flux (by area where
-// there is none), the squared distance from the light is the largest.
+// there is none). The bound of the area takes all four as large as the largest, as the papers take the largest distance from
+// the light: where a cluster spans a step, its mean would be refined too late for its far part.
 layout(binding = 0) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 1) uniform sampler2D normals;
 layout(binding = 2) uniform sampler2D fluxes;
@@ -30,5 +31,5 @@ void main() {
     outPosition.xyz /= weights;
     outNormal.xyz /= weights;
   }
-  outPosition.a = largest;
+  outPosition.a = 4.0 * largest;
 }

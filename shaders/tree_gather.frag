@@ -1,7 +1,8 @@
 #version 450
 // Irradiance from the trees over reflective shadow maps, each fragment with clusters of its own choice (hierarchical
 // image-space radiosity, paper 3, section 3.5). The tree of a map is walked in Morton order without a stack: below a
-// cluster that is refined come its four parts, after one that is taken the next of its size or larger.
+// cluster that is refined come its four parts, after one that is taken the next of its size or larger. A draw may begin and
+// end within a tree: what is taken belongs to the draw in which it begins.
 // Variants PATCHES and GLOSSY as in gather.frag.
 #include "lib/gbuffer.glsl"
 #ifdef GLOSSY
@@ -13,7 +14,7 @@ layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 3) uniform sampler2D normals;
 layout(binding = 4) uniform sampler2D fluxes;
 uniform ivec2 origin;    // of the map, texels
-uniform float threshold; // T of a texel, see tree_gather.cpp
+uniform float threshold; // see tree_gather.cpp
 uniform int coarsest; // mip levels
 uniform int finest;
 uniform ivec2 tileOrigin;
@@ -23,6 +24,8 @@ uniform int level;
 uniform int firstRoot; // of the map's coarsest clusters this draw starts from
 uniform int endRoot;
 uniform int rootStep;
+uniform int firstLeaf; // of each tree, finest clusters
+uniform int endLeaf;
 uniform float diskFactor;
 uniform float largestG;
 uniform float spread; // GLOSSY
@@ -65,7 +68,7 @@ void main() {
 #endif
   int depthOfTree = coarsest - finest;
   for (int root = firstRoot; root < endRoot; root += rootStep) {
-    int m = root << (2 * depthOfTree), end = (root + 1) << (2 * depthOfTree); // in units of the finest clusters
+    int m = (root << (2 * depthOfTree)) + firstLeaf, end = (root << (2 * depthOfTree)) + endLeaf; // finest clusters
     int at = coarsest;
     while (m < end) {
       int shift = at - finest;
@@ -73,12 +76,12 @@ void main() {
       vec4 place = texelFetch(positions, cluster, at);
       vec3 fromLight = position - place.xyz;
       float distance2 = max(dot(fromLight, fromLight), 1e-12);
-      // r² ≤ T |V|² with R of this level: T grows fourfold with each.
-      if (place.a > 0.0 && at > finest && distance2 <= threshold * float(1 << (2 * at)) * place.a) {
+      if (place.a > 0.0 && at > finest && distance2 <= threshold * place.a) {
         --at;
         continue;
       }
-      if (place.a > 0.0) {
+      int within = m & ((1 << (2 * shift)) - 1);
+      if (place.a > 0.0 && within == 0) {
         vec4 flux = texelFetch(fluxes, cluster, at);
         vec3 direction = fromLight * inversesqrt(distance2);
         vec3 n = texelFetch(normals, cluster, at).xyz;
@@ -91,7 +94,7 @@ void main() {
         glossy += light * glossyReflectance(receiver, -direction, widening);
 #endif
       }
-      m += 1 << (2 * shift);
+      m += (1 << (2 * shift)) - within;
       at = min(coarsest, finest + findLSB(m | (1 << (2 * depthOfTree))) / 2);
     }
   }

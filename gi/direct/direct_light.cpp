@@ -83,8 +83,8 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   target_.fit(in.surfaces);
   target_.clear();
   for (const LightBlock& block : shadows.blocks) {
-    const char* kind = block.kind == MapKind::Cube   ? "CUBE_MAPS"
-                       : block.kind == MapKind::Spot ? "SPOT_MAPS"
+    const char* kind = block.kind == LightKind::Cube   ? "CUBE_MAPS"
+                       : block.kind == LightKind::Spot ? "SPOT_MAPS"
                                                      : "SUN_MAPS";
     std::vector<std::string> defines = bindSurfaces(in.surfaces);
     defines.push_back(kind);

@@ -12,12 +12,10 @@ namespace {
 
 /// Bytes that the maps of one kind may take; their resolution is halved until they fit (hundreds of point lights).
 constexpr uint64_t kBudgetBytes = uint64_t(512) << 20;
-/// Spots wider than this half angle get a cube, for their perspective would have hardly any texels in the middle.
-constexpr float kWidestSpotCos = 0.34f; // 70°
 
 /// A light with the views that its map needs: one, or six for a cube.
 struct LitMap {
-  PunctualLight light;
+  LightRecord light;
   std::vector<mat4> clipFromWorld;
 };
 
@@ -46,16 +44,11 @@ mat4 mapFromClip() {
 
 LitMap punctual(const LightView& light, float near) {
   LitMap out;
-  const float range4 = light.range * light.range * light.range * light.range;
-  out.light.positionRange = vec4(light.position, std::isfinite(range4) && range4 > 0 ? 1 / range4 : 0);
+  out.light.positionRange = vec4(light.position, inverseRange4(light));
   out.light.directionTexel = vec4(light.direction, 0);
   out.light.intensityLayer = vec4(light.intensity, 0);
-  out.light.coneNear = vec4(0, 1, near, 0);
+  out.light.coneNear = vec4(coneFactors(light), near, 0);
   out.light.mapFromWorld = mat4(0);
-  if (light.type == LightType::Spot) { // reference formula of KHR_lights_punctual
-    out.light.coneNear.x = 1 / std::max(0.001f, light.innerConeCos - light.outerConeCos);
-    out.light.coneNear.y = -light.outerConeCos * out.light.coneNear.x;
-  }
   return out;
 }
 
@@ -116,12 +109,12 @@ struct LightShadowState {
   std::vector<SunFit> sunFits, skyFits;
   uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
 
-  void fill(size_t& block, MapKind kind, int resolution, std::vector<LitMap>& maps, const LightShadowInputs& in);
+  void fill(size_t& block, LightKind kind, int resolution, std::vector<LitMap>& maps, const LightShadowInputs& in);
   void drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
 };
 
 /// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
-void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::vector<LitMap>& maps,
+void LightShadowState::fill(size_t& block, LightKind kind, int resolution, std::vector<LitMap>& maps,
                             const LightShadowInputs& in) {
   for (size_t first = 0; first < maps.size(); first += kLightsPerBlock, ++block) {
     const int count = int(std::min<size_t>(kLightsPerBlock, maps.size() - first));
@@ -131,7 +124,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::ve
         target.maps.width() != resolution) {
       target.kind = kind;
       target.maps = gl::Texture("light maps/block " + std::to_string(block),
-                                {.kind = kind == MapKind::Cube ? gl::TextureKind::CubeArray : gl::TextureKind::Array,
+                                {.kind = kind == LightKind::Cube ? gl::TextureKind::CubeArray : gl::TextureKind::Array,
                                  .format = GL_DEPTH_COMPONENT32F,
                                  .width = resolution,
                                  .height = resolution,
@@ -141,17 +134,16 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, std::ve
                                  .compareGreater = true});
       target.drawn.assign(size_t(count), mat4(0));
     }
-    if (!target.lights)
-      target.lights = gl::Buffer("light maps/lights", sizeof(PunctualLight) * kLightsPerBlock, nullptr);
+    if (!target.lights) target.lights = gl::Buffer("light maps/lights", sizeof(LightRecord) * kLightsPerBlock, nullptr);
     target.count = count;
-    std::vector<PunctualLight> lights;
+    std::vector<LightRecord> lights;
     for (int i = 0; i < count; ++i) {
       lights.push_back(maps[first + i].light);
       lights.back().intensityLayer.w = float(i);
     }
     if (lights.size() != target.held.size() ||
-        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(PunctualLight)) != 0) {
-      changedLights.upload(target.lights, 0, lights.size() * sizeof(PunctualLight), lights.data());
+        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(LightRecord)) != 0) {
+      changedLights.upload(target.lights, 0, lights.size() * sizeof(LightRecord), lights.data());
       target.held = std::move(lights);
     }
     drawMaps(target, maps, first, in);
@@ -192,31 +184,25 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
   const gl::PassScope scope = s.context.scope(StageId::LightMaps);
   s.mapsDrawn = 0;
-  s.changedLights.reserve((in.lights.size() + size_t(in.shadow.skyMaps)) * sizeof(PunctualLight));
-  // Casters nearer than this to a light's point are its own housing as often as not; relative, since scenes come in all
-  // sizes.
-  const float near = std::max(1e-6f, 1e-4f * in.casters.diameter());
+  s.changedLights.reserve((in.lights.size() + size_t(in.shadow.skyMaps)) * sizeof(LightRecord));
+  const float near = nearPlane(in.casters);
 
   std::vector<const LightView*> cubes, spots, suns;
   for (const LightView& light : in.lights) {
-    if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity)) continue;
-    if (light.type == LightType::Directional)
-      suns.push_back(&light);
-    else if (light.type == LightType::Spot && light.outerConeCos > kWidestSpotCos)
-      spots.push_back(&light);
-    else
-      cubes.push_back(&light);
+    if (!shines(light)) continue;
+    const LightKind kind = kindOf(light);
+    (kind == LightKind::Sun ? suns : kind == LightKind::Spot ? spots : cubes).push_back(&light);
   }
   std::vector<LitMap> maps;
   size_t block = 0;
   int resolution = affordableResolution(in.shadow.pointResolution, cubes.size() * 6);
   for (const LightView* light : cubes) maps.push_back(cubeMap(*light, resolution, near));
-  s.fill(block, MapKind::Cube, resolution, maps, in);
+  s.fill(block, LightKind::Cube, resolution, maps, in);
 
   maps.clear();
   resolution = affordableResolution(in.shadow.spotResolution, spots.size());
   for (const LightView* light : spots) maps.push_back(spotMap(*light, resolution, near));
-  s.fill(block, MapKind::Spot, resolution, maps, in);
+  s.fill(block, LightKind::Spot, resolution, maps, in);
 
   // Directions of suns and sky are fitted to the receivers; nothing to fit or light in an empty scene.
   const auto fitted = [&](std::vector<SunFit>& fits, const std::vector<vec3>& directions,
@@ -228,7 +214,7 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
       fits[i] = fitSun(directions[i], in.receivers, in.casters, fits[i]);
       maps.push_back(sunMap(fits[i], irradiances[i], resolution));
     }
-    s.fill(block, MapKind::Sun, resolution, maps, in);
+    s.fill(block, LightKind::Sun, resolution, maps, in);
   };
   std::vector<vec3> directions, irradiances;
   for (const LightView* light : suns) {

@@ -1,26 +1,25 @@
 // Shadow maps of punctual lights and sky directions, as the direct pass reads them.
 #pragma once
 
+#include "gi/contract/light_views.h"
 #include "gi/contract/pass_context.h"
 #include "gi/plan/settings.h"
 #include "gi/surfaces/gpu_scene.h"
-#include "shaders/shared/punctual_light.h"
+#include "shaders/shared/light_record.h"
 
 #include <memory>
 #include <span>
 
 namespace lambent {
 
-enum class MapKind { Cube, Spot, Sun };
-
 /// Up to kLightsPerBlock lights of one kind, with their maps in one texture array.
 struct LightBlock {
-  MapKind kind = MapKind::Sun;
+  LightKind kind = LightKind::Sun;
   gl::Texture maps; // DEPTH32F, reversed
   gl::Buffer lights;
   int count = 0;
-  std::vector<PunctualLight> held; // what `lights` holds
-  std::vector<mat4> drawn;         // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
+  std::vector<LightRecord> held; // what `lights` holds
+  std::vector<mat4> drawn;       // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
 };
 
 struct LightShadows {

@@ -148,8 +148,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
       profiler.choose(settings.debug.timing == TimingMode::Queries ? gl::Timing::Queries : gl::Timing::Finish);
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
-  CpuScope scope(stats.stages, key(StageId::Scene));
-  if (!world.open(*given.assets)) return;
+  if (!world.open(*given.assets, stats)) return;
   if (source) source->forget();
   results = {};
 }

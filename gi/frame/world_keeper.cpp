@@ -19,8 +19,9 @@ float reachOf(const SceneView& view, float before) {
 
 } // namespace
 
-bool WorldKeeper::open(const SceneAssets& assets) {
+bool WorldKeeper::open(const SceneAssets& assets, FrameStats& stats) {
   if (assets_ == &assets) return false;
+  CpuScope scope(stats.stages, key(StageId::Scene));
   assets_ = &assets;
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);

@@ -24,7 +24,7 @@ class WorldKeeper {
   explicit WorldKeeper(gl::ProgramCache& programs) : programs_(programs) {}
 
   /// Makes ready for another scene. Says whether it is one.
-  bool open(const SceneAssets& assets);
+  bool open(const SceneAssets& assets, FrameStats& stats);
   /// Takes the view over and decides what is done in this frame. What no stage was told of stays a change until all
   /// hear of it.
   EffectPlan plan(const SceneView& given, const Settings& settings, const PlanInputs& in);

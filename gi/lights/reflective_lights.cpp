@@ -1,4 +1,4 @@
-// VPLs of reflective shadow maps, made on the GPU: nothing is read back but their number (isr).
+// VPLs of reflective shadow maps, made on the GPU: nothing is read back but their number.
 #include "gi/lights/reflective_maps.h"
 
 #include "engine/core/error.h"
@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string> kLightFields{"positionArea", "powerNormalX", "tangentNormalY", "bitangentNormalZ"};
 constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
-/// Bounds the buffer of isr's VPLs (64 MiB): with very many maps the finest clusters are larger.
+/// Bounds the buffer of clusters (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
 /// Runs the program over `vertices` points into `target`.
@@ -35,7 +35,7 @@ void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vert
   glBindVertexArray(0);
 }
 
-/// The same, and waits for the GPU to say how many it wrote.
+/// The same where the program decides how many it writes: returns it, for which it waits until the GPU is there.
 uint32_t captureCounted(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::Query written(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.name());
@@ -43,6 +43,8 @@ uint32_t captureCounted(const gl::Program& program, const gl::Buffer& target, ui
   glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   return uint32_t(written.result());
 }
+
+uint32_t mapsUsed(const ReflectiveMaps& maps) { return uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps)); }
 
 void bindClusters(const ReflectiveMaps& maps) {
   maps.position->bind(0);
@@ -52,35 +54,54 @@ void bindClusters(const ReflectiveMaps& maps) {
 
 } // namespace
 
+LightGrid lightGrid(int vpls, int maps) {
+  if (maps == 0) return {};
+  const int side = std::max(1, int(std::sqrt(double(vpls) / maps) + 1e-9));
+  LightGrid best;
+  for (const int columns : {side, side + 1}) {
+    const int rows = std::max(maps, vpls / columns); // of all maps
+    const LightGrid grid{columns, rows / maps, rows % maps, maps};
+    if (best.maps == 0 || (grid.count() > best.count() && grid.count() <= vpls)) best = grid;
+  }
+  return best;
+}
+
 void ReflectiveLightPass::reserve(uint32_t slots) {
   const uint64_t bytes = uint64_t(std::max(1u, (slots + kChunk - 1) / kChunk)) * kChunk * sizeof(VplLight);
   if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
 }
 
-PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source) {
-  if (!maps.changed && lights_) return {&lights_, count_};
+PackedLights ReflectiveLightPass::runGrid(const ReflectiveMaps& maps, const RsmSettings& rsm) {
+  if (!maps.changed && lights_ && grid_) return {&lights_, count_};
   const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
-  const uint32_t mapCount = uint32_t(std::min<size_t>(maps.maps.size(), kMostMaps));
-  gl::ProgramDesc desc{.vertex = "rsm_light.vert", .captured = kLightFields};
-  if (source == VplSource::Rsm) {
-    const int side = mapCount == 0 ? 0 : std::max(1, int(std::sqrt(double(rsm.vpls) / mapCount) + 1e-9));
-    count_ = mapCount * uint32_t(side * side);
-    reserve(count_);
-    std::vector<vec4> lenses(kMostMaps, vec4(0));
-    for (uint32_t i = 0; i < mapCount; ++i)
-      if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
-    lenses_.write(lenses.size() * sizeof(vec4), lenses.data()).bindUniform(3);
-    desc.defines.push_back("GRID");
-    const gl::Program& program = context_.programs.get(desc);
-    program.set("count", int(count_));
-    program.set("resolution", maps.resolution);
-    program.set("columns", maps.columns);
-    program.set("side", side);
-    program.set("exact", rsm.exact ? 1 : 0);
-    bindClusters(maps);
-    capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
-    return {&lights_, count_};
-  }
+  grid_ = true;
+  const uint32_t mapCount = mapsUsed(maps);
+  const LightGrid grid = lightGrid(rsm.vpls, int(mapCount));
+  count_ = uint32_t(grid.count());
+  reserve(count_);
+  std::vector<vec4> lenses(kMostMaps, vec4(0));
+  for (uint32_t i = 0; i < mapCount; ++i)
+    if (!maps.maps[i].parallel) lenses[i].x = std::tan(0.5f * maps.maps[i].view.fovY);
+  lenses_.write(lenses.size() * sizeof(vec4), lenses.data()).bindUniform(3);
+  const gl::Program& program =
+      context_.programs.get({.vertex = "rsm_light.vert", .defines = {"GRID"}, .captured = kLightFields});
+  program.set("count", int(count_));
+  program.set("resolution", maps.resolution);
+  program.set("columns", maps.columns);
+  program.set("gridColumns", grid.columns);
+  program.set("gridRows", grid.rows);
+  program.set("mapsWithOneMore", grid.mapsWithOneMore);
+  program.set("exact", rsm.exact ? 1 : 0);
+  bindClusters(maps);
+  capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+  return {&lights_, count_};
+}
+
+PackedLights ReflectiveLightPass::runClusters(const ReflectiveMaps& maps, const RsmSettings& rsm) {
+  if (!maps.changed && lights_ && !grid_) return {&lights_, count_};
+  const gl::PassScope scope = context_.scope(StageId::ReflectiveLights);
+  grid_ = false;
+  const uint32_t mapCount = mapsUsed(maps);
   const int coarsest = maps.levels - 1;
   int finest = std::min(maps.levelOf(rsm.finest), coarsest);
   const auto clusters = [&](int level) {
@@ -104,7 +125,7 @@ PackedLights ReflectiveLightPass::run(const ReflectiveMaps& maps, const RsmSetti
   if (maps.patches.normalLo) maps.patches.normalLo->bind(3);
   count_ = most > 0 ? captureCounted(compact, compact_, most) : 0;
   reserve(count_);
-  const gl::Program& order = context_.programs.get(desc);
+  const gl::Program& order = context_.programs.get({.vertex = "rsm_light.vert", .captured = kLightFields});
   order.set("count", int(count_));
   compactView_.bind(0);
   capture(order, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);

@@ -3,6 +3,7 @@
 #include "gi/lights/reflective_maps.h"
 
 #include "engine/scene/scene.h"
+#include "gi/contract/light_views.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -14,9 +15,6 @@ namespace lambent {
 
 namespace {
 
-/// Spots wider than this half angle get six faces, as for their shadow maps.
-constexpr float kWidestSpotCos = 0.34f; // 70°
-
 mat4 worldFromLight(const vec3& position, const vec3& direction) {
   return glm::translate(mat4(1), position) * glm::mat4_cast(rotationTowards(direction));
 }
@@ -27,17 +25,18 @@ std::vector<ReflectiveMap> mapsOf(const ReflectiveMapInputs& in) {
   const vec3 centre = 0.5f * (in.bounds.lo + in.bounds.hi);
   const float diameter = std::max(1e-6f, in.bounds.diameter());
   for (const LightView& light : in.lights) {
-    if (!(maxComponent(light.intensity) > 0) || !isFinite(light.intensity)) continue;
+    if (!shines(light)) continue;
+    const LightKind kind = kindOf(light);
     ReflectiveMap map;
     map.light = light;
-    map.view.near = 1e-4f * diameter;           // as light_shadows.cpp
-    if (light.type == LightType::Directional) { // a sphere around the scene, whichever way the light comes
+    map.view.near = nearPlane(in.bounds);
+    if (kind == LightKind::Sun) { // a sphere around the scene, whichever way the light comes
       map.parallel = true;
       map.view.orthoHalfHeight = 0.5f * diameter;
       map.view.worldFromView =
           worldFromLight(centre - (0.5f * diameter + map.view.near) * light.direction, light.direction);
       maps.push_back(map);
-    } else if (light.type == LightType::Spot && light.outerConeCos > kWidestSpotCos) {
+    } else if (kind == LightKind::Spot) {
       map.view.fovY = 2 * std::acos(std::min(0.9999f, light.outerConeCos));
       map.view.worldFromView = worldFromLight(light.position, light.direction);
       maps.push_back(map);
@@ -93,7 +92,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
     resolution /= 2;
   const int columns = std::max(1, int(std::ceil(std::sqrt(double(maps.size()))))),
             rows = std::max(1, (int(maps.size()) + columns - 1) / columns);
-  const bool clustered = in.source != VplSource::Rsm;
+  const bool clustered = in.needs.clusters;
   const int coarsest = std::min(resolution, int(std::bit_floor(unsigned(in.rsm.coarsest))));
   const int levels = clustered ? int(std::bit_width(unsigned(resolution / coarsest))) : 1;
   for (ReflectiveMap& m : maps) complete(m, resolution, in.bounds);
@@ -103,7 +102,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
                     position_.height() != rows * resolution || position_.desc().levels != levels ||
                     maps.size() != maps_.size() || in.allChanged;
   if (anew) allocate(resolution, columns, rows, levels);
-  bool changed = anew || settings_ != in.rsm || source_ != in.source;
+  bool changed = anew || settings_ != in.rsm || needs_ != in.needs;
   mapsDrawn_ = 0;
   cameras_.reserve(maps.size() * sizeof(CameraBlock));
   for (size_t i = 0; i < maps.size(); ++i) {
@@ -125,9 +124,9 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
     drawFlux(in, i);
   }
   settings_ = in.rsm;
-  source_ = in.source;
+  needs_ = in.needs;
   if (changed && levels > 1) drawPyramid();
-  if (changed && in.source == VplSource::Isr) {
+  if (changed && in.needs.patches) {
     const auto firstParallel =
         std::find_if(maps_.begin(), maps_.end(), [](const ReflectiveMap& m) { return m.parallel; });
     patches_ = patchPass_.run({.depth = depth_,
@@ -139,7 +138,8 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
                                .orthoFrom = int(firstParallel - maps_.begin()),
                                .depthThreshold = in.rsm.depth,
                                .normalThreshold = in.rsm.normal,
-                               .balance = false});
+                               .balance = false, // nothing is interpolated between clusters
+                               .edges = false});
   }
   return {.maps = maps_,
           .position = &position_,
@@ -149,7 +149,7 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
           .resolution = resolution,
           .columns = columns,
           .levels = levels,
-          .patches = in.source == VplSource::Isr ? patches_ : PatchPyramid{},
+          .patches = in.needs.patches ? patches_ : PatchPyramid{},
           .changed = changed};
 }
 
@@ -198,14 +198,8 @@ void ReflectiveMapPass::drawFlux(const ReflectiveMapInputs& in, size_t index) {
   program.set("intensity", light.intensity);
   program.set("lightPosition", light.position);
   program.set("lightDirection", light.direction);
-  const float range4 = light.range * light.range * light.range * light.range;
-  program.set("range4", std::isfinite(range4) && range4 > 0 ? 1 / range4 : 0.0f);
-  vec2 cone(0, 1);
-  if (light.type == LightType::Spot) {
-    cone.x = 1 / std::max(0.001f, light.innerConeCos - light.outerConeCos);
-    cone.y = -light.outerConeCos * cone.x;
-  }
-  program.set("cone", cone);
+  program.set("range4", inverseRange4(light));
+  program.set("cone", coneFactors(light));
   program.set("texelMean", map.patchArea);
   program.set("exact", in.rsm.exact ? 1 : 0);
   depth_.bind(0);

@@ -25,17 +25,24 @@ struct ReflectiveMap {
 /// flux.
 struct ReflectiveMaps {
   std::span<const ReflectiveMap> maps;
-  const gl::Texture* position = nullptr; // RGBA32F: world; a: largest squared distance from the light, m² (1 for a
-                                         // sun), 0 where the map meets nothing
+  const gl::Texture* position = nullptr; // RGBA32F: world; a: bound of the area, m²: that of the largest texel times
+                                         // their number; 0 where the map meets nothing
   const gl::Texture* normal = nullptr;   // RGBA32F: on the lit side; unit at level 0, at others as long as the mean
   const gl::Texture* flux = nullptr;     // RGBA32F: reflected flux, W; a: area facing the light, m²
   const gl::Texture* depth = nullptr;    // reversed, level 0 only
   int resolution = 0, columns = 1, levels = 1;
-  PatchPyramid patches; // isr: level λ is mip level λ − 1, as everywhere
+  PatchPyramid patches; // if needed: level λ is mip level λ − 1, as everywhere
   bool changed = true;  // anything since the last run
 
   glm::ivec2 origin(size_t map) const { return resolution * glm::ivec2(int(map) % columns, int(map) / columns); }
   int levelOf(int patchesPerSide) const; // mip level with about so many clusters per side of a map
+};
+
+/// What is made of the maps besides themselves.
+struct ReflectiveNeeds {
+  bool clusters = false; // the coarser mip levels
+  bool patches = false;  // which clusters are smooth; only with clusters
+  bool operator==(const ReflectiveNeeds&) const = default;
 };
 
 struct ReflectiveMapInputs {
@@ -45,7 +52,7 @@ struct ReflectiveMapInputs {
   bool allChanged = false;
   std::span<const Aabb> moved; // where geometry changed: maps that show none of it stay
   const RsmSettings& rsm;
-  VplSource source; // decides what of the pyramid is needed
+  ReflectiveNeeds needs;
 };
 
 class ReflectiveMapPass {
@@ -64,7 +71,7 @@ class ReflectiveMapPass {
   PatchPass patchPass_{context_, StageId::LightPatches};
   std::vector<ReflectiveMap> maps_;
   RsmSettings settings_;
-  VplSource source_ = VplSource::Smc;
+  ReflectiveNeeds needs_;
   PatchPyramid patches_;
   int resolution_ = 0, columns_ = 1;
   uint32_t mapsDrawn_ = 0;
@@ -77,12 +84,23 @@ class ReflectiveMapPass {
 /// Bytes that the sheet's textures may take; the resolution is halved until they fit.
 inline constexpr uint64_t kReflectiveMapBudget = uint64_t(512) << 20;
 
+/// A regular grid over each of `maps` maps: `columns` × `rows` cells, one row more in the first ones.
+struct LightGrid {
+  int columns = 0, rows = 0, mapsWithOneMore = 0, maps = 0;
+  int count() const { return columns * (rows * maps + mapsWithOneMore); }
+};
+/// Nearly square cells, `vpls` of them or hardly fewer, at least one per map: 252 on the six maps of a point light for
+/// 256.
+LightGrid lightGrid(int vpls, int maps);
+
 class ReflectiveLightPass {
  public:
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
-  /// VPLs of the maps, as the gather reads them: on a regular grid of about `rsm.vpls` for VplSource::Rsm, one per
-  /// patch without discontinuity for Isr, which waits for the GPU to know how many these are.
-  PackedLights run(const ReflectiveMaps& maps, const RsmSettings& rsm, VplSource source);
+  // VPLs of the maps, as the gather reads them.
+  PackedLights runGrid(const ReflectiveMaps& maps, const RsmSettings& rsm); // on a regular grid
+  /// One per patch without discontinuity that reflects light; needs the maps' patches. Waits for the GPU to know how
+  /// many these are.
+  PackedLights runClusters(const ReflectiveMaps& maps, const RsmSettings& rsm);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;
 
@@ -90,6 +108,7 @@ class ReflectiveLightPass {
   void reserve(uint32_t slots);
 
   PassContext context_;
+  bool grid_ = false; // what `lights_` holds
   gl::Buffer lights_, compact_;
   gl::Texture compactView_;
   gl::Ring lenses_{"reflective lights/lenses"};
@@ -97,10 +116,15 @@ class ReflectiveLightPass {
 };
 
 /// What drawGather draws in place of VPLs: irradiance from the trees of all maps. Each fragment descends from the
-/// coarsest clusters and stops where what a cluster may bring stays below τ (paper 3, eq. 7 and 8).
+/// coarsest clusters and stops where what a cluster may bring stays below τ (paper 3, eq. 7 and 8): P A/(π r² + A),
+/// with P the light of its map as a share of the brightest map's, A the bound of its area, r the distance of its mean
+/// place.
 struct LightTrees {
   const ReflectiveMaps& maps;
   const RsmSettings& rsm;
+  /// Clusters that a fragment looks at in one draw: watchdogs stop a GPU that works on one for seconds, and software
+  /// Mesa leaves a loop after 65 536 turns.
+  int mostTurns = 4096;
 };
 
 } // namespace lambent

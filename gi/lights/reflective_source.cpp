@@ -9,16 +9,16 @@ VirtualLights ReflectiveSource::run(const SourceInputs& in, FrameStats& stats) {
   if (!in.plan.on(EffectId::Redraw)) return {};
   const World& world = in.world;
   const uint64_t draws = gl::counts().draws;
-  const VplSource source = in.settings.vpl.source;
+  const SourceRow& row = rowOf(in.settings.vpl.source);
   sheet_ = mapPass_.run({world.gpu, world.view.lights, world.view.boundsWorld, world.view.changes.first || old_,
-                         world.moved.boxes(), in.settings.rsm, source});
+                         world.moved.boxes(), in.settings.rsm, {.clusters = row.clusters, .patches = row.clusters && !row.tree}});
   old_ = false;
   VirtualLights lights;
-  if (rowOf(source).tree) {
+  if (row.tree) {
     trees_.emplace(LightTrees{sheet_, in.settings.rsm});
     lights.trees = &*trees_;
   } else {
-    lights.packed = lightPass_.run(sheet_, in.settings.rsm, source);
+    lights.packed = row.clusters ? lightPass_.runClusters(sheet_, in.settings.rsm) : lightPass_.runGrid(sheet_, in.settings.rsm);
     lights.alive = lights.packed.count;
     if (in.settings.vpl.visibility != VplVisibility::None) { // shadow maps and rays are made from the CPU's side
       shown_.clear();

@@ -7,28 +7,33 @@
 
 namespace lambent {
 
-double rmse(const Image& picture, const Image& truth) {
+PictureError pictureError(const Image& picture, const Image& truth, const Image& mask) {
   CHECK_EQ(picture.width, truth.width);
   CHECK_EQ(picture.height, truth.height);
-  double squares = 0;
-  for (size_t i = 0; i < truth.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) {
-      const double difference = double(picture.pixels[i][c]) - truth.pixels[i][c];
-      squares += difference * difference;
+  PictureError out;
+  double squares = 0, relative = 0, difference = 0, sum = 0;
+  for (size_t i = 0; i < truth.pixels.size(); ++i) {
+    if (!mask.pixels.empty() && !(maxComponent(mask.pixels[i]) > 0)) continue;
+    if (!isFinite(picture.pixels[i]) || !isFinite(truth.pixels[i])) {
+      ++out.notFinite;
+      continue;
     }
-  return std::sqrt(squares / (3 * double(std::max<size_t>(1, truth.pixels.size()))));
-}
-
-double meanOf(const Image& picture) {
-  double sum = 0;
-  for (const vec3& pixel : picture.pixels)
-    for (int c = 0; c < 3; ++c) sum += pixel[c];
-  return sum / (3 * double(std::max<size_t>(1, picture.pixels.size())));
-}
-
-double rmseShare(const Image& picture, const Image& truth) {
-  const double error = rmse(picture, truth);
-  return error > 0 ? error / meanOf(truth) : 0;
+    ++out.pixels;
+    for (int c = 0; c < 3; ++c) {
+      const double b = truth.pixels[i][c], d = picture.pixels[i][c] - b;
+      squares += d * d;
+      relative += d * d / (b * b + 0.01);
+      difference += d;
+      sum += b;
+      out.largest = std::max(out.largest, std::abs(d));
+    }
+  }
+  const double n = 3 * double(std::max<size_t>(1, out.pixels));
+  out.rmse = std::sqrt(squares / n);
+  out.relMse = relative / n;
+  out.bias = sum != 0 ? difference / sum : 0;
+  out.meanTruth = sum / n;
+  return out;
 }
 
 } // namespace lambent

@@ -5,13 +5,19 @@
 
 namespace lambent {
 
-/// Root of the mean square of the difference, over all channels of all pixels. Both have the same size.
-double rmse(const Image& picture, const Image& truth);
+/// Over all channels of the pixels that count; those with NaN or infinity in either picture are left out and counted.
+struct PictureError {
+  double rmse = 0;
+  double relMse = 0;    // mean of (a − b)²/(b² + 0.01)
+  double bias = 0;      // mean of a − b over the mean of b; 0 where that is black
+  double largest = 0;   // |a − b|
+  double meanTruth = 0; // of b
+  size_t pixels = 0, notFinite = 0;
 
-/// Mean over all channels of all pixels.
-double meanOf(const Image& picture);
-
-/// rmse over the truth's mean: 0 for equal pictures, infinity where the truth alone is black.
-double rmseShare(const Image& picture, const Image& truth);
+  /// rmse over the truth's mean: 0 for equal pictures, infinity where the truth alone is black.
+  double rmseShare() const { return rmse > 0 ? rmse / meanTruth : 0; }
+};
+/// Of pictures of the same size, where `mask` (none: everywhere) is above 0.
+PictureError pictureError(const Image& picture, const Image& truth, const Image& mask = {});
 
 } // namespace lambent

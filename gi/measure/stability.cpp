@@ -12,6 +12,12 @@ float toneMappedLuminance(const vec3& radiance, float exposure) {
   return y / (1 + y);
 }
 
+double toneMappedVariance(const vec3& radiance, const vec3& error, float exposure) {
+  const double x = exposure * luminance(radiance);
+  const double e = exposure * luminance(error) / ((1 + x) * (1 + x));
+  return e * e;
+}
+
 StabilityErrors stabilityErrors(const PixelSeries& technique, const PixelSeries& truth,
                                 std::span<const uint32_t> pixels) {
   CHECK_EQ(technique.size(), truth.size());
@@ -81,6 +87,17 @@ bool jumped(const InstanceView& instance, const Aabb& boundsObject) {
     farthest = std::max(farthest, glm::length(now - vec3(instance.worldFromObjectBefore * vec4(corner, 1))));
   }
   return farthest > 0 && farthest >= 0.25f * instance.boundsWorld.diameter();
+}
+
+bool StepFinder::step(const SceneView& view) {
+  bool found = false;
+  for (const InstanceView& i : view.instances) found |= jumped(i, view.assets->meshes[i.mesh].boundsObject);
+  std::vector<float> now;
+  for (const LightView& l : view.lights) now.push_back(luminance(l.intensity));
+  for (size_t i = 0; i < now.size() && now.size() == before_.size(); ++i)
+    found |= std::min(now[i], before_[i]) < 0.5f * std::max(now[i], before_[i]);
+  before_ = std::move(now);
+  return found;
 }
 
 } // namespace lambent

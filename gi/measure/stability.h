@@ -14,6 +14,9 @@ using PixelSeries = std::vector<std::vector<float>>;
 
 /// Reinhard's operator x/(1+x) on the luminance of radiance times exposure: what errors are measured on.
 float toneMappedLuminance(const vec3& radiance, float exposure);
+/// Variance of that where radiance has this standard error: by its derivative 1/(1+x)², as if channels were fully
+/// correlated.
+double toneMappedVariance(const vec3& radiance, const vec3& error, float exposure);
 
 /// E = technique − truth, averaged over frames and pixels; E' = E(t) − E(t−1), over pixels seen in both frames.
 struct StabilityErrors {
@@ -43,5 +46,15 @@ Latency latency90(const PixelSeries& technique, const PixelSeries& truth, std::s
 /// Whether an object moved so far since the frame before that the light may follow it by a step: some corner of its
 /// bounds by a quarter of their diagonal in world space or more. `boundsObject` are those of its mesh.
 bool jumped(const InstanceView& instance, const Aabb& boundsObject);
+
+/// Finds frames in which some light differs from the frame before by half or more, or some object jumps.
+class StepFinder {
+ public:
+  /// Whether this frame is one; to be asked in every frame.
+  bool step(const SceneView& view);
+
+ private:
+  std::vector<float> before_; // luminance of each light
+};
 
 } // namespace lambent

@@ -15,17 +15,18 @@ struct SourceRow {
   bool sampled;    // a list drawn on the CPU (gi/vpl/sources.h); all of these share visibility and gather
   bool persistent; // keeps its lights from frame to frame, and brings them up to date
   bool reflective; // from reflective shadow maps, when the picture is drawn: punctual lights only, one bounce
+  bool clusters;   // of the maps' texels; else a grid over them
   bool tree;       // clusters of all sizes, chosen by who gathers: no list
 };
 inline constexpr SourceRow kSources[] = {
-    {"smc", "sequential Monte Carlo set", true, true, false, false},
-    {"ir", "photons from the lights", true, false, false, false},
-    {"mir", "paths from the camera, by their light", true, false, false, false},
-    {"tcas", "Markov chains over shadow maps", true, false, false, false},
-    {"rsm", "grid over reflective shadow maps", false, false, true, false},
-    {"isr", "smooth patches of reflective shadow maps", false, false, true, false},
-    {"hisr", "trees over reflective shadow maps", false, false, true, true},
-    {"none", "no virtual lights", false, false, false, false},
+    {"smc", "sequential Monte Carlo set", true, true, false, false, false},
+    {"ir", "photons from the lights", true, false, false, false, false},
+    {"mir", "paths from the camera, by their light", true, false, false, false, false},
+    {"tcas", "Markov chains over shadow maps", true, false, false, false, false},
+    {"rsm", "grid over reflective shadow maps", false, false, true, false, false},
+    {"isr", "smooth patches of reflective shadow maps", false, false, true, true, false},
+    {"hisr", "trees over reflective shadow maps", false, false, true, true, true},
+    {"none", "no virtual lights", false, false, false, false, false},
 };
 constexpr const SourceRow& rowOf(VplSource source) { return kSources[int(source)]; }
 

@@ -105,6 +105,8 @@ class Table {
            "range of a component of the normal, 0 to 2, that splits a patch");
     flag("multires.balance", &Settings::multires, &MultiresSettings::balance, Nothing,
          "patches side by side differ by one level at most");
+    flag("multires.edges", &Settings::multires, &MultiresSettings::edges, Nothing,
+         "patches beside an edge are 2x2 pixels at most; off: light that an edge bounds is spread over larger ones");
     number(
         "multires.detail", &Settings::multires, &MultiresSettings::detail, {0, 1}, Nothing,
         "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");

@@ -101,6 +101,7 @@ struct MultiresSettings {
   float depth = 0.02f; // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
   float normal = 0.2f; // range of a component of the normal that splits it
   bool balance = true; // neighbours differ by one level at most
+  bool edges = true;   // patches beside an edge are 2×2 pixels at most
   float detail = 0;    // α of paper 2's surface detail
   float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
   bool operator==(const MultiresSettings&) const = default;

@@ -28,13 +28,14 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
       framebuffers_.emplace_back(name_, std::initializer_list<const gl::Texture*>{&plane_, &normalLo_, &normalHi_},
                                  nullptr, i);
   }
+  const glm::ivec2 cell = in.cell == in.size ? padded : in.cell; // a picture is one cell
   for (int i = 0; i < in.levels; ++i) {
     const gl::Program& program =
         context_.programs.get({.fragment = "pyramid.frag",
                                .defines = i == 0 ? std::vector<std::string>{"FIRST"} : std::vector<std::string>{}});
     program.use();
     program.set("size", in.size);
-    program.set("cell", in.cell == in.size ? padded : in.cell / (1 << i)); // a picture is one cell
+    program.set("cell", cell / (1 << i));
     program.set("childPixels", 1 << i);
     program.set("depthThreshold", in.depthThreshold);
     program.set("normalThreshold", in.normalThreshold);
@@ -42,6 +43,7 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
     program.set("orthoFrom", in.orthoFrom);
     program.set("columns", in.size.x / in.cell.x);
     program.set("balance", in.balance ? 1 : 0);
+    program.set("edges", in.edges ? 1 : 0);
     if (i == 0) {
       in.depth.bind(0);
       in.normal.bind(1);
@@ -73,7 +75,8 @@ PatchPyramid PatchPass::run(const GBuffer& surfaces, const MultiresSettings& set
               .orthoFrom = ortho ? 0 : 1,
               .depthThreshold = settings.depth,
               .normalThreshold = settings.normal,
-              .balance = settings.balance});
+              .balance = settings.balance,
+              .edges = settings.edges});
 }
 
 } // namespace lambent

@@ -48,7 +48,8 @@ struct PatchInputs {
   float orthoScale = 0;    // depth range over half the width of maps by parallel rays
   int orthoFrom = 1 << 20; // the first of these, row by row; all before it have a perspective
   float depthThreshold, normalThreshold;
-  bool balance = true;
+  bool balance = true; // as MultiresSettings
+  bool edges = true;
 };
 
 class PatchPass {

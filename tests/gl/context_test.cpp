@@ -1,7 +1,7 @@
 // Context, objects, programs, profiler.
 #include "engine/core/error.h"
 #include "gl_fixture.h"
-#include "shaders/shared/punctual_light.h"
+#include "shaders/shared/light_record.h"
 
 #include <filesystem>
 #include <fstream>
@@ -180,9 +180,9 @@ TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
   EXPECT_EQ(offsetOf(gather, "camera.size"), int(offsetof(CameraBlock, size)));
 
   const gl::Program& direct = programs.get({.fragment = "direct.frag", .defines = {"SPOT_MAPS"}});
-  EXPECT_EQ(offsetOf(direct, "lights[0].directionTexel"), int(offsetof(PunctualLight, directionTexel)));
-  EXPECT_EQ(offsetOf(direct, "lights[0].coneNear"), int(offsetof(PunctualLight, coneNear)));
-  EXPECT_EQ(offsetOf(direct, "lights[0].mapFromWorld"), int(offsetof(PunctualLight, mapFromWorld)));
+  EXPECT_EQ(offsetOf(direct, "lights[0].directionTexel"), int(offsetof(LightRecord, directionTexel)));
+  EXPECT_EQ(offsetOf(direct, "lights[0].coneNear"), int(offsetof(LightRecord, coneNear)));
+  EXPECT_EQ(offsetOf(direct, "lights[0].mapFromWorld"), int(offsetof(LightRecord, mapFromWorld)));
 
   const gl::Program& surface = programs.get(
       {.vertex = "scene.vert", .fragment = "gbuffer.frag", .defines = {"BASE_TEXTURE", "EMISSIVE_TEXTURE"}});

@@ -107,17 +107,17 @@ TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
   light.position = vec3(0.3f, 0.6f, 0.5f);
   light.intensity = vec3(1);
   const std::vector<LightView> lights{light};
-  const auto waits = [&](VplSource source) {
+  const auto waits = [&](bool clusters) {
     ReflectiveMapPass mapPass{passes};
     ReflectiveLightPass lightPass{passes};
     const RsmSettings rsm{.resolution = 32};
     const uint64_t begin = gl::counts().waits;
-    const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, source});
-    lightPass.run(maps, rsm, source);
+    const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, {clusters, clusters}});
+    clusters ? lightPass.runClusters(maps, rsm) : lightPass.runGrid(maps, rsm);
     return gl::counts().waits - begin;
   };
-  EXPECT_EQ(waits(VplSource::Rsm), 0u);
-  EXPECT_EQ(waits(VplSource::Isr), 1u);
+  EXPECT_EQ(waits(false), 0u);
+  EXPECT_EQ(waits(true), 1u);
   EXPECT_EQ(sinceBefore().readBacks, 0u);
 }
 

@@ -5,6 +5,7 @@
 #include "engine/core/sampling.h"
 #include "engine/trace/embree_query.h"
 #include "gi/visibility/map_schedule.h"
+#include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
 #include "shaders/shared/paraboloid.h"
 

@@ -200,6 +200,25 @@ TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
   }
 }
 
+/// An edge along a border that patches of every size share: the pyramid alone would end the largest ones there.
+TEST_F(MultiresTest, PatchesBesideAnEdgeStaySmallWithBalanceOrWithout) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
+  scene.quad(vec3(-9, -9, 0), vec3(9, 0, 0), vec3(0, 18, 0), grey); // nearer, over the left half
+  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
+  const GBuffer gbuffer = surfaces(scene);
+  for (const bool balance : {true, false})
+    for (const bool edges : {true, false}) {
+      multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance, .edges = edges});
+      const std::vector<int> levels = patchLevels(gbuffer);
+      ASSERT_EQ(patches->levels, 5);
+      for (int y = 0; y < 64; ++y)
+        for (const int x : {63, 64}) ASSERT_EQ(levels[size_t(y) * 128 + x], edges ? 1 : 5) << balance << edges;
+      EXPECT_EQ(levels[0], 5);
+    }
+}
+
 /// A light between two panels lights the far one only.
 TEST_F(MultiresTest, NoLightLeaksOverAnEdge) {
   HandScene scene;

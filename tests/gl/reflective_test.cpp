@@ -1,9 +1,12 @@
 // Reflective shadow maps, their VPLs, clusters and trees: flux against closed forms and against one another.
 #include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
+#include "shader_copy.h"
 #include "shaders/shared/solid_angle.h"
 
 namespace lambent::test {
+
+constexpr ReflectiveNeeds kGrid, kTrees{.clusters = true}, kClusters{.clusters = true, .patches = true};
 
 class ReflectiveTest : public GatherTest {
  protected:
@@ -11,8 +14,8 @@ class ReflectiveTest : public GatherTest {
     placed = std::make_unique<PlacedScene>(programs, scene);
     bounds = scene.view().boundsWorld;
   }
-  ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, VplSource source) {
-    return mapPass.run({placed->gpu(), lights, bounds, false, {}, rsm, source});
+  ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, ReflectiveNeeds needs) {
+    return mapPass.run({placed->gpu(), lights, bounds, false, {}, rsm, needs});
   }
   /// Sum over a mip level of a texture, double precision.
   static glm::dvec4 sum(const gl::Texture& texture, int level) {
@@ -27,15 +30,18 @@ class ReflectiveTest : public GatherTest {
     for (const VplLight& light : lightPass.read()) total += glm::dvec3(vec3(light.powerNormalX)) * double(kPi);
     return total;
   }
-  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, VplSource source,
+  PackedLights lightsOf(const ReflectiveMaps& sheet, const RsmSettings& rsm, ReflectiveNeeds needs) {
+    return needs.clusters ? lightPass.runClusters(sheet, rsm) : lightPass.runGrid(sheet, rsm);
+  }
+  Image gathered(const HandScene& scene, const ReflectiveMaps& sheet, const RsmSettings& rsm, ReflectiveNeeds needs,
                  GatherMode mode = GatherMode::Full) {
     const GBuffer gbuffer = surfacePass.run({placed->gpu(), scene.camera});
     const LightTrees trees{sheet, rsm};
     VirtualLights lights;
-    if (source == VplSource::Hisr)
+    if (needs == kTrees)
       lights.trees = &trees;
     else
-      lights.packed = lightPass.run(sheet, rsm, source);
+      lights.packed = lightsOf(sheet, rsm, needs);
     return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, with(mode)));
   }
 
@@ -79,7 +85,7 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
   place(scene);
   for (const bool exact : {true, false}) {
     const RsmSettings rsm{.resolution = 64, .exact = exact};
-    const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, VplSource::Hisr);
+    const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, kTrees);
     const glm::dvec3 flux(sum(*sheet.flux, 0));
     const double sphere = 4 * double(kPi);
     // The walls share no vertices, so a texel or two of 24 576 may fall between them.
@@ -87,6 +93,44 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
     EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
     EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
   }
+}
+
+TEST(LightGrid, HardlyFewerVplsThanAskedFor) {
+  for (int maps = 1; maps <= 40; ++maps)
+    for (int vpls = maps; vpls <= 3000; ++vpls) {
+      const LightGrid grid = lightGrid(vpls, maps);
+      ASSERT_LE(grid.count(), vpls) << maps;
+      ASSERT_GE(grid.count(), vpls - std::sqrt(double(vpls) / maps) - 1) << maps << ' ' << vpls;
+      ASSERT_LT(grid.mapsWithOneMore, maps);
+      ASSERT_GE(grid.rows, 1);
+      ASSERT_LE(std::max(grid.rows, grid.columns), 2 * std::min(grid.rows + 1, grid.columns) + 1)
+          << maps << ' ' << vpls;
+    }
+  EXPECT_EQ(lightGrid(256, 1).columns, 16);
+  EXPECT_EQ(lightGrid(256, 1).rows, 16);
+  EXPECT_GE(lightGrid(256, 6).count(), 250);
+  EXPECT_EQ(lightGrid(2, 6).count(), 6) << "no map is left out";
+  EXPECT_EQ(lightGrid(256, 0).count(), 0);
+}
+
+/// Cells of unlike sizes, whose light is that of one texel times what they have of its solid angle.
+TEST_F(ReflectiveTest, AnyNumberOfVplsCarriesAllFlux) {
+  HandScene scene;
+  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f, 0.25f, 1)), true);
+  place(scene);
+  for (const bool exact : {true, false})
+    for (const int vpls : {6, 20, 256, 300, 1024}) {
+      const RsmSettings rsm{.resolution = 256, .vpls = vpls, .exact = exact};
+      const ReflectiveMaps sheet = maps({pointLight(vec3(0.01f, -0.02f, 0.03f), vec3(1, 2, 3))}, rsm, kGrid);
+      const PackedLights lights = lightPass.runGrid(sheet, rsm);
+      EXPECT_LE(int(lights.count), vpls);
+      EXPECT_GE(int(lights.count), vpls - 8);
+      const glm::dvec3 flux = fluxOfLights();
+      const double sphere = 4 * double(kPi);
+      EXPECT_NEAR(flux.x, 0.5 * sphere, 1e-4 * flux.x) << vpls;
+      EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
+      EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
+    }
 }
 
 TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
@@ -97,7 +141,7 @@ TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
   sun.type = LightType::Directional;
   sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
   sun.intensity = vec3(10);
-  const ReflectiveMaps sheet = maps({sun}, {.resolution = 512}, VplSource::Rsm);
+  const ReflectiveMaps sheet = maps({sun}, {.resolution = 512}, kGrid);
   // 8 m² across the light's way; the map counts whole texels along the edge.
   EXPECT_NEAR(sum(*sheet.flux, 0).x, 0.5 * 10 * 8 * double(-sun.direction.y), 0.3);
 }
@@ -112,18 +156,70 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
   const std::vector<LightView> lights{sun, pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3)),
                                       spotLight(vec3(-0.4f, 0.8f, 0.5f), vec3(0.2f, -1, -0.5f))};
   const RsmSettings rsm{.resolution = 128, .coarsest = 8, .finest = 64};
-  const ReflectiveMaps sheet = maps(lights, rsm, VplSource::Isr);
+  const ReflectiveMaps sheet = maps(lights, rsm, kClusters);
   ASSERT_EQ(sheet.maps.size(), 8u);
   const glm::dvec4 flux = sum(*sheet.flux, 0);
   for (int level = 1; level < sheet.levels; ++level) {
     const glm::dvec4 clusters = sum(*sheet.flux, level);
     for (int c = 0; c < 4; ++c) EXPECT_NEAR(clusters[c], flux[c], 1e-5 * flux[c]) << level;
   }
-  const PackedLights vpls = lightPass.run(sheet, rsm, VplSource::Isr);
+  const PackedLights vpls = lightPass.runClusters(sheet, rsm);
   EXPECT_LT(vpls.count, 8u * 64 * 64 / 4) << "smooth patches are one VPL";
   EXPECT_GT(vpls.count, 8u * 64) << "steps are not";
   const glm::dvec3 ofLights = fluxOfLights();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(ofLights[c], flux[c], 1e-5 * flux[c]);
+}
+
+/// Calls that wait for a query's result.
+int waits = 0;
+decltype(epoxy_glGetQueryObjectuiv) resultOf = nullptr;
+void countedResult(GLuint id, GLenum name, GLuint* value) {
+  ++waits;
+  resultOf(id, name, value);
+}
+
+TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
+  const Room room;
+  place(room.scene);
+  std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
+  const RsmSettings rsm{.resolution = 32};
+  const gl::Query query(GL_SAMPLES_PASSED);
+  GLuint none = 0;
+  glBeginQuery(GL_SAMPLES_PASSED, query.name());
+  glEndQuery(GL_SAMPLES_PASSED);
+  glGetQueryObjectuiv(query.name(), GL_QUERY_RESULT, &none); // the first call resolves the function
+  resultOf = std::exchange(epoxy_glGetQueryObjectuiv, countedResult);
+  const auto waitsOf = [&](ReflectiveNeeds needs) {
+    waits = 0;
+    lightsOf(maps(lights, rsm, needs), rsm, needs);
+    return waits;
+  };
+  EXPECT_EQ(waitsOf(kGrid), 0);
+  EXPECT_EQ(waitsOf(kClusters), 1);
+  EXPECT_EQ(waitsOf(kClusters), 0) << "nothing changed";
+  epoxy_glGetQueryObjectuiv = resultOf;
+}
+
+/// A lit square on a black floor: what reflects nothing is no VPL.
+TEST_F(ReflectiveTest, DarkClustersAreNoVpls) {
+  HandScene scene;
+  scene.quad(vec3(-2, 0, 2), vec3(4, 0, 0), vec3(0, 0, -4), scene.material(vec3(0)));
+  scene.quad(vec3(-0.5f, 0.001f, 0.5f), vec3(1, 0, 0), vec3(0, 0, -1), scene.material(vec3(0.5f)));
+  place(scene);
+  const std::vector<LightView> lights{spotLight(vec3(0, 2, 0), vec3(0, -1, 0))};
+  for (const float depth : {0.0f, 0.05f}) {
+    const RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64, .depth = depth};
+    const ReflectiveMaps sheet = maps(lights, rsm, kClusters);
+    const glm::dvec4 flux = sum(*sheet.flux, 0);
+    const PackedLights vpls = lightPass.runClusters(sheet, rsm);
+    EXPECT_GT(vpls.count, 0u);
+    EXPECT_LT(vpls.count, depth == 0 ? 300u : 20u); // a sixteenth of the map's 4096 texels, or of its 64 patches
+    for (const VplLight& light : lightPass.read()) {
+      ASSERT_GT(light.positionArea.w, 0);
+      ASSERT_GT(light.powerNormalX.x, 0);
+    }
+    EXPECT_NEAR(fluxOfLights().x, flux.x, 1e-5 * flux.x);
+  }
 }
 
 /// Every texel a light: grid, finest clusters and whole tree are the same sum.
@@ -133,9 +229,9 @@ TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
   const std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
   const RsmSettings rsm{
       .resolution = 32, .vpls = 6 * 32 * 32, .coarsest = 8, .finest = 32, .depth = 0, .normal = 0, .tau = 0};
-  const Image grid = gathered(room.scene, maps(lights, rsm, VplSource::Rsm), rsm, VplSource::Rsm);
-  const Image clusters = gathered(room.scene, maps(lights, rsm, VplSource::Isr), rsm, VplSource::Isr);
-  const Image tree = gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image grid = gathered(room.scene, maps(lights, rsm, kGrid), rsm, kGrid);
+  const Image clusters = gathered(room.scene, maps(lights, rsm, kClusters), rsm, kClusters);
+  const Image tree = gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   for (size_t i = 0; i < grid.pixels.size(); ++i) {
     ASSERT_GT(grid.pixels[i].x, 0);
     ASSERT_NEAR(clusters.pixels[i].x, grid.pixels[i].x, 1e-4f * grid.pixels[i].x);
@@ -151,7 +247,7 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
   RsmSettings rsm{.resolution = 64, .coarsest = 4, .finest = 64, .tau = 0};
   const auto draw = [&](float tau) {
     rsm.tau = tau;
-    return gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+    return gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   };
   const Image whole = draw(0);
   double before = 0;
@@ -164,8 +260,109 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
     before = error;
   }
   rsm.finest = 4;
-  const Image coarsest = gathered(room.scene, maps(lights, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image coarsest = gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   EXPECT_EQ(coarsest.pixels, draw(1).pixels);
+}
+
+/// A spot over a dark floor with one bright cluster, which a ceiling faces from many distances. Where the picture is
+/// the one of coarsest clusters, the cluster was not refined, and its contribution (paper 3, eq. 6) must be below τ.
+TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
+  const float height = 2, tangent = std::tan(1.1f); // 63°: texels at the middle have five times the mean solid angle
+  LightView spot = spotLight(vec3(0, height, 0), vec3(0, -1, 0));
+  spot.outerConeCos = std::cos(1.1f);
+  spot.innerConeCos = std::cos(1.0f);
+  RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64};
+  const float side = 2 * tangent * height / 8; // of a cluster on the floor
+  for (const glm::ivec2 cluster : {glm::ivec2(4, 4), glm::ivec2(5, 3), glm::ivec2(6, 5)}) {
+    const float x = (float(cluster.x) - 4) * side, z = (float(cluster.y) - 4) * side, margin = 0.01f * side;
+    double largest = 0;
+    for (const float ceiling : {2.5f, 4.0f, 6.0f, 9.0f, 14.0f}) {
+      HandScene scene;
+      scene.quad(vec3(-30, 0, 30), vec3(60, 0, 0), vec3(0, 0, -60), scene.material(vec3(0)));
+      scene.quad(vec3(x + margin, 0.001f, z + side - margin), vec3(side - 2 * margin, 0, 0),
+                 vec3(0, 0, -side + 2 * margin), scene.material(vec3(1)));
+      scene.quad(vec3(-30, ceiling, -30), vec3(60, 0, 0), vec3(0, 0, 60), scene.material(vec3(0.5f)));
+      scene.camera = cameraAt(vec3(x + 0.5f * side, 0.5f * ceiling, z + 0.5f * side),
+                              vec3(x + 0.5f * side, ceiling, z + 0.5f * side), 1.0f, 32, 24);
+      place(scene);
+      rsm.finest = 8;
+      const Image coarse = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
+      rsm.finest = 64;
+      for (const float tau : {0.001f, 0.003f, 0.01f, 0.03f}) {
+        rsm.tau = tau;
+        const ReflectiveMaps sheet = maps({spot}, rsm, kTrees);
+        const glm::dvec4 cell = sum(*sheet.flux, sheet.levels - 1); // nothing else shines, but all has area
+        std::vector<vec4> clusters(64), places(64);
+        glGetTextureImage(sheet.flux->name(), sheet.levels - 1, GL_RGBA, GL_FLOAT, 64 * sizeof(vec4), clusters.data());
+        const vec4 bright =
+            *std::max_element(clusters.begin(), clusters.end(), [](const vec4& a, const vec4& b) { return a.x < b.x; });
+        ASSERT_GT(bright.x, 0.97 * cell.x) << "the bright square is one cluster";
+        const Image cut = gathered(scene, sheet, rsm, kTrees);
+        for (size_t i = 0; i < cut.pixels.size(); ++i) {
+          // One alone may be the same by chance, where the sum over the parts passes the whole.
+          if (cut.pixels[i] != coarse.pixels[i] || cut.pixels[i ^ 1] != coarse.pixels[i ^ 1]) continue;
+          const double share = double(cut.pixels[i].x) * double(bright.a) / double(bright.x); // A cos cos/(π r² + A)
+          ASSERT_LE(share, 1.001 * double(tau)) << cluster.x << ' ' << cluster.y << ", " << ceiling << " m";
+          largest = std::max(largest, share / double(tau));
+        }
+      }
+    }
+    EXPECT_GT(largest, 0.5) << "or nothing near the bound was looked at";
+  }
+}
+
+/// However deep the trees: draws that begin and end within one bring the same light.
+TEST_F(ReflectiveTest, TreesInPartsAreTheSameLight) {
+  Room room;
+  room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 16, 12);
+  place(room.scene);
+  const std::vector<LightView> lights{spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))};
+  const GBuffer gbuffer = surfacePass.run({placed->gpu(), room.scene.camera});
+  for (const GatherMode mode : {GatherMode::Full, GatherMode::Interleaved})
+    for (const int coarsest : {1, 2, 16})
+      for (const float tau : {0.0f, 0.003f, 0.05f}) {
+        const RsmSettings rsm{.resolution = 64, .coarsest = coarsest, .finest = 64, .tau = tau};
+        const ReflectiveMaps sheet = maps(lights, rsm, kTrees);
+        Image whole;
+        for (const int mostTurns : {30000, 4096, 100, 22}) {
+          const LightTrees trees{sheet, rsm, mostTurns};
+          const VirtualLights cut{.trees = &trees};
+          const Image image = read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, cut, with(mode)));
+          if (mostTurns == 30000) whole = image;
+          for (size_t i = 0; i < image.pixels.size(); ++i)
+            ASSERT_NEAR(image.pixels[i].x, whole.pixels[i].x, 1e-5f * whole.pixels[i].x)
+                << coarsest << ' ' << mostTurns << ' ' << tau;
+        }
+      }
+}
+
+TEST_F(ReflectiveTest, NoFragmentTurnsForLong) {
+  const ShaderCopy shaders; // that draw how often they turn
+  shaders.replace("tree_gather.frag", "while (m < end) {", "while (m < end) {\n      ++turns;");
+  shaders.replace("tree_gather.frag", "for (int root", "int turns = 0;\n  for (int root");
+  shaders.replace("tree_gather.frag", "vec4(irradiance * float(rootStep), 1.0)",
+                  "vec4(turns > 4096 ? 1.0 : 0.0, float(turns), 0.0, 1.0)");
+  gl::ProgramCache counting(shaders.path);
+  IndirectStages countingStages{PassContext{counting, profiler}};
+  Room room;
+  room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 8, 6);
+  place(room.scene);
+  const GBuffer gbuffer = surfacePass.run({placed->gpu(), room.scene.camera});
+  for (const glm::ivec2 levels :
+       {glm::ivec2(32, 256), glm::ivec2(1, 256)}) { // as by default; one tree that is too deep
+    const RsmSettings rsm{.coarsest = levels.x, .finest = levels.y, .tau = 0};
+    const ReflectiveMaps sheet = maps({spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))}, rsm, kTrees);
+    const LightTrees trees{sheet, rsm};
+    const VirtualLights cut{.trees = &trees};
+    const Settings full = with(GatherMode::Full);
+    Patches none;
+    const LightOnSurfaces turned =
+        countingStages.of(full).run({placed->world(), gbuffer, none, {cut}, full}, stats);
+    for (const vec4& texel : readTexture(*turned.irradiance)) {
+      ASSERT_EQ(texel.x, 0) << "draws in which a fragment turned more often";
+      ASSERT_GE(texel.y, 256 * 256);
+    }
+  }
 }
 
 TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
@@ -180,7 +377,7 @@ TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
   spot.outerConeCos = std::cos(0.2f);
   spot.innerConeCos = std::cos(0.1f);
   const RsmSettings rsm{.resolution = 1024, .coarsest = 32, .finest = 256, .tau = 0};
-  const Image image = gathered(scene, maps({spot}, rsm, VplSource::Hisr), rsm, VplSource::Hisr);
+  const Image image = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
   const double flux = 3 * 0.01 / (1.999 * 1.999); // I ω of the square
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 16; ++x) {
@@ -200,9 +397,9 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
   scene.camera = cameraAt(vec3(0, 2, 0), vec3(0, 0, 0), 0.1f, 32, 24); // light hardly changes over the picture
   place(scene);
   const RsmSettings rsm{.resolution = 64, .coarsest = 16, .finest = 64};
-  const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, VplSource::Hisr);
-  const Image full = gathered(scene, sheet, rsm, VplSource::Hisr);
-  const Image subsets = gathered(scene, sheet, rsm, VplSource::Hisr, GatherMode::Interleaved);
+  const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, kTrees);
+  const Image full = gathered(scene, sheet, rsm, kTrees);
+  const Image subsets = gathered(scene, sheet, rsm, kTrees, GatherMode::Interleaved);
   for (int by = 0; by < 6; ++by)
     for (int bx = 0; bx < 8; ++bx) {
       double sum = 0, wanted = 0;
@@ -220,22 +417,22 @@ TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1)),
                                 spotLight(vec3(0, 0.9f, 0), vec3(0, -1, 0.1f))};
   const RsmSettings rsm{.resolution = 32};
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 7u);
-  EXPECT_FALSE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_FALSE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 0u);
   lights[0].intensity = vec3(2); // the same surfaces in another light
-  const double before = sum(*maps({lights[1]}, rsm, VplSource::Isr).flux, 0).x;
+  const double before = sum(*maps({lights[1]}, rsm, kClusters).flux, 0).x;
   EXPECT_GT(before, 0);
-  maps(lights, rsm, VplSource::Isr);
+  maps(lights, rsm, kClusters);
   lights[0].intensity = vec3(4);
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 0u);
   lights[1].position.x += 0.1f;
-  EXPECT_TRUE(maps(lights, rsm, VplSource::Isr).changed);
+  EXPECT_TRUE(maps(lights, rsm, kClusters).changed);
   EXPECT_EQ(mapPass.mapsDrawn(), 1u);
   const Aabb above{vec3(0.2f, 0.8f, 0.3f), vec3(0.4f, 0.9f, 0.5f)}; // what moved is above the point light
-  EXPECT_TRUE(mapPass.run({placed->gpu(), lights, bounds, false, {&above, 1}, rsm, VplSource::Isr}).changed);
+  EXPECT_TRUE(mapPass.run({placed->gpu(), lights, bounds, false, {&above, 1}, rsm, kClusters}).changed);
   EXPECT_GT(mapPass.mapsDrawn(), 0u);
   EXPECT_LT(mapPass.mapsDrawn(), 7u);
 }

@@ -1,5 +1,5 @@
 // lambent accuracy SCENE: what approximations cost in error. Shadow maps of VPLs here; with --curve see
-// accuracy_curve.cpp.
+// accuracy_curve.cpp, with the other forms accuracy_tables.cpp.
 #include "tools/lambent/accuracy.h"
 
 #include "engine/core/progress.h"
@@ -39,21 +39,57 @@ void accuracy(const AccuracyOptions& options) {
 
 } // namespace
 
+RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer) {
+  RunPlan plan = planOf(stage, progress, 1);
+  plan.view = [&stage](int) { return stage.at(0); };
+  plan.inTurn = false;
+  plan.picture = buffer;
+  return plan;
+}
+
 void declareAccuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
   CLI::App* command = app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual "
-                                                     "lights, or with --curve patches and clusters");
+                                                     "lights, or one of the forms below");
   command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
   addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "--curve: folder for plot, table and pictures (default out/accuracy)");
+  addOutputOptions(*command, options->output,
+                   "--curve, --figure: folder for pictures (default out/accuracy, out/figure-N)");
   command->add_option("--lights", options->slots, "virtual lights to compare")->check(CLI::Range(1, 32768));
   command->add_option("--points", options->points, "visible points to compare at")->check(CLI::Range(1, 1000000));
-  command
+  CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
+  forms
       ->add_option(
           "--curve", options->curve,
           "error against threshold: patches (multires-gather; paper 3, fig. 9) or clusters (isr and hisr; fig. 13)")
       ->check(CLI::IsMember({"patches", "clusters"}));
-  command->callback([options] { options->curve.empty() ? accuracy(*options) : accuracyCurve(*options); });
+  forms->add_flag("--convergence", options->convergence,
+                  "every pixel against every VPL by rays, for N = 512, 2048, 8192 with both densities, against path "
+                  "tracing clamped alike (paper 1, 5.4)");
+  forms->add_flag("--gathers", options->gathers,
+                  "ways to gather the same VPLs: time, and error against all at every pixel");
+  forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
+  forms
+      ->add_option("--figure", options->figure,
+                   "paper 1: 8, visibility by maps and rays against path tracing; 9, resolution of shadow maps against "
+                   "rays; 10, N = 2000, 8000, 40000 by rays against path tracing")
+      ->check(CLI::IsMember({8, 9, 10}));
+  command->add_option("--spp", options->samples, "paths per pixel of the truth (4096; --presets 8192, --figure 1024)")
+      ->check(CLI::Range(2, 1 << 24));
+  command->add_option("--clamp", options->clamp,
+                      "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
+  command->add_option("--seeds", options->seeds, "--convergence: so many (3); --presets (2)")
+      ->check(CLI::Range(1, 1000));
+  command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
+  command->callback([options] {
+    const AccuracyOptions& o = *options;
+    if (!o.curve.empty()) return accuracyCurve(o);
+    if (o.convergence) return accuracyConvergence(o);
+    if (o.gathers) return accuracyGathers(o);
+    if (o.presets) return accuracyPresets(o);
+    if (o.figure > 0) return accuracyFigure(o);
+    accuracy(o);
+  });
 }
 
 } // namespace lambent

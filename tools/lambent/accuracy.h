@@ -3,6 +3,7 @@
 
 #include "tools/lambent/commands.h"
 
+#include <optional>
 #include <string>
 
 namespace lambent {
@@ -11,10 +12,25 @@ struct AccuracyOptions {
   LaunchOptions launch;
   OutputOptions output;
   int slots = 64, points = 1024;
-  std::string curve; // empty: shadow maps of virtual lights
+  std::string curve; // empty: none
+  int figure = 0;    // 0: none
+  bool convergence = false, gathers = false, presets = false, quick = false;
+  std::optional<int> samples, seeds;
+  std::optional<double> clamp; // 1/m²
 };
 
 /// Error against threshold: "patches" of the picture (paper 3, fig. 9) or "clusters" of the lights (fig. 13).
 void accuracyCurve(const AccuracyOptions& options);
+/// How the set of virtual lights converges (paper 1, 5.4).
+void accuracyConvergence(const AccuracyOptions& options);
+/// Ways to gather the same virtual lights: time, and error against every light at every pixel.
+void accuracyGathers(const AccuracyOptions& options);
+/// Error against time of the presets.
+void accuracyPresets(const AccuracyOptions& options);
+/// Paper 1's figures 8, 9 and 10 for any scene.
+void accuracyFigure(const AccuracyOptions& options);
+
+/// Still pictures of the stage's first view; what is measured of them is the buffer after the last frame.
+RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer);
 
 } // namespace lambent

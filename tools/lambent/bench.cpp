@@ -1,96 +1,139 @@
-// lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against, two settings frame
-// by frame in turn. With --multires see bench_multires.cpp.
+// lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against of two settings,
+// with --techniques of several techniques, frame by frame in turn. With --multires see bench_multires.cpp.
 #include "tools/lambent/bench.h"
 
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
+#include <string_view>
 
 namespace lambent {
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 namespace {
 
-/// What one of the settings did, frame by frame.
-struct Side {
+/// A line of the table: of time, or of what is counted.
+struct Line {
   std::string name;
-  std::unique_ptr<GiFrame> gi;
-  std::vector<std::string> order; // of rows
-  std::map<std::string, std::vector<double>> rows;
-  std::vector<double> retraced, traced, maps, texels; // shares of all
-  std::vector<double> draws, waits, readBacks;
-  uint32_t mostWaiting = 0;
-
-  void note(const std::string& row, double value) {
-    if (!rows.contains(row)) order.push_back(row);
-    rows[row].push_back(value);
-  }
-
-  void add(const FrameStats& s, const Settings& settings) {
-    std::map<std::string, double> ms;
-    for (const StageTime& t : s.stages) {
-      if (!ms.contains(t.stage.name) && !rows.contains(t.stage.name)) order.push_back(t.stage.name);
-      ms[t.stage.name] += std::max(t.cpuMs, t.gpuMs);
-    }
-    for (const auto& [name, value] : ms) rows[name].push_back(value);
-    note("updateVpls", s.updateMs);
-    note("frame", s.wallMs);
-    const auto share = [](double part, double all) { return all > 0 ? part / all : 0; };
-    retraced.push_back(share(double(s.pathsRetraced), double(s.pathsHeld)));
-    traced.push_back(share(double(s.pathsTraced), double(s.pathsHeld)));
-    maps.push_back(share(s.mapsDrawn, settings.smc.vpls));
-    const double mapTexels = double(settings.shadow.resolution) * settings.shadow.resolution;
-    texels.push_back(share(double(s.mapTexelsDrawn), settings.smc.vpls * mapTexels));
-    mostWaiting = std::max(mostWaiting, s.mapsWaiting);
-    draws.push_back(double(s.draws));
-    waits.push_back(double(s.waits));
-    readBacks.push_back(double(s.readBacks));
-  }
-
-  nlohmann::json figures() const {
-    nlohmann::json j{{"settings", name}};
-    for (const std::string& row : order) j["median_ms"][row] = median(rows.at(row));
-    const auto of = [](const std::vector<double>& v) {
-      return nlohmann::json{{"median", median(v)}, {"most", v.empty() ? 0 : *std::max_element(v.begin(), v.end())}};
-    };
-    j["retraced_paths_share"] = of(retraced);
-    j["traced_paths_share"] = of(traced);
-    j["drawn_maps_share"] = of(maps);
-    j["drawn_texels_share"] = of(texels);
-    j["most_maps_waiting"] = mostWaiting;
-    j["draws"] = of(draws);
-    j["waits"] = of(waits);
-    j["read_backs"] = of(readBacks);
-    return j;
-  }
+  std::function<Spread(const Measured&)> of;
 };
 
-void printShares(const Side& side) {
-  const auto line = [](const char* what, const std::vector<double>& v) {
-    std::printf("  %-46s %6.2f %% of all (most %.2f %%)\n", what, 100 * median(v),
-                v.empty() ? 0 : 100 * *std::max_element(v.begin(), v.end()));
+std::vector<Line> timeLines(const std::vector<Measured>& sides) {
+  std::vector<Line> lines;
+  bool listed[kStages] = {};
+  for (const Measured& side : sides)
+    for (StageId stage : side.stages())
+      if (!std::exchange(listed[size_t(stage)], true))
+        lines.push_back({kStageNames[size_t(stage)], [stage](const Measured& m) { return m.ms(stage); }});
+  const auto line = [&](const char* name, double FrameStats::*ms) {
+    lines.push_back({name, [ms](const Measured& m) { return m.of([ms](const FrameStats& s) { return s.*ms; }); }});
   };
-  std::printf("per frame, %s\n", side.name.c_str());
-  line("light paths traced before and traced again", side.retraced);
-  line("light paths traced, of new VPLs and candidates too", side.traced);
-  line("VPL shadow maps drawn, in part or whole", side.maps);
-  line("texels of VPL shadow maps drawn", side.texels);
-  std::printf("  %-46s %u at most\n", "shadow maps that had to wait", side.mostWaiting);
-  const auto calls = [](const char* what, const std::vector<double>& v) {
-    std::printf("  %-46s %.0f (most %.0f)\n", what, median(v), v.empty() ? 0 : *std::max_element(v.begin(), v.end()));
-  };
-  calls("draw calls", side.draws);
-  calls("waits for the GPU", side.waits);
-  calls("read-backs from the GPU", side.readBacks);
+  line("updateVpls", &FrameStats::updateMs);
+  line("frame", &FrameStats::wallMs);
+  return lines;
+}
+
+double countOf(const Figure& figure) {
+  if (const uint64_t* n = std::get_if<uint64_t>(&figure)) return double(*n);
+  if (const RayCounts* rays = std::get_if<RayCounts>(&figure)) return double(rays->closest + rays->occlusion);
+  return 0; // a time, a text
+}
+
+/// Whatever the table of figures counts and some side did.
+std::vector<Line> countLines(const std::vector<Measured>& sides) {
+  std::vector<Line> lines;
+  for (const FigureRow& row : figureTable()) {
+    const auto of = [&row](const Measured& m) {
+      return m.of([&row](const FrameStats& s) { return countOf(row.value(s)); });
+    };
+    if (row.name != std::string_view("frame") && // a number, no count
+        std::ranges::any_of(sides, [&](const Measured& m) { return of(m).most > 0; }))
+      lines.push_back({row.name, of});
+  }
+  return lines;
+}
+
+/// Shares of all light paths and maps, which tell what is saved from frame to frame.
+struct Share {
+  const char *key, *title;
+  double (*of)(const FrameStats&, const Settings&);
+};
+double share(double part, double all) { return all > 0 ? part / all : 0; }
+constexpr Share kShares[] = {
+    {"retraced_paths_share", "light paths traced before and traced again",
+     [](const FrameStats& s, const Settings&) { return share(double(s.pathsRetraced), double(s.pathsHeld)); }},
+    {"traced_paths_share", "light paths traced, of new VPLs and candidates too",
+     [](const FrameStats& s, const Settings&) { return share(double(s.pathsTraced), double(s.pathsHeld)); }},
+    {"drawn_maps_share", "VPL shadow maps drawn, in part or whole",
+     [](const FrameStats& s, const Settings& set) { return share(s.mapsDrawn, set.smc.vpls); }},
+    {"drawn_texels_share", "texels of VPL shadow maps drawn",
+     [](const FrameStats& s, const Settings& set) {
+       return share(double(s.mapTexelsDrawn), double(set.smc.vpls) * set.shadow.resolution * set.shadow.resolution);
+     }},
+};
+Spread spreadOf(const Share& share, const Measured& m) {
+  return m.of([&](const FrameStats& s) { return share.of(s, m.variant.settings); });
+}
+double mostWaiting(const Measured& m) {
+  return m.of([](const FrameStats& s) { return s.mapsWaiting; }).most;
+}
+
+nlohmann::json figuresOf(const Measured& m, const std::vector<Line>& times, const std::vector<Line>& counts) {
+  nlohmann::json j{{"settings", m.variant.name}};
+  for (const Line& line : times) {
+    const Spread s = line.of(m);
+    if (s.count == 0) continue;
+    j["median_ms"][line.name] = s.median;
+    j["quartiles_ms"][line.name] = {s.quarter, s.threeQuarters};
+  }
+  const auto of = [](const Spread& s) { return nlohmann::json{{"median", s.median}, {"most", s.most}}; };
+  for (const Line& line : counts) j["counts"][line.name] = of(line.of(m));
+  for (const Share& share : kShares) j[share.key] = of(spreadOf(share, m));
+  j["most_maps_waiting"] = uint64_t(mostWaiting(m));
+  return j;
+}
+
+/// Wide enough for times and for the side's name.
+int widthOf(const Measured& m) { return std::max(10, int(m.variant.name.size())); }
+
+void print(const std::vector<Line>& lines, const std::vector<Measured>& sides, int digits, bool ratio) {
+  for (const Line& line : lines) {
+    std::printf("  %-22s", line.name.c_str());
+    std::vector<Spread> spreads;
+    for (const Measured& m : sides) {
+      spreads.push_back(line.of(m));
+      if (spreads.back().count > 0)
+        std::printf(" %*.*f", widthOf(m), digits, spreads.back().median);
+      else
+        std::printf(" %*s", widthOf(m), "");
+    }
+    if (ratio && spreads[0].count > 0 && spreads[1].median > 0)
+      std::printf(" %8.2f", spreads[0].median / spreads[1].median);
+    std::printf("\n");
+  }
+}
+
+std::vector<Variant> sidesOf(const BenchOptions& options, const Stage& stage) {
+  std::vector<Variant> sides;
+  for (const std::string& technique : options.techniques) {
+    sides.push_back({technique, stage.settings, stage.seed});
+    applyTechnique(sides.back().settings, technique);
+    // Nothing moves in a scene, and what may keep its picture would cost nothing.
+    if (!stage.shot) sides.back().settings.effects[EffectId::Redraw] = EffectMode::On;
+  }
+  if (!sides.empty()) return sides;
+  sides.push_back({"as set", stage.settings, stage.seed});
+  if (options.against.empty()) return sides;
+  Variant other{"", stage.settings, stage.seed};
+  for (const std::string& assignment : options.against) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos) throw InputError("--against " + assignment, "is not NAME=VALUE");
+    applySetting(other.settings, assignment.substr(0, equals), assignment.substr(equals + 1));
+    other.name += (other.name.empty() ? "" : " ") + assignment;
+  }
+  sides.push_back(std::move(other));
+  return sides;
 }
 
 void bench(const BenchOptions& options) {
@@ -98,69 +141,54 @@ void bench(const BenchOptions& options) {
   if (options.launch.scene.empty())
     throw InputError(options.scenes[1], "one scene or shot is enough (several go with --multires)");
   const auto stage = openStage(options.launch);
+  const std::vector<Variant> variants = sidesOf(options, *stage);
+  if (std::ranges::any_of(variants, [](const Variant& v) { return rowOf(v.settings.vpl.source).reflective; }))
+    needPunctualLight(*stage);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
-  std::vector<Side> sides(options.against.empty() ? 1 : 2);
-  Settings settings[2] = {stage->settings, stage->settings};
-  sides[0].name = "as set";
-  for (const std::string& assignment : options.against) {
-    const size_t equals = assignment.find('=');
-    if (equals == std::string::npos) throw InputError("--against " + assignment, "is not NAME=VALUE");
-    applySetting(settings[1], assignment.substr(0, equals), assignment.substr(equals + 1));
-    sides[1].name += (sides[1].name.empty() ? "" : " ") + assignment;
-  }
-  for (Settings& s : settings) // timer queries that lag would give one side's times to the other
-    if (s.debug.timing == TimingMode::Auto) s.debug.timing = TimingMode::Finish;
-  for (size_t i = 0; i < sides.size(); ++i) sides[i].gi = std::make_unique<GiFrame>(settings[i], stage->seed);
-
-  const double fps = stage->shot ? stage->shot->fps : 30;
-  const int total = framesOf(options, *stage);
+  std::vector<Measured> sides;
   {
     Progress progress("measuring", options.output.quiet);
-    for (int frame = 0; frame < total && !interrupted; ++frame) {
-      const SceneView view = stage->at(frame / fps);
-      // In turn, and the first of one frame is the second of the next, so that neither has the caches to itself.
-      for (size_t k = 0; k < sides.size(); ++k) {
-        const size_t side = (k + size_t(frame)) % sides.size();
-        const FrameStats& stats = sides[side].gi->run(view);
-        if (frame >= options.skip) sides[side].add(stats, settings[side]);
-      }
-      progress.update(frame + 1, total);
-    }
+    sides = measure(variants, benchPlan(options, *stage, progress));
   }
-  nlohmann::json j{{"scene", options.launch.scene}, {"frames", total - options.skip}};
-  for (const Side& s : sides) j["sides"].push_back(s.figures());
+  const std::vector<Line> times = timeLines(sides), counts = countLines(sides);
+  nlohmann::json j{{"scene", options.launch.scene}, {"frames", sides[0].frames.size()}};
+  for (const Measured& m : sides) j["sides"].push_back(figuresOf(m, times, counts));
   writeJson(options.output.json, j);
 
   if (options.output.quiet) return;
-  std::printf("%d frames of %d x %d, medians in ms\n", total - options.skip, stage->camera.width, stage->camera.height);
-  std::printf("  %-22s %10s", "", sides[0].name.c_str());
-  if (sides.size() > 1) std::printf(" %10s %8s", "against", "ratio");
-  std::printf("\n");
-  for (const std::string& row : sides[0].order) {
-    const double a = median(sides[0].rows.at(row));
-    std::printf("  %-22s %10.3f", row.c_str(), a);
-    if (sides.size() > 1 && sides[1].rows.contains(row)) {
-      const double b = median(sides[1].rows.at(row));
-      std::printf(" %10.3f %8.2f", b, b > 0 ? a / b : 0);
+  const bool two = !options.against.empty();
+  std::printf("%zu frames of %d x %d, medians in ms\n  %-22s", sides[0].frames.size(), stage->camera.width,
+              stage->camera.height, "");
+  for (const Measured& m : sides) std::printf(" %*s", widthOf(m), m.variant.name.c_str());
+  std::printf(two ? " %8s\n" : "\n", "ratio");
+  print(times, sides, 3, two);
+  std::printf("counts of a frame, medians\n");
+  print(counts, sides, 0, false);
+  for (const Measured& m : sides) {
+    if (!options.techniques.empty()) break; // not all of them have paths and maps
+    std::printf("per frame, %s\n", m.variant.name.c_str());
+    for (const Share& share : kShares) {
+      const Spread s = spreadOf(share, m);
+      std::printf("  %-50s %6.2f %% of all (most %.2f %%)\n", share.title, 100 * s.median, 100 * s.most);
     }
-    std::printf("\n");
+    std::printf("  %-50s %.0f at most\n", "shadow maps that had to wait", mostWaiting(m));
   }
-  for (const Side& s : sides) printShares(s);
 }
 
 } // namespace
 
-int framesOf(const BenchOptions& options, const Stage& stage) {
-  const int shotFrames = stage.shot ? stage.shot->frameCount() : 60;
-  const int total = options.frames > 0 ? std::min(options.frames, shotFrames) : shotFrames;
-  if (total <= options.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(total));
-  return total;
+RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress) {
+  RunPlan plan = planOf(stage, progress, options.frames);
+  plan.skip = options.skip;
+  if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));
+  return plan;
 }
 
 void declareBench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against, of two settings");
+  CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against of two settings, "
+                                                  "with --techniques of several techniques, frame by frame in turn");
   command->add_option("SCENE", options->scenes, "glTF or shot file; several with --multires")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "");
@@ -170,12 +198,19 @@ void declareBench(CLI::App& app) {
       ->check(CLI::Range(1, 1000000));
   CLI::Option* against = command->add_option("--against", options->against,
                                              "NAME=VALUE: measure this setting too, frame by frame in turn");
+  CLI::Option* techniques = command->add_option("--techniques", options->techniques, "comma-separated: measure each")
+                                ->delimiter(',')
+                                ->excludes(against);
   command
       ->add_flag("--multires", options->multires,
                  "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
                  "(paper 3, table 1)")
-      ->excludes(against);
+      ->excludes(against)
+      ->excludes(techniques);
+  command->add_flag("--quick", options->quick, "a few small frames, to try whether it runs");
   command->callback([options] {
+    if (options->quick && options->launch.size.empty()) options->launch.size = "64x36";
+    if (options->quick && options->frames == 0) options->frames = options->skip + 3;
     if (options->scenes.size() == 1) options->launch.scene = options->scenes[0];
     bench(*options);
   });

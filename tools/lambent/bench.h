@@ -11,17 +11,14 @@ namespace lambent {
 struct BenchOptions {
   LaunchOptions launch; // its scene is empty where several are given
   OutputOptions output;
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, techniques;
   std::vector<std::string> against; // NAME=VALUE
-  bool multires = false;
+  bool multires = false, quick = false;
   int frames = 0, skip = 2;
 };
 
-/// The upper one of the two in the middle; 0 for none.
-double median(std::vector<double> values);
-
-/// Frames to run, those that do not count included. Throws InputError when none would be left.
-int framesOf(const BenchOptions& options, const Stage& stage);
+/// As the options say. Throws InputError when no frame would be left.
+RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress);
 
 /// Techniques multires-gather and multires-splat, scene by scene.
 void benchMultires(const BenchOptions& options);

@@ -2,7 +2,8 @@
 // throws InputError (exit 2) or RunError (exit 1).
 #pragma once
 
-#include "gi/frame/gi_frame.h"
+#include "engine/core/progress.h"
+#include "gi/measure/runs/runs.h"
 #include "tools/launch/launch.h"
 
 #include <CLI/CLI.hpp>
@@ -43,6 +44,9 @@ void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer);
 /// Checks before long work that `file` has an extension that can be written.
 void checkPictureName(const std::string& file);
 nlohmann::json figuresOf(const FrameStats& stats);
+
+/// A run over the first frames of the stage's shot (0: all; of a scene 60), until Ctrl-C.
+RunPlan planOf(Stage& stage, Progress& progress, int frames);
 
 /// Set by Ctrl-C: long work ends after the present frame.
 extern std::atomic<bool> interrupted;

@@ -1,9 +1,9 @@
 // lambent compare A B: RMSE, relative MSE, bias and largest difference of two linear pictures.
 #include "engine/core/error.h"
+#include "gi/measure/picture_error.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/linear_picture.h"
 
-#include <cmath>
 #include <cstdio>
 
 namespace lambent {
@@ -32,42 +32,25 @@ void compare(const CompareOptions& options) {
     mask = readLinear(options.mask);
     checkSize(options.mask, mask, options.a, x);
   }
-  Image absolute(x.width, x.height);
-  double squares = 0, relative = 0, difference = 0, sum = 0, largest = 0;
-  size_t count = 0, notFinite = 0;
-  for (size_t i = 0; i < x.pixels.size(); ++i) {
-    if (!mask.pixels.empty() && !(maxComponent(mask.pixels[i]) > 0)) continue;
-    absolute.pixels[i] = glm::abs(x.pixels[i] - y.pixels[i]);
-    if (!isFinite(x.pixels[i]) || !isFinite(y.pixels[i])) {
-      ++notFinite;
-      continue;
-    }
-    for (int c = 0; c < 3; ++c) {
-      const double p = x.pixels[i][c], q = y.pixels[i][c], d = p - q;
-      squares += d * d;
-      relative += d * d / (q * q + 0.01);
-      difference += d;
-      sum += q;
-      largest = std::max(largest, std::abs(d));
-      ++count;
-    }
+  const PictureError e = pictureError(x, y, mask);
+  if (e.pixels == 0 && e.notFinite == 0) throw InputError(options.mask, "leaves no pixel (those above 0 count)");
+  if (!options.difference.empty()) {
+    Image difference = absoluteDifference(x, y);
+    for (size_t i = 0; i < mask.pixels.size(); ++i)
+      if (!(maxComponent(mask.pixels[i]) > 0)) difference.pixels[i] = vec3(0);
+    writePicture(options.difference, difference, midGreyAt(e.meanTruth));
   }
-  if (count == 0 && notFinite == 0) throw InputError(options.mask, "leaves no pixel (those above 0 count)");
-  const double n = double(std::max<size_t>(count, 1));
-  const double rmse = std::sqrt(squares / n), relMse = relative / n, bias = sum != 0 ? difference / sum : 0;
-  // As a display shows it, a difference of B's mean is mid grey.
-  if (!options.difference.empty()) writePicture(options.difference, absolute, sum > 0 ? float(0.25 * n / sum) : 1.0f);
-  writeJson(options.output.json, {{"rmse", rmse},
-                                  {"rel_mse", relMse},
-                                  {"bias", bias},
-                                  {"max", largest},
-                                  {"mean_b", sum / n},
-                                  {"pixels", count / 3},
-                                  {"not_finite_pixels", notFinite}});
+  writeJson(options.output.json, {{"rmse", e.rmse},
+                                  {"rel_mse", e.relMse},
+                                  {"bias", e.bias},
+                                  {"max", e.largest},
+                                  {"mean_b", e.meanTruth},
+                                  {"pixels", e.pixels},
+                                  {"not_finite_pixels", e.notFinite}});
   if (options.output.quiet) return;
-  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", rmse,
-              relMse, 100 * bias, largest, sum / n);
-  if (notFinite) std::printf("%zu pixels with NaN or infinity left out\n", notFinite);
+  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", e.rmse,
+              e.relMse, 100 * e.bias, e.largest, e.meanTruth);
+  if (e.notFinite) std::printf("%zu pixels with NaN or infinity left out\n", e.notFinite);
 }
 
 } // namespace

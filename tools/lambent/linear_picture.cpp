@@ -38,6 +38,12 @@ void writePicture(const std::string& file, const Image& image, float factor) {
   writeShown(file, shownImage(image, factor));
 }
 
+Image absoluteDifference(const Image& a, const Image& b, float factor) {
+  Image out = a;
+  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = factor * glm::abs(a.pixels[i] - b.pixels[i]);
+  return out;
+}
+
 Image shownImage(const Image& image, float factor) {
   Image out = image;
   for (vec3& pixel : out.pixels) pixel = displayed(pixel, factor);

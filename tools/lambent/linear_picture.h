@@ -14,6 +14,11 @@ Image readLinear(const std::string& file);
 /// magenta, infinity cyan). Throws InputError for other names.
 void writePicture(const std::string& file, const Image& image, float factor);
 
+/// |a − b| of pictures of the same size, times `factor`.
+Image absoluteDifference(const Image& a, const Image& b, float factor = 1);
+/// The factor that shows this value as mid grey.
+inline float midGreyAt(double value) { return value > 0 ? float(0.25 / value) : 1.0f; }
+
 /// What such a .png holds, before it is rounded: values of the display, 0 to 1.
 Image shownImage(const Image& image, float factor);
 /// Writes such values as a .png.

@@ -67,4 +67,13 @@ nlohmann::json figuresOf(const FrameStats& s) {
   return figures;
 }
 
+RunPlan planOf(Stage& stage, Progress& progress, int frames) {
+  const int all = stage.shot ? stage.shot->frameCount() : 60;
+  const double fps = stage.shot ? stage.shot->fps : 30;
+  return {.view = [&stage, fps](int frame) { return stage.at(frame / fps); },
+          .frames = frames > 0 ? std::min(frames, all) : all,
+          .cancelled = [] { return interrupted.load(); },
+          .progress = [&progress](int done, int total) { progress.update(done, total); }};
+}
+
 } // namespace lambent

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWidth = 420, kHeight = 240; // of the frame, pixels
 constexpr double kLeft = 60, kTop = 34, kBelow = 52, kRight = 16;
-constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd"};
+constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#8c564b", "#e377c2"};
 
 /// The least of 1, 2, 5 times a power of ten that reaches `most` in five steps.
 double stepFor(double most) {
@@ -32,6 +32,12 @@ class Axes {
         if (std::isfinite(y)) most = std::max(most, y);
     step = stepFor(most > 0 ? most : 1);
     top = step * std::max(1.0, std::ceil(most / step - 1e-9));
+    if (plot.even) {
+      even_ = true;
+      low_ = plot.x.front();
+      span_ = std::max(plot.x.back() - low_, 1e-3);
+      return;
+    }
     zero_ = plot.x.front() == 0;
     const double first = zero_ && plot.x.size() > 1 ? plot.x[1] : plot.x.front();
     low_ = std::log10(first > 0 ? first : 1) - (zero_ ? 0.5 : 0);
@@ -39,15 +45,18 @@ class Axes {
     span_ = std::max(last - low_, 1e-3);
   }
 
-  double x(double value) const { return kLeft + kWidth * (value > 0 ? (std::log10(value) - low_) / span_ : 0); }
+  double x(double value) const {
+    if (even_) return kLeft + kWidth * (value - low_) / span_;
+    return kLeft + kWidth * (value > 0 ? (std::log10(value) - low_) / span_ : 0);
+  }
   double y(double value) const { return kTop + kHeight * (1 - value / top); }
   bool zero() const { return zero_; }
 
   double step = 1, top = 1;
 
  private:
-  double low_ = 0, span_ = 1; // decades
-  bool zero_ = false;
+  double low_ = 0, span_ = 1; // decades, or as they are
+  bool zero_ = false, even_ = false;
 };
 
 void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
@@ -58,7 +67,9 @@ void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
   for (double y = 0; y <= axes.top * (1 + 1e-9); y += axes.step)
     out << format("<path d='M%.0f %.1fh%.0f' stroke='#ddd'/><text x='%.0f' y='%.1f' text-anchor='end'>%g</text>\n",
                   kLeft, axes.y(y), kWidth, kLeft - 6, axes.y(y) + 4, y);
-  for (double x : plot.x)
+  std::vector<double> ticks = plot.x;
+  if (plot.even) ticks = {plot.x.front(), plot.x.back()};
+  for (double x : ticks)
     out << format("<path d='M%.1f %.0fv5' stroke='#888'/><text x='%.1f' y='%.0f' text-anchor='middle'>%g</text>\n",
                   axes.x(x), bottom, axes.x(x), bottom + 18, x);
   if (axes.zero() && plot.x.size() > 1) {
@@ -72,15 +83,17 @@ void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
 }
 
 void drawSeries(std::ostringstream& out, const Plot& plot, const Axes& axes) {
-  const double marked = axes.x(plot.x[plot.marked]);
-  out << format("<path d='M%.1f %.0fv%.0f' stroke='#888' stroke-dasharray='4 3'/>\n", marked, kTop, kHeight);
+  if (plot.marked)
+    out << format("<path d='M%.1f %.0fv%.0f' stroke='#888' stroke-dasharray='4 3'/>\n", axes.x(plot.x[*plot.marked]),
+                  kTop, kHeight);
   for (size_t s = 0; s < plot.series.size(); ++s) {
     const PlotSeries& series = plot.series[s];
-    const char* colour = kColours[s % std::size(kColours)];
+    const char* colour = series.colour ? series.colour : kColours[s % std::size(kColours)];
     out << "<polyline fill='none' stroke-width='1.5' stroke='" << colour << "' points='";
-    for (size_t i = 0; i < plot.x.size(); ++i) out << format("%.1f,%.1f ", axes.x(plot.x[i]), axes.y(series.y[i]));
-    out << "'/>\n";
     for (size_t i = 0; i < plot.x.size(); ++i)
+      if (std::isfinite(series.y[i])) out << format("%.1f,%.1f ", axes.x(plot.x[i]), axes.y(series.y[i]));
+    out << "'/>\n";
+    for (size_t i = 0; plot.marked && i < plot.x.size(); ++i)
       out << format("<circle cx='%.1f' cy='%.1f' r='%d' fill='%s' stroke='%s'/>\n", axes.x(plot.x[i]),
                     axes.y(series.y[i]), i == plot.marked ? 5 : 3, i == plot.marked ? "#fff" : colour, colour);
     out << format("<text x='%.0f' y='%.0f' fill='%s'>", kLeft + 10, kTop + 18 + 16 * double(s), colour) << series.name
@@ -90,18 +103,19 @@ void drawSeries(std::ostringstream& out, const Plot& plot, const Axes& axes) {
 
 } // namespace
 
-std::string svgOf(const std::vector<Plot>& plots) {
+std::string svgOf(const std::vector<Plot>& plots, size_t perRow) {
   constexpr double width = kLeft + kWidth + kRight, height = kTop + kHeight + kBelow;
   std::ostringstream out;
   out << format("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f'>\n",
-                width * double(std::max<size_t>(1, plots.size())), height)
+                width * double(std::clamp<size_t>(plots.size(), 1, perRow)),
+                height * double((plots.size() + perRow - 1) / perRow))
       << "<style>text{font:12px sans-serif}.title{font-weight:bold}</style><rect width='100%' height='100%' "
          "fill='#fff'/>\n";
   for (size_t i = 0; i < plots.size(); ++i) {
     const Plot& plot = plots[i];
     CHECK(!plot.x.empty());
     const Axes axes(plot);
-    out << format("<g transform='translate(%.0f 0)'>\n", width * double(i));
+    out << format("<g transform='translate(%.0f %.0f)'>\n", width * double(i % perRow), height * double(i / perRow));
     drawFrame(out, plot, axes);
     drawSeries(out, plot, axes);
     out << "</g>\n";

@@ -1,6 +1,7 @@
-// Plots of errors against thresholds, as SVG.
+// Plots of errors against thresholds and of values over time, as SVG.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,18 +9,21 @@ namespace lambent {
 
 struct PlotSeries {
   std::string name;
-  std::vector<double> y; // beside Plot::x
+  std::vector<double> y; // beside Plot::x; NaN is left out
+  const char* colour = nullptr;
 };
 
-/// x runs logarithmically; a first value of 0 stands half a decade before the next, beyond a gap in the axis.
+/// x runs logarithmically, where a first value of 0 stands half a decade before the next, beyond a gap in the axis; or
+/// evenly.
 struct Plot {
   std::string title, xLabel, yLabel;
-  std::vector<double> x; // ascending, not negative
-  size_t marked = 0;     // gets rings and a line: the value in use
+  std::vector<double> x;             // ascending, not negative
+  std::optional<size_t> marked = {}; // gets rings and a line, and the others dots: the value in use
+  bool even = false;
   std::vector<PlotSeries> series;
 };
 
-/// Side by side, y from 0.
-std::string svgOf(const std::vector<Plot>& plots);
+/// So many side by side, y from 0.
+std::string svgOf(const std::vector<Plot>& plots, size_t perRow = 4);
 
 } // namespace lambent

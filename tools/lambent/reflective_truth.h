@@ -1,7 +1,7 @@
 // What techniques that light from reflective shadow maps approximate.
 #pragma once
 
-#include "gi/plan/settings.h"
+#include "gi/plan/techniques.h"
 
 namespace lambent {
 

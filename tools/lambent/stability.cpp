@@ -2,13 +2,13 @@
 // of those from reflective shadow maps against every texel of these (paper 3, fig. 5).
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "engine/trace/embree_query.h"
-#include "gi/reference/path_tracer.h"
+#include "engine/platform/gl_context.h"
+#include "gi/measure/runs/runs.h"
+#include "gi/reference/traced_picture.h"
 #include "tools/lambent/commands.h"
-#include "tools/lambent/follower.h"
 #include "tools/lambent/reflective_truth.h"
+#include "tools/lambent/stability_report.h"
 #include "tools/lambent/text.h"
-#include "tools/lambent/tracked_pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,45 +27,10 @@ struct StabilityOptions {
   std::vector<std::string> shots, techniques{"smc", "ir", "mir", "tcas"};
   std::string truth = "path";
   int samples = 1024, frames = 0, grid = 16, still = 0, seeds = 1;
-  bool check = false;
+  bool quick = false;
 
   bool pathTraced() const { return truth == "path"; }
 };
-
-/// Frames in which some light differs from the frame before by half or more, or some object jumps.
-class StepFinder {
- public:
-  bool step(const SceneView& view) {
-    bool found = false;
-    for (const InstanceView& i : view.instances) found |= jumped(i, view.assets->meshes[i.mesh].boundsObject);
-    std::vector<float> now;
-    for (const LightView& l : view.lights) now.push_back(luminance(l.intensity));
-    for (size_t i = 0; i < now.size() && now.size() == before_.size(); ++i)
-      found |= std::min(now[i], before_[i]) < 0.5f * std::max(now[i], before_[i]);
-    before_ = std::move(now);
-    return found;
-  }
-
- private:
-  std::vector<float> before_;
-};
-
-/// log-average luminance of the surfaces at the tracked points in the first frame to 0.18, as GiFrame measures a
-/// picture.
-float exposureOf(const std::vector<vec3>& radiance) {
-  double sum = 0;
-  size_t count = 0;
-  for (const vec3& r : radiance)
-    if (luminance(r) > 0) sum += std::log(double(luminance(r))), ++count;
-  return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
-}
-
-/// Variance of the tone-mapped luminance, by its derivative 1/(1+x)², as if channels were fully correlated.
-double toneMappedVariance(const TrackedValue& value, float exposure) {
-  const double x = exposure * luminance(value.radiance);
-  const double e = exposure * luminance(value.error) / ((1 + x) * (1 + x));
-  return e * e;
-}
 
 /// Errors are means over the seeds, delays the worst; curves are of the first.
 void addSeed(std::vector<TechniqueRun>& techniques, TechniqueRun run, int seeds) {
@@ -86,6 +51,26 @@ void addSeed(std::vector<TechniqueRun>& techniques, TechniqueRun run, int seeds)
 
 constexpr int kStillFrames = 6; // to measure each time at which a shot stands still
 
+bool drawsWholeFrames(const Settings& settings) {
+  return settings.own || rowOf(settings.vpl.source).reflective || settings.vpl.visibility == VplVisibility::Maps;
+}
+
+/// The truth first, then each technique with each seed.
+std::vector<Variant> variantsOf(const StabilityOptions& options, const Stage& stage, const WatchedScene& watched) {
+  std::vector<Variant> variants{{"truth", stage.settings, stage.seed}};
+  if (options.pathTraced())
+    variants[0].make = pathsAtPoints(watched, uint32_t(options.samples));
+  else
+    lightByEveryTexel(variants[0].settings);
+  for (const std::string& name : options.techniques)
+    for (int k = 0; k < options.seeds; ++k) {
+      Variant& v = variants.emplace_back(name, stage.settings, stage.seed + uint32_t(k));
+      applyTechnique(v.settings, name);
+      if (!drawsWholeFrames(v.settings)) v.make = raysAtPoints(watched);
+    }
+  return variants;
+}
+
 /// One shot, as it moves or, with `stillAt` (a share of its length), standing still at that time.
 ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
                std::optional<double> stillAt = {}) {
@@ -99,77 +84,70 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   say(*stage, options.output.quiet);
 
   const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
-  const std::vector<vec2>& points = tracked.points;
+  WatchedScene watched(tracked.points);
+  const std::vector<Variant> variants = variantsOf(options, *stage, watched);
+  if (!context && std::ranges::any_of(variants, [](const Variant& v) { return drawsWholeFrames(v.settings); }))
+    context.emplace(GlContext::headless());
   ShotRun shot;
   shot.name = fs::path(file).stem().string();
   shot.fps = stage->shot->fps;
   shot.marked = tracked.marked;
-  std::vector<uint32_t> marked, grid;
-  for (uint32_t i = 0; i < points.size(); ++i) (i < shot.marked ? marked : grid).push_back(i);
-
-  std::vector<std::unique_ptr<Follower>> followers;
-  for (const std::string& name : options.techniques)
-    for (int k = 0; k < options.seeds; ++k) {
-      Settings settings = stage->settings;
-      applyTechnique(settings, name);
-      followers.push_back(std::make_unique<Follower>(settings, name, stage->seed + uint32_t(k), context));
-    }
-  std::optional<Follower> everyTexel;
-  if (!options.pathTraced()) {
-    Settings settings = stage->settings;
-    lightByEveryTexel(settings);
-    everyTexel.emplace(settings, "truth", stage->seed, context);
-  }
-  std::unique_ptr<EmbreeQuery> rays;
+  Progress progress(shot.name + (stillAt ? " standing still" : ""), options.output.quiet);
+  RunPlan plan = planOf(*stage, progress, options.frames);
   StepFinder steps;
-  std::vector<PixelSums> sums;
+  plan.view = [&, length = plan.frames](int frame) {
+    const SceneView view = stage->at((stillAt ? *stillAt * length : frame) / shot.fps);
+    watched.update(view);
+    if (steps.step(view)) shot.steps.push_back(size_t(frame));
+    return view;
+  };
+  if (stillAt) plan.frames = kStillFrames;
+  plan.skip = std::min(1, plan.frames - 1); // the first warms up
+  plan.points = tracked.points;
+  const std::vector<Measured> runs = measure(variants, plan);
+
+  const auto& seen = watched.seen();
+  const auto& truth = runs[0].series;
   float exposure = stage->settings.image.exposure;
+  if (exposure <= 0) {
+    std::vector<vec3> first;
+    for (const TrackedValue& v : truth[0]) first.push_back(v.radiance);
+    exposure = exposureFor(first);
+  }
+  const auto toneMapped = [&](const Measured& run) {
+    PixelSeries out;
+    for (size_t f = 0; f < run.series.size(); ++f) {
+      out.emplace_back();
+      for (size_t i = 0; i < run.series[f].size(); ++i)
+        out[f].push_back(seen[f][i] ? toneMappedLuminance(run.series[f][i].radiance, exposure) : std::nanf(""));
+    }
+    return out;
+  };
   double variance = 0;
   size_t values = 0;
-  const int length =
-      options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  const int total = stillAt ? kStillFrames : length;
-  Progress progress(shot.name + (stillAt ? " standing still" : ""), options.output.quiet);
-  for (int f = 0; f < total && !interrupted; ++f) {
-    const SceneView view = stage->at((stillAt ? *stillAt * length : f) / stage->shot->fps);
-    if (!rays) rays = std::make_unique<EmbreeQuery>(*view.assets);
-    rays->update(view);
-    const LightSet lights = collectLights(view);
-    if (steps.step(view)) shot.steps.push_back(size_t(f));
-    const std::vector<SurfaceHit> surfaces = surfacesAt(*rays, view.camera, points);
-    RayCounts counts;
-    if (options.pathTraced() && (!stillAt || f == 0))
-      sums = sampleSurfaces(surfaces, {*rays, lights, view.camera, stage->settings.smc.bounces, 0, stage->seed},
-                            uint32_t(options.samples), counts);
-    std::vector<TrackedValue> known;
-    std::vector<vec3> truth;
-    for (size_t i = 0; i < sums.size(); ++i) {
-      known.push_back(trackedValue(sums[i], surfaces[i], uint32_t(options.samples)));
-      truth.push_back(known.back().radiance);
-    }
-    if (everyTexel) truth = everyTexel->frame(view, *rays, lights, points, surfaces);
-    if (exposure <= 0) exposure = exposureOf(truth);
-    const auto toneMapped = [&](const std::vector<vec3>& radiance) {
-      std::vector<float> out;
-      for (size_t i = 0; i < radiance.size(); ++i)
-        out.push_back(surfaces[i].valid() ? toneMappedLuminance(radiance[i], exposure) : std::nanf(""));
-      return out;
-    };
-    shot.truth.push_back(toneMapped(truth));
-    for (size_t i = 0; i < sums.size(); ++i)
-      if (surfaces[i].valid()) variance += toneMappedVariance(known[i], exposure), ++values;
-    for (auto& follower : followers)
-      follower->run.series.push_back(toneMapped(follower->frame(view, *rays, lights, points, surfaces)));
-    progress.update(f + 1, total);
-  }
-  if (interrupted) throw RunError("interrupted: nothing is written");
+  for (size_t f = 0; f < truth.size(); ++f)
+    for (size_t i = 0; i < truth[f].size(); ++i)
+      if (seen[f][i]) variance += toneMappedVariance(truth[f][i].radiance, truth[f][i].error, exposure), ++values;
   shot.truthError = values ? std::sqrt(variance / double(values)) : 0;
-  for (auto& follower : followers) {
-    TechniqueRun& run = follower->run;
+  shot.truth = toneMapped(runs[0]);
+  std::vector<uint32_t> marked, grid;
+  for (uint32_t i = 0; i < tracked.points.size(); ++i) (i < shot.marked ? marked : grid).push_back(i);
+  for (const Measured& m : runs) {
+    if (&m == &runs[0]) continue;
+    TechniqueRun run;
+    run.name = m.variant.name;
+    run.vpls = rowOf(m.variant.settings.vpl.source).reflective
+                   ? uint32_t(m.of([](const FrameStats& s) { return s.vplsAlive; }).most)
+                   : uint32_t(m.variant.settings.smc.vpls);
+    run.series = toneMapped(m);
     run.marked = stabilityErrors(run.series, shot.truth, marked);
     run.grid = stabilityErrors(run.series, shot.truth, grid);
     run.latency = latency90(run.series, shot.truth, grid, shot.steps);
-    run.placeMs = follower->medianPlaceMs();
+    run.placeMs = m.of([](const FrameStats& s) {
+                     double ms = 0;
+                     for (const StageTime& t : s.stages) ms += t.cpuMs;
+                     return ms;
+                   }).median;
     addSeed(shot.techniques, std::move(run), options.seeds);
   }
   return shot;
@@ -188,51 +166,11 @@ void measureStill(const StabilityOptions& options, const std::string& file, std:
   shot.still = true;
 }
 
-/// Throws RunError unless smc's error is at most 1.25 times what it is while the scene stands still, and steps are
-/// followed within six frames.
-void checkFollows(const std::vector<ShotRun>& shots) {
-  constexpr double kMostOverStill = 1.25, kMostFrames = 6, kLeastFollowed = 0.8;
-  std::string failures;
-  const auto fail = [&](const std::string& what) { failures += (failures.empty() ? "" : "; ") + what; };
-  for (const ShotRun& s : shots) {
-    const TechniqueRun* smc = s.technique("smc");
-    if (!smc) throw InputError("--check", "needs smc (--techniques)");
-    // Over all tracked pixels: that of the few marked ones alone scatters by a tenth from seed to seed.
-    const double marked = double(s.marked), grid = double(s.truth.front().size()) - marked;
-    const auto all = [&](const StabilityErrors& m, const StabilityErrors& g) {
-      return marked * m.error + grid * g.error;
-    };
-    if (s.still && !(all(smc->marked, smc->grid) <= kMostOverStill * all(smc->stillMarked, smc->stillGrid)))
-      fail("|E| grows too much with motion in " + s.name);
-    if (!s.steps.empty() &&
-        !(smc->latency.count > 0 && smc->latency.worstTenth <= kMostFrames && smc->latency.followed >= kLeastFollowed))
-      fail("steps are followed too late or not wholly in " + s.name);
-  }
-  if (!failures.empty()) throw RunError("smc: " + failures);
-}
-
-/// Throws RunError unless smc changes its error least in every shot and follows steps of the light within two frames.
-void checkSteadiest(const std::vector<ShotRun>& shots) {
-  std::string failures;
-  for (const ShotRun& s : shots) {
-    const TechniqueRun* smc = s.technique("smc");
-    if (smc && smc->latency.worstTenth > 2)
-      throw RunError("smc follows the light in " + s.name + " only after " +
-                     std::to_string(int(smc->latency.worstTenth)) + " frames");
-    for (const TechniqueRun& t : s.techniques)
-      if (!smc || (t.name != "smc" && !(smc->grid.change < t.grid.change)))
-        failures += (failures.empty() ? "" : ", ") + t.name + " in " + s.name;
-  }
-  if (!failures.empty()) throw RunError("smc is not steadier than " + failures);
-}
-
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) {
     Settings ignored;
     applyTechnique(ignored, name);
   }
-  if (options.check && options.still == 0 && options.techniques.size() < 2)
-    throw InputError("--check", "needs smc and others (--techniques), or --still");
   const fs::path folder = reportFolder(options.output.out, "out/stability");
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
@@ -252,32 +190,12 @@ void stability(const StabilityOptions& options) {
   conditions += ". " + std::to_string(options.grid * options.grid) + " grid pixels, " +
                 std::to_string(shots.front().truth.size()) + " frames of the first shot";
   conditions += options.seeds > 1 ? ", means over " + std::to_string(options.seeds) + " seeds." : ".";
-  writeStabilityReport(folder, shots, conditions);
-  nlohmann::json figures = nlohmann::json::array();
-  for (const ShotRun& s : shots)
-    for (const TechniqueRun& t : s.techniques) {
-      figures.push_back({{"shot", s.name},
-                         {"technique", t.name},
-                         {"vpls", t.vpls},
-                         {"error_marked", t.marked.error},
-                         {"change_marked", t.marked.change},
-                         {"error_grid", t.grid.error},
-                         {"change_grid", t.grid.change},
-                         {"bias_grid", t.grid.bias},
-                         {"l90_median", t.latency.median},
-                         {"l90_worst_tenth", t.latency.worstTenth},
-                         {"l90_followed", t.latency.followed},
-                         {"l90_count", t.latency.count},
-                         {"truth_error", s.truthError}});
-      if (!s.still) continue;
-      figures.back()["error_still_marked"] = t.stillMarked.error;
-      figures.back()["error_still_grid"] = t.stillGrid.error;
-    }
+  const nlohmann::json figures = stabilityFigures(shots);
+  writeStabilityReport(folder, shots, figures, conditions);
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s%s\nreport: %s\n", stabilityTable(shots).c_str(), conditions.c_str(),
-                (folder / "stability.html").c_str());
-  if (options.check) (options.still > 0 ? checkFollows : checkSteadiest)(shots);
+    std::printf("%s%s\nreport: %s\n", stabilityTable(figures).c_str(), conditions.c_str(),
+                (folder / "stability.md").c_str());
 }
 
 } // namespace
@@ -307,11 +225,16 @@ void declareStability(CLI::App& app) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--seeds", options->seeds, "errors are means over so many seeds (default 1)")
       ->check(CLI::Range(1, 1000));
-  command->add_flag("--check", options->check,
-                    "exit with 1 unless smc has the smallest |E'| (grid) in every shot and L90 of two frames at most; "
-                    "with --still, unless |E| of smc (all tracked pixels) is at most 1.25 times the still one, and L90 "
-                    "six frames at most");
-  command->callback([options] { stability(*options); });
+  command->add_flag("--quick", options->quick, "few pixels, frames and paths, to try whether it runs");
+  command->callback([options] {
+    if (options->quick) {
+      options->samples = std::min(options->samples, 16);
+      options->grid = std::min(options->grid, 4);
+      if (options->frames == 0) options->frames = 3;
+      if (options->launch.size.empty()) options->launch.size = "48x27";
+    }
+    stability(*options);
+  });
 }
 
 } // namespace lambent

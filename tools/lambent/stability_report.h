@@ -1,9 +1,10 @@
-// What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots and tables in one HTML page.
+// What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots.
 #pragma once
 
 #include "gi/measure/stability.h"
 
-#include <array>
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,10 +36,12 @@ struct ShotRun {
   const TechniqueRun* technique(const std::string& name) const;
 };
 
-/// stability.csv, stability.md, stability.html and one series-SHOT.csv per shot, each in one step.
+/// A row for each technique of each shot, for programs and for the tables.
+nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots);
+/// The rows as Markdown.
+std::string stabilityTable(const nlohmann::json& figures);
+/// stability.csv, stability.md and of each shot series-SHOT.csv and plots of its marked pixels, each in one step.
 void writeStabilityReport(const std::filesystem::path& folder, const std::vector<ShotRun>& shots,
-                          const std::string& conditions);
-/// The Markdown table, as it is printed too.
-std::string stabilityTable(const std::vector<ShotRun>& shots);
+                          const nlohmann::json& figures, const std::string& conditions);
 
 } // namespace lambent

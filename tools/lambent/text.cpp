@@ -3,9 +3,11 @@
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <fstream>
+#include <map>
 
 namespace lambent {
 
@@ -17,6 +19,48 @@ std::string format(const char* pattern, ...) {
   va_start(arguments, pattern);
   std::vsnprintf(text, sizeof text, pattern, arguments);
   va_end(arguments);
+  return text;
+}
+
+std::string cellText(const TableColumn& column, const nlohmann::json& row) {
+  if (!row.contains(column.key)) return "";
+  const nlohmann::json& value = row[column.key];
+  if (value.is_string()) return value;
+  std::string text;
+  for (const nlohmann::json& number : value.is_array() ? value : nlohmann::json::array({value})) {
+    const double n = number.is_boolean() ? number.get<bool>() : number.get<double>();
+    text += text.empty() ? "" : ", ";
+    text += n == 0 && column.ofZero ? column.ofZero
+            : std::isfinite(n)      ? format(column.pattern, column.factor * n)
+                                    : "–";
+  }
+  return text;
+}
+
+std::string tableText(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
+  std::string head = "|", rule = "|", text;
+  for (const TableColumn& c : columns) head += format(" %s |", c.title), rule += "---|";
+  for (const nlohmann::json& row : rows) {
+    text += "|";
+    for (const TableColumn& c : columns) text += " " + cellText(c, row) + " |";
+    text += "\n";
+  }
+  return head + "\n" + rule + "\n" + text;
+}
+
+std::string csvText(const nlohmann::json& rows) {
+  std::map<std::string, bool> keys;
+  for (const nlohmann::json& row : rows)
+    for (const auto& [key, value] : row.items()) keys[key] |= value.is_structured();
+  std::string text;
+  const auto line = [&](const auto& cell) {
+    std::string cells;
+    for (const auto& [key, structured] : keys)
+      if (!structured) cells += "," + cell(key);
+    text += cells.substr(1) + "\n";
+  };
+  line([](const std::string& key) { return key; });
+  for (const nlohmann::json& row : rows) line([&](const std::string& key) { return cellText({key.c_str(), ""}, row); });
   return text;
 }
 

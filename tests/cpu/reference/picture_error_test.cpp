@@ -1,4 +1,5 @@
 #include "gi/measure/picture_error.h"
+#include "gi/measure/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -10,19 +11,55 @@ namespace {
 
 TEST(PictureErrorTest, ADifferenceInOneChannelOfOnePixelCountsByItsShareOfAllValues) {
   Image truth(2, 2, vec3(2)), picture = truth;
-  EXPECT_EQ(rmse(picture, truth), 0);
-  EXPECT_EQ(rmseShare(picture, truth), 0);
+  EXPECT_EQ(pictureError(picture, truth).rmse, 0);
+  EXPECT_EQ(pictureError(picture, truth).rmseShare(), 0);
   picture.at(1, 0).y += 6;
-  EXPECT_DOUBLE_EQ(rmse(picture, truth), std::sqrt(36.0 / 12));
-  EXPECT_DOUBLE_EQ(rmseShare(picture, truth), std::sqrt(3.0) / 2);
-  EXPECT_DOUBLE_EQ(meanOf(picture), 2.5);
+  const PictureError e = pictureError(picture, truth);
+  EXPECT_DOUBLE_EQ(e.rmse, std::sqrt(36.0 / 12));
+  EXPECT_DOUBLE_EQ(e.rmseShare(), std::sqrt(3.0) / 2);
+  EXPECT_DOUBLE_EQ(e.relMse, 36 / 4.01 / 12);
+  EXPECT_DOUBLE_EQ(e.bias, 0.25); // too bright is above 0
+  EXPECT_DOUBLE_EQ(pictureError(truth, picture).bias, -0.2);
+  EXPECT_EQ(e.largest, 6);
+  EXPECT_EQ(e.meanTruth, 2);
+  EXPECT_EQ(e.pixels, 4u);
 }
 
 TEST(PictureErrorTest, BlackAgainstBlackIsNoErrorAndLightAgainstBlackIsInfinite) {
   const Image black(3, 1), grey(3, 1, vec3(0.5f));
-  EXPECT_EQ(rmseShare(black, black), 0);
-  EXPECT_EQ(rmseShare(grey, black), std::numeric_limits<double>::infinity());
-  EXPECT_DOUBLE_EQ(rmseShare(black, grey), 1);
+  EXPECT_EQ(pictureError(black, black).rmseShare(), 0);
+  EXPECT_EQ(pictureError(grey, black).rmseShare(), std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(pictureError(black, grey).rmseShare(), 1);
+  EXPECT_DOUBLE_EQ(pictureError(black, grey).bias, -1);
+}
+
+TEST(PictureErrorTest, PixelsOutsideTheMaskAndThoseNotFiniteAreLeftOut) {
+  Image truth(3, 1, vec3(1)), picture(3, 1, vec3(1.5f)), mask(3, 1, vec3(1));
+  picture.at(0, 0) = vec3(std::nanf(""));
+  picture.at(1, 0) = vec3(9);
+  mask.at(1, 0) = vec3(0);
+  const PictureError e = pictureError(picture, truth, mask);
+  EXPECT_EQ(e.pixels, 1u);
+  EXPECT_EQ(e.notFinite, 1u);
+  EXPECT_DOUBLE_EQ(e.rmse, 0.5);
+  EXPECT_DOUBLE_EQ(e.bias, 0.5);
+}
+
+TEST(Statistics, SpreadOfAFewValues) {
+  EXPECT_EQ(spreadOf({}).count, 0u);
+  const Spread s = spreadOf({5, 1, 4, 2});
+  EXPECT_EQ(s.median, 4); // the upper of the two in the middle
+  EXPECT_EQ(s.least, 1);
+  EXPECT_EQ(s.quarter, 2);
+  EXPECT_EQ(s.threeQuarters, 5);
+  EXPECT_EQ(s.most, 5);
+  EXPECT_EQ(s.count, 4u);
+  EXPECT_EQ(spreadOf({3}).median, 3);
+}
+
+TEST(Statistics, ExponentOfAPower) {
+  const double x[] = {512, 2048, 8192}, y[] = {3 / std::sqrt(512.), 3 / std::sqrt(2048.), 3 / std::sqrt(8192.)};
+  EXPECT_NEAR(exponentOf(x, y), -0.5, 1e-12);
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 // A punctual light, or a direction of the sky, as the direct pass reads it: element of a uniform block, std140.
-#ifndef LAMBENT_SHARED_PUNCTUAL_LIGHT_H
-#define LAMBENT_SHARED_PUNCTUAL_LIGHT_H
+#ifndef LAMBENT_SHARED_LIGHT_RECORD_H
+#define LAMBENT_SHARED_LIGHT_RECORD_H
 #include "interop.h"
 SHARED_BEGIN
 
-struct PunctualLight {
+struct LightRecord {
   vec4 positionRange;  // xyz: world position; w: 1/range⁴, 0 when the range is infinite
   vec4 directionTexel; // xyz: the way the light travels; w: a map texel's size: metres (directional), else metres per
                        // metre of distance along the map's axis
@@ -17,6 +17,6 @@ const int kLightsPerBlock = 128; // 16 KiB, what every OpenGL offers
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(lambent::PunctualLight) == 128);
+static_assert(sizeof(lambent::LightRecord) == 128);
 #endif
 #endif

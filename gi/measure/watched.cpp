@@ -1,6 +1,7 @@
-#include "tools/lambent/tracked_pixels.h"
+#include "gi/measure/watched.h"
 
 #include "engine/core/error.h"
+#include "gi/vpl/smc.h"
 
 #include <algorithm>
 
@@ -24,6 +25,15 @@ TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint
 void refuseGlossy(const Settings& settings) {
   if (settings.gather.glossy)
     throw InputError("setting gather.glossy", "cannot be on here (tracked pixels are taken as Lambert surfaces)");
+}
+
+void WatchedScene::update(const SceneView& view) {
+  if (!rays_) rays_ = std::make_unique<EmbreeQuery>(*view.assets);
+  rays_->update(view);
+  lights_ = collectLights(view);
+  surfaces_ = surfacesAt(*rays_, view.camera, points_);
+  seen_.emplace_back();
+  for (const SurfaceHit& s : surfaces_) seen_.back().push_back(s.valid());
 }
 
 } // namespace lambent

@@ -1,0 +1,90 @@
+#include "gi/reference/traced_picture.h"
+
+#include "engine/trace/embree_query.h"
+#include "gi/reference/state_file.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Fewer samples do not tell their own error.
+constexpr uint32_t kSamplesToJudge = 16;
+
+/// Samples until enough are taken, the error is reached or it is cancelled; saves the state as it goes.
+ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t key, RayCounts& rays) {
+  ReferenceSums sums(in.camera.width, in.camera.height);
+  if (!plan.state.empty() && std::filesystem::exists(plan.state)) sums = loadReference(plan.state, in, key);
+  uint32_t saved = sums.samples;
+  const auto save = [&] {
+    if (!plan.state.empty() && saved != sums.samples) saveReference(plan.state, sums, key);
+    saved = sums.samples;
+  };
+  // A pass takes about a second: progress moves, and a wish to stop is heard.
+  const uint32_t perPass = uint32_t(std::clamp<size_t>((1 << 19) / sums.pixels.size(), 1, 64));
+  auto lastSave = Clock::now();
+  while (sums.samples < plan.samples && !(plan.cancelled && plan.cancelled())) {
+    double expected = plan.samples;
+    if (plan.error > 0 && sums.samples >= kSamplesToJudge) {
+      const double error = readReference(sums, in, plan.buffer).relativeError;
+      if (error <= plan.error) break;
+      expected = std::min(expected, sums.samples * std::pow(error / plan.error, 2)); // it falls with the root
+    }
+    addSamples(sums, in, std::min(perPass, plan.samples - sums.samples), rays);
+    if (plan.progress) plan.progress(int(sums.samples), int(std::max<double>(sums.samples, expected)));
+    if (Clock::now() - lastSave > std::chrono::seconds(60)) {
+      save();
+      lastSave = Clock::now();
+    }
+  }
+  save();
+  return sums;
+}
+
+} // namespace
+
+float exposureFor(std::span<const vec3> radiance) {
+  double sum = 0;
+  size_t count = 0;
+  for (const vec3& r : radiance) {
+    const float y = luminance(r);
+    if (y > 0 && std::isfinite(y)) sum += std::log(double(y)), ++count;
+  }
+  return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
+}
+
+TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan) {
+  EmbreeQuery rays(*view.assets);
+  rays.update(view);
+  const LightSet lights = collectLights(view);
+  const bool glossy = settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&
+                      plan.buffer != ReferenceBuffer::Irradiance;
+  const ReferenceInputs in{.rays = rays,
+                           .lights = lights,
+                           .camera = view.camera,
+                           .bounces = settings.smc.bounces,
+                           .clamp = plan.clamped ? settings.gather.clamp : 0,
+                           .seed = plan.seed,
+                           .glossy = glossy ? &view : nullptr};
+  TracedPicture out{.bounces = in.bounces, .clamp = in.clamp};
+  const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out.rays);
+  out.samples = sums.samples;
+  if (out.samples == 0) return out;
+  out.picture = readReference(sums, in, plan.buffer);
+  out.exposure = settings.image.exposure;
+  if (out.exposure <= 0) {
+    const ReferencePicture beauty = readReference(sums, in, ReferenceBuffer::Beauty);
+    std::vector<vec3> seen;
+    for (size_t i = 0; i < beauty.surface.size(); ++i)
+      if (beauty.surface[i]) seen.push_back(beauty.mean.pixels[i]);
+    out.exposure = exposureFor(seen);
+  }
+  return out;
+}
+
+} // namespace lambent

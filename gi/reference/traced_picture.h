@@ -1,0 +1,41 @@
+// A path-traced picture of a view under the settings of the frame: what pictures drawn with these settings are held to.
+#pragma once
+
+#include "gi/plan/settings.h"
+#include "gi/reference/path_tracer.h"
+
+#include <filesystem>
+#include <functional>
+#include <span>
+
+namespace lambent {
+
+struct TracePlan {
+  ReferenceBuffer buffer = ReferenceBuffer::Indirect;
+  uint32_t samples = 64;                       // of each pixel
+  double error = 0;                            // stop sooner at this ReferencePicture::relativeError
+  bool clamped = false;                        // bound the geometry term as gather.clamp bounds virtual lights
+  uint32_t seed = 1;                           // of all random numbers
+  std::filesystem::path state = {};            // keep the sums in this file, and go on from it when it is there
+  std::function<bool()> cancelled = {};        // asked about once a second; what was sampled so far is the picture
+  std::function<void(int, int)> progress = {}; // samples taken, samples expected
+};
+
+struct TracedPicture {
+  ReferencePicture picture = {};
+  uint32_t samples = 0; // 0: cancelled before the first
+  int bounces = 0;
+  float clamp = 0;    // 1/m²; 0 = none
+  float exposure = 1; // as set, or as GiFrame would measure it
+  RayCounts rays = {};
+};
+
+/// Glossy where the settings say so, except irradiance, which does not depend on how it is reflected. Throws InputError
+/// for a state file of another picture.
+TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan);
+
+/// The exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
+/// measures a picture; 1 without light.
+float exposureFor(std::span<const vec3> radiance);
+
+} // namespace lambent

@@ -1,0 +1,260 @@
+// lambent accuracy SCENE --convergence, --gathers, --presets, --figure 8|9|10: tables of pictures of one view under
+// changing settings, held to path tracing or to one among them.
+#include "engine/core/error.h"
+#include "engine/core/progress.h"
+#include "engine/platform/gl_context.h"
+#include "gi/measure/picture_error.h"
+#include "gi/reference/traced_picture.h"
+#include "tools/lambent/accuracy.h"
+#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Settings by name, as on the command line.
+using Assignments = std::vector<std::pair<std::string, std::string>>;
+
+/// What the forms have in common: a still view that is drawn, traced and reported on.
+class Study {
+ public:
+  /// `defaults` and `size` hold unless the command line says otherwise.
+  Study(const AccuracyOptions& options, const std::string& size, Assignments defaults = {})
+      : launch(options.launch), options_(options) {
+    if (launch.size.empty()) launch.size = options.quick ? "32x18" : size;
+    if (options.quick) defaults.insert(defaults.end(), {{"smc.vpls", "128"}, {"smc.warmup", "4"}});
+    if (options.clamp) defaults.emplace_back("gather.clamp", format("%.9g", *options.clamp));
+    for (const auto& [name, value] : defaults) launch.set.insert(launch.set.begin(), name + "=" + value);
+    stage = openStage(launch);
+    say(*stage, options.output.quiet);
+    context_.emplace(GlContext::headless());
+  }
+
+  Variant variant(const std::string& name, const Assignments& assignments) const {
+    Variant v{name, stage->settings, stage->seed};
+    for (const auto& [setting, value] : assignments) applySetting(v.settings, setting, value);
+    return v;
+  }
+
+  std::vector<Measured> draw(const std::vector<Variant>& variants, Buffer buffer, int frames = 1, int skip = 0,
+                             bool inTurn = false) {
+    Progress progress("drawing", options_.output.quiet);
+    RunPlan plan = stillPlan(*stage, progress, buffer);
+    plan.frames = frames, plan.skip = skip, plan.inTurn = inTurn;
+    return measure(variants, plan);
+  }
+
+  /// `state` keeps the sums; empty: nothing does.
+  const TracedPicture& trace(int samples, ReferenceBuffer buffer, bool clamped, const fs::path& state = {}) {
+    Progress progress("tracing paths", options_.output.quiet);
+    const RunPlan plan = stillPlan(*stage, progress, Buffer::Indirect);
+    truth = tracePicture(plan.view(0), stage->settings,
+                         {.buffer = buffer,
+                          .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
+                          .clamped = clamped,
+                          .seed = stage->seed,
+                          .state = state,
+                          .cancelled = plan.cancelled,
+                          .progress = plan.progress});
+    if (interrupted)
+      throw RunError(state.empty() ? "interrupted: nothing is written" : "interrupted: the same command goes on");
+    return *truth;
+  }
+
+  /// The table, with how well its truth is known.
+  void report(const std::vector<TableColumn>& columns, const nlohmann::json& rows,
+              nlohmann::json figures = nlohmann::json::object()) const {
+    figures["scene"] = launch.scene;
+    figures["rows"] = rows;
+    if (truth)
+      figures["truth"] = {{"spp", truth->samples},
+                          {"clamp", truth->clamp},
+                          {"relative_error", truth->picture.relativeError},
+                          {"relative_error_of_mean", truth->picture.relativeErrorOfMean}};
+    writeJson(options_.output.json, figures);
+    if (options_.output.quiet) return;
+    if (truth)
+      std::printf("truth: %u paths per pixel, standard error %.2f %% per pixel (RMS), %.2f %% of the mean\n",
+                  truth->samples, 100 * truth->picture.relativeError, 100 * truth->picture.relativeErrorOfMean);
+    std::printf("%s", tableText(columns, rows).c_str());
+  }
+
+  LaunchOptions launch;
+  std::unique_ptr<Stage> stage;
+  std::optional<TracedPicture> truth; // the last one traced
+
+ private:
+  const AccuracyOptions& options_;
+  std::optional<GlContext> context_;
+};
+
+void needClamp(const AccuracyOptions& options) {
+  if (!(options.clamp.value_or(0) > 0))
+    throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
+}
+
+nlohmann::json rowOf(const PictureError& e) {
+  return {{"rmse", e.rmse}, {"rmse_share", e.rmseShare()}, {"rel_mse", e.relMse}, {"bias", e.bias}};
+}
+
+const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kRelMse{"rel_mse", "relMSE", "%.4f"},
+    kBias{"bias", "bias", "%+.1f %%", 100};
+
+} // namespace
+
+void accuracyConvergence(const AccuracyOptions& options) {
+  needClamp(options);
+  Study study(options, "64x36", {{"gather.disk", "0"}, {"vpl.visibility", "rays"}});
+  const ReferencePicture truth = study.trace(4096, ReferenceBuffer::Irradiance, true).picture;
+  const std::vector<double> counts =
+      options.quick ? std::vector<double>{64, 256} : std::vector<double>{512, 2048, 8192};
+  const int seeds = options.seeds.value_or(options.quick ? 1 : 3);
+  std::vector<Variant> variants;
+  for (const char* density : {"cells", "knn"})
+    for (double vpls : counts)
+      for (int k = 0; k < seeds; ++k) {
+        variants.push_back(study.variant(density, {{"smc.density", density}, {"smc.vpls", format("%g", vpls)}}));
+        variants.back().seed += uint32_t(k);
+      }
+  const std::vector<Measured> runs = study.draw(variants, Buffer::Irradiance);
+
+  nlohmann::json rows, exponents;
+  std::vector<double> errors;
+  for (size_t i = 0; i < runs.size(); i += size_t(seeds)) {
+    const Variant& v = runs[i].variant;
+    nlohmann::json row{{"density", v.name}, {"vpls", v.settings.smc.vpls}};
+    double square = 0;
+    for (int k = 0; k < seeds; ++k) {
+      const PictureError e = pictureError(runs[i + size_t(k)].picture, truth.mean);
+      square += e.rmseShare() * e.rmseShare() / seeds;
+      row["bias"].push_back(e.bias);
+    }
+    // What the truth does not know is no error of the lights.
+    errors.push_back(std::sqrt(std::max(square - std::pow(truth.relativeError, 2), 1e-12)));
+    row["rmse_share"] = errors.back();
+    rows.push_back(row);
+    if (errors.size() == counts.size()) {
+      exponents[v.name] = exponentOf(counts, errors);
+      errors.clear();
+    }
+  }
+  study.report({{"density", "density"}, {"vpls", "N"}, kBias, kRmseShare}, rows, {{"exponents", exponents}});
+  for (const auto& [density, exponent] : exponents.items())
+    if (!options.output.quiet) std::printf("%s: RMSE falls as N^%.2f\n", density.c_str(), exponent.get<double>());
+}
+
+void accuracyGathers(const AccuracyOptions& options) {
+  Study study(options, "320x180");
+  std::vector<Variant> variants{study.variant("full", {{"gather.mode", "full"}})};
+  for (const char* mode : {"interleaved", "multires-interleaved", "multires"})
+    variants.push_back(study.variant(mode, {{"gather.mode", mode}}));
+  variants.insert(variants.begin() + 3, variants[2]);
+  variants[3].name += ", multires.normal=0.7, multires.depth=0.1";
+  variants[3].settings.multires.normal = 0.7f;
+  variants[3].settings.multires.depth = 0.1f;
+  for (Variant& v : variants) v.settings.effects[EffectId::Redraw] = EffectMode::On;
+  const std::vector<Measured> runs =
+      study.draw(variants, Buffer::Irradiance, options.quick ? 3 : 8, options.quick ? 1 : 2, true);
+  const auto ms = [](const Measured& m) {
+    double sum = 0;
+    for (StageId s : {StageId::Patches, StageId::Stencil, StageId::Gather, StageId::Upsample, StageId::Filter})
+      sum += m.ms(s).median;
+    return sum;
+  };
+  nlohmann::json rows;
+  for (size_t i = 1; i < runs.size(); ++i) {
+    rows.push_back(rowOf(pictureError(runs[i].picture, runs[0].picture)));
+    rows.back().update({{"gather", runs[i].variant.name}, {"ms", ms(runs[i])}, {"ratio", ms(runs[i]) / ms(runs[1])}});
+  }
+  study.report({{"gather", "gather"}, {"ms", "ms", "%.0f"}, {"ratio", "of interleaved", "%.2f"}, kRmseShare, kRelMse},
+               rows);
+}
+
+void accuracyPresets(const AccuracyOptions& options) {
+  Study study(options, "160x90");
+  const Image truth = study.trace(8192, ReferenceBuffer::Irradiance, false).picture.mean;
+  const int seeds = options.seeds.value_or(options.quick ? 1 : 2);
+  std::vector<Variant> variants;
+  for (const std::string& preset : presetNames()) {
+    LaunchOptions launch = study.launch;
+    launch.preset = preset; // under what the command line sets
+    for (int k = 0; k < seeds; ++k)
+      variants.push_back({preset, openStage(launch)->settings, launch.seed + uint32_t(k)});
+  }
+  nlohmann::json rows;
+  for (const Measured& m : study.draw(variants, Buffer::Irradiance, 4, 3)) {
+    rows.push_back(rowOf(pictureError(m.picture, truth)));
+    rows.back().update({{"preset", m.variant.name}, {"seed", m.variant.seed}, {"ms", m.frames.back().wallMs}});
+  }
+  study.report({{"preset", "preset"},
+                {"seed", "seed"},
+                {"ms", "ms per frame", "%.0f"},
+                {"rmse", "RMSE", "%.4f"},
+                kRelMse,
+                kBias},
+               rows);
+}
+
+void accuracyFigure(const AccuracyOptions& options) {
+  if (options.figure != 9) needClamp(options);
+  const fs::path folder = reportFolder(options.output.out, format("out/figure-%d", options.figure));
+  Study study(options, "320x180", {{"gather.disk", "0"}});
+  const bool quick = options.quick;
+
+  // What pictures are held to comes first.
+  std::vector<Variant> variants;
+  if (options.figure == 8) {
+    variants.push_back(study.variant("interleaved", {}));
+    variants.push_back(study.variant("all-maps", {{"gather.mode", "full"}}));
+    variants.push_back(study.variant("all-rays", {{"vpl.visibility", "rays"}}));
+  } else if (options.figure == 9) {
+    variants.push_back(study.variant("rays", {{"vpl.visibility", "rays"}}));
+    for (const char* texels : {"128", "256", "512", "1024"}) {
+      if (quick && variants.size() > 2) break;
+      variants.push_back(
+          study.variant(std::string("maps-") + texels, {{"gather.mode", "full"}, {"shadow.resolution", texels}}));
+    }
+  } else {
+    for (const char* vpls : quick ? std::vector{"64", "256"} : std::vector{"2000", "8000", "40000"})
+      variants.push_back(study.variant(std::string("vpls-") + vpls, {{"vpl.visibility", "rays"}, {"smc.vpls", vpls}}));
+  }
+  std::vector<std::pair<std::string, Image>> truths;
+  const auto path = [&](const std::string& name, bool clamped) {
+    truths.emplace_back(name,
+                        study.trace(1024, ReferenceBuffer::Indirect, clamped, folder / (name + ".state")).picture.mean);
+  };
+  if (options.figure == 8) path("path-tracing", false);
+  if (options.figure != 9) path("clamped-path-tracing", true);
+  std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
+  const float exposure = study.truth ? study.truth->exposure : runs[0].exposure;
+  if (options.figure == 9) {
+    truths.emplace_back(runs[0].variant.name, runs[0].picture);
+    runs.erase(runs.begin());
+  }
+  const auto write = [&](const std::string& name, const Image& picture) {
+    for (const char* extension : {".exr", ".png"})
+      writePicture((folder / (name + extension)).string(), picture, exposure);
+  };
+  nlohmann::json rows;
+  for (const auto& [name, picture] : truths) write(name, picture);
+  for (const Measured& m : runs) {
+    write(m.variant.name, m.picture);
+    for (const auto& [name, truth] : truths) {
+      rows.push_back(rowOf(pictureError(m.picture, truth)));
+      rows.back().update({{"picture", m.variant.name}, {"against", name}});
+      writePicture((folder / (m.variant.name + "-minus-" + name + ".png")).string(),
+                   absoluteDifference(m.picture, truth), midGreyAt(pictureError(truth, truth).meanTruth));
+    }
+  }
+  study.report({{"picture", "picture"}, {"against", "against"}, kRmseShare, kRelMse, kBias}, rows);
+  if (!options.output.quiet) std::printf("pictures: %s\n", folder.c_str());
+}
+
+} // namespace lambent
