@@ -159,8 +159,16 @@ Texture Texture::borrowed(GLuint name) {
   return texture;
 }
 
+bool Texture::readsAsFlat() const {
+  GLint target = 0, compare = 0;
+  glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
+  glGetTextureParameteriv(name(), GL_TEXTURE_COMPARE_MODE, &compare);
+  return target == GL_TEXTURE_2D && compare == GL_NONE;
+}
+
 Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer& buffer) {
-  Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }), label);
+  Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }),
+                  label);
   glTextureBuffer(texture.name(), format, buffer.name());
   return texture;
 }

@@ -69,6 +69,8 @@ class Texture : public detail::Object {
   Texture(const std::string& label, const TextureDesc& desc);
   /// A texture of somebody else, who keeps it alive: never deleted, its memory not counted.
   static Texture borrowed(GLuint name);
+  /// Whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
+  bool readsAsFlat() const;
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 

@@ -82,7 +82,7 @@ TEST_F(ShadowedPatchesTest, HalvesAreLitByWhatSeesThem) {
 /// Large patches here, which each light splits where its shadow ends.
 TEST_F(ShadowedPatchesTest, PatchesPerLightFollowItsShadow) {
   Settings settings = with(GatherMode::SplatPerVpl);
-  settings.multires.coarsest = 8; // 16 × 16 pixels, 16 cm
+  settings.multires.coarsest = 16; // 8 × 8 pixels, 8 cm
   settings.multires.light = 0.02f;
   expectHalves(settings, 0.11f, 0.05f);
 }
