@@ -252,7 +252,7 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
 /// A spot over a dark floor with one bright cluster, which a ceiling faces from many distances. Where the picture is
 /// the one of coarsest clusters, the cluster was not refined, and its contribution (paper 3, eq. 6) must be below τ.
 TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
-  const float height = 2, tangent = std::tan(1.1f); // 63°: texels at the middle have five times the mean solid angle
+  const float height = 2, tangent = std::tan(1.1f); // 63°: texels at the middle have four times the mean solid angle
   LightView spot = spotLight(vec3(0, height, 0), vec3(0, -1, 0));
   spot.outerConeCos = std::cos(1.1f);
   spot.innerConeCos = std::cos(1.0f);
