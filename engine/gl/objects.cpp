@@ -150,6 +150,7 @@ Texture::Texture(const std::string& label, const TextureDesc& desc)
 
 Texture Texture::borrowed(GLuint name) {
   Texture texture(0, name, {}); // of no kind: not ours to delete
+  texture.desc_ = {.width = 0, .height = 0};
   if (!glIsTexture(name)) return texture;
   GLint width = 0, height = 0, format = 0;
   glGetTextureLevelParameteriv(name, 0, GL_TEXTURE_WIDTH, &width);
