@@ -9,6 +9,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambent {
 
@@ -211,6 +212,14 @@ void Hud::drawSettings(Settings& settings) {
       if (ImGui::InputText(label.c_str(), &value)) edited_[row.name] = value;
       if (ImGui::IsItemDeactivatedAfterEdit()) apply(row.name, value);
       if (!ImGui::IsItemActive()) edited_.erase(row.name);
+      if (row.scale == Scale::PowersOfTwo) {
+        const double now = row.get(settings);
+        const std::string half = "/2##" + row.name, twice = "x2##" + row.name;
+        ImGui::SameLine();
+        if (ImGui::SmallButton(half.c_str())) apply(row.name, row.text(std::max(row.low, std::floor(now / 2))));
+        ImGui::SameLine();
+        if (ImGui::SmallButton(twice.c_str())) apply(row.name, row.text(std::min(row.high, std::max(1.0, 2 * now))));
+      }
     }
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s\n%s\nrange %s %s, default %s\nchanging it costs: %s", row.name.c_str(), row.help.c_str(),

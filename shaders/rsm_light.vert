@@ -1,5 +1,5 @@
 #version 450
-// VPLs in the order of VplLights (gi/contract/passes.h), one per vertex. GRID: of a regular grid over all maps, each with the
+// VPLs in the order of PackedLights (gi/contract/virtual_lights.h), one per vertex. GRID: of a regular grid over all maps, each with the
 // light of its texel times what the grid's cell has of its solid angle; else: those of `compact`, in their order.
 #include "lib/rsm_light.glsl"
 #include "shared/solid_angle.h"

@@ -1,6 +1,6 @@
 #include "engine/gl/counts.h"
 
-#include "engine/gl/objects.h"
+#include "engine/gl/ring.h"
 
 namespace lambent::gl {
 
@@ -21,11 +21,12 @@ void drawFeedback(GLenum mode, const TransformFeedback& feedback, int instances)
   ++detail::countsSoFar().draws;
 }
 
-void drawIndexed(const IndexedDraw& draw) {
-  glDrawElementsInstancedBaseVertexBaseInstance(
-      GL_TRIANGLES, GLsizei(draw.count), GL_UNSIGNED_INT,
-      reinterpret_cast<const void*>(uintptr_t(draw.firstIndex) * sizeof(uint32_t)), GLsizei(draw.instances),
-      draw.baseVertex, draw.baseInstance);
+void drawIndexed(const BufferSlice& draws, size_t first, size_t count) {
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.buffer->name());
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(uintptr_t(draws.offset + first * sizeof(IndexedDraw))),
+                              GLsizei(count), sizeof(IndexedDraw));
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
   ++detail::countsSoFar().draws;
 }
 

@@ -4,10 +4,12 @@
 
 #include <epoxy/gl.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace lambent::gl {
 
+struct BufferSlice;
 class TransformFeedback;
 
 /// Calls so far in this process. A read-back waits too, but counts only as what it is.
@@ -30,13 +32,15 @@ void drawArrays(GLenum mode, int count);
 /// As many vertices as `feedback` was given last.
 void drawFeedback(GLenum mode, const TransformFeedback& feedback, int instances = 1);
 
-/// Triangles of 32-bit indices of the bound vertex array: the form that GL reads from an indirect buffer.
+/// Triangles of 32-bit indices of the bound vertex array, as GL reads them from a buffer.
 struct IndexedDraw {
   uint32_t count = 0, instances = 1, firstIndex = 0;
   int32_t baseVertex = 0;
   uint32_t baseInstance = 0;
 };
-void drawIndexed(const IndexedDraw& draw);
+static_assert(sizeof(IndexedDraw) == 20);
+/// One call for `count` of the IndexedDraws that a slice holds, from `first` on, in their order.
+void drawIndexed(const BufferSlice& draws, size_t first, size_t count);
 
 /// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
 void drawFullscreen();

@@ -159,8 +159,16 @@ Texture Texture::borrowed(GLuint name) {
   return texture;
 }
 
+bool Texture::readsAsFlat() const {
+  GLint target = 0, compare = 0;
+  glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
+  glGetTextureParameteriv(name(), GL_TEXTURE_COMPARE_MODE, &compare);
+  return target == GL_TEXTURE_2D && compare == GL_NONE;
+}
+
 Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer& buffer) {
-  Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }), label);
+  Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }),
+                  label);
   glTextureBuffer(texture.name(), format, buffer.name());
   return texture;
 }
@@ -217,6 +225,13 @@ Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const T
   }
   glNamedFramebufferDrawBuffers(name(), GLsizei(targets.size()), targets.data());
   CHECK_EQ(glCheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
+}
+
+Framebuffer Framebuffer::empty(const std::string& label) {
+  Framebuffer framebuffer(label);
+  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_WIDTH, 1);
+  glNamedFramebufferParameteri(framebuffer.name(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, 1);
+  return framebuffer;
 }
 
 void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {

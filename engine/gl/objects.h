@@ -69,6 +69,8 @@ class Texture : public detail::Object {
   Texture(const std::string& label, const TextureDesc& desc);
   /// A texture of somebody else, who keeps it alive: never deleted, its memory not counted.
   static Texture borrowed(GLuint name);
+  /// Whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
+  bool readsAsFlat() const;
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 
@@ -131,6 +133,10 @@ class Framebuffer : public detail::Object {
   /// when incomplete: formats are ours, so that is a bug.
   Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr,
               int level = 0);
+
+  /// Without attachments: for draws that only capture. A context without a window has no complete framebuffer of its
+  /// own.
+  static Framebuffer empty(const std::string& label);
 
   /// Attaches one layer (cube face: 6·cube + face) as depth.
   void attachDepthLayer(const Texture& texture, int layer) const;

@@ -4,6 +4,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
+#include <fstream>
+
 namespace lambent::gl {
 
 namespace fs = std::filesystem;
@@ -113,6 +116,17 @@ void ProgramCache::build(Program& program) const {
   glDeleteProgram(program.name_);
   program.name_ = name;
   program.locations_.clear();
+  dump(desc, sources);
+}
+
+void ProgramCache::dump(const ProgramDesc& desc, const std::vector<std::pair<GLenum, ShaderText>>& sources) const {
+  const char* folder = std::getenv("LAMBENT_DUMP_SHADERS");
+  if (!folder) return;
+  fs::create_directories(folder);
+  char program[20];
+  std::snprintf(program, sizeof program, "%016zx-", std::hash<std::string>()(desc.key() + folder_.string()));
+  for (const auto& [stage, source] : sources)
+    std::ofstream(fs::path(folder) / (program + source.files[0].filename().string())) << source.text;
 }
 
 std::vector<std::string> ProgramCache::reloadChanged() {

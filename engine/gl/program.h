@@ -70,6 +70,8 @@ ShaderText loadShader(const std::filesystem::path& folder, const std::string& fi
 std::filesystem::path findShaderFolder();
 
 /// Programs of one context, compiled when first asked for. References stay valid for the life of the cache.
+/// LAMBENT_DUMP_SHADERS=FOLDER has every variant that compiles written there as the compiler got it, so that other
+/// compilers can be asked (tests/cli/shaders): PROGRAM-FILE.vert, .geom and .frag, with a number for the program.
 class ProgramCache {
  public:
   explicit ProgramCache(std::filesystem::path folder = findShaderFolder()) : folder_(std::move(folder)) {}
@@ -85,6 +87,7 @@ class ProgramCache {
 
  private:
   void build(Program& program) const;
+  void dump(const ProgramDesc& desc, const std::vector<std::pair<GLenum, ShaderText>>& sources) const;
 
   std::filesystem::path folder_;
   std::map<std::string, std::unique_ptr<Program>> programs_;

@@ -28,7 +28,6 @@ class LightTarget {
   void bind() const { framebuffer_.bind(); }
   const gl::Framebuffer& framebuffer() const { return framebuffer_; }
   glm::ivec2 size() const { return {irradiance_.width(), irradiance_.height()}; }
-  bool empty() const { return !irradiance_; }
   LightOnSurfaces light(bool deinterleaved = false) const {
     return {&irradiance_, glossy_ ? &glossy_ : nullptr, deinterleaved};
   }

@@ -121,6 +121,4 @@ void DirectLight::fitReceivers(const DirectInputs& in, FrameStats& stats) {
     receivers_ = visibleBounds(in.world, stats.raysPoints);
 }
 
-void DirectLight::forget() { receivers_ = {}; }
-
 } // namespace lambent

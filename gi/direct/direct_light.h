@@ -21,8 +21,6 @@ class DirectLight {
  public:
   explicit DirectLight(PassContext context);
   LightOnSurfaces run(const DirectInputs& in, FrameStats& stats);
-  /// The scene is another: no map shows it.
-  void forget();
 
  private:
   void fitReceivers(const DirectInputs& in, FrameStats& stats);

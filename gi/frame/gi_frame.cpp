@@ -17,6 +17,8 @@ namespace lambent {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 /// GL draws since it was made.
 class DrawCount {
  public:
@@ -55,6 +57,7 @@ struct GiFrame::Kept {
   Kept(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
 
   void begin(const SceneView& given);
+  void end(Clock::time_point begin, const gl::Counts& before);
   LightSource* sourceFor(VplSource wanted);
   FilterSettings filterFor(const EffectPlan& plan) const;
   void expose(const Picture& picture);
@@ -72,14 +75,16 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const Settings& settings = k.settings;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   if (host) checkHost(*host, given.camera);
-  const auto begin = std::chrono::steady_clock::now();
+  const Clock::time_point begin = Clock::now();
   const gl::Counts before = gl::counts();
   LightSource* source = k.sourceFor(settings.vpl.source);
   if (source) source->finish();
   k.begin(given);
   FrameStats& stats = k.stats;
   const EffectPlan plan = k.world.plan(given, settings,
-                                       {.settled = source && source->settled(),
+                                       {.first = !k.results.picture.radiance,
+                                        .host = host != nullptr,
+                                        .settled = source && source->settled(),
                                         .mapsWaiting = k.keeper.waiting(),
                                         .lightArrived = source && source->arrived()});
   const World world = k.world.place(plan, stats);
@@ -124,13 +129,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                  world.reach};
   }
 
-  for (const StageTime& row : k.profiler.takeRows()) stats.stages.push_back(row);
-  k.world.countWork(stats);
-  const gl::Counts asked = gl::counts() - before;
-  stats.draws = asked.draws;
-  stats.waits = asked.waits;
-  stats.readBacks = asked.readBacks;
-  stats.wallMs = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  k.end(begin, before);
   return stats;
 }
 
@@ -150,12 +149,27 @@ void GiFrame::Kept::begin(const SceneView& given) {
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
   if (!world.open(*given.assets, stats)) return;
   if (source) source->forget();
+  keeper.forget();
   results = {};
+}
+
+/// What was asked of the GPU, and how long the frame took.
+void GiFrame::Kept::end(Clock::time_point begin, const gl::Counts& before) {
+  for (const StageTime& row : profiler.takeRows()) stats.stages.push_back(row);
+  world.countWork(stats);
+  const gl::Counts asked = gl::counts() - before;
+  stats.draws = asked.draws;
+  stats.waits = asked.waits;
+  stats.readBacks = asked.readBacks;
+  stats.wallMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
 /// Sources of another kind are given up with all that they keep.
 LightSource* GiFrame::Kept::sourceFor(VplSource wanted) {
-  if (!source || !sameKind(wanted, sourceOf)) source = makeSource(wanted, context);
+  if (!sameKind(wanted, sourceOf)) {
+    results.vpls = nullptr;
+    source = makeSource(wanted, context);
+  }
   sourceOf = wanted;
   return source.get();
 }
@@ -198,14 +212,14 @@ Image GiFrame::read(Buffer buffer) const {
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
   const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls) vpls();
+  if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
   kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
   return kept_->display.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls) vpls();
+  if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
   kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
   kept_->display.present(framebuffer, width, height);
 }

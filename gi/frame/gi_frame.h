@@ -19,7 +19,7 @@
 
 namespace lambent {
 
-/// What may be shown or read back. The first seven are `--buffer` names of INTERFACE; the others are debug views.
+/// What may be shown or read back. The first seven are meant for users; the others are debug views.
 enum class Buffer : int {
   Beauty,
   Direct,

@@ -42,7 +42,7 @@ class CompositePass {
 /// is no light. Reads the picture back: meant to run once.
 float measureExposure(const Picture& picture);
 
-// 7. Looking at it ----------------------------------------------------------------------------------------------------
+// Looking at it ----------------------------------------------------------------------------------------------------
 
 /// Everything a frame made, for read-back and views. Null where a stage did not run.
 struct FrameResults {

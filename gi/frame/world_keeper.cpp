@@ -26,25 +26,26 @@ bool WorldKeeper::open(const SceneAssets& assets, FrameStats& stats) {
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
-  drawn_ = frozen_ = false;
-  missed_ = true;
+  frozen_ = false;
+  untold_ = true;
   testedDraws_ = 0;
   return true;
 }
 
 EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
-  missed_ |= before_.effects != settings.effects;
-  const bool drawingChanged = before_ != settings || shadersChanged_;
+  untold_ |= before_.effects != settings.effects || in.first;
+  const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
   settingsChanged_ =
-      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || !drawn_;
+      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || in.first;
   before_ = settings;
   shadersChanged_ = false;
+  hosted_ = in.host;
   const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !view_.view().instances.empty();
   view_.take(given, freeze);
-  if (frozen_ && !freeze) missed_ = true;
+  if (frozen_ && !freeze) untold_ = true;
   frozen_ = freeze;
 
-  const FrameFacts facts{.first = !drawn_,
+  const FrameFacts facts{.first = in.first,
                          .settingsChanged = settingsChanged_,
                          .drawingChanged = drawingChanged,
                          .settled = in.settled,
@@ -53,12 +54,11 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
   const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
-  if (missed_ && everything()) {
+  if (untold_ && everything()) {
     view.changes = kAllChanged;
     plan = planEffects(view, settings, facts);
   }
-  missed_ = !everything() && (missed_ || anyChange(view.changes));
-  drawn_ |= plan.on(EffectId::Redraw);
+  untold_ = !everything() && (untold_ || anyChange(view.changes));
   return plan;
 }
 

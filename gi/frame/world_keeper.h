@@ -14,6 +14,8 @@ namespace lambent {
 
 /// What a plan depends on besides the view and the settings.
 struct PlanInputs {
+  bool first = true;         // there is no picture yet
+  bool host = false;         // the surfaces are a host's, who may have drawn them anew
   bool settled = false;      // the virtual lights have
   uint32_t mapsWaiting = 0;  // of virtual lights
   bool lightArrived = false; // that no picture shows yet
@@ -50,9 +52,9 @@ class WorldKeeper {
   float reach_ = 0;
   uint64_t testedDraws_ = 0; // the scene's count when last asked
   bool settingsChanged_ = true, shadersChanged_ = false;
-  bool drawn_ = false;  // a picture was
+  bool hosted_ = false; // the last surfaces were a host's
   bool frozen_ = false; // objects stand where they stood
-  bool missed_ = false; // something changed that not all stages were told of
+  bool untold_ = false; // something changed that not all stages were told of
 };
 
 } // namespace lambent

@@ -29,8 +29,7 @@ class SplatGather : public IndirectStage {
   }
 
  private:
-  /// What of a texel's light came from which patches is known only while one light is looked at, so each is made whole
-  /// by itself.
+  /// Each light has patches of its own, so each is upsampled by itself before the next is added.
   void splatEach(const IndirectInputs& in, const SplatInputs& splats) {
     const gl::PassScope scope = context_.scope(StageId::SplatPerVpl);
     atlas_.clearLight();

@@ -12,7 +12,7 @@ uint32_t lightOrder(uint32_t slot);
 
 /// The light of a slot; empty (a = 0) when it is not alive or brings nothing.
 VplLight pack(const VirtualLight& light);
-/// What of a virtual light its packed form holds; the geometric normal is the shading normal.
+/// The virtual light that a packed one describes. Its geometric normal is lost: the shading normal stands in.
 VirtualLight unpack(const VplLight& light);
 
 class PackedLightBuffer {

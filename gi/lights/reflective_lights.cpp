@@ -23,6 +23,8 @@ constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::VertexArray empty("points");
   const gl::TransformFeedback feedback("captured", target); // of its own: the default one may be in use
+  const gl::Framebuffer nowhere = gl::Framebuffer::empty("captured");
+  nowhere.bind();
   program.use();
   glBindVertexArray(empty.name());
   glEnable(GL_RASTERIZER_DISCARD);

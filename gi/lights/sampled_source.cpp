@@ -2,6 +2,7 @@
 #include "gi/lights/sampled_source.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 
 namespace lambent {
@@ -58,21 +59,21 @@ VirtualLights SampledSource::run(const SourceInputs& in, FrameStats& stats) {
   const bool persistent = rowOf(in.settings.vpl.source).persistent;
   const bool needed = kept_.set.slots.empty() || called(Replace) || (persistent && (called(Relight) || called(Motion)));
   // Forced by settings though nothing calls for it: done on a copy that is thrown away.
-  const bool pretended = !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
-  const bool beside = in.settings.frame.overlap && needed && !kept_.set.slots.empty();
+  const bool onACopy = !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
+  const bool overlapped = in.settings.frame.overlap && needed && !kept_.set.slots.empty();
   std::vector<uint32_t> carried;
-  if (beside && persistent) { // others place theirs anew
+  if (overlapped && persistent) { // others place theirs anew
     carried = carryVpls(kept_.set, world.view, world.view.changes.first);
-  } else if (pretended) {
+  } else if (onACopy) {
     kept_.log = updated(kept_, taskOf(in), world.view, world.rays, world.lights, in.progress).log;
-  } else if (needed && !beside) {
+  } else if (needed && !overlapped) {
     kept_ = updated(std::move(kept_), taskOf(in), world.view, world.rays, world.lights, in.progress);
   }
   report(in.plan, stats);
   VirtualLights lights;
-  if (in.plan.on(Redraw)) lights = show(in, beside, carried);
+  if (in.plan.on(Redraw)) lights = show(in, overlapped, carried);
   lights.alive = kept_.changes.alive;
-  if (beside)
+  if (overlapped)
     running_ = std::async(std::launch::async, [work = std::move(kept_), task = taskOf(in), copy = ViewCopy(world.view),
                                                rays = &world.rays, shining = world.lights]() mutable {
       shining.view = &copy.view();
@@ -120,12 +121,12 @@ void SampledSource::report(const EffectPlan& plan, FrameStats& stats) {
   log = {};
 }
 
-/// `beside`: the set is the last update's, with the `carried` slots put where their objects are now.
-VirtualLights SampledSource::show(const SourceInputs& in, bool beside, const std::vector<uint32_t>& carried) {
+/// With `overlapped` the set is still that of the last update; the `carried` slots stand where their objects are now.
+VirtualLights SampledSource::show(const SourceInputs& in, bool overlapped, const std::vector<uint32_t>& carried) {
   VplChanges& changes = kept_.changes;
   VirtualLights lights;
   // Those that were carried by the update of the frame before stand where that frame had put them.
-  lights.moved = join(beside ? changes.placedSlots : changes.movedSlots, carried);
+  lights.moved = join(overlapped ? changes.placedSlots : changes.movedSlots, carried);
   std::erase_if(lights.moved, [&](uint32_t slot) { return slot >= kept_.set.slots.size(); });
   changes.movedSlots.clear(); // who sees the lights has heard of them
   changes.placedSlots.clear();

@@ -29,7 +29,7 @@ class SampledSource : public LightSource {
 
  private:
   void report(const EffectPlan& plan, FrameStats& stats);
-  VirtualLights show(const SourceInputs& in, bool beside, const std::vector<uint32_t>& carried);
+  VirtualLights show(const SourceInputs& in, bool overlapped, const std::vector<uint32_t>& carried);
 
   PackedLightBuffer buffer_;
   std::vector<VirtualLight> shown_;

@@ -14,12 +14,10 @@ std::string whyNot(const Axes& axes) {
   const GatherRow& gather = rowOf(axes.gather);
   const std::string name = source.name;
   const bool lights = source.sampled || source.reflective;
-  if (lights != (axes.gather != GatherMode::Own))
-    return lights
-               ? "gather.mode own: " + name +
-                     " has virtual lights, which a gather of the table takes (interleaved, "
-                     "full, ...)"
-               : "vpl.source none: gather.mode " + std::string(gather.name) + " needs virtual lights (smc, rsm, ...)";
+  if (!lights && axes.gather != GatherMode::Own)
+    return "vpl.source none: gather.mode " + std::string(gather.name) + " needs virtual lights (smc, rsm, ...)";
+  if (!lights && axes.visibility != VplVisibility::None)
+    return "vpl.visibility " + std::string(rowOf(axes.visibility).name) + ": there are no virtual lights to see (none)";
   if (source.tree && axes.visibility != VplVisibility::None)
     return "vpl.visibility " + std::string(rowOf(axes.visibility).name) + ": " + name +
            " has clusters of all sizes, and no shadow maps of them (none)";

@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "gi/plan/effects.h"
+#include "gi/plan/techniques.h"
 
 #include <algorithm>
 #include <charconv>
@@ -126,7 +127,7 @@ class Table {
            "isr: deviation from its plane that splits a patch of a map, share of the distance; 0 splits all");
     number("rsm.normal", &Settings::rsm, &RsmSettings::normal, {0, kNoLimit}, Light,
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
-    number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Light,
+    number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
     flag("filter.on", &Settings::filter, &FilterSettings::on, Nothing, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"}, Nothing,
@@ -287,6 +288,12 @@ Axes axesOf(const Settings& s) {
 std::string whyNot(const Settings& settings) {
   if (!settings.own && settings.gather.mode == GatherMode::Own)
     return "gather.mode own: no technique with a stage of its own is chosen (--technique)";
+  if (settings.own && settings.gather.mode != GatherMode::Own)
+    return "gather.mode " + settingText(settings, "gather.mode") + ": technique " + settings.own->name +
+           " has a stage of its own (own)";
+  if (settings.own && settings.vpl.source != settings.own->axes.source)
+    return "vpl.source " + settingText(settings, "vpl.source") + ": technique " + settings.own->name + " takes " +
+           rowOf(settings.own->axes.source).name;
   return whyNot(axesOf(settings));
 }
 

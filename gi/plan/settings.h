@@ -116,7 +116,7 @@ struct RsmSettings {
   int finest = 256;     // and at the finest
   float depth = 0.05f;  // isr: as MultiresSettings::depth, seen from the light
   float normal = 0.2f;  // isr: as MultiresSettings::normal
-  float tau = 0.003f;   // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
+  float tau = 0.004f;   // hisr: bound of a cluster's contribution that splits it, share of the brightest map's light
   bool operator==(const RsmSettings&) const = default;
 };
 

@@ -1,6 +1,6 @@
 // Techniques: a row each, with a value on all four axes. Whoever offers techniques (command line, panel,
 // measurements) reads the table, gi/frame/technique_table.cpp, which names the stages that rows make; the frame reads
-// only the axes.
+// the axes, and the stage of a row that has its own.
 #pragma once
 
 #include "gi/plan/settings.h"

@@ -71,6 +71,8 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
     const std::string which = std::string("host's ") + what + " texture " + std::to_string(name);
     if (name == 0 && !needed) return;
     const gl::Texture texture = gl::Texture::borrowed(name);
+    if (texture.width() != 0 && !texture.readsAsFlat())
+      throw InputError(which, "is not flat, or compares depths (GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE GL_NONE)");
     if (texture.width() == camera.width && texture.height() == camera.height && name != 0) return;
     throw InputError(which, "has " + std::to_string(texture.width()) + "x" + std::to_string(texture.height()) +
                                 " texels (" + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
@@ -100,9 +102,11 @@ GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
               width,
               height};
   if (!out.emission) {
-    hosts_[3] = gl::Texture("g-buffer/emission", {.format = GL_RGBA16F, .width = width, .height = height});
-    hosts_[3].clear();
-    out.emission = &hosts_[3];
+    if (!black_ || black_.width() != width || black_.height() != height) {
+      black_ = gl::Texture("g-buffer/no emission", {.format = GL_RGBA16F, .width = width, .height = height});
+      black_.clear();
+    }
+    out.emission = &black_;
   }
   return out;
 }

@@ -54,6 +54,8 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   std::stable_sort(items_.begin(), items_.end(),
                    [](const Item& a, const Item& b) { return a.range.material < b.range.material; });
 
+  // Room for a G-buffer and the maps of a few lights per frame; of more, the ring waits for the oldest.
+  commands_.reserve(std::min<uint64_t>(16 * items_.size() * sizeof(gl::IndexedDraw), kMostCommandBytes));
   const uint64_t bytes = std::max<size_t>(1, rows.size()) * sizeof(vec4);
   if (!instanceRows_ || instanceRows_.bytes() < bytes)
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
@@ -86,31 +88,49 @@ void GpuScene::bindMaterial(uint32_t index) const {
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
-  GLuint array = vertexArray_.name();
-  glBindVertexArray(array);
+  std::vector<const Item*> shown;
+  for (const Item& item : items_)
+    if (frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
+  if (shown.empty()) return 0;
+  // Depth alone looks the same in any order, and without alpha test whatever the material: those go first, as one call
+  // per vertex array.
+  const auto plain = [&](const Item& item) {
+    return kind == DrawKind::Depth && !tested(materialDraws_[item.range.material]);
+  };
+  const auto place = [&](const Item* item) { return plain(*item) ? int(item->deformed) : 2; };
+  if (kind == DrawKind::Depth)
+    std::stable_sort(shown.begin(), shown.end(), [&](const Item* a, const Item* b) { return place(a) < place(b); });
+
+  std::vector<gl::IndexedDraw> commands;
+  for (const Item* item : shown)
+    commands.push_back({.count = item->range.indexCount,
+                        .firstIndex = item->range.firstIndex,
+                        .baseVertex = int32_t(item->range.baseVertex),
+                        .baseInstance = item->instance});
+  const gl::BufferSlice slice = commands_.write(commands.size() * sizeof(gl::IndexedDraw), commands.data());
+
   glVertexAttrib4f(3, 1, 1, 1, 1); // the colour of vertices without colour (context state, not the array's)
   const gl::Program* program = nullptr;
-  uint32_t bound = kNone, draws = 0;
-  for (const Item& item : items_) {
-    if (!frustum.mayShow(item.boundsWorld)) continue;
+  uint32_t draws = 0;
+  for (size_t first = 0, end = 0; first < shown.size(); first = end) {
+    const Item& item = *shown[first];
     const MaterialDraw& material = materialDraws_[item.range.material];
-    if (item.range.material != bound) {
-      const gl::Program& wanted = programFor(kind, material);
-      if (&wanted != program) {
-        program = &wanted;
-        program->use();
-        program->set("clipFromWorld", clipFromWorld);
-        program->set("eye", eye);
-      }
-      if (kind != DrawKind::Depth || tested(material)) bindMaterial(item.range.material);
-      bound = item.range.material;
+    const bool anyMaterial = plain(item);
+    const auto sameRun = [&](const Item& other) {
+      return other.deformed == item.deformed && plain(other) == anyMaterial &&
+             (anyMaterial || other.range.material == item.range.material);
+    };
+    for (end = first + 1; end < shown.size() && sameRun(*shown[end]);) ++end;
+    const gl::Program& wanted = programFor(kind, material);
+    if (&wanted != program) {
+      program = &wanted;
+      program->use();
+      program->set("clipFromWorld", clipFromWorld);
+      program->set("eye", eye);
     }
-    if (const GLuint wanted = item.deformed ? deformed_.array.name() : vertexArray_.name(); wanted != array)
-      glBindVertexArray(array = wanted);
-    gl::drawIndexed({.count = item.range.indexCount,
-                     .firstIndex = item.range.firstIndex,
-                     .baseVertex = int(item.range.baseVertex),
-                     .baseInstance = item.instance});
+    if (!anyMaterial) bindMaterial(item.range.material);
+    glBindVertexArray(item.deformed ? deformed_.array.name() : vertexArray_.name());
+    gl::drawIndexed(slice, first, end - first);
     ++draws;
     testedDraws_ += tested(material);
   }

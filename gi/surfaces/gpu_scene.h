@@ -35,9 +35,10 @@ class GpuScene {
   /// Takes over this frame's instances; uploads transforms when any moved, and the vertices of what was reshaped.
   void place(std::span<const InstanceView> instances);
 
-  /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer. Sets programs,
-  /// vertex array and textures; the caller sets the pipeline state and, for a G-buffer, binds the camera block and
-  /// gives the eye. Returns the number of draws.
+  /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer: one call per
+  /// material and vertex array, and for depth one for all materials without alpha test. Sets programs, vertex array and
+  /// textures; the caller sets the pipeline state and, for a G-buffer, binds the camera block and gives the eye.
+  /// Returns the number of calls.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0)) const;
 
   /// Masked at the start.
@@ -49,6 +50,7 @@ class GpuScene {
 
  private:
   static constexpr GLuint kInstanceBinding = 4;
+  static constexpr uint64_t kMostCommandBytes = uint64_t(4) << 20;
 
   struct PrimitiveRange {
     uint32_t primitive; // of its mesh
@@ -100,6 +102,7 @@ class GpuScene {
   gl::ProgramCache& programs_;
   gl::Buffer positions_, normals_, uvs_, colors_, indices_, instanceRows_, materials_;
   gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
+  mutable gl::Ring commands_{"scene/draws"};
   gl::VertexArray vertexArray_;
   std::vector<gl::Texture> textures_;
   std::map<uint32_t, gl::Sampler> samplers_; // by packed wrap and filter modes

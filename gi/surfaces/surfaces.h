@@ -34,6 +34,7 @@ class SurfacePass {
   PassContext context_;
   gl::Texture depth_, normal_, albedo_, emission_, finish_;
   gl::Texture hosts_[5]; // a host's, as ours
+  gl::Texture black_;    // emission of a host that has none
   gl::Framebuffer framebuffer_;
   gl::Ring cameras_{"g-buffer/camera"};
   gl::BufferSlice camera_; // of the last run

@@ -10,7 +10,7 @@ namespace lambent {
 SeenLights MapKeeper::see(const KeeperInputs& in, const EffectPlan& plan, FrameStats& stats) {
   maps_ = {};
   if (!in.lights.mayWait) schedule_.clear();
-  if (in.settings.vpl.visibility != VplVisibility::Maps || in.lights.trees || in.settings.own) {
+  if (in.settings.vpl.visibility != VplVisibility::Maps || in.lights.trees) {
     old_ = true;
     return {in.lights};
   }

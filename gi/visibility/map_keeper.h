@@ -24,9 +24,15 @@ class MapKeeper {
   /// have theirs redrawn as far as `shadow.refresh` goes, others at once.
   SeenLights see(const KeeperInputs& in, const EffectPlan& plan, FrameStats& stats);
 
+  /// The scene is another.
+  void forget() {
+    schedule_.clear();
+    maps_ = {};
+    old_ = true;
+  }
   /// Maps that show where something was.
   uint32_t waiting() const { return uint32_t(schedule_.waiting()); }
-  /// Of the last frame that had them; empty before.
+  /// Of the last `see`; empty where its lights had none.
   const ParaboloidMaps& maps() const { return maps_; }
   ParaboloidMapPass& pass() { return pass_; }
 

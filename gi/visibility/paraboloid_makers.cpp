@@ -1,4 +1,4 @@
-// The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/test_maps.cpp checks.
+// The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/maps_test.cpp checks.
 #include "gi/visibility/paraboloid_makers.h"
 #include "engine/core/parallel.h"
 #include "engine/trace/ray_query.h"

@@ -83,20 +83,20 @@ class CellSampler {
   void draw(const Vpl& vpl, float radius, std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
     points_.clear();
     chords(vpl, radius);
-    for (int round = 0; round < kHitsPerChord && !rays_now_.empty(); ++round) {
-      hits_.resize(rays_now_.size());
-      rays_.closest(rays_now_, hits_);
-      counts.closest += rays_now_.size();
+    for (int round = 0; round < kHitsPerChord && !batch_.empty(); ++round) {
+      hits_.resize(batch_.size());
+      rays_.closest(batch_, hits_);
+      counts.closest += batch_.size();
       size_t alive = 0;
-      for (size_t i = 0; i < rays_now_.size(); ++i) {
-        const Ray ray = rays_now_[i];
+      for (size_t i = 0; i < batch_.size(); ++i) {
+        const Ray ray = batch_[i];
         const SurfaceHit& h = hits_[i];
         if (!h.valid()) continue;
         addSides(vpl, radius, h);
         const float step = h.t + 2e-4f * ray.tMax;
-        if (step < ray.tMax) rays_now_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
+        if (step < ray.tMax) batch_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
       }
-      rays_now_.resize(alive);
+      batch_.resize(alive);
     }
     keepConnected(vpl, counts);
     weighByVisibility(vpl, viewers, counts);
@@ -107,7 +107,7 @@ class CellSampler {
 
  private:
   void chords(const Vpl& vpl, float radius) {
-    rays_now_.clear();
+    batch_.clear();
     Rng rng(seed_, Stream::Cells, uint32_t(mix64(vpl.id)));
     const vec3 shift(rng.next(), rng.next(), rng.next());
     const vec2 shiftDisk = rng.next2();
@@ -123,7 +123,7 @@ class CellSampler {
         const vec3 s = glm::normalize(glm::cross(helper, along)), t = glm::cross(along, s);
         const float half = r * std::sqrt(std::max(0.0f, 1 - rho * rho));
         const vec3 middle = vpl.position + r * rho * (std::cos(phi) * s + std::sin(phi) * t);
-        rays_now_.push_back({middle - half * along, along, 2 * half});
+        batch_.push_back({middle - half * along, along, 2 * half});
       }
     }
   }
@@ -143,13 +143,13 @@ class CellSampler {
   void keepConnected(const Vpl& vpl, RayCounts& counts) {
     open_.assign(points_.size(), 0);
     for (const bool lifted : {false, true}) {
-      rays_now_.clear();
+      batch_.clear();
       which_.clear();
       for (uint32_t i = 0; i < points_.size(); ++i) {
         if (open_[i]) continue;
         const CellPoint& p = points_[i];
         if (const auto ray = lifted ? Connection::lifted(vpl, p, std::sqrt(p.own2)) : Connection::close(vpl, p)) {
-          rays_now_.push_back(*ray);
+          batch_.push_back(*ray);
           which_.push_back(i);
         }
       }
@@ -166,7 +166,7 @@ class CellSampler {
     open_.assign(points_.size(), 0);
     float seenVpl = 0;
     for (const vec3& from : viewers) {
-      rays_now_.clear();
+      batch_.clear();
       which_.clear();
       if (glm::dot(from - vpl.position, vpl.geometricNormal) > 0) {
         ++counts.occlusion;
@@ -175,7 +175,7 @@ class CellSampler {
       for (uint32_t i = 0; i < points_.size(); ++i) {
         const CellPoint& p = points_[i];
         if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
-        rays_now_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal)));
+        batch_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal)));
         which_.push_back(i);
       }
       open_.assign(points_.size(), 0);
@@ -193,9 +193,9 @@ class CellSampler {
 
   /// Opens what the segments reach.
   void test(RayCounts& counts) {
-    blocked_.resize(rays_now_.size());
-    rays_.occluded(rays_now_, blocked_);
-    counts.occlusion += rays_now_.size();
+    blocked_.resize(batch_.size());
+    rays_.occluded(batch_, blocked_);
+    counts.occlusion += batch_.size();
     for (size_t j = 0; j < which_.size(); ++j) open_[which_[j]] = !blocked_[j];
   }
 
@@ -210,7 +210,7 @@ class CellSampler {
   const float reachLimit_;
   const uint32_t seed_;
   std::vector<CellPoint> points_;
-  std::vector<Ray> rays_now_;
+  std::vector<Ray> batch_;
   std::vector<SurfaceHit> hits_;
   std::vector<uint8_t> open_, blocked_;
   std::vector<uint32_t> which_;

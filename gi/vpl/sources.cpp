@@ -27,7 +27,8 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
   case VplSource::Rsm:
   case VplSource::Isr:
   case VplSource::Hisr:
-    CHECK(!"made on the GPU: gi/lights/reflective_maps.h");
+  case VplSource::None:
+    CHECK(!"not sampled: gi/lights/light_source.h");
   }
   return updateVpls(set, in, log, progress);
 }

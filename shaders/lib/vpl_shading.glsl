@@ -7,7 +7,7 @@
 #include "shared/shadow_lookup.h"
 #include "shared/vpl_light.h"
 
-// Half of the classes of a chunk of 2048 lights: see VplLights in gi/contract/passes.h
+// Half of the classes of a chunk of 2048 lights: see PackedLights in gi/contract/virtual_lights.h
 layout(std140, binding = 1) uniform Lights { VplLight lights[kClassesPerLightBlock * kLightsPerClass]; };
 #ifdef SMOOTH_SHADOWS
 layout(binding = 2) uniform sampler2DArrayShadow maps;

@@ -76,6 +76,29 @@ TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
   EXPECT_EQ(ring.latest(), 40u);
 }
 
+/// Of the room: 17 rectangles, of three materials, one of them cut out in the end.
+TEST_F(CountsTest, ARunOfOneMaterialIsOneDraw) {
+  Room room;
+  room.scene.assets.materials[1].alphaMode = AlphaMode::Mask;
+  GpuScene gpu(programs, room.scene.assets);
+  gpu.place(room.scene.instances);
+  mat4 everything(0.1f);
+  everything[3] = vec4(0, 0, 0.5f, 1);
+  const gl::Texture depth("counts/depth", {.format = GL_DEPTH_COMPONENT32F, .width = 8, .height = 8});
+  const gl::Framebuffer framebuffer("counts", {}, &depth);
+  framebuffer.bind();
+  gl::PipelineState{.depthTest = true, .depthWrite = true, .width = 8, .height = 8}.apply();
+  gpu.setAlphaTest(AlphaTest::None);
+  EXPECT_EQ(gpu.draw(DrawKind::GBuffer, everything), 3u);
+  EXPECT_EQ(gpu.draw(DrawKind::Depth, everything), 1u);
+  gpu.setAlphaTest(AlphaTest::Masked);
+  EXPECT_EQ(gpu.draw(DrawKind::Depth, everything), 2u);
+  EXPECT_EQ(gpu.testedDraws(), 1u);
+  gpu.setAlphaTest(AlphaTest::All);
+  EXPECT_EQ(gpu.draw(DrawKind::Depth, everything), 3u);
+  EXPECT_EQ(sinceBefore().draws, 9u);
+}
+
 TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
   Room room;
   GpuScene gpu(programs, room.scene.assets);
