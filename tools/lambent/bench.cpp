@@ -37,20 +37,17 @@ std::vector<Line> timeLines(const std::vector<Measured>& sides) {
 double countOf(const Figure& figure) {
   if (const uint64_t* n = std::get_if<uint64_t>(&figure)) return double(*n);
   if (const RayCounts* rays = std::get_if<RayCounts>(&figure)) return double(rays->closest + rays->occlusion);
-  return 0; // a time, a text
+  return -1; // a time, a text
 }
 
-/// Whatever the table of figures counts and some side did.
-std::vector<Line> countLines(const std::vector<Measured>& sides) {
+/// Whatever the table of figures counts.
+std::vector<Line> countLines() {
   std::vector<Line> lines;
-  for (const FigureRow& row : figureTable()) {
-    const auto of = [&row](const Measured& m) {
-      return m.of([&row](const FrameStats& s) { return countOf(row.value(s)); });
-    };
-    if (row.name != std::string_view("frame") && // a number, no count
-        std::ranges::any_of(sides, [&](const Measured& m) { return of(m).most > 0; }))
-      lines.push_back({row.name, of});
-  }
+  for (const FigureRow& row : figureTable())
+    if (row.name != std::string_view("frame") && countOf(row.value({})) >= 0) // a number, no count
+      lines.push_back({row.name, [&row](const Measured& m) {
+                         return m.of([&row](const FrameStats& s) { return countOf(row.value(s)); });
+                       }});
   return lines;
 }
 
@@ -151,7 +148,7 @@ void bench(const BenchOptions& options) {
     Progress progress("measuring", options.output.quiet);
     sides = measure(variants, benchPlan(options, *stage, progress));
   }
-  const std::vector<Line> times = timeLines(sides), counts = countLines(sides);
+  const std::vector<Line> times = timeLines(sides), counts = countLines();
   nlohmann::json j{{"scene", options.launch.scene}, {"frames", sides[0].frames.size()}};
   for (const Measured& m : sides) j["sides"].push_back(figuresOf(m, times, counts));
   writeJson(options.output.json, j);
