@@ -85,7 +85,7 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   for (const LightBlock& block : shadows.blocks) {
     const char* kind = block.kind == LightKind::Cube   ? "CUBE_MAPS"
                        : block.kind == LightKind::Spot ? "SPOT_MAPS"
-                                                     : "SUN_MAPS";
+                                                       : "SUN_MAPS";
     std::vector<std::string> defines = bindSurfaces(in.surfaces);
     defines.push_back(kind);
     const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = std::move(defines)});
@@ -98,7 +98,7 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   }
   if (lights.packed.count > 0)
     drawGather(context_.programs, target_.framebuffer(),
-               {.gbuffer = in.surfaces,
+               {.surfaces = in.surfaces,
                 .seen = {lights, &maps},
                 .smoothShadows = &compare_,
                 .areas = gatherAreas(in.surfaces, 1),

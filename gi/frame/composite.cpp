@@ -8,7 +8,7 @@ namespace lambent {
 
 Picture CompositePass::run(const CompositeInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Composite);
-  const int width = in.gbuffer.width, height = in.gbuffer.height;
+  const int width = in.surfaces.width, height = in.surfaces.height;
   if (!black_) {
     black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
     black_.clear();
@@ -18,11 +18,11 @@ Picture CompositePass::run(const CompositeInputs& in) {
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});
   }
   const gl::Program& program =
-      context_.programs.get({.fragment = "composite.frag", .defines = bindSurfaces(in.gbuffer)});
+      context_.programs.get({.fragment = "composite.frag", .defines = bindSurfaces(in.surfaces)});
   program.use();
   program.set("skyRadiance", in.skyRadiance);
-  in.gbuffer.albedo->bind(2);
-  in.gbuffer.emission->bind(3);
+  in.surfaces.albedo->bind(2);
+  in.surfaces.emission->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
   (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
   (in.direct.glossy ? in.direct.glossy : &black_)->bind(8);

@@ -28,17 +28,18 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   case Buffer::Irradiance:
     return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Unfiltered:
-    if (frame.raw.deinterleaved && frame.raw.irradiance)
-      return {{"MODE 0", "DEINTERLEAVED"}, frame.raw.irradiance, exposure / kPi};
-    return {{"MODE 0"}, frame.raw.irradiance ? frame.raw.irradiance : frame.indirect.irradiance, exposure / kPi};
+    if (frame.gathered.deinterleaved && frame.gathered.irradiance)
+      return {{"MODE 0", "DEINTERLEAVED"}, frame.gathered.irradiance, exposure / kPi};
+    return {
+        {"MODE 0"}, frame.gathered.irradiance ? frame.gathered.irradiance : frame.indirect.irradiance, exposure / kPi};
   case Buffer::Albedo:
-    return {{"MODE 1"}, frame.gbuffer.albedo, 1};
+    return {{"MODE 1"}, frame.surfaces.albedo, 1};
   case Buffer::Normal:
-    return {{"MODE 2"}, frame.gbuffer.normal, 1};
+    return {{"MODE 2"}, frame.surfaces.normal, 1};
   case Buffer::Depth:
-    return {{"MODE 3"}, frame.gbuffer.depth, 0.5f * frame.sceneDiameter};
+    return {{"MODE 3"}, frame.surfaces.depth, 0.5f * frame.sceneDiameter};
   case Buffer::Emission:
-    return {{"MODE 0"}, frame.gbuffer.emission, exposure};
+    return {{"MODE 0"}, frame.surfaces.emission, exposure};
   case Buffer::Patches:
     if (!frame.patches || !frame.patches->normalLo) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
     return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
@@ -81,7 +82,7 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
 
 const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan) {
   const gl::PassScope scope = context_.scope(StageId::Display);
-  const int width = frame.gbuffer.width, height = frame.gbuffer.height;
+  const int width = frame.surfaces.width, height = frame.surfaces.height;
   if (!black_) {
     black_ = gl::Texture("display/black", {.format = GL_RGBA32F});
     black_.clear();
@@ -92,7 +93,7 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   }
   framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
-  frame.gbuffer.depth->bind(0);
+  frame.surfaces.depth->bind(0);
 
   if (buffer == Buffer::ShadowMaps && !frame.vplMaps.arrays.empty()) {
     const int rows = 8, columns = std::max(1, rows * width / height); // square cells
@@ -108,25 +109,25 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
 
   View view = viewOf(buffer, frame, exposure);
   if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
-    const std::vector<std::string> glossy = bindSurfaces(frame.gbuffer);
+    const std::vector<std::string> glossy = bindSurfaces(frame.surfaces);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
     (view.glossy ? view.glossy : &black_)->bind(8);
   }
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
   program.use();
   program.set("factor", view.factor);
-  program.set("lens", vec2(frame.gbuffer.block.lens.z, frame.gbuffer.block.lens.w));
+  program.set("lens", vec2(frame.surfaces.block.lens.z, frame.surfaces.block.lens.w));
   program.set("skyRadiance", frame.skyRadiance);
-  program.set("tileSize", tileSize(frame.gbuffer));
+  program.set("tileSize", tileSize(frame.surfaces));
   program.set("markNan", markNan || buffer == Buffer::Nan ? 1 : 0);
   if (frame.patches && frame.patches->normalLo) {
     program.set("patchLevels", frame.patches->levels);
-    program.set("finestPatch", frame.raw.deinterleaved ? 2 : 0);
+    program.set("finestPatch", frame.gathered.deinterleaved ? 2 : 0);
     frame.patches->normalLo->bind(5);
   }
   (view.source ? view.source : &black_)->bind(2);
-  frame.gbuffer.albedo->bind(3);
-  frame.gbuffer.emission->bind(4);
+  frame.surfaces.albedo->bind(3);
+  frame.surfaces.emission->bind(4);
   gl::drawFullscreen();
   if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
   return display_;
@@ -149,9 +150,9 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
   glVertexArrayVertexBuffer(spriteArray_.name(), 0, slice.buffer->name(), GLintptr(slice.offset), sizeof(Sprite));
   const gl::Program& program = context_.programs.get({.vertex = "vpl_sprite.vert", .fragment = "vpl_sprite.frag"});
   program.use();
-  program.set("diameterPixels", std::max(5.0f, float(frame.gbuffer.height) / 72));
-  frame.gbuffer.camera->bindUniform(0);
-  frame.gbuffer.depth->bind(0);
+  program.set("diameterPixels", std::max(5.0f, float(frame.surfaces.height) / 72));
+  frame.surfaces.camera->bindUniform(0);
+  frame.surfaces.depth->bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
   glBindVertexArray(spriteArray_.name());
   gl::drawArrays(GL_POINTS, int(sprites.size()));

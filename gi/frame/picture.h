@@ -20,7 +20,7 @@ struct Picture {
 };
 
 struct CompositeInputs {
-  const GBuffer& gbuffer;
+  const GBuffer& surfaces;
   const LightOnSurfaces& direct;
   const LightOnSurfaces& indirect;
   vec3 skyRadiance{0};
@@ -46,9 +46,9 @@ float measureExposure(const Picture& picture);
 
 /// Everything a frame made, for read-back and views. Null where a stage did not run.
 struct FrameResults {
-  GBuffer gbuffer;
+  GBuffer surfaces;
   LightOnSurfaces direct;
-  LightOnSurfaces raw; // indirect, as gathered
+  LightOnSurfaces gathered; // indirect, before the filter
   LightOnSurfaces indirect;
   Picture picture;
   ParaboloidMaps vplMaps;

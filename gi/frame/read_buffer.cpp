@@ -22,10 +22,10 @@ Image rgbOf(const gl::Texture* texture, int width, int height) {
 }
 
 Image rawOf(const FrameResults& frame, int width, int height) {
-  if (!frame.raw.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
-  if (!frame.raw.deinterleaved) return rgbOf(frame.raw.irradiance, width, height);
-  const glm::ivec2 tile = tileSize(frame.gbuffer);
-  const Image tiles = rgbOf(frame.raw.irradiance, 4 * tile.x, 4 * tile.y);
+  if (!frame.gathered.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
+  if (!frame.gathered.deinterleaved) return rgbOf(frame.gathered.irradiance, width, height);
+  const glm::ivec2 tile = tileSize(frame.surfaces);
+  const Image tiles = rgbOf(frame.gathered.irradiance, 4 * tile.x, 4 * tile.y);
   Image image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) { // y counts from the bottom here, as in the tiles
@@ -36,7 +36,7 @@ Image rawOf(const FrameResults& frame, int width, int height) {
 }
 
 Image depthOf(const FrameResults& frame) {
-  const GBuffer& g = frame.gbuffer;
+  const GBuffer& g = frame.surfaces;
   std::vector<float> bottomUp(size_t(g.width) * g.height);
   g.depth->read(std::span(bottomUp), GL_DEPTH_COMPONENT, GL_FLOAT);
   Image image(g.width, g.height);
@@ -50,7 +50,7 @@ Image depthOf(const FrameResults& frame) {
 
 /// albedo/π · irradiance; with the receivers' lobes where the G-buffer has finishes, as shaders/lib/receiver.glsl.
 Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const gl::Texture* glossyLight) {
-  const GBuffer& g = frame.gbuffer;
+  const GBuffer& g = frame.surfaces;
   Image image = rgbOf(irradiance, g.width, g.height);
   const Image albedo = rgbOf(g.albedo, g.width, g.height);
   if (!g.finish) {
@@ -75,11 +75,11 @@ Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const 
 } // namespace
 
 Image readBuffer(Buffer buffer, const FrameResults& frame) {
-  const int width = frame.gbuffer.width, height = frame.gbuffer.height;
+  const int width = frame.surfaces.width, height = frame.surfaces.height;
   switch (buffer) {
   case Buffer::Direct: {
     Image image = reflected(frame, frame.direct.irradiance, frame.direct.glossy);
-    const Image emission = rgbOf(frame.gbuffer.emission, width, height), depth = depthOf(frame);
+    const Image emission = rgbOf(frame.surfaces.emission, width, height), depth = depthOf(frame);
     for (size_t i = 0; i < image.pixels.size(); ++i)
       image.pixels[i] = depth.pixels[i].x > 0 ? image.pixels[i] + emission.pixels[i] : frame.skyRadiance;
     return image;
@@ -91,13 +91,13 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   case Buffer::Unfiltered:
     return rawOf(frame, width, height);
   case Buffer::Albedo:
-    return rgbOf(frame.gbuffer.albedo, width, height);
+    return rgbOf(frame.surfaces.albedo, width, height);
   case Buffer::Normal:
-    return rgbOf(frame.gbuffer.normal, width, height);
+    return rgbOf(frame.surfaces.normal, width, height);
   case Buffer::Depth:
     return depthOf(frame);
   case Buffer::Emission:
-    return rgbOf(frame.gbuffer.emission, width, height);
+    return rgbOf(frame.surfaces.emission, width, height);
   case Buffer::Beauty:
   case Buffer::Vpls:
   case Buffer::ShadowMaps:

@@ -42,6 +42,20 @@ void setShading(const gl::Program& program, const GatherDraw& draw) {
   program.set("biasTexels", draw.biasTexels);
 }
 
+void drawArea(const gl::Program& program, const GatherArea& area, bool patches, bool add) {
+  program.set("subset", area.subset);
+  program.set("tileOrigin", area.origin);
+  program.set("level", area.level);
+  gl::PipelineState{.add = add,
+                    .stencil = patches ? gl::Stencil::Marked : gl::Stencil::Off,
+                    .x = area.origin.x,
+                    .y = area.origin.y,
+                    .width = area.size.x,
+                    .height = area.size.y}
+      .apply();
+  gl::drawFullscreen();
+}
+
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
   if (in.seen.lights.trees) {
     drawTreeGather(programs, target, in);
@@ -49,7 +63,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   }
   const PackedLights& packed = in.seen.lights.packed;
   const ParaboloidMaps* maps = in.seen.maps;
-  gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.gbuffer)};
+  gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (maps) desc.defines.push_back("SHADOWS");
   if (maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
@@ -80,17 +94,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
         const int lightClass = area.subset.x + 4 * area.subset.y;
         if (subsets && lightClass / kClassesPerLightBlock != block) continue;
         program.set("firstClass", subsets ? lightClass % kClassesPerLightBlock : 0);
-        program.set("subset", area.subset);
-        program.set("tileOrigin", area.origin);
-        program.set("level", area.level);
-        gl::PipelineState{.add = in.addToTarget || chunk > 0 || (!subsets && block > 0),
-                          .stencil = in.patches ? gl::Stencil::Marked : gl::Stencil::Off,
-                          .x = area.origin.x,
-                          .y = area.origin.y,
-                          .width = area.size.x,
-                          .height = area.size.y}
-            .apply();
-        gl::drawFullscreen();
+        drawArea(program, area, in.patches, in.addToTarget || chunk > 0 || (!subsets && block > 0));
       }
     }
   }

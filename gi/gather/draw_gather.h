@@ -16,10 +16,10 @@ struct GatherArea {
 };
 
 struct GatherDraw {
-  const GBuffer& gbuffer;
+  const GBuffer& surfaces;
   SeenLights seen;
   const gl::Sampler* smoothShadows = nullptr; // bilinear depth comparison; null: nearest texel
-  std::span<const GatherArea> areas;
+  std::span<const GatherArea> areas = {};
   int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
   bool addToTarget = false; // instead of overwriting it
@@ -39,6 +39,9 @@ std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);
 
 /// What shaders/lib/vpl_shading.glsl reads besides lights and surfaces.
 void setShading(const gl::Program& program, const GatherDraw& draw);
+
+/// One area by a program that gathers. `patches`: only those that the stencil marks.
+void drawArea(const gl::Program& program, const GatherArea& area, bool patches, bool add);
 
 /// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has finishes, gets the glossy
 /// light. From trees patches must be black before.

@@ -8,11 +8,11 @@
 namespace lambent {
 
 LightOnSurfaces FilterPass::run(const FilterInputs& in) {
-  if (!in.raw.deinterleaved) return in.raw; // nothing to mix: every pixel has seen every light
+  if (!in.gathered.deinterleaved) return in.gathered; // nothing to mix: every pixel has seen every light
   const gl::PassScope scope = context_.scope(StageId::Filter);
-  target_.fit(in.gbuffer);
-  rows_.fit(in.gbuffer);
-  bindSurfaces(in.gbuffer);
+  target_.fit(in.surfaces);
+  rows_.fit(in.surfaces);
+  bindSurfaces(in.surfaces);
   const auto draw = [&](const LightOnSurfaces& from, std::vector<std::string> defines, const glm::ivec2& reach,
                         const LightTarget& to) {
     if (from.glossy) {
@@ -21,21 +21,21 @@ LightOnSurfaces FilterPass::run(const FilterInputs& in) {
     }
     const gl::Program& program = context_.programs.get({.fragment = "filter.frag", .defines = std::move(defines)});
     program.use();
-    program.set("tileSize", tileSize(in.gbuffer));
+    program.set("tileSize", tileSize(in.surfaces));
     program.set("reach", reach);
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
     from.irradiance->bind(2);
     to.bind();
-    gl::PipelineState{.width = in.gbuffer.width, .height = in.gbuffer.height}.apply();
+    gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
     gl::drawFullscreen();
   };
   if (!in.filter.on) {
-    draw(in.raw, {"SUBSETS"}, {0, 0}, target_);
+    draw(in.gathered, {"SUBSETS"}, {0, 0}, target_);
   } else if (in.filter.kernel == FilterKernel::Whole) {
-    draw(in.raw, {"SUBSETS", "FILTER"}, {3, 3}, target_);
+    draw(in.gathered, {"SUBSETS", "FILTER"}, {3, 3}, target_);
   } else {
-    draw(in.raw, {"SUBSETS", "FILTER"}, {3, 0}, rows_);
+    draw(in.gathered, {"SUBSETS", "FILTER"}, {3, 0}, rows_);
     draw(rows_.light(), {"FILTER"}, {0, 3}, target_);
   }
   return target_.light();

@@ -72,7 +72,7 @@ class PatchGather : public IndirectStage {
       }
     }
     drawGather(context_.programs, atlas_.framebuffer(),
-               {.gbuffer = in.surfaces,
+               {.surfaces = in.surfaces,
                 .seen = in.seen,
                 .areas = areas,
                 .grid = shape.grid,

@@ -15,7 +15,7 @@ class PixelGather : public IndirectStage {
     const bool subsets = rowOf(in.settings.gather.mode).subsets;
     target_.fit(in.surfaces, subsets ? 4 * tileSize(in.surfaces) : glm::ivec2(in.surfaces.width, in.surfaces.height));
     drawGather(context_.programs, target_.framebuffer(),
-               {.gbuffer = in.surfaces,
+               {.surfaces = in.surfaces,
                 .seen = in.seen,
                 .areas = gatherAreas(in.surfaces, subsets ? 4 : 1),
                 .grid = subsets ? 4 : 1,

@@ -15,7 +15,7 @@ constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeo
 
 /// Variant of vpl_shading.glsl, and its textures and numbers.
 std::vector<std::string> shadingDefines(const GatherDraw& draw) {
-  std::vector<std::string> defines = bindSurfaces(draw.gbuffer);
+  std::vector<std::string> defines = bindSurfaces(draw.surfaces);
   if (draw.seen.maps) defines.push_back("SHADOWS");
   return defines;
 }
@@ -42,7 +42,7 @@ void bindLights(const GatherDraw& draw, uint32_t chunk, int block) {
 
 void SplatPass::refine(const SplatInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Refine);
-  bindSurfaces(in.draw.gbuffer);
+  bindSurfaces(in.draw.surfaces);
   const auto program = [&](std::vector<std::string> defines) -> const gl::Program& {
     return context_.programs.get({.vertex = "splat_refine.vert",
                                   .defines = std::move(defines),
@@ -53,7 +53,7 @@ void SplatPass::refine(const SplatInputs& in) {
 }
 
 void SplatPass::refineFor(const SplatInputs& in, uint32_t slot) {
-  bindSurfaces(in.draw.gbuffer);
+  bindSurfaces(in.draw.surfaces);
   const LightPlace place(slot);
   bindLights(in.draw, place.chunk, place.block);
   const auto program = [&](bool first) -> const gl::Program& {
@@ -148,7 +148,7 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   program.set("firstLight", firstLight);
   program.set("blockClass", block * kClassesPerLightBlock);
   program.use();
-  bindSurfaces(in.draw.gbuffer);
+  bindSurfaces(in.draw.surfaces);
   bindLights(in.draw, chunk, block);
   atlas.bind();
   gl::PipelineState{.add = true, .width = size.x, .height = size.y}.apply();

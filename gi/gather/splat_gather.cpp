@@ -14,7 +14,7 @@ class SplatGather : public IndirectStage {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, false);
     const GatherDraw draw{
-        .gbuffer = in.surfaces, .seen = in.seen, .biasTexels = in.settings.shadow.bias, .bounds = in.settings.gather};
+        .surfaces = in.surfaces, .seen = in.seen, .biasTexels = in.settings.shadow.bias, .bounds = in.settings.gather};
     const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
     if (in.settings.gather.mode == GatherMode::SplatPerVpl) {
       splatEach(in, splats);

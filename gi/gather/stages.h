@@ -35,8 +35,8 @@ class IndirectStages {
 };
 
 struct FilterInputs {
-  const GBuffer& gbuffer;
-  const LightOnSurfaces& raw;
+  const GBuffer& surfaces;
+  const LightOnSurfaces& gathered;
   const FilterSettings& filter;
 };
 

@@ -37,7 +37,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   const int subsets = in.grid * in.grid;             // each takes one root in so many
   const TreeDraws draws = treeDraws(coarsest - finest, in.seen.lights.trees->mostTurns);
 
-  gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindSurfaces(in.gbuffer)};
+  gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");
   const gl::Program& program = programs.get(desc);
   program.use();
@@ -53,7 +53,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   if (!in.addToTarget) {
     gl::PipelineState{.width = 1 << 14, .height = 1 << 14}.apply(); // clearing keeps to the scissor
     const float nothing[4] = {};
-    for (int i = 0; i < (in.gbuffer.finish ? 2 : 1); ++i)
+    for (int i = 0; i < (in.surfaces.finish ? 2 : 1); ++i)
       glClearNamedFramebufferfv(target.name(), GL_COLOR, i, nothing);
   }
   // Paper 3, eq. 7: a cluster of area A brings at most C = I A/(π r² + A), where I is the light of its whole map over
@@ -75,17 +75,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
       program.set("endLeaf", std::min(leaves, firstLeaf + draws.leaves));
       for (const GatherArea& area : in.areas) {
         program.set("firstRoot", first + area.subset.x + 4 * area.subset.y);
-        program.set("subset", area.subset);
-        program.set("tileOrigin", area.origin);
-        program.set("level", area.level);
-        gl::PipelineState{.add = true,
-                          .stencil = in.patches ? gl::Stencil::Marked : gl::Stencil::Off,
-                          .x = area.origin.x,
-                          .y = area.origin.y,
-                          .width = area.size.x,
-                          .height = area.size.y}
-            .apply();
-        gl::drawFullscreen();
+        drawArea(program, area, in.patches, true);
       }
     }
   }

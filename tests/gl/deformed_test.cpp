@@ -37,7 +37,7 @@ class DeformedDraw : public GlTest {
     rays.update(scene.view());
     gpu.place(scene.instances);
     FrameResults results;
-    results.gbuffer = pass.run({gpu, scene.camera});
+    results.surfaces = pass.run({gpu, scene.camera});
     const Image depth = readBuffer(Buffer::Depth, results), normal = readBuffer(Buffer::Normal, results),
                 albedo = readBuffer(Buffer::Albedo, results);
     const vec3 forward = -vec3(scene.camera.worldFromView[2]);

@@ -29,9 +29,9 @@ class DirectTest : public GlTest {
     DirectLight direct(passes);
     FrameStats stats;
     FrameResults results;
-    results.gbuffer = surfaces.run({world.gpu, world.view.camera});
+    results.surfaces = surfaces.run({world.gpu, world.view.camera});
     // reads as irradiance, without albedo
-    results.indirect = direct.run({world, results.gbuffer, planEffects(world.view, all, {}), settings}, stats);
+    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), settings}, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 

@@ -10,7 +10,7 @@ class DisplayTest : public GlTest {
     gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
     gpu->place(room.scene.instances);
     FrameResults frame;
-    frame.gbuffer = gbufferPass.run({*gpu, room.scene.camera});
+    frame.surfaces = gbufferPass.run({*gpu, room.scene.camera});
     texture = gl::Texture("radiance", {.format = GL_RGBA32F, .width = radiance.width, .height = radiance.height});
     for (int y = 0; y < radiance.height; ++y) // rows from the bottom
       glTextureSubImage2D(texture.name(), 0, 0, radiance.height - 1 - y, radiance.width, 1, GL_RGB, GL_FLOAT,

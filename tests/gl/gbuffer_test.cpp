@@ -9,7 +9,7 @@ using GBufferTest = GlTest;
 FrameResults drawn(SurfacePass& pass, GpuScene& gpu, const HandScene& scene) {
   gpu.place(scene.instances);
   FrameResults results;
-  results.gbuffer = pass.run({gpu, scene.camera});
+  results.surfaces = pass.run({gpu, scene.camera});
   return results;
 }
 

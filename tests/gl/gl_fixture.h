@@ -22,10 +22,7 @@ namespace lambent::test {
 
 class GlTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    context();
-    errorsBefore_ = glDebugErrors();
-  }
+  GlTest() : errorsBefore_((context(), glDebugErrors())) {} // fixtures make GL objects in their constructors
   void TearDown() override {
     glFinish();
     EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
@@ -41,7 +38,7 @@ class GlTest : public ::testing::Test {
   PassContext passes{programs, profiler};
 
  private:
-  uint64_t errorsBefore_ = 0;
+  uint64_t errorsBefore_;
 };
 
 /// RGBA values of a float texture, row 0 at the bottom.
@@ -146,11 +143,11 @@ class GatherTest : public GlTest {
     settings.gather.mode = mode;
     return settings;
   }
-  static Image read(Buffer buffer, const GBuffer& gbuffer, const LightOnSurfaces& raw,
+  static Image read(Buffer buffer, const GBuffer& gbuffer, const LightOnSurfaces& gathered,
                     const LightOnSurfaces& indirect = {}) {
     FrameResults results;
-    results.gbuffer = gbuffer;
-    results.raw = raw;
+    results.surfaces = gbuffer;
+    results.gathered = gathered;
     results.indirect = indirect;
     return readBuffer(buffer, results);
   }

@@ -61,7 +61,7 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
     const Image image = indirectRadiance(gbuffer, indirect);
     const Picture picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
     FrameResults results;
-    results.gbuffer = gbuffer;
+    results.surfaces = gbuffer;
     results.picture = picture;
     const Image beauty = readBuffer(Buffer::Beauty, results);
     for (int y = 0; y < image.height; ++y)
@@ -144,10 +144,10 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     settings.gather.glossy = true;
     settings.effects[EffectId::Emissive] = EffectMode::On;
     FrameResults results;
-    results.gbuffer = surfaces(floor.scene);
+    results.surfaces = surfaces(floor.scene);
     const World world = placed->world(lamp);
     DirectLight direct(passes);
-    results.direct = direct.run({world, results.gbuffer, planEffects(world.view, settings, {}), shadow}, stats);
+    results.direct = direct.run({world, results.surfaces, planEffects(world.view, settings, {}), shadow}, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {

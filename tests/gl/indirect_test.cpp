@@ -135,7 +135,7 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
   const GBuffer gbuffer = surfaces(room.scene);
   // Light only where the normal points up (the floor and the block's top), in place of a gather.
   FrameResults results;
-  results.gbuffer = gbuffer;
+  results.surfaces = gbuffer;
   const Image normal = readBuffer(Buffer::Normal, results);
   std::vector<vec4> texels(64 * 48);
   for (int y = 0; y < 48; ++y)
@@ -163,7 +163,7 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   CompositePass composite(passes);
   const LightOnSurfaces indirect{&irradiance}, direct{&irradiance};
   FrameResults results;
-  results.gbuffer = gbuffer;
+  results.surfaces = gbuffer;
   results.direct = direct;
   results.indirect = indirect;
   results.skyRadiance = vec3(0.1f, 0.2f, 0.3f);

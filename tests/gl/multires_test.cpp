@@ -110,9 +110,10 @@ TEST_F(MultiresTest, AConstantStaysConstant) {
       ASSERT_NEAR(e.x / 16, 0.5f, 1e-5f);
       ASSERT_NEAR(e.z / 16, 2, 4e-5f);
     }
-    if (mode != GatherMode::Splat)
+    if (mode != GatherMode::Splat) {
       EXPECT_LT(patchesMarked(gbuffer, {.coarsest = 4}, mode), image.pixels.size() * 3 / 4)
           << "or nothing was interpolated";
+    }
   }
 }
 
@@ -166,7 +167,7 @@ TEST_F(MultiresTest, NoPatchSpansAStep) {
   multires(gbuffer, roomLights(), {.coarsest = 2});
   const std::vector<int> levels = patchLevels(gbuffer);
   FrameResults results;
-  results.gbuffer = gbuffer;
+  results.surfaces = gbuffer;
   const Image depth = readBuffer(Buffer::Depth, results);
   for (int y = 0; y < 96; ++y)
     for (int x = 0; x < 128; ++x) {
@@ -336,7 +337,7 @@ TEST_F(MultiresTest, SurfaceDetailDarkensWhatTurnsAway) {
   const Image plain = multires(gbuffer, roomLights(), {.coarsest = 4});
   const Image detailed = multires(gbuffer, roomLights(), {.coarsest = 4, .detail = 0.5f});
   FrameResults results;
-  results.gbuffer = gbuffer;
+  results.surfaces = gbuffer;
   const Image normal = readBuffer(Buffer::Normal, results);
   for (int y = 0; y < plain.height; ++y)
     for (int x = 0; x < plain.width; ++x) {

@@ -9,9 +9,7 @@ namespace {
 
 class WholeFrames final : public Runner {
  public:
-  explicit WholeFrames(const Variant& v) : gi_(v.settings, v.seed) {
-    if (v.settings.debug.timing == TimingMode::Auto) gi_.settings().debug.timing = TimingMode::Finish;
-  }
+  explicit WholeFrames(const Variant& v) : gi_(v.settings, v.seed) {}
 
   const FrameStats& run(const SceneView& view) override { return gi_.run(view); }
   Image picture(Buffer buffer) const override { return gi_.read(buffer); }
