@@ -46,6 +46,10 @@ class Rng {
     const float a = next();
     return {a, next()};
   }
+  vec3 next3() {
+    const vec2 a = next2();
+    return {a, next()};
+  }
   /// Uniform integer in [0, n), n > 0.
   uint32_t below(uint32_t n) { return uint32_t((uint64_t(nextUint()) * n) >> 32); }
 

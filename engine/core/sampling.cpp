@@ -3,7 +3,9 @@
 #include "engine/core/error.h"
 #include "shaders/shared/paraboloid.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace lambent {
 
@@ -47,6 +49,15 @@ vec3 additiveRecurrence3(uint32_t i, const vec3& shift) {
   const auto wrap = [](double x) { return float(x - std::floor(x)); };
   vec3 p(wrap(shift.x + i * a1), wrap(shift.y + i * a2), wrap(shift.z + i * a3));
   return glm::min(p, vec3(0x1.fffffep-1f)); // float rounding may reach 1
+}
+
+std::vector<uint32_t> spreadOrder(uint32_t count, double step) {
+  std::vector<uint32_t> byValue(count), order(count);
+  std::iota(byValue.begin(), byValue.end(), 0);
+  const auto value = [&](uint32_t i) { return i * step - std::floor(i * step); };
+  std::sort(byValue.begin(), byValue.end(), [&](uint32_t a, uint32_t b) { return value(a) < value(b); });
+  for (uint32_t rank = 0; rank < count; ++rank) order[byValue[rank]] = rank;
+  return order;
 }
 
 } // namespace lambent

@@ -44,4 +44,8 @@ class Distribution {
 /// low-discrepancy in each pair of coordinates for any prefix.
 vec3 additiveRecurrence3(uint32_t i, const vec3& shift);
 
+/// Numbers 0 … count − 1 in the order of the additive recurrence of `step`: neighbours in the list are far apart, and so
+/// are the places of neighbouring numbers.
+std::vector<uint32_t> spreadOrder(uint32_t count, double step);
+
 } // namespace lambent

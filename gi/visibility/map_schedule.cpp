@@ -16,7 +16,7 @@ namespace {
 /// small.
 bool seesPlace(const vec3& origin, const vec3& normal, const Aabb& box, const RayQuery& rays, Rng& rng, int tries,
                RayCounts& counts) {
-  const vec3 shift(rng.next(), rng.next(), rng.next());
+  const vec3 shift = rng.next3();
   for (int i = 0; i < tries; ++i) {
     const vec3 to = box.lo + box.size() * glm::fract(shift + float(i) * vec3(0.8191725f, 0.6710436f, 0.5497005f));
     const vec3 d = to - origin;

@@ -109,7 +109,7 @@ class CellSampler {
   void chords(const Vpl& vpl, float radius) {
     batch_.clear();
     Rng rng(seed_, Stream::Cells, uint32_t(mix64(vpl.id)));
-    const vec3 shift(rng.next(), rng.next(), rng.next());
+    const vec3 shift = rng.next3();
     const vec2 shiftDisk = rng.next2();
     uint32_t number = 0;
     for (const Scale& scale : kScales) {

@@ -5,8 +5,9 @@
 // ray. The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance
 // sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
 // of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
-// paths of one VPL share stratified numbers at the first vertex: 4×4 strata for directions, an additive recurrence for
-// lights.
+// paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from the middle to the
+// rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order for all, the first
+// light shone on the middle of every cell only, the last on its rim.
 //
 // In two steps. Tracing finds the vertices, which depend on geometry alone; lighting connects them to the lights and
 // adds up. What is traced is kept (gi/vpl/kept_paths.h), and each step is done again only for paths that need it. The
@@ -31,14 +32,18 @@ class VplEstimator {
  public:
   VplEstimator(const RayQuery& rays, const LightSet& lights, const RadianceUpdate& update)
       : rays_(rays), lights_(lights), update_(update), paths_(update.paths),
-        stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths), starts_(paths_) {}
+        stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths), starts_(paths_),
+        lightOrder_(spreadOrder(uint32_t(paths_), 0.6180339887498949)),
+        stratumOrder_(spreadOrder(uint32_t(paths_), 0.7548776662466927)) {}
 
   /// Brings `kept` up to date. False: the radiance is what it was.
   bool estimate(const Vpl& vpl, const VplCell* cell, KeptPaths& kept, vec3& radiance, PathCounts& counts) {
     const uint32_t id = uint32_t(mix64(vpl.id));
     Rng first(update_.seed, stream_, id);
-    shift_ = vec3(first.next(), first.next(), first.next());
+    shift_ = first.next3();
     lightShift_ = first.next();
+    lightTurn_ = first.below(uint32_t(paths_));
+    stratumTurn_ = first.below(uint32_t(paths_));
     counts.paths += uint64_t(paths_);
     for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
     if (cell && !spreadOver(*cell, first.next())) {
@@ -148,7 +153,8 @@ class VplEstimator {
         Rng rng = numbersAt(id, path, depth);
         rng.skip(4);
         vec2 u = rng.next2();
-        if (depth == 0 && path < side * side) u = (vec2(path % side, path / side) + u) / float(side);
+        const int stratum = int(stratumOrder_[(uint32_t(path) + stratumTurn_) % uint32_t(paths_)]);
+        if (depth == 0 && stratum < side * side) u = (vec2(stratum % side, stratum / side) + u) / float(side);
         const vec3 direction = sampleCosineHemisphere(v.at.normal, u);
         if (glm::dot(direction, v.at.geometricNormal) <= 0) continue; // under the real surface of a smooth-shaded one
         v.direction = direction;
@@ -209,9 +215,10 @@ class VplEstimator {
       KeptVertex& v = kept.vertices[depth * paths_ + path];
       Rng rng = numbersAt(id, path, depth);
       float uLight = rng.next();
-      vec3 u(rng.next(), rng.next(), rng.next());
+      vec3 u = rng.next3();
       if (depth == 0) {
-        uLight = std::min((float(path) + lightShift_) / float(paths_), 0x1.fffffep-1f);
+        const uint32_t slice = lightOrder_[(uint32_t(path) + lightTurn_) % uint32_t(paths_)];
+        uLight = std::min((float(slice) + lightShift_) / float(paths_), 0x1.fffffep-1f);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
       const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, weights_);
@@ -244,7 +251,9 @@ class VplEstimator {
   const Stream stream_;
   vec3 shift_{0};
   float lightShift_ = 0;
+  uint32_t lightTurn_ = 0, stratumTurn_ = 0; // where the orders begin
   std::vector<KeptVertex> starts_;
+  const std::vector<uint32_t> lightOrder_, stratumOrder_; // slice of the lights and stratum of directions, by path
   std::vector<int> stale_; // paths to be traced, ascending
   std::vector<Ray> segments_;
   std::vector<Pending> pending_;

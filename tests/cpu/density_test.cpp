@@ -153,6 +153,7 @@ TEST(Resampling, SurvivesCoincidentHitsAndSmallSets) {
   EXPECT_GE(resampleUniformInArea(same, 20, 1, 0).picks.size(), 1u);
   EXPECT_TRUE(resampleUniformInArea({}, 20, 1, 0).picks.empty());
   EXPECT_EQ(resampleUniformInArea(std::span(same).first(1), 5, 1, 0).picks.size(), 1u);
+  EXPECT_TRUE(std::isfinite(resampleUniformInArea(std::span(same).first(1), 5, 1, 0).area)) << "limits all VPLs' areas";
 }
 
 } // namespace

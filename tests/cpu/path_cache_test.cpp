@@ -28,7 +28,7 @@ void expectEqual(const VplSet& a, const VplSet& b, int frame) {
 }
 
 TEST(PathCache, EqualsTracingAllPathsThroughRandomEdits) {
-  test::RandomWorld world;
+  test::RandomWorld world(1e-3f);
   SmcSettings kept;
   kept.vpls = 48;
   kept.points = 64;

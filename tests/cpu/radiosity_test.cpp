@@ -120,6 +120,44 @@ TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
   }
 }
 
+/// A wall parts a cell and two lamps: each point sees one of them. Points come in order, lights come in order, directions
+/// come in order; paths must not take the first of all together.
+TEST(Radiosity, PointsOfACellMeetEveryLight) {
+  AnalyticQuery rays;
+  rays.addPlane({0, 0, 0}, {0, 1, 0}, {});
+  rays.addBox({-0.001f, 0, -5}, {0.001f, 5, 5}, {vec3(0)});
+  LightSet lights;
+  LightView lamp;
+  lamp.type = LightType::Point;
+  lamp.intensity = vec3(10);
+  for (const float x : {-1.0f, 1.0f}) {
+    lamp.position = {x, 2, 0};
+    lights.punctual.push_back(lamp);
+  }
+  VplCell cell;
+  double truth = 0;
+  for (int i = 0; i < 32; ++i) {
+    const vec3 p(0.01f * (float(i) - 15.5f), 0, 0);
+    cell.points.push_back({p, {0, 1, 0}, {0, 1, 0}, vec3(0.5f), 0.01f});
+    const vec3 d = lights.punctual[i < 16 ? 0 : 1].position - p;
+    truth += 10 * d.y / std::pow(glm::length(d), 3.0f) * 0.5 / double(kPi) / 32;
+  }
+  for (const int paths : {8, 16, 64}) {
+    std::vector<double> values;
+    for (uint64_t id = 1; id <= 400; ++id) {
+      Vpl v = vplAt(vec3(0), {0, 1, 0}, 0.5f, id);
+      Vpl* one = &v;
+      const VplCell* cells = &cell;
+      RayCounts counts;
+      estimateRadiance({&one, 1}, rays, lights, paths, 1, 1, counts, RadianceUse::Rendering, {&cells, 1});
+      values.push_back(v.radiance.x);
+    }
+    double mean = 0;
+    for (const double v : values) mean += v / double(values.size());
+    EXPECT_NEAR(mean / truth, 1, 0.03) << paths << " paths";
+  }
+}
+
 TEST(Radiosity, WhiteFurnaceOfASphere) {
   // Closed, emission 1, albedo ρ: reflected radiance is ρ + ρ² + … + ρ^B exactly, whatever the directions.
   AnalyticQuery sphere;

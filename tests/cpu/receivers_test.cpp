@@ -93,7 +93,7 @@ TEST(Receivers, TheLobeIsReciprocal) {
   Rng rng(1, Stream::Test, 0);
   for (int i = 0; i < 1000; ++i) {
     const vec3 a = atCosine(0.01f + 0.99f * rng.next(), 6 * rng.next()), b = atCosine(0.01f + 0.99f * rng.next(), 0);
-    const vec3 albedo(rng.next(), rng.next(), rng.next());
+    const vec3 albedo = rng.next3();
     const float roughness = rng.next(), metalness = rng.next();
     const vec3 there = glossyReflectance(makeReceiver(kUp, a, albedo, roughness, metalness), b, 0),
                back = glossyReflectance(makeReceiver(kUp, b, albedo, roughness, metalness), a, 0);

@@ -43,7 +43,7 @@ bool holds(const TexelRect& outer, const TexelRect& inner) {
 
 MapPose randomPose(Rng& rng) {
   MapPose pose;
-  pose.position = 4.0f * vec3(rng.next(), rng.next(), rng.next()) - 2.0f;
+  pose.position = 4.0f * rng.next3() - 2.0f;
   pose.geometricNormal = sampleSphere(rng.next2());
   pose.normal = glm::normalize(pose.geometricNormal + 0.4f * sampleSphere(rng.next2()));
   return pose;
@@ -82,7 +82,7 @@ TEST(TexelsCovered, AreFewMoreThanNeeded) {
   int cases = 0;
   for (int i = 0; i < 1500; ++i) {
     const MapPose pose = randomPose(rng);
-    const vec3 size = vec3(0.05f) + vec3(rng.next(), rng.next(), rng.next());
+    const vec3 size = vec3(0.05f) + rng.next3();
     const Aabb box = boxAround(pose.position + (2 + 3 * rng.next()) * sampleSphere(rng.next2()), size);
     const TexelRect truth = texelsMet(pose, box, kResolution), covered = texelsCovered(pose, box, kResolution);
     if (truth.empty()) {
@@ -156,7 +156,7 @@ class MapScheduleTest : public GlTest {
     std::vector<MapPose> poses;
     for (int i = 0; i < 96; ++i) {
       const int axis = i % 3;
-      vec3 p = 1.8f * vec3(rng.next(), rng.next(), rng.next()) - 0.9f, n(0);
+      vec3 p = 1.8f * rng.next3() - 0.9f, n(0);
       p[axis] = i % 2 ? 1.0f : -1.0f;
       n[axis] = -p[axis];
       poses.push_back({p, glm::normalize(n + 0.3f * sampleSphere(rng.next2())), n});

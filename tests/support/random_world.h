@@ -34,7 +34,9 @@ class RandomWorld {
     vec3 halfSize{0}; // object space
   };
 
-  explicit RandomWorld(uint32_t seed = 11) : random_(seed, Stream::Test, 0) {
+  /// `gap`: metres that objects which touch stay apart. At 0 faces coincide, and which of them a ray meets may change
+  /// with every move of anything else.
+  explicit RandomWorld(float gap = 0, uint32_t seed = 11) : random_(seed, Stream::Test, 0), gap_(gap) {
     HandScene made;
     const uint32_t wall = made.material({0.7f, 0.6f, 0.5f}), body = made.material({0.3f, 0.6f, 0.4f}, vec3(0), true),
                    lamp = made.material(vec3(0.2f), vec3(20), true);
@@ -232,11 +234,11 @@ class RandomWorld {
     if (&other != &o && number() < 0.5f) {
       o.turn = other.turn;
       vec3 step(0);
-      step[axis] = side * (o.halfSize[axis] * o.scale[axis] + other.halfSize[axis] * other.scale[axis]);
+      step[axis] = side * (o.halfSize[axis] * o.scale[axis] + other.halfSize[axis] * other.scale[axis] + gap_);
       o.at = other.at + other.turn * step;
     } else {
       o.turn = {1, 0, 0, 0};
-      o.at[axis] = (side < 0 ? kRoomLo : kRoomHi)[axis] - side * o.halfSize[axis] * o.scale[axis];
+      o.at[axis] = (side < 0 ? kRoomLo : kRoomHi)[axis] - side * (o.halfSize[axis] * o.scale[axis] + gap_);
     }
     move(o);
   }
@@ -296,6 +298,7 @@ class RandomWorld {
   }
 
   Rng random_;
+  const float gap_;
   Scene scene_;
   std::vector<Object> objects_; // boxes, then sheets
   uint32_t firstBox_ = 0;       // mesh

@@ -19,7 +19,7 @@ inline std::vector<Vpl> spreadOverBox(const vec3& size, const vec3& albedo, uint
     int face = 0;
     for (; face < 5 && u >= areas[face / 2]; ++face) u -= areas[face / 2];
     Vpl& v = vpls[i];
-    v.position = size * vec3(rng.next(), rng.next(), rng.next());
+    v.position = size * rng.next3();
     v.position[face / 2] = face % 2 ? size[face / 2] : 0;
     v.normal = vec3(0);
     v.normal[face / 2] = face % 2 ? -1.0f : 1.0f;
