@@ -22,7 +22,12 @@ float linearFromSrgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-void writeAtomically(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
+  std::error_code none;
+  const fs::path resolved = fs::canonical(named, none); // a link stays one, and what it leads to is written
+  const fs::path file = resolved.empty() ? named : resolved;
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none) && !fs::is_directory(file, none))
+    return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
   fs::path temporary = file;
@@ -45,10 +50,18 @@ void writeAtomically(const fs::path& file, const std::function<void(const fs::pa
 
 void writePng(const fs::path& file, const Image8& image) {
   CHECK_EQ(image.rgb.size(), size_t(image.width) * image.height * 3);
+  stbi_write_png_compression_level = 4; // a third of the default's time for pictures 5 % larger
+  std::string bytes;                    // stb itself does not look whether its file took them
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), size_t(size));
+  };
+  if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), image.width * 3))
+    throw RunError(file.string() + ": the picture cannot be encoded (out of memory?)");
   writeAtomically(file, [&](const fs::path& temporary) {
-    stbi_write_png_compression_level = 4; // a third of the default's time for pictures 5 % larger
-    if (!stbi_write_png(temporary.c_str(), image.width, image.height, 3, image.rgb.data(), image.width * 3))
-      throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(bytes.data(), std::streamsize(bytes.size()));
+    out.close();
+    if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
 }
 

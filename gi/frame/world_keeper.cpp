@@ -1,5 +1,6 @@
 #include "gi/frame/world_keeper.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lambent {
@@ -12,7 +13,7 @@ bool anyChange(const SceneChanges& c) { return c.first || c.camera || c.lights |
 
 /// All maps are drawn anew when their reach changes, so it leaves room to grow.
 float reachOf(const SceneView& view, float before) {
-  const float wanted = view.boundsWorld.diameter();
+  const float wanted = std::max(view.boundsWorld.diameter(), 1e-20f); // all in one place, as far as floats tell
   if (wanted <= before && wanted >= 0.5f * before) return before;
   return view.changes.geometry && before > 0 ? 1.25f * wanted : wanted;
 }

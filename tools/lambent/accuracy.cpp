@@ -2,8 +2,10 @@
 // accuracy_curve.cpp, with the other forms accuracy_tables.cpp.
 #include "tools/lambent/accuracy.h"
 
+#include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
+#include "gi/plan/techniques.h"
 
 #include <cstdio>
 
@@ -83,6 +85,11 @@ void declareAccuracy(CLI::App& app) {
   command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
   command->callback([options] {
     const AccuracyOptions& o = *options;
+    if (const std::string& technique = o.launch.technique; !technique.empty()) {
+      if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
+      if (!rowOf(techniqueByName(technique).axes.source).sampled)
+        throw InputError("--technique " + technique, "has no sampled lights (smc, ir, mir and tcas have)");
+    }
     if (!o.curve.empty()) return accuracyCurve(o);
     if (o.convergence) return accuracyConvergence(o);
     if (o.gathers) return accuracyGathers(o);

@@ -114,8 +114,9 @@ void print(const std::vector<Line>& lines, const std::vector<Measured>& sides, i
 std::vector<Variant> sidesOf(const BenchOptions& options, const Stage& stage) {
   std::vector<Variant> sides;
   for (const std::string& technique : options.techniques) {
-    sides.push_back({technique, stage.settings, stage.seed});
-    applyTechnique(sides.back().settings, technique);
+    LaunchOptions launch = options.launch;
+    launch.technique = technique; // under what --set says, which may contradict it
+    sides.push_back({technique, chosenSettings(launch, stage.shot), stage.seed});
     // Nothing moves in a scene, and what may keep its picture would cost nothing.
     if (!stage.shot) sides.back().settings.effects[EffectId::Redraw] = EffectMode::On;
   }
@@ -137,6 +138,8 @@ void bench(const BenchOptions& options) {
   if (options.multires) return benchMultires(options);
   if (options.launch.scene.empty())
     throw InputError(options.scenes[1], "one scene or shot is enough (several go with --multires)");
+  if (!options.techniques.empty() && !options.launch.technique.empty())
+    throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
   const auto stage = openStage(options.launch);
   const std::vector<Variant> variants = sidesOf(options, *stage);
   if (std::ranges::any_of(variants, [](const Variant& v) { return rowOf(v.settings.vpl.source).reflective; }))

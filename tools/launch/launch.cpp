@@ -104,6 +104,11 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
   if (eye) {
     const vec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
     if (from == to) throw InputError("--target " + options.target, "is where --eye is");
+    constexpr float kFarthest = 1e12f; // squares and cubes of distances must stay finite
+    if (maxComponent(glm::abs(from)) > kFarthest)
+      throw InputError("--eye " + options.eye, "is farther than 1e12 m away");
+    if (maxComponent(glm::abs(to)) > kFarthest)
+      throw InputError("--target " + options.target, "is farther than 1e12 m away");
     stage.camera = lookAt(from, to, glm::radians(60.0f));
   } else if (!options.camera.empty()) {
     stage.camera = namedCamera(stage.scene, options.camera);
@@ -164,21 +169,23 @@ void tellWhatIsLeftOut(Stage& stage, const SceneView& view) {
     stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
 }
 
-void chooseSettings(Stage& stage, const LaunchOptions& options) {
-  if (!options.preset.empty()) applyPreset(stage.settings, options.preset);
-  if (stage.shot)
-    for (const auto& [name, value] : stage.shot->set) applySetting(stage.settings, name, value);
-  if (!options.technique.empty()) applyTechnique(stage.settings, options.technique);
+} // namespace
+
+Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot) {
+  Settings settings;
+  if (!options.preset.empty()) applyPreset(settings, options.preset);
+  if (shot)
+    for (const auto& [name, value] : shot->set) applySetting(settings, name, value);
+  if (!options.technique.empty()) applyTechnique(settings, options.technique);
   for (const std::string& text : options.set) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
-    applySetting(stage.settings, text.substr(0, equals), text.substr(equals + 1));
+    applySetting(settings, text.substr(0, equals), text.substr(equals + 1));
   }
-  if (options.bounces) applySetting(stage.settings, "smc.bounces", std::to_string(*options.bounces));
-  if (const std::string reason = whyNot(stage.settings); !reason.empty()) throw InputError("settings", reason);
+  if (options.bounces) applySetting(settings, "smc.bounces", std::to_string(*options.bounces));
+  if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
+  return settings;
 }
-
-} // namespace
 
 void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   std::string techniques; // but the first
@@ -228,7 +235,7 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
     file = stage->shot->scene;
   }
   stage->seed = options.seed;
-  chooseSettings(*stage, options);
+  stage->settings = chosenSettings(options, stage->shot);
   stage->scene = loadScene(file, options.sceneName);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text), "lamp");

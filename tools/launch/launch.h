@@ -31,6 +31,10 @@ struct LaunchOptions {
 /// Declares the common options on a command. `options` must outlive the parse.
 void addLaunchOptions(CLI::App& command, LaunchOptions& options);
 
+/// Preset, then the shot's own settings, then technique, --set and --bounces. Throws InputError, also where they
+/// contradict each other.
+Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot);
+
 /// Everything that a frame is made from.
 class Stage {
  public:

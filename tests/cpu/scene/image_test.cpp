@@ -124,6 +124,20 @@ TEST(WriteAtomically, LeavesNothingBehindOnFailureAndKeepsTheOldFile) {
   EXPECT_THROW(writePng(folder / "no/such/folder.png", Image8{1, 1, {1, 2, 3}}), RunError);
 }
 
+TEST(WriteAtomically, AFullDiskIsSaidAndKeepsTheOldFile) {
+  EXPECT_THROW(writePng("/dev/full", Image8{1, 1, {1, 2, 3}}), RunError);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full")) << "a file was put in the place of the device";
+}
+
+TEST(WriteAtomically, ALinkStaysOne) {
+  TemporaryFolder folder;
+  testing::writeBytes(folder / "target.png", "old");
+  std::filesystem::create_symlink("target.png", folder / "link.png");
+  writePng(folder / "link.png", Image8{1, 1, {1, 2, 3}});
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.png"));
+  EXPECT_EQ(testing::readBytes(folder / "target.png").substr(1, 3), "PNG");
+}
+
 TEST(Srgb, CodesAndLinearValuesAreInverse) {
   EXPECT_FLOAT_EQ(linearFromSrgb(1), 1);
   EXPECT_NEAR(linearFromSrgb(0.5f), 0.21404f, 1e-5f);
