@@ -73,7 +73,7 @@ void main() {
     float weight = cosine * filteredShadow((light.mapFromWorld * vec4(lifted, 1.0)).xyz, layer);
 #else
     vec3 toLight = light.positionRange.xyz - position;
-    float distance2 = max(dot(toLight, toLight), 1e-12);
+    float distance2 = max(dot(toLight, toLight), 1e-20);
     vec3 towardsLight = toLight * inversesqrt(distance2);
     float cosine = dot(normal, towardsLight);
     float weight = cosine * attenuation(light, towardsLight, distance2);

@@ -144,6 +144,7 @@ struct EmbreeQuery::State {
 
   const SceneAssets& assets;
   RTCDevice device = nullptr;
+  bool fresh = true;                                   // no instances have been taken over yet
   std::vector<RTCScene> meshes;                        // null for a mesh without triangles
   std::vector<std::vector<GeometryData>> geometryData; // by mesh and primitive; addresses are handed to Embree
   RTCScene top = nullptr;
@@ -287,6 +288,11 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
   State& s = *state_;
   const size_t before = s.instances.size(), now = view.instances.size();
   uint32_t placed = 0;
+  if (s.fresh && !view.boundsWorld.empty()) {
+    const Aabb& b = view.boundsWorld;
+    grain_ = 0x1p-19f * glm::max(maxComponent(glm::abs(b.lo)), maxComponent(glm::abs(b.hi)));
+    s.fresh = false;
+  }
   for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));
   s.instances.resize(now);
   for (uint32_t i = 0; i < now; ++i) {

@@ -67,13 +67,18 @@ class RayQuery {
     occluded({&ray, 1}, {&b, 1});
     return b != 0;
   }
+  /// Metres by which hits may lie off their surfaces, whatever their own coordinates: those of the geometry's corners
+  /// round off. Stays the same while the scene does.
+  float grain() const { return grain_; }
+
+ protected:
+  float grain_ = 1e-4f;
 };
 
-/// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again.
-/// The offset grows with the coordinates' size (float spacing).
-inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal) {
-  const float scale = glm::max(1.0f, maxComponent(glm::abs(position)));
-  return position + geometricNormal * (scale * 2e-5f + 1e-4f);
+/// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again:
+/// the query's grain, and 16 float steps of the position's own coordinates.
+inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal, float grain) {
+  return position + geometricNormal * (grain + 0x1p-19f * maxComponent(glm::abs(position)));
 }
 
 /// Shadow segment from a to b, both already off their surfaces: blocked where `occluded` says so.

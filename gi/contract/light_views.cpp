@@ -13,7 +13,7 @@ LightKind kindOf(const LightView& light) {
 
 bool shines(const LightView& light) { return maxComponent(light.intensity) > 0 && isFinite(light.intensity); }
 
-float nearPlane(const Aabb& bounds) { return std::max(1e-6f, 1e-4f * bounds.diameter()); }
+float nearPlane(const Aabb& bounds) { return std::max(1e-20f, 1e-4f * bounds.diameter()); }
 
 vec2 coneFactors(const LightView& light) {
   if (light.type != LightType::Spot) return {0, 1};

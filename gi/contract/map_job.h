@@ -1,7 +1,7 @@
 // What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are drawn anew.
 #pragma once
 
-#include "engine/core/math.h"
+#include "engine/trace/ray_query.h"
 
 #include <cstdint>
 
@@ -12,6 +12,8 @@ struct MapPose {
   vec3 position{0};              // on the surface
   vec3 normal{0, 1, 0};          // shading normal, unit
   vec3 geometricNormal{0, 1, 0}; // unit; the map's origin lies off the surface on this side
+  float grain = 1e-4f;           // of the ray query: how far
+  vec3 origin() const { return offsetPoint(position, geometricNormal, grain); }
   bool operator==(const MapPose&) const = default;
 };
 

@@ -27,7 +27,7 @@ struct VirtualLight {
 
   /// Radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
-  MapPose pose() const { return {position, normal, geometricNormal}; }
+  MapPose pose(float grain) const { return {position, normal, geometricNormal, grain}; } // RayQuery::grain
 };
 
 /// Lights on the GPU, in chunks of 2048, as many as a map array has layers. Within chunk k, class c (slot mod 16) is

@@ -68,7 +68,7 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
       samples.push_back(lightOf(p));
     lights.packed = emitters_.run(samples);
     std::vector<MapPose> poses;
-    for (const VirtualLight& s : samples) poses.push_back(s.pose());
+    for (const VirtualLight& s : samples) poses.push_back(s.pose(in.world.rays.grain()));
     const std::vector<MapJob> jobs = jobsAtOnce(poses, emitterPoses_, samples, world.moved.boxes(),
                                                 world.view.changes.first, shadow.emitterResolution);
     emitterPoses_ = std::move(poses);

@@ -33,7 +33,8 @@ mat4 SunFit::clipFromWorld() const {
 SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous) {
   const Aabb along = inSunFrame(casters, direction);
   const Aabb across = inSunFrame(receivers.empty() ? casters : receivers, direction);
-  const vec2 needed = glm::max(vec2(across.size().x, across.size().y), vec2(1e-3f));
+  const vec2 needed =
+      glm::max(vec2(across.size().x, across.size().y), vec2(1e-5f * std::max(casters.diameter(), 1e-20f)));
   const bool same = previous.direction == direction && previous.zLo <= along.lo.z && previous.zHi >= along.hi.z;
   if (same && receivers.empty()) return previous;
   if (same && previous.lo.x <= across.lo.x && previous.lo.y <= across.lo.y && previous.hi.x >= across.hi.x &&
@@ -46,7 +47,7 @@ SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters,
   fit.lo = vec2(across.lo.x, across.lo.y) - 0.1f * needed;
   fit.hi = vec2(across.hi.x, across.hi.y) + 0.1f * needed;
   // A little room along the light: receivers lie on the casters' box, where depth would touch its limits.
-  const float room = 0.01f * (along.hi.z - along.lo.z) + 1e-3f;
+  const float room = 0.01f * (along.hi.z - along.lo.z) + 1e-4f * std::max(casters.diameter(), 1e-20f);
   fit.zLo = along.lo.z - room;
   fit.zHi = along.hi.z + room;
   return fit;

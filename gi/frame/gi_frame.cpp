@@ -238,10 +238,10 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   const gl::StateGuard guard;
   Kept& k = *kept_;
   const std::vector<VirtualLight> lights = lightsOf(vpls());
-  std::vector<MapPose> poses;
-  for (const VirtualLight& light : lights) poses.push_back(light.pose());
   const ShadowSettings& shadow = k.settings.shadow;
   const World world = k.world.again();
+  std::vector<MapPose> poses;
+  for (const VirtualLight& light : lights) poses.push_back(light.pose(world.rays.grain()));
   const ParaboloidMapInputs maps{world.gpu,         &world.rays, poses, {}, view.boundsWorld.diameter(),
                                  shadow.resolution, shadow.maker};
   return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,

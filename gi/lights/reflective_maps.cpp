@@ -23,7 +23,7 @@ std::vector<ReflectiveMap> mapsOf(const ReflectiveMapInputs& in) {
   std::vector<ReflectiveMap> maps;
   if (in.bounds.empty()) return maps;
   const vec3 centre = 0.5f * (in.bounds.lo + in.bounds.hi);
-  const float diameter = std::max(1e-6f, in.bounds.diameter());
+  const float diameter = std::max(1e-20f, in.bounds.diameter());
   for (const LightView& light : in.lights) {
     if (!shines(light)) continue;
     const LightKind kind = kindOf(light);

@@ -33,7 +33,7 @@ bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
 /// reflects.
 bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
   constexpr uint32_t kAsked = 4096; // triangles
-  const float tolerance = 1e-5f * std::max(1e-6f, view.boundsWorld.diameter());
+  const float tolerance = 1e-5f * std::max(1e-20f, view.boundsWorld.diameter());
   uint32_t triangles = 0;
   vec3 origin(0), normal(0);
   for (const InstanceView& i : view.instances) {

@@ -84,7 +84,8 @@ class BlockTracer {
       Path& p = paths_[i];
       const float uLight = p.rng.next();
       const vec2 a = p.rng.next2();
-      LightConnection c = connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, lightWeights_);
+      LightConnection c =
+          connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain(), lightWeights_);
       if (glossyAt(vertex)) c.value *= kPi * reflectanceOf(receivers_[p.pixel], glm::normalize(c.segment.direction));
       if (maxComponent(c.value) <= 0) continue;
       segments_.push_back(c.segment);
@@ -105,8 +106,8 @@ class BlockTracer {
           glossyAt(vertex) ? drawReflection(p) : sampleCosineHemisphere(p.vertex.normal, p.rng.next2());
       // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
       const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
-      segments_.push_back(
-          {offsetPoint(p.vertex.position, p.vertex.geometricNormal), direction, above ? kInfinity : 0.0f});
+      segments_.push_back({offsetPoint(p.vertex.position, p.vertex.geometricNormal, in_.rays.grain()), direction,
+                           above ? kInfinity : 0.0f});
     }
     hits_.resize(segments_.size());
     in_.rays.closest(segments_, hits_);

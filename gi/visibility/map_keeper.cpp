@@ -16,7 +16,7 @@ SeenLights MapKeeper::see(const KeeperInputs& in, const EffectPlan& plan, FrameS
   }
   std::vector<MapPose> poses;
   poses.reserve(in.lights.slots.size());
-  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose());
+  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose(in.world.rays.grain()));
   std::swap(poses_, poses); // `poses` are those before
   ParaboloidMapInputs maps{in.world.gpu,
                            &in.world.rays,

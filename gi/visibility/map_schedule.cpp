@@ -66,7 +66,7 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
   parallelFor(poses.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       if (brightness[i] <= 0) continue;
-      const vec3 origin = offsetPoint(poses[i].position, poses[i].geometricNormal);
+      const vec3 origin = poses[i].origin();
       Rng rng(seed, Stream::MapTests, uint32_t(i), frame);
       int tested = 0;
       for (size_t j = 0; j < boxes.size(); ++j) {

@@ -40,7 +40,7 @@ void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose&
   const float a = std::sqrt(2.0f / 3), b = std::sqrt(1.0f / 6), c = std::sqrt(0.5f), h = std::sqrt(1.0f / 3);
   const vec3 axes[3] = {{a, 0, h}, {-b, c, h}, {-b, -c, h}};
   const mat3 worldFromLight = frameOf(pose);
-  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  const vec3 origin = pose.origin();
   const float near = in.farDistance * 1e-5f;
 
   facesFramebuffer_.bind();
@@ -112,7 +112,7 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
                               bool coarse) {
   const int n = in.resolution, step = coarse ? 2 : 1, width = texels.x1 - texels.x0;
   const mat3 worldFromLight = frameOf(pose);
-  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  const vec3 origin = pose.origin();
   std::vector<Ray> rays;
   std::vector<uint32_t> texelOfRay;
   rays.reserve(size_t(texelsTraced(texels, coarse)));

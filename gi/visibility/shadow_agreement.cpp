@@ -66,8 +66,8 @@ ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const Paraboloid
       const vec3 direction(glm::dot(tangent, d) / r, glm::dot(bitangent, d) / r, cosVpl);
       const bool byRaster = lit(comparison.raster, maps, direction, r, cosReceiver, settings.shadow.bias);
       const bool byCast = lit(comparison.rays, maps, direction, r, cosReceiver, settings.shadow.bias);
-      const bool byRay = !rays.occluded(
-          segment(offsetPoint(h.position, h.geometricNormal), offsetPoint(v.position, v.geometricNormal)));
+      const bool byRay = !rays.occluded(segment(offsetPoint(h.position, h.geometricNormal, rays.grain()),
+                                                offsetPoint(v.position, v.geometricNormal, rays.grain())));
       ++result.pairs;
       total += weight;
       makers += byRaster != byCast ? weight : 0;

@@ -52,16 +52,17 @@ struct Connection {
 
   /// Nothing where the segment would have to cross a surface: it stops short of its end, so it must come from the
   /// front.
-  static std::optional<Ray> close(const Vpl& v, const CellPoint& p) {
-    const vec3 from = offsetPoint(v.position, v.geometricNormal), to = offsetPoint(p.position, p.geometricNormal);
+  std::optional<Ray> close(const Vpl& v, const CellPoint& p) const {
+    const vec3 from = offsetPoint(v.position, v.geometricNormal, rays.grain()),
+               to = offsetPoint(p.position, p.geometricNormal, rays.grain());
     if (glm::dot(from - p.position, p.geometricNormal) <= 0 || glm::dot(to - v.position, v.geometricNormal) <= 0)
       return {};
     return segment(from, to);
   }
-  static Ray lifted(const Vpl& v, const CellPoint& p, float distance) {
+  Ray lifted(const Vpl& v, const CellPoint& p, float distance) const {
     constexpr float kLift = 0.3f; // of the distance
-    return segment(offsetPoint(v.position, v.geometricNormal) + kLift * distance * v.geometricNormal,
-                   offsetPoint(p.position, p.geometricNormal) + kLift * distance * p.geometricNormal);
+    return segment(offsetPoint(v.position, v.geometricNormal, rays.grain()) + kLift * distance * v.geometricNormal,
+                   offsetPoint(p.position, p.geometricNormal, rays.grain()) + kLift * distance * p.geometricNormal);
   }
   bool operator()(const Vpl& v, const CellPoint& p, float distance2) const {
     const std::optional<Ray> ray = close(v, p);
@@ -142,13 +143,14 @@ class CellSampler {
 
   void keepConnected(const Vpl& vpl, RayCounts& counts) {
     open_.assign(points_.size(), 0);
+    const Connection connection{rays_, counts};
     for (const bool lifted : {false, true}) {
       batch_.clear();
       which_.clear();
       for (uint32_t i = 0; i < points_.size(); ++i) {
         if (open_[i]) continue;
         const CellPoint& p = points_[i];
-        if (const auto ray = lifted ? Connection::lifted(vpl, p, std::sqrt(p.own2)) : Connection::close(vpl, p)) {
+        if (const auto ray = lifted ? connection.lifted(vpl, p, std::sqrt(p.own2)) : connection.close(vpl, p)) {
           batch_.push_back(*ray);
           which_.push_back(i);
         }
@@ -170,12 +172,12 @@ class CellSampler {
       which_.clear();
       if (glm::dot(from - vpl.position, vpl.geometricNormal) > 0) {
         ++counts.occlusion;
-        seenVpl += !rays_.occluded(segment(from, offsetPoint(vpl.position, vpl.geometricNormal)));
+        seenVpl += !rays_.occluded(segment(from, offsetPoint(vpl.position, vpl.geometricNormal, rays_.grain())));
       }
       for (uint32_t i = 0; i < points_.size(); ++i) {
         const CellPoint& p = points_[i];
         if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
-        batch_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal)));
+        batch_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal, rays_.grain())));
         which_.push_back(i);
       }
       open_.assign(points_.size(), 0);
@@ -299,7 +301,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
       const bool draw = placed[slot] || !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
                         disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
       if (draw) {
-        sampler.draw(vpl, std::max(radius, 1e-5f), viewersOf(vpl, set, vpls, tree), cell, count);
+        sampler.draw(vpl, std::max(radius, rays.grain()), viewersOf(vpl, set, vpls, tree), cell, count);
         for (CellPoint& p : cell.points) findRival(p, slot, set, vpls, tree, connected);
         changed[slot] = 1;
       } else {

@@ -9,8 +9,8 @@ namespace lambent {
 namespace {
 
 /// Offsets of ray ends off their surfaces and rounding, many times over.
-Aabb grown(Aabb box) {
-  const float margin = 1e-3f * glm::max(1.0f, glm::max(maxComponent(glm::abs(box.lo)), maxComponent(glm::abs(box.hi))));
+Aabb grown(Aabb box, float margin) {
+  margin += 1e-4f * glm::max(maxComponent(glm::abs(box.lo)), maxComponent(glm::abs(box.hi)));
   box.lo -= margin;
   box.hi += margin;
   return box;
@@ -54,13 +54,13 @@ bool crosses(const Ray& ray, const Aabb& box) {
   return enter <= leave;
 }
 
-Disturbance::Disturbance(std::span<const Aabb> boxes) {
+Disturbance::Disturbance(std::span<const Aabb> boxes, float margin) {
   for (const Aabb& b : boxes)
-    if (!b.empty()) boxes_.push_back(grown(b));
+    if (!b.empty()) boxes_.push_back(grown(b, margin));
   if (!boxes_.empty()) build(0, uint32_t(boxes_.size()));
 }
 
-Disturbance::Disturbance(const SceneView& view) : Disturbance(placesOf(view)) {}
+Disturbance::Disturbance(const SceneView& view) : Disturbance(placesOf(view), 1e-4f * view.boundsWorld.diameter()) {}
 
 void Disturbance::build(uint32_t first, uint32_t count) {
   constexpr uint32_t kLeaf = 4;

@@ -12,8 +12,8 @@ namespace lambent {
 /// one touches it for certain.
 class Disturbance {
  public:
-  Disturbance() = default; // nothing moved
-  explicit Disturbance(std::span<const Aabb> boxes);
+  Disturbance() = default;                                                 // nothing moved
+  explicit Disturbance(std::span<const Aabb> boxes, float margin = 1e-3f); // metres, beyond float steps
   /// Old and new bounds of the instances that moved.
   explicit Disturbance(const SceneView& view);
 

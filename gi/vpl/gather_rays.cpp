@@ -8,7 +8,7 @@ namespace lambent {
 
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings) {
   if (cosReceiver <= 0 || cosVpl <= 0) return 0;
-  const float g = cosReceiver * cosVpl / glm::max(distance2 + settings.disk * area / kPi, 1e-8f);
+  const float g = cosReceiver * cosVpl / glm::max(distance2 + settings.disk * area / kPi, 1e-20f);
   return settings.clamp > 0 ? glm::min(g, settings.clamp) : g;
 }
 
@@ -39,7 +39,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
     for (size_t i = begin; i < end; ++i) {
       const SurfaceHit& h = surfaces[i];
       if (!h.valid()) continue;
-      const vec3 origin = offsetPoint(h.position, h.geometricNormal);
+      const vec3 origin = offsetPoint(h.position, h.geometricNormal, rays.grain());
       segments.clear();
       values.clear();
       spreads.clear();
@@ -52,7 +52,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
         const float g =
             geometryTerm(glm::dot(d, h.normal) * inverse, -glm::dot(d, v.normal) * inverse, r2, v.area, settings);
         if (g <= 0) continue;
-        segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal)));
+        segments.push_back(segment(origin, offsetPoint(v.position, v.geometricNormal, rays.grain())));
         values.push_back(v.radiance * (v.area * g));
         if (glossy) spreads.push_back(lobeSpread(settings.spread, v.area, -glm::dot(d, v.normal) * inverse, r2));
       }

@@ -33,7 +33,9 @@ Ray cameraSegment(const CameraView& camera, const mat4& viewFromWorld, const vec
   return allTheWay(vec3(camera.worldFromView * vec4(v.x, v.y, 0, 1)), p);
 }
 
-vec3 offPosition(const Vpl& v) { return offsetPoint(v.position, v.geometricNormal); }
+vec3 offPosition(const Vpl& v, const RayQuery& rays) {
+  return offsetPoint(v.position, v.geometricNormal, rays.grain());
+}
 
 } // namespace
 
@@ -53,7 +55,8 @@ void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView
       // It may have turned its back; where the carrier is a speck or a thread, rays miss it.
       if (carried) v.valid = v.valid && glm::dot(v.mailbox - v.position, v.geometricNormal) > 0;
       if (!v.valid) continue;
-      const Ray towards[2] = {cameraSegment(camera, viewFromWorld, v.mailbox), allTheWay(v.mailbox, offPosition(v))};
+      const Ray towards[2] = {cameraSegment(camera, viewFromWorld, v.mailbox),
+                              allTheWay(v.mailbox, offPosition(v, rays))};
       const bool doubtful[2] = {update.camera, carried};
       for (int k = 0; k < 2; ++k) {
         if (!doubtful[k] && !update.moved->touches(towards[k])) continue;
@@ -94,9 +97,9 @@ void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePo
           for (size_t k = 0; k < tries; ++k) {
             const uint32_t slot = open[tries < open.size() ? rng.below(uint32_t(open.size())) : k];
             const Vpl& v = set.slots[slot];
-            const vec3 d = offPosition(v) - x.position;
+            const vec3 d = offPosition(v, rays) - x.position;
             if (glm::dot(d, x.normal) <= 0 || glm::dot(d, v.geometricNormal) >= 0) continue;
-            block.push_back(allTheWay(x.position, offPosition(v)));
+            block.push_back(allTheWay(x.position, offPosition(v, rays)));
             place.push_back(p * tries + k);
             found[place.back()] = slot;
           }

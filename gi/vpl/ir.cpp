@@ -16,7 +16,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
   ++set.frame;
   const uint32_t slots = uint32_t(in.settings.vpls), bounces = uint32_t(in.settings.bounces);
   std::vector<PlacedVpl> placed(slots);
-  const PhotonSource source(in.lights, in.view.boundsWorld);
+  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.grain());
   if (bounces > 0 && !source.empty()) {
     CpuScope scope(log.stages, key(StageId::Photons));
     // Photons that bounce b has slots for. Earlier bounces get the odd slots: they carry more light.
@@ -49,7 +49,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
           // Around the geometric normal: the flux that leaves in a direction goes with the cosine to the real surface.
           Rng rng(in.seed, Stream::Photons, number[i], b + 1);
           Photon next;
-          next.ray = {offsetPoint(h.position, h.geometricNormal),
+          next.ray = {offsetPoint(h.position, h.geometricNormal, in.rays.grain()),
                       sampleCosineHemisphere(h.geometricNormal, rng.next2())};
           next.flux = flux * h.albedo;
           if (maxComponent(next.flux) <= 0) continue;

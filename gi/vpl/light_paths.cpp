@@ -14,16 +14,16 @@ float powerHeuristic(float own, float other) {
 }
 
 LightConnection connectToPunctual(const LightView& light, float probability, const PathVertex& vertex,
-                                  const vec3& weight) {
+                                  const vec3& weight, float grain) {
   const PunctualSample p = punctualIrradiance(light, vertex.position, vertex.normal);
   if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, vertex.geometricNormal) <= 0) return {};
-  const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal);
+  const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal, grain);
   return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards},
           weight * p.irradiance / (kPi * probability)};
 }
 
 LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter, float probability,
-                                 const PathVertex& vertex, const vec3& weight, const vec3& u) {
+                                 const PathVertex& vertex, const vec3& weight, const vec3& u, float grain) {
   const EmitterPoint e = sampleEmitter(lights, emitter, u);
   const vec3 d = e.position - vertex.position;
   const float r2 = glm::dot(d, d);
@@ -36,20 +36,23 @@ LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter,
   const float pdfLight = probability * e.pdfArea * r2 / cosEmitter; // per steradian
   const float mis = powerHeuristic(pdfLight, pdfCosineHemisphere(cosReceiver));
   const vec3 emitterSide = -glm::dot(towards, e.normal) > 0 ? e.normal : -e.normal;
-  return {segment(offsetPoint(vertex.position, vertex.geometricNormal), offsetPoint(e.position, emitterSide)),
-          weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))};
+  return {
+      segment(offsetPoint(vertex.position, vertex.geometricNormal, grain), offsetPoint(e.position, emitterSide, grain)),
+      weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))};
 }
 
 } // namespace
 
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
-                               const vec3& uPoint, std::vector<float>& weightScratch) {
+                               const vec3& uPoint, float grain, std::vector<float>& weightScratch) {
   const LightChoice choice(lights, vertex.position, vertex.normal, weightScratch);
   if (choice.empty()) return {};
   const uint32_t light = choice.sample(uLight);
   const float probability = choice.probability(light);
-  if (light < lights.punctual.size()) return connectToPunctual(lights.punctual[light], probability, vertex, weight);
-  return connectToEmitter(lights, lights.emitters[light - lights.punctual.size()], probability, vertex, weight, uPoint);
+  if (light < lights.punctual.size())
+    return connectToPunctual(lights.punctual[light], probability, vertex, weight, grain);
+  return connectToEmitter(lights, lights.emitters[light - lights.punctual.size()], probability, vertex, weight, uPoint,
+                          grain);
 }
 
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,

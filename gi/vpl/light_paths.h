@@ -19,9 +19,9 @@ struct LightConnection {
 };
 
 /// Chooses one light and a point on it. `weight` turns irradiance/π at the vertex into what the caller wants; numbers
-/// in [0, 1) for the choice and for the point.
+/// in [0, 1) for the choice and for the point; `grain` is the ray query's.
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
-                               const vec3& uPoint, std::vector<float>& weightScratch);
+                               const vec3& uPoint, float grain, std::vector<float>& weightScratch);
 
 /// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,

@@ -137,8 +137,8 @@ LightChoice::LightChoice(const LightSet& lights, const vec3& x, const vec3& n, s
     if (height > -e.radius) { // else all of it lies below the horizon
       const float r2 = glm::dot(d, d), radius2 = e.radius * e.radius;
       // cosine bound: highest point of the sphere above the plane, over the distance.
-      const float cosine = glm::min(1.0f, (height + e.radius) / std::sqrt(glm::max(r2, 1e-12f)));
-      w = e.power * glm::max(cosine, 0.05f) / glm::max(r2, glm::max(radius2, 1e-6f));
+      const float cosine = glm::min(1.0f, (height + e.radius) / std::sqrt(glm::max(r2, 1e-20f)));
+      w = e.power * glm::max(cosine, 0.05f) / glm::max(r2, glm::max(radius2, 1e-20f));
     }
     total_ += weights_[i++] = w;
   }

@@ -62,7 +62,8 @@ uint32_t sequenceIndex(uint32_t i, uint32_t count) {
   return i % kLightClasses * run + i / kLightClasses;
 }
 
-PhotonSource::PhotonSource(const LightSet& lights, const Aabb& boundsWorld) : lights_(lights), bounds_(boundsWorld) {
+PhotonSource::PhotonSource(const LightSet& lights, const Aabb& boundsWorld, float grain)
+    : lights_(lights), bounds_(boundsWorld), grain_(grain) {
   if (bounds_.empty()) return;
   std::vector<float> powers; // as luminances, W
   for (const LightView& l : lights.punctual) {
@@ -136,7 +137,7 @@ Photon PhotonSource::emitSurface(const Emitter& emitter, float uTriangle, const 
     if (direction.x >= 0.5f) normal = -normal;
     direction.x = glm::fract(2 * direction.x);
   }
-  p.ray = {offsetPoint(e.position, normal), sampleCosineHemisphere(normal, direction)};
+  p.ray = {offsetPoint(e.position, normal, grain_), sampleCosineHemisphere(normal, direction)};
   p.flux = e.radiance * ((emitter.doubleSided ? 2 : 1) * kPi / e.pdfArea);
   return p;
 }

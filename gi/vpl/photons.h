@@ -31,7 +31,7 @@ struct Photon {
 class PhotonSource {
  public:
   /// `lights` must outlive the source.
-  PhotonSource(const LightSet& lights, const Aabb& boundsWorld);
+  PhotonSource(const LightSet& lights, const Aabb& boundsWorld, float grain);
 
   /// No light has power, or nothing is there to be lit.
   bool empty() const { return choice_.empty(); }
@@ -47,6 +47,7 @@ class PhotonSource {
 
   const LightSet& lights_;
   Aabb bounds_;
+  float grain_;         // of the ray query
   Distribution choice_; // punctual lights, then emitters, then the sky
 };
 

@@ -5,9 +5,9 @@
 // ray. The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance
 // sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
 // of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
-// paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from the middle to the
-// rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order for all, the first
-// light shone on the middle of every cell only, the last on its rim.
+// paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from the middle to
+// the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order for all, the
+// first light shone on the middle of every cell only, the last on its rim.
 //
 // In two steps. Tracing finds the vertices, which depend on geometry alone; lighting connects them to the lights and
 // adds up. What is traced is kept (gi/vpl/kept_paths.h), and each step is done again only for paths that need it. The
@@ -112,7 +112,7 @@ class VplEstimator {
       bool stale = all || !sameStart(kept.vertices[i], starts_[i]);
       for (int depth = 0; !stale && !moved.empty() && depth < kept.lengths[i]; ++depth) {
         KeptVertex& v = kept.vertices[depth * paths_ + i];
-        const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal);
+        const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal, rays_.grain());
         stale = v.distance > 0 && moved.touches(Ray{origin, v.direction, v.distance});
         if (!stale && v.lightReach > 0 && moved.touches(Ray{origin, v.lightDirection, v.lightReach})) {
           v.lightReach = 0;
@@ -158,7 +158,7 @@ class VplEstimator {
         const vec3 direction = sampleCosineHemisphere(v.at.normal, u);
         if (glm::dot(direction, v.at.geometricNormal) <= 0) continue; // under the real surface of a smooth-shaded one
         v.direction = direction;
-        segments_.push_back({offsetPoint(v.at.position, v.at.geometricNormal), direction});
+        segments_.push_back({offsetPoint(v.at.position, v.at.geometricNormal, rays_.grain()), direction});
         owners_.push_back(path);
       }
       hits_.resize(segments_.size());
@@ -221,7 +221,7 @@ class VplEstimator {
         uLight = std::min((float(slice) + lightShift_) / float(paths_), 0x1.fffffep-1f);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
-      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, weights_);
+      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain(), weights_);
       if (maxComponent(c.value) <= 0) continue;
       pending_.push_back({&v, c.value});
       if (v.lightReach == c.segment.tMax && v.lightDirection == c.segment.direction) continue;
@@ -254,7 +254,7 @@ class VplEstimator {
   uint32_t lightTurn_ = 0, stratumTurn_ = 0; // where the orders begin
   std::vector<KeptVertex> starts_;
   const std::vector<uint32_t> lightOrder_, stratumOrder_; // slice of the lights and stratum of directions, by path
-  std::vector<int> stale_; // paths to be traced, ascending
+  std::vector<int> stale_;                                // paths to be traced, ascending
   std::vector<Ray> segments_;
   std::vector<Pending> pending_;
   std::vector<int> owners_;

@@ -46,7 +46,7 @@ std::vector<float> boundedAreas(std::span<const DensityPoint> points, const VplU
   Aabb box;
   box.add(in.view.camera.position());
   for (const DensityPoint& p : points) box.add(p.position);
-  const float widest = std::max(1e-6f, box.diameter() * box.diameter());
+  const float widest = std::max(1e-20f, box.diameter() * box.diameter());
   std::vector<float> areas =
       representedAreas(points, points, true, neighboursForRendering(in.settings), in.settings.density, widest);
   if (areas.empty()) return areas;
@@ -89,7 +89,7 @@ VplChanges adoptVpls(VplSet& set, std::span<const PlacedVpl> placed, const VplUp
     v.geometricNormal = p.geometricNormal;
     v.albedo = p.albedo;
     v.instance = in.view.instances[p.instance].id;
-    v.mailbox = offsetPoint(p.position, p.geometricNormal);
+    v.mailbox = offsetPoint(p.position, p.geometricNormal, in.rays.grain());
     v.alive = v.valid = true;
     v.area = v.candidateArea = areas[next++];
     v.radiance = v.samplerRadiance = p.power / v.area;

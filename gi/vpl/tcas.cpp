@@ -64,14 +64,14 @@ std::vector<float> meanGeometryTerms(std::span<const PlacedVpl> texels, std::spa
   for (const VisiblePoint& p : points) box.add(p.position);
   GatherSettings widened;
   widened.disk = kPi; // r² + spacing²
-  const float spacing2 = std::max(1e-6f, box.diameter() * box.diameter() / float(points.size()));
+  const float spacing2 = std::max(1e-20f, box.diameter() * box.diameter() / float(points.size()));
   parallelFor(texels.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       terms[i] = 0;
       if (!texels[i].alive()) continue;
       for (const VisiblePoint& x : points) {
         const vec3 d = texels[i].position - x.position;
-        const float r2 = glm::dot(d, d), inverse = 1 / std::sqrt(std::max(r2, 1e-12f));
+        const float r2 = glm::dot(d, d), inverse = 1 / std::sqrt(std::max(r2, 1e-20f));
         terms[i] += geometryTerm(glm::dot(d, x.normal) * inverse, -glm::dot(d, texels[i].normal) * inverse, r2,
                                  spacing2, widened);
       }
@@ -115,7 +115,7 @@ VplChanges placeByShadowMapChains(VplSet& set, const VplUpdate& in, VplUpdateLog
   ++set.frame;
   const uint32_t slots = uint32_t(in.settings.vpls), steps = uint32_t(in.vpl.tcasIterations);
   std::vector<PlacedVpl> placed(slots);
-  const PhotonSource source(in.lights, in.view.boundsWorld);
+  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.grain());
   if (in.settings.bounces > 0 && !source.empty()) {
     CpuScope scope(log.stages, key(StageId::Chains));
     const std::vector<PlacedVpl> texels = readShadowMaps(source, in, log.candidates);

@@ -77,7 +77,7 @@ float visibility(int layer, vec3 d, float distance, float cosine) {
 /// mask. An empty slot has no power. `layer` is its map's.
 void receive(inout Received sum, Surface s, VplLight light, int layer) {
   vec3 fromLight = s.position - light.positionArea.xyz;
-  float distance2 = max(dot(fromLight, fromLight), 1e-12);
+  float distance2 = max(dot(fromLight, fromLight), 1e-20);
   float inverseDistance = inversesqrt(distance2);
   vec3 direction = fromLight * inverseDistance;
   float cosineReceiver = -dot(s.normal, direction);

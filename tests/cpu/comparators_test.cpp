@@ -265,7 +265,7 @@ TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
       const float r2 = glm::dot(d, d), inverse = 1 / std::sqrt(r2);
       const float cosX = glm::dot(d, x.normal) * inverse, cosY = -glm::dot(d, v.normal) * inverse;
       if (cosX <= 0 || cosY <= 0) continue;
-      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal)))) continue;
+      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal, world.rays.grain())))) continue;
       sum += double(cosX * cosY / r2);
     }
     brought.push_back(sum * double(v.intensity()));

@@ -103,7 +103,7 @@ TEST(Photons, SpotFollowsItsFalloff) {
   spot.outerConeCos = 0.4f;
   spot.innerConeCos = 0.9f;
   lights.punctual = {spot};
-  const PhotonSource source(lights, {vec3(-1), vec3(1)});
+  const PhotonSource source(lights, {vec3(-1), vec3(1)}, 1e-4f);
   constexpr int kCells = 24, kPhotons = 100000;
   std::vector<double> observed(kCells, 0), expected(kCells, 0);
   Rng rng(3, Stream::Test, 0);
@@ -126,7 +126,7 @@ TEST(Photons, LightsAreChosenByPowerAndRangeIsKept) {
   LightSet lights;
   lights.punctual = {lampAt({0, 1, 0}, 1), lampAt({5, 1, 0}, 3)};
   lights.punctual[1].range = 2;
-  const PhotonSource source(lights, {vec3(-1), vec3(6)});
+  const PhotonSource source(lights, {vec3(-1), vec3(6)}, 1e-4f);
   int second = 0;
   for (uint32_t i = 0; i < 1000; ++i) {
     const Photon p = source.emit(photonNumbers(i, 1));

@@ -73,7 +73,7 @@ TEST(Mailboxes, AreNotSeenThroughThinWalls) {
     Vpl v;                                // behind it
     v.position = {1, 0, -3};
     v.normal = v.geometricNormal = {0, 0, 1};
-    v.mailbox = offsetPoint({0, 0, 0}, {0, 0, -1});
+    v.mailbox = offsetPoint({0, 0, 0}, {0, 0, -1}, 1e-4f);
     v.alive = v.valid = true;
     RayCounts counts;
     verifyMailboxes({&v, 1}, rays, cameraAt({0, 0, eye}, {0, 0, -eye}), {true}, counts);

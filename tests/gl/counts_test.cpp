@@ -87,6 +87,9 @@ TEST_F(CountsTest, ARunOfOneMaterialIsOneDraw) {
   const gl::Texture depth("counts/depth", {.format = GL_DEPTH_COMPONENT32F, .width = 8, .height = 8});
   const gl::Framebuffer framebuffer("counts", {}, &depth);
   framebuffer.bind();
+  const CameraBlock anywhere{};
+  const gl::Buffer camera = gl::Buffer::of<CameraBlock>("counts/camera", {&anywhere, 1});
+  camera.bindUniform(0); // a driver may read a block that is not there from nowhere
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = 8, .height = 8}.apply();
   gpu.setAlphaTest(AlphaTest::None);
   EXPECT_EQ(gpu.draw(DrawKind::GBuffer, everything), 3u);

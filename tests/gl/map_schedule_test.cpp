@@ -26,7 +26,7 @@ std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolu
 
 /// Bounding rectangle of the texels whose rays meet the box, by looking at each.
 TexelRect texelsMet(const MapPose& pose, const Aabb& box, int resolution) {
-  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal);
+  const vec3 origin = offsetPoint(pose.position, pose.geometricNormal, 1e-4f);
   TexelRect met;
   for (int y = 0; y < resolution; ++y)
     for (int x = 0; x < resolution; ++x)

@@ -112,7 +112,7 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
   room.scene.camera.width = 96;
   room.scene.camera.height = 72;
   const VirtualLight vpl = lightAt({0.6f, -1, 0}, {0, 1, 0}, vec3(1), 0.01f);
-  poses = {vpl.pose()};
+  poses = {vpl.pose(1e-4f)};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
     ParaboloidMapInputs in = inputs(room);
     in.resolution = 128;
@@ -132,8 +132,8 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
         if (!(open.at(x, y).x > 0)) continue;
         const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 72);
         const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
-        const bool isBlocked = room.rays.occluded(
-            segment(offsetPoint(hit.position, hit.geometricNormal), offsetPoint(vpl.position, vpl.geometricNormal)));
+        const bool isBlocked = room.rays.occluded(segment(offsetPoint(hit.position, hit.geometricNormal, 1e-4f),
+                                                          offsetPoint(vpl.position, vpl.geometricNormal, 1e-4f)));
         (isBlocked ? blocked : free)++;
         if (isBlocked && lit.at(x, y).x > 0) ++leaks;
         if (!isBlocked && lit.at(x, y).x == 0) ++acne;

@@ -341,8 +341,7 @@ TEST_F(ReflectiveTest, NoFragmentTurnsForLong) {
     const VirtualLights cut{.trees = &trees};
     const Settings full = with(GatherMode::Full);
     Patches none;
-    const LightOnSurfaces turned =
-        countingStages.of(full).run({placed->world(), gbuffer, none, {cut}, full}, stats);
+    const LightOnSurfaces turned = countingStages.of(full).run({placed->world(), gbuffer, none, {cut}, full}, stats);
     for (const vec4& texel : readTexture(*turned.irradiance)) {
       ASSERT_EQ(texel.x, 0) << "draws in which a fragment turned more often";
       ASSERT_GE(texel.y, 256 * 256);

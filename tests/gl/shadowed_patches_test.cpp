@@ -35,7 +35,7 @@ class ShadowedPatchesTest : public GatherTest {
     jobs.clear();
     for (const VirtualLight& light : of) {
       jobs.push_back({uint32_t(poses.size()), TexelRect::whole(256)});
-      poses.push_back(light.pose());
+      poses.push_back(light.pose(1e-4f));
     }
     return mapPass.run({.scene = placed->gpu(),
                         .poses = poses,

@@ -66,8 +66,7 @@ class StrictFetchTest : public GlTest {
           FilterPass filterPass{context};
           FrameStats stats;
           Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-          const LightOnSurfaces raw =
-              stages.of(settings).run({world, gbuffer, pyramid, {vpls}, settings}, stats);
+          const LightOnSurfaces raw = stages.of(settings).run({world, gbuffer, pyramid, {vpls}, settings}, stats);
           images.push_back(readTexture(*filterPass.run({gbuffer, raw, FilterSettings{}}).irradiance));
         }
       }

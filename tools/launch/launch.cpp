@@ -110,6 +110,7 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
     if (maxComponent(glm::abs(to)) > kFarthest)
       throw InputError("--target " + options.target, "is farther than 1e12 m away");
     stage.camera = lookAt(from, to, glm::radians(60.0f));
+    stage.camera.near = std::min(stage.camera.near, 1e-3f * worldBounds(stage.scene).diameter()); // of small scenes
   } else if (!options.camera.empty()) {
     stage.camera = namedCamera(stage.scene, options.camera);
   } else if (!cameras.empty()) {
