@@ -126,8 +126,12 @@ VirtualLights SampledSource::show(const SourceInputs& in, bool overlapped, const
   VplChanges& changes = kept_.changes;
   VirtualLights lights;
   // Those that were carried by the update of the frame before stand where that frame had put them.
-  lights.moved = join(overlapped ? changes.placedSlots : changes.movedSlots, carried);
-  std::erase_if(lights.moved, [&](uint32_t slot) { return slot >= kept_.set.slots.size(); });
+  lights.moved = changes.placedSlots;
+  const std::vector<uint32_t> elsewhere = overlapped ? carried : join(changes.movedSlots, carried);
+  std::set_difference(elsewhere.begin(), elsewhere.end(), lights.moved.begin(), lights.moved.end(),
+                      std::back_inserter(lights.carried));
+  for (std::vector<uint32_t>* slots : {&lights.moved, &lights.carried})
+    std::erase_if(*slots, [&](uint32_t slot) { return slot >= kept_.set.slots.size(); });
   changes.movedSlots.clear(); // who sees the lights has heard of them
   changes.placedSlots.clear();
   shown_ = lightsOf(kept_.set);

@@ -66,6 +66,8 @@ std::vector<MapJob> MapKeeper::inTurn(const KeeperInputs& in, const EffectPlan& 
     schedule_.disturb(poses_, brightness, in.world.moved, in.world.rays, resolution, shadow.motionRays, in.seed,
                       stats.frame, stats.raysMapTests);
   }
+  // A map goes where its light goes: what rides along is seen right, the rest as late as other maps in motion.
+  schedule_.disturbWhole(in.lights.carried, poses_.size(), resolution);
   const std::vector<MapJob> jobs = schedule_.take(in.lights.moved, brightness, resolution, budget);
   stats.mapsWaiting = waiting();
   stats.of(EffectId::MapRefresh) = jobs.size() - in.lights.moved.size() + stats.raysMapTests.occlusion;

@@ -94,6 +94,11 @@ void MapSchedule::disturbInTurn(size_t slots, size_t count, int resolution) {
   for (size_t i = 0; i < std::min(count, slots); ++i) stale_[turn_++ % slots].texels = TexelRect::whole(resolution);
 }
 
+void MapSchedule::disturbWhole(std::span<const uint32_t> which, size_t slots, int resolution) {
+  stale_.resize(slots);
+  for (uint32_t slot : which) stale_[slot].texels = TexelRect::whole(resolution);
+}
+
 void MapSchedule::disturbAll(size_t slots, int resolution) {
   stale_.resize(slots);
   for (Stale& s : stale_) s.texels = TexelRect::whole(resolution);

@@ -17,13 +17,15 @@ class MapSchedule {
                const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
   /// Queues the maps of `count` slots, going on where the last call stopped.
   void disturbInTurn(size_t slots, size_t count, int resolution);
+  /// Queues these maps as wholes.
+  void disturbWhole(std::span<const uint32_t> which, size_t slots, int resolution);
   /// Queues every map as a whole.
   void disturbAll(size_t slots, int resolution);
 
-  /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that stand elsewhere) whole and for certain,
-  /// others in order of light per texel times the square of frames waited until `texels` have been traced (the last map
-  /// may exceed them). Where they do not suffice for all, maps are drawn coarsely, as many as need be, and stay in the
-  /// queue until nothing else waits. By slot, ascending.
+  /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that are others than before) whole and for
+  /// certain, others in order of light per texel times the square of frames waited until `texels` have been traced (the
+  /// last map may exceed them). Where they do not suffice for all, maps are drawn coarsely, as many as need be, and
+  /// stay in the queue until nothing else waits. By slot, ascending.
   std::vector<MapJob> take(std::span<const uint32_t> first, std::span<const float> brightness, int resolution,
                            int64_t texels);
 

@@ -47,6 +47,7 @@ float chordDensity(float radius, float d2, float c) {
 /// Whether a VPL and a point near it lie on one piece of surface, not on two sides of a wall or of a solid: a segment
 /// between them is clear, close to the surface or else lifted off it, over edges and bulges.
 struct Connection {
+  static constexpr float kLift = 0.3f; // of the distance
   const RayQuery& rays;
   RayCounts& counts;
 
@@ -60,7 +61,6 @@ struct Connection {
     return segment(from, to);
   }
   Ray lifted(const Vpl& v, const CellPoint& p, float distance) const {
-    constexpr float kLift = 0.3f; // of the distance
     return segment(offsetPoint(v.position, v.geometricNormal, rays.grain()) + kLift * distance * v.geometricNormal,
                    offsetPoint(p.position, p.geometricNormal, rays.grain()) + kLift * distance * p.geometricNormal);
   }
@@ -279,7 +279,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   // Where light comes up in the dark the first VPLs are few, and their cells would take in the whole room: places from
   // which no such light leaves (a lift that opens the way for light: error in motion over that at rest 1.5 without this
   // limit, 1.1 with it; Cornell box and hall at rest: no difference).
-  constexpr float kReachLimit = 2; // of radiusLimit
+  constexpr float kReachLimit = 2;                // of radiusLimit
+  constexpr float kTried = 1 + Connection::kLift; // connections stay this near, in distances of their ends
   const std::vector<float> shares =
       representedAreas(vpls.points, vpls.points, true, kScaleNeighbour, DensityEstimator::KnnSide, kInfinity);
   std::vector<uint8_t> placed(set.slots.size(), 0), changed(set.slots.size(), 0);
@@ -299,7 +300,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
       const float spacing = std::sqrt(shares[n] * float(kScaleNeighbour) / kPi);
       const float radius = std::min(0.9f * spacing, radiusLimit);
       const bool draw = placed[slot] || !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
-                        disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
+                        disturbance.touches(vpl.position, kTried * kScales.back().radius * cell.radius);
       if (draw) {
         sampler.draw(vpl, std::max(radius, rays.grain()), viewersOf(vpl, set, vpls, tree), cell, count);
         for (CellPoint& p : cell.points) findRival(p, slot, set, vpls, tree, connected);
@@ -313,7 +314,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         }
         for (CellPoint& p : cell.points) {
           const bool before = p.owned();
-          if (p.rival != kNone && (placed[p.rival] || !set.slots[p.rival].alive))
+          if ((p.rival != kNone && (placed[p.rival] || !set.slots[p.rival].alive)) ||
+              disturbance.touches(p.position, kTried * std::sqrt(p.own2))) // its rivals stand no farther than its own
             findRival(p, slot, set, vpls, tree, connected);
           for (uint32_t other : near) {
             const Vpl& v = set.slots[other];

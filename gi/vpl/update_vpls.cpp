@@ -266,8 +266,11 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
     for (size_t i = 0; i < set.pool.size(); ++i) set.pool[i].candidateArea = areas[i];
     size_t alive = 0, invalid = 0;
     for (const Vpl& v : set.slots) alive += v.alive, invalid += v.alive && !v.valid;
-    const bool burst = now.mayBurst && invalid * 2 > alive;
-    changes = replaceVpls(set, set.pool, burst ? settings.vpls : now.moves, settings.density);
+    // After a cut the bound is lifted. A third lost at once is one too, though what is left may stay: at 16 a frame
+    // half of 2048 would come back within a second only.
+    const bool burst = now.mayBurst && invalid * 2 > alive, cut = now.mayBurst && invalid * 3 > alive;
+    const int most = burst ? settings.vpls : cut ? std::max(now.moves, int(invalid)) : now.moves;
+    changes = replaceVpls(set, set.pool, most, settings.density);
     changes.burst = burst;
     changes.placedSlots = std::move(changes.movedSlots);
     handOverPaths(set, changes.placedSlots);

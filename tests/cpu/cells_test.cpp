@@ -94,6 +94,35 @@ TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
   EXPECT_LT(owned, points);
 }
 
+/// A wall comes down between a point and its rival, out of reach of the cell's own VPL.
+TEST(Cells, AWallBetweenAPointAndItsRivalGivesThePointBack) {
+  AnalyticQuery open, parted;
+  for (AnalyticQuery* rays : {&open, &parted}) rays->addPlane({0, 0, 0}, {0, 1, 0}, {vec3(0.5f)});
+  const Aabb wall{{1.4f, -1, -50}, {1.45f, 50, 50}};
+  parted.addBox(wall.lo, wall.hi, {vec3(0.5f)});
+  const vec3 above(0, 30, 0);
+  std::ptrdiff_t before = 0, after = 0; // points whose rival the one behind the wall is: few lie so far out
+  for (uint64_t id = 10; id < 60; ++id) {
+    VplSet set;
+    set.slots.push_back(vplAt({0, 0, 0}, {0, 1, 0}, id, above));
+    for (const vec3& beside : {vec3(-0.25f, 0, 0), vec3(-0.2f, 0, 0.2f), vec3(-0.2f, 0, -0.2f)})
+      set.slots.push_back(vplAt(beside, {0, 1, 0}, set.slots.size(), above));
+    set.slots.push_back(vplAt({1.6f, 0, 0}, {0, 1, 0}, 9, above));
+    const auto toTheRival = [&] {
+      return std::count_if(set.cells[0].points.begin(), set.cells[0].points.end(),
+                           [](const CellPoint& p) { return p.rival == 4; });
+    };
+    RayCounts counts;
+    updateCells(set, open, {}, allSlots(set), 10, 1, counts);
+    ASSERT_LT(1.3f * 4 * set.cells[0].radius, wall.lo.x) << "or the cell is drawn anew";
+    before += toTheRival();
+    updateCells(set, parted, Disturbance(std::span(&wall, 1), 0.001f), {}, 10, 1, counts);
+    after += toTheRival();
+  }
+  EXPECT_GT(before, 10);
+  EXPECT_EQ(after, 0);
+}
+
 TEST(Cells, TwoVplsInOnePlaceShareNothing) {
   AnalyticQuery rays;
   rays.addBox({-2, -1, -2}, {2, 1, 2}, {vec3(0.5f)});

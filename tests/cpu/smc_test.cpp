@@ -201,6 +201,21 @@ TEST(Smc, LostVplsAreReplacedWithinTheBoundWhenTheCameraTurns) {
   EXPECT_EQ(c.movedSlots.size(), 16u);
 }
 
+TEST(Smc, ALossOfALargePartIsMadeUpAtOnce) {
+  Room room;
+  room.update();
+  for (uint32_t s = 0; s < 115; ++s) { // 45 %
+    Vpl& v = room.set.slots[s];
+    v.position = vec3(50, 0, 0), v.mailbox = vec3(50, 0.1f, 0);
+  }
+  room.view.changes.camera = true;
+  const VplSet before = room.set;
+  const VplChanges c = room.update();
+  EXPECT_EQ(c.invalid, 115u);
+  EXPECT_GE(c.movedSlots.size(), 100u);
+  for (uint32_t s = 115; s < 256; ++s) EXPECT_EQ(room.set.slots[s].id, before.slots[s].id) << "what is seen stays";
+}
+
 TEST(Smc, OneVpl) {
   Room room;
   room.settings.vpls = 1;

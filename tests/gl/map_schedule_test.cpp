@@ -445,4 +445,45 @@ TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
 }
 
 } // namespace
+/// All lights ride on walls that move, as in a lift.
+TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
+  Room room;
+  LightView lamp;
+  lamp.position = vec3(0.5f, 0.7f, 0.4f);
+  lamp.intensity = vec3(2);
+  room.scene.lights.push_back(lamp);
+  room.scene.camera.width = 32;
+  room.scene.camera.height = 24;
+  Settings settings;
+  settings.smc.vpls = 256;
+  settings.smc.warmup = 4;
+  settings.smc.moves = 0;
+  settings.shadow.resolution = 32;
+  settings.shadow.refresh = 4;
+  settings.shadow.maker = ShadowMaker::Rays;
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  uint64_t most = 0;
+  for (int frame = 0; frame < 4; ++frame) {
+    const vec4 step(0, 0.01f, 0, 0);
+    for (InstanceView& i : room.scene.instances) {
+      i.moved = true;
+      i.worldFromObjectBefore = i.worldFromObject;
+      i.boundsWorldBefore = i.boundsWorld;
+      i.worldFromObject[3] += step;
+      i.boundsWorld = transformed(room.scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
+    }
+    room.scene.lights[0].position += vec3(step);
+    room.scene.camera.worldFromView[3] += step;
+    SceneView view = room.scene.view();
+    view.changes = {false, true, true, true, false};
+    const FrameStats& stats = gi.run(view);
+    EXPECT_GT(stats.vplsAlive, 200u);
+    EXPECT_GT(stats.mapsWaiting, 200u) << "or nothing rode";
+    most = std::max(most, stats.mapTexelsDrawn);
+  }
+  EXPECT_GT(most, 0u);
+  EXPECT_LE(most, 5u * 32 * 32); // the last map may pass the budget
+}
+
 } // namespace lambent::test
