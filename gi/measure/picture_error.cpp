@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace lambent {
 
@@ -34,6 +36,34 @@ PictureError pictureError(const Image& picture, const Image& truth, const Image&
   out.bias = sum != 0 ? difference / sum : 0;
   out.meanTruth = sum / n;
   return out;
+}
+
+Image allButBrightest(const Image& truth, double share) {
+  std::vector<uint32_t> order(truth.pixels.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return luminance(truth.pixels[a]) > luminance(truth.pixels[b]); });
+  Image mask(truth.width, truth.height, vec3(1));
+  for (size_t i = 0; i < size_t(share * double(order.size())); ++i) mask.pixels[order[i]] = vec3(0);
+  return mask;
+}
+
+double blocksWithin(const Image& picture, const Image& truth, int size, double tolerance) {
+  CHECK_EQ(picture.width, truth.width);
+  CHECK_EQ(picture.height, truth.height);
+  size_t blocks = 0, within = 0;
+  for (int y0 = 0; y0 + size <= truth.height; y0 += size)
+    for (int x0 = 0; x0 + size <= truth.width; x0 += size) {
+      double sum = 0, wanted = 0;
+      for (int y = y0; y < y0 + size; ++y)
+        for (int x = x0; x < x0 + size; ++x) {
+          sum += double(luminance(picture.at(x, y)));
+          wanted += double(luminance(truth.at(x, y)));
+        }
+      ++blocks;
+      within += std::abs(sum - wanted) <= tolerance * wanted;
+    }
+  return blocks ? double(within) / double(blocks) : 1;
 }
 
 } // namespace lambent

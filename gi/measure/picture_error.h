@@ -20,4 +20,11 @@ struct PictureError {
 /// Of pictures of the same size, where `mask` (none: everywhere) is above 0.
 PictureError pictureError(const Image& picture, const Image& truth, const Image& mask = {});
 
+/// Mask of all pixels but the truth's brightest: 1 but in that share of the pixels, by luminance.
+Image allButBrightest(const Image& truth, double share);
+
+/// Share of the whole blocks of size × size pixels whose mean luminance is within `tolerance` (a share) of the truth's.
+/// Blocks that are black in the truth count as within where they are black in the picture.
+double blocksWithin(const Image& picture, const Image& truth, int size, double tolerance);
+
 } // namespace lambent

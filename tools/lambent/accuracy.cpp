@@ -70,17 +70,22 @@ void declareAccuracy(CLI::App& app) {
                   "tracing clamped alike (paper 1, 5.4)");
   forms->add_flag("--gathers", options->gathers,
                   "ways to gather the same VPLs: time, and error against all at every pixel");
+  forms->add_flag("--light", options->light,
+                  "indirect light as set against path tracing: bias, error, share of blocks that are right; beside it "
+                  "every light at every pixel by rays");
   forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
   forms
       ->add_option("--figure", options->figure,
                    "paper 1: 8, visibility by maps and rays against path tracing; 9, resolution of shadow maps against "
                    "rays; 10, N = 2000, 8000, 40000 by rays against path tracing")
       ->check(CLI::IsMember({8, 9, 10}));
-  command->add_option("--spp", options->samples, "paths per pixel of the truth (4096; --presets 8192, --figure 1024)")
+  command
+      ->add_option("--spp", options->samples,
+                   "paths per pixel of the truth (4096; --light 2048, --presets 8192, --figure 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--clamp", options->clamp,
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
-  command->add_option("--seeds", options->seeds, "--convergence: so many (3); --presets (2)")
+  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --presets (2)")
       ->check(CLI::Range(1, 1000));
   command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
   command->callback([options] {
@@ -93,6 +98,7 @@ void declareAccuracy(CLI::App& app) {
     if (!o.curve.empty()) return accuracyCurve(o);
     if (o.convergence) return accuracyConvergence(o);
     if (o.gathers) return accuracyGathers(o);
+    if (o.light) return accuracyLight(o);
     if (o.presets) return accuracyPresets(o);
     if (o.figure > 0) return accuracyFigure(o);
     accuracy(o);

@@ -14,7 +14,7 @@ struct AccuracyOptions {
   int slots = 64, points = 1024;
   std::string curve; // empty: none
   int figure = 0;    // 0: none
-  bool convergence = false, gathers = false, presets = false, quick = false;
+  bool convergence = false, light = false, gathers = false, presets = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 };
@@ -25,6 +25,8 @@ void accuracyCurve(const AccuracyOptions& options);
 void accuracyConvergence(const AccuracyOptions& options);
 /// Ways to gather the same virtual lights: time, and error against every light at every pixel.
 void accuracyGathers(const AccuracyOptions& options);
+/// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
+void accuracyLight(const AccuracyOptions& options);
 /// Error against time of the presets.
 void accuracyPresets(const AccuracyOptions& options);
 /// Paper 1's figures 8, 9 and 10 for any scene.

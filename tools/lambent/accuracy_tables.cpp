@@ -1,5 +1,5 @@
-// lambent accuracy SCENE --convergence, --gathers, --presets, --figure 8|9|10: tables of pictures of one view under
-// changing settings, held to path tracing or to one among them.
+// lambent accuracy SCENE --convergence, --gathers, --light, --presets, --figure 8|9|10: tables of pictures of one view
+// under changing settings, held to path tracing or to one among them.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
@@ -174,6 +174,34 @@ void accuracyGathers(const AccuracyOptions& options) {
     rows.back().update({{"gather", runs[i].variant.name}, {"ms", ms(runs[i])}, {"ratio", ms(runs[i]) / ms(runs[1])}});
   }
   study.report({{"gather", "gather"}, {"ms", "ms", "%.0f"}, {"ratio", "of interleaved", "%.2f"}, kRmseShare, kRelMse},
+               rows);
+}
+
+void accuracyLight(const AccuracyOptions& options) {
+  Study study(options, "160x90");
+  const Image truth = study.trace(2048, ReferenceBuffer::Irradiance, false).picture.mean;
+  const Image most = allButBrightest(truth, 0.01);
+  const int seeds = options.seeds.value_or(options.quick ? 1 : 3);
+  std::vector<Variant> variants;
+  for (int k = 0; k < seeds; ++k) {
+    variants.push_back(study.variant("as set", {}));
+    variants.push_back(study.variant("all, rays", {{"gather.mode", "full"}, {"vpl.visibility", "rays"}}));
+    for (Variant* v = &variants.end()[-2]; v != variants.data() + variants.size(); ++v) v->seed += uint32_t(k);
+  }
+  nlohmann::json rows;
+  for (const Measured& m : study.draw(variants, Buffer::Irradiance)) {
+    rows.push_back(rowOf(pictureError(m.picture, truth)));
+    rows.back().update({{"lights", m.variant.name},
+                        {"seed", m.variant.seed},
+                        {"bias_most", pictureError(m.picture, truth, most).bias},
+                        {"blocks", blocksWithin(m.picture, truth, 10, 0.06)}});
+  }
+  study.report({{"lights", "lights"},
+                {"seed", "seed"},
+                kBias,
+                {"bias_most", "but the brightest 1 %", "%+.1f %%", 100},
+                {"blocks", "blocks within 6 %", "%.0f %%", 100},
+                kRelMse},
                rows);
 }
 

@@ -62,5 +62,26 @@ TEST(Statistics, ExponentOfAPower) {
   EXPECT_NEAR(exponentOf(x, y), -0.5, 1e-12);
 }
 
+TEST(PictureError, BrightestPixelsAreLeftOut) {
+  Image truth(10, 10, vec3(1)), picture(10, 10, vec3(0.9f));
+  truth.at(3, 4) = vec3(50);
+  picture.at(3, 4) = vec3(10);
+  const Image most = allButBrightest(truth, 0.01);
+  EXPECT_LT(pictureError(picture, truth).bias, -0.3);
+  EXPECT_NEAR(pictureError(picture, truth, most).bias, -0.1, 1e-6);
+  EXPECT_EQ(pictureError(picture, truth, most).pixels, 99u);
+}
+
+TEST(PictureError, BlocksAreHeldToTheirOwnMean) {
+  Image truth(25, 10, vec3(1)), picture = truth; // two whole blocks
+  picture.at(0, 0) = vec3(5);                    // +4 % of its block
+  EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 1);
+  EXPECT_EQ(blocksWithin(picture, truth, 10, 0.03), 0.5);
+  picture.at(15, 5) = vec3(-5);
+  EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 0.5);
+  picture.at(22, 5) = vec3(100); // beyond the last whole block
+  EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 0.5);
+}
+
 } // namespace
 } // namespace lambent
