@@ -35,7 +35,8 @@ uint64_t bytesOf(const TextureDesc& desc) {
   return texels * desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1) * texelBytes(desc.format);
 }
 
-GLuint makeTexture(const TextureDesc& desc) {
+/// Throws RunError when the GPU has no room for it.
+GLuint makeTexture(const TextureDesc& desc, const std::string& label) {
   GLuint name = 0;
   glCreateTextures(glTarget(desc.kind), 1, &name);
   if (desc.kind != TextureKind::Flat)
@@ -43,6 +44,12 @@ GLuint makeTexture(const TextureDesc& desc) {
                        desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1));
   else
     glTextureStorage2D(name, desc.levels, desc.format, desc.width, desc.height);
+  if (glGetError() == GL_OUT_OF_MEMORY) {
+    glDeleteTextures(1, &name);
+    throw RunError("graphics memory: " + label + " needs " + std::to_string(bytesOf(desc) >> 20) + " MiB (" +
+                   std::to_string(desc.width) + "x" + std::to_string(desc.height) + ", " + std::to_string(desc.layers) +
+                   " layers), which the driver refuses (fewer lights or texels)");
+  }
   const GLint filter = desc.linear ? GL_LINEAR : GL_NEAREST;
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, desc.levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : filter);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
@@ -146,7 +153,7 @@ void Object::swap(Object& other) noexcept {
 } // namespace detail
 
 Texture::Texture(const std::string& label, const TextureDesc& desc)
-    : Object(GL_TEXTURE, makeTexture(desc), label, bytesOf(desc)), desc_(desc) {}
+    : Object(GL_TEXTURE, makeTexture(desc, label), label, bytesOf(desc)), desc_(desc) {}
 
 Texture Texture::borrowed(GLuint name) {
   Texture texture(0, name, {}); // of no kind: not ours to delete

@@ -201,8 +201,9 @@ Buffer bufferByName(const std::string& name) {
   for (size_t i = 0; i < kBufferNames.size(); ++i)
     if (kBufferNames[i] == name) return Buffer(i);
   const std::string near = nearestName(name, kBufferNames);
-  throw InputError("--buffer " + name,
-                   "no such buffer (" + (near.empty() ? "beauty, direct, …" : "did you mean " + near + "?") + ")");
+  std::string all;
+  for (const std::string& n : kBufferNames) all += (all.empty() ? "" : ", ") + n;
+  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
 }
 
 Image GiFrame::read(Buffer buffer) const {

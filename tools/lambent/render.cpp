@@ -17,6 +17,14 @@ struct RenderOptions {
   int frames = 1;
 };
 
+/// How many virtual lights there are, of so many that may be.
+std::string lightsText(const FrameStats& stats, const Settings& settings) {
+  const SourceRow& source = rowOf(settings.vpl.source);
+  if (source.tree) return "lights in trees";
+  const std::string of = source.sampled ? " of " + std::to_string(settings.smc.vpls) : "";
+  return std::to_string(stats.vplsAlive) + of + " virtual lights";
+}
+
 void render(const RenderOptions& options) {
   const Buffer buffer = bufferByName(options.buffer);
   const std::string out = options.output.out.empty() ? "lambent.png" : options.output.out;
@@ -35,9 +43,9 @@ void render(const RenderOptions& options) {
   figures["picture"] = out;
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s: %dx%d, %u of %d virtual lights, exposure %.3g, last frame %.0f ms\n", out.c_str(),
-                stage->camera.width, stage->camera.height, stats->vplsAlive, stage->settings.smc.vpls,
-                double(gi.exposure()), stats->wallMs);
+    std::printf("%s: %dx%d, %s, exposure %.3g, last frame %.0f ms\n", out.c_str(), stage->camera.width,
+                stage->camera.height, lightsText(*stats, stage->settings).c_str(), double(gi.exposure()),
+                stats->wallMs);
 }
 
 } // namespace
