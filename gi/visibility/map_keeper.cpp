@@ -67,7 +67,7 @@ std::vector<MapJob> MapKeeper::inTurn(const KeeperInputs& in, const EffectPlan& 
                       stats.frame, stats.raysMapTests);
   }
   // A map goes where its light goes: what rides along is seen right, the rest as late as other maps in motion.
-  schedule_.disturbWhole(in.lights.carried, poses_.size(), resolution);
+  if (plan.on(EffectId::MapRefresh)) schedule_.disturbWhole(in.lights.carried, poses_.size(), resolution);
   const std::vector<MapJob> jobs = schedule_.take(in.lights.moved, brightness, resolution, budget);
   stats.mapsWaiting = waiting();
   stats.of(EffectId::MapRefresh) = jobs.size() - in.lights.moved.size() + stats.raysMapTests.occlusion;
