@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace lambent {
@@ -24,10 +25,14 @@ void setThreadCount(int threads) {
 int threadCount() { return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)); }
 
 void parallelFor(size_t n, size_t grain, const std::function<void(size_t, size_t)>& body) {
-  if (n == 0) return;
-  // simple_partitioner: block borders depend on n and grain only, never on how work was stolen.
+  // Not blocked_range(0, n, grain): it halves until a block is small enough, so two blocks may begin within one grain,
+  // and bodies that count into element begin / grain would write to the same one.
+  const size_t blocks = (n + grain - 1) / grain;
   tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, n, grain), [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); },
+      tbb::blocked_range<size_t>(0, blocks, 1),
+      [&](const tbb::blocked_range<size_t>& r) {
+        for (size_t i = r.begin(); i < r.end(); ++i) body(i * grain, std::min(n, (i + 1) * grain));
+      },
       tbb::simple_partitioner());
 }
 

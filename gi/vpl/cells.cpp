@@ -3,11 +3,14 @@
 // light of the scene, whatever the density of VPLs does. Densities by nearest neighbours (paper 1, 3.2.4) err where it
 // changes within the neighbourhood: at rims of sunlit patches, on thin parts, in corners.
 //
-// A cell is a set of points drawn around the VPL when it is placed: chords of spheres about it meet surfaces. Half of
-// the chords run along the normal, half in all directions (a surface of any orientation is met in proportion to its
-// area, Cauchy–Crofton), in spheres of several sizes, so that neither a dense set nor a lone VPL is sampled poorly.
-// Each point knows its rival, the nearest other VPL that is nearer than its own and connected to it; without one it is
-// owned. When a VPL moves only the points around it are looked at again.
+// The surface is sampled around every VPL when it is placed: chords of spheres about it meet surfaces. Half of the
+// chords run along the normal, half in all directions (a surface of any orientation is met in proportion to its area,
+// Cauchy–Crofton), in spheres of several sizes, so that neither a dense set nor a lone VPL is sampled poorly. A point
+// belongs to the nearest VPL that is connected to it, whoever drew it, and stands for the inverse of the density that
+// all who could have drawn it leave there together (the balance heuristic: Veach and Guibas 1995). With the density of
+// its own VPL's chords alone the few points in the largest sphere stand for up to 25 squared radii each, and one of
+// them in the sun brought a quarter of a classroom's light. When a VPL moves only the points around it are looked at
+// again.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
@@ -22,7 +25,6 @@ namespace lambent {
 
 namespace {
 
-constexpr int kChords = 64;
 /// Sizes of spheres, in radii of the cell's scale, and their shares of the chords.
 struct Scale {
   float radius;
@@ -30,16 +32,22 @@ struct Scale {
 };
 constexpr std::array<Scale, 4> kScales{{{0.35f, 8}, {1, 32}, {2, 16}, {4, 8}}};
 constexpr int kHitsPerChord = 4;
-constexpr size_t kNeighbours = 8; // VPLs looked at around a point
+constexpr size_t kKept = 12; // samples are kept where their VPL is among so many nearest: it may come to be among kNear
+// Where light comes up in the dark the first VPLs are few, and their cells would take in the whole room: places from
+// which no such light leaves (a lift that opens the way for light: error in motion over that at rest 1.5 without this
+// limit, 1.1 with it; Cornell box and hall at rest: no difference).
+constexpr float kReachLimit = 2; // of the limit on radii
 
-/// Points per m² that all chords together leave on a surface element at squared distance `d2`, with cosine `c` between
-/// its normal and the VPL's. Chords along the normal, uniform over a disk: |c|/(π R²) each. Isotropic chords: half the
-/// mean of |cos| over directions, 1/(2 π R²) each.
-float chordDensity(float radius, float d2, float c) {
+/// Samples per m² that the chords of a VPL leave at `p`, at squared distance `distance2` from it. Chords along the
+/// normal, uniform over a disk: |c|/(π R²) each, with c the cosine between the normals. Isotropic chords: half the mean
+/// of |cos| over directions, 1/(2 π R²) each.
+float chordDensity(const Vpl& vpl, float radius, const SurfaceSample& p, float distance2, float limit) {
+  if (distance2 > limit * limit || !sameSide(p.normal, vpl.normal)) return 0;
+  const float c = std::abs(glm::dot(p.geometricNormal, vpl.geometricNormal));
   float density = 0;
   for (const Scale& s : kScales) {
     const float r2 = radius * radius * s.radius * s.radius;
-    if (d2 < r2) density += float(s.chords) * (0.5f * std::abs(c) + 0.25f) / (kPi * r2);
+    if (distance2 < r2) density += float(s.chords) * (0.5f * c + 0.25f) / (kPi * r2);
   }
   return density;
 }
@@ -53,18 +61,18 @@ struct Connection {
 
   /// Nothing where the segment would have to cross a surface: it stops short of its end, so it must come from the
   /// front.
-  std::optional<Ray> close(const Vpl& v, const CellPoint& p) const {
+  std::optional<Ray> close(const Vpl& v, const SurfaceSample& p) const {
     const vec3 from = offsetPoint(v.position, v.geometricNormal, rays.grain()),
                to = offsetPoint(p.position, p.geometricNormal, rays.grain());
     if (glm::dot(from - p.position, p.geometricNormal) <= 0 || glm::dot(to - v.position, v.geometricNormal) <= 0)
       return {};
     return segment(from, to);
   }
-  Ray lifted(const Vpl& v, const CellPoint& p, float distance) const {
+  Ray lifted(const Vpl& v, const SurfaceSample& p, float distance) const {
     return segment(offsetPoint(v.position, v.geometricNormal, rays.grain()) + kLift * distance * v.geometricNormal,
                    offsetPoint(p.position, p.geometricNormal, rays.grain()) + kLift * distance * p.geometricNormal);
   }
-  bool operator()(const Vpl& v, const CellPoint& p, float distance2) const {
+  bool operator()(const Vpl& v, const SurfaceSample& p, float distance2) const {
     const std::optional<Ray> ray = close(v, p);
     counts.occlusion += ray ? 1 : 0;
     if (ray && !rays.occluded(*ray)) return true;
@@ -73,17 +81,92 @@ struct Connection {
   }
 };
 
-/// Draws the points of one cell. Scratch is kept between calls.
+/// VPLs of the set with the slots they are in.
+struct Standing {
+  std::vector<DensityPoint> points;
+  std::vector<uint32_t> slots;
+};
+
+Standing standing(const VplSet& set) {
+  Standing s;
+  for (uint32_t i = 0; i < set.slots.size(); ++i)
+    if (set.slots[i].alive) {
+      s.points.push_back({set.slots[i].position, set.slots[i].normal});
+      s.slots.push_back(i);
+    }
+  return s;
+}
+
+/// The VPLs as samples look for them; radii are those of set.cells.
+struct Neighbours {
+  const VplSet& set;
+  const Standing& vpls;
+  const NeighbourTree& tree;
+  float limit; // m: no sample lies farther from who draws or has it
+
+  struct Found {
+    std::array<uint32_t, kKept> slots;
+    std::array<float, kKept> distance2;
+    size_t count = 0;
+    bool has(uint32_t slot) const {
+      return std::find(slots.begin(), slots.begin() + count, slot) != slots.begin() + count;
+    }
+  };
+  Found around(const vec3& position) const {
+    Found found;
+    found.count = tree.nearest(position, kKept, found.slots, found.distance2);
+    for (size_t j = 0; j < found.count; ++j) found.slots[j] = vpls.slots[found.slots[j]];
+    return found;
+  }
+  /// Sets what stands nearest to `p`, and its density.
+  void enter(SurfaceSample& p, uint32_t drawer, const Found& found) const {
+    const size_t count = std::min(found.count, SurfaceSample::kNear);
+    p.near.fill(kNone);
+    p.reach2 = count < SurfaceSample::kNear ? kInfinity : found.distance2[count - 1];
+    float density = 0;
+    bool among = false;
+    for (size_t j = 0; j < count; ++j) {
+      const uint32_t slot = p.near[j] = found.slots[j];
+      among |= slot == drawer;
+      density += chordDensity(set.slots[slot], set.cells[slot].radius, p, found.distance2[j], limit);
+    }
+    p.density = among ? density : 0;
+  }
+  float distance2(const SurfaceSample& p, uint32_t slot) const {
+    const vec3 d = set.slots[slot].position - p.position;
+    return glm::dot(d, d);
+  }
+  /// Gives `p` to the nearest of `near` that may have it. `known`: whether what was found out when it got its owner
+  /// still holds for a VPL. The owner was connected then, nearer ones were not, others were not tried.
+  template <class Known> void giveToNearest(SurfaceSample& p, const Connection& connected, const Known& known) const {
+    const uint32_t owner = p.owner;
+    const float owner2 = p.owner2;
+    p.owner = kNone;
+    if (!(p.density > 0)) return;
+    for (const uint32_t slot : p.near) {
+      if (slot == kNone) return;
+      const float d2 = distance2(p, slot);
+      if (d2 > limit * limit) return;
+      if (!sameSide(p.normal, set.slots[slot].normal)) continue;
+      const bool settled = owner != kNone && d2 <= owner2 && known(slot);
+      if (settled ? slot != owner : !connected(set.slots[slot], p, d2)) continue;
+      p.owner = slot;
+      p.owner2 = d2;
+      return;
+    }
+  }
+};
+
+/// Samples the surface around one VPL. Scratch is kept between calls.
 class CellSampler {
  public:
-  /// No point lies farther than `reachLimit` from its VPL, m.
-  CellSampler(const RayQuery& rays, float reachLimit, uint32_t seed)
-      : rays_(rays), reachLimit_(reachLimit), seed_(seed) {}
+  CellSampler(const RayQuery& rays, const Neighbours& neighbours, uint32_t seed)
+      : rays_(rays), neighbours_(neighbours), seed_(seed) {}
 
-  /// `viewers` see what is around here.
-  void draw(const Vpl& vpl, float radius, std::span<const vec3> viewers, VplCell& cell, RayCounts& counts) {
-    points_.clear();
-    chords(vpl, radius);
+  void draw(uint32_t slot, VplCell& cell, RayCounts& counts) {
+    const Vpl& vpl = neighbours_.set.slots[slot];
+    found_.clear();
+    chords(vpl, cell.radius);
     for (int round = 0; round < kHitsPerChord && !batch_.empty(); ++round) {
       hits_.resize(batch_.size());
       rays_.closest(batch_, hits_);
@@ -93,17 +176,14 @@ class CellSampler {
         const Ray ray = batch_[i];
         const SurfaceHit& h = hits_[i];
         if (!h.valid()) continue;
-        addSides(vpl, radius, h);
+        addSides(slot, cell.radius, h);
         const float step = h.t + 2e-4f * ray.tMax;
         if (step < ray.tMax) batch_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
       }
       batch_.resize(alive);
     }
-    keepConnected(vpl, counts);
-    weighByVisibility(vpl, viewers, counts);
     // Room for just these: cells that kept the most that they ever had would grow for as long as objects move.
-    cell.points = std::vector<CellPoint>(points_.begin(), points_.end());
-    cell.radius = radius;
+    cell.samples = std::vector<SurfaceSample>(found_.begin(), found_.end());
   }
 
  private:
@@ -129,141 +209,94 @@ class CellSampler {
     }
   }
 
-  /// Both sides of the surface met, where they may belong to the VPL's.
-  void addSides(const Vpl& vpl, float radius, const SurfaceHit& h) {
+  /// Both sides of the surface met, where they may belong to a VPL's.
+  void addSides(uint32_t slot, float radius, const SurfaceHit& h) {
     if (!isFinite(h.position) || !isFinite(h.normal)) return;
+    const Vpl& vpl = neighbours_.set.slots[slot];
     const vec3 d = h.position - vpl.position;
-    const float d2 = glm::dot(d, d);
-    const float density = chordDensity(radius, d2, glm::dot(h.geometricNormal, vpl.geometricNormal));
-    if (density <= 0 || d2 > reachLimit_ * reachLimit_) return;
-    for (const float side : {1.0f, -1.0f})
-      if (sameSide(side * h.normal, vpl.normal))
-        points_.push_back({h.position, side * h.normal, side * h.geometricNormal, h.albedo, 1 / density, d2});
-  }
-
-  void keepConnected(const Vpl& vpl, RayCounts& counts) {
-    open_.assign(points_.size(), 0);
-    const Connection connection{rays_, counts};
-    for (const bool lifted : {false, true}) {
-      batch_.clear();
-      which_.clear();
-      for (uint32_t i = 0; i < points_.size(); ++i) {
-        if (open_[i]) continue;
-        const CellPoint& p = points_[i];
-        if (const auto ray = lifted ? connection.lifted(vpl, p, std::sqrt(p.own2)) : connection.close(vpl, p)) {
-          batch_.push_back(*ray);
-          which_.push_back(i);
-        }
-      }
-      test(counts);
+    std::optional<Neighbours::Found> found;
+    for (const float side : {1.0f, -1.0f}) {
+      SurfaceSample p;
+      p.position = h.position;
+      p.normal = side * h.normal;
+      p.geometricNormal = side * h.geometricNormal;
+      p.albedo = h.albedo;
+      if (!(chordDensity(vpl, radius, p, glm::dot(d, d), neighbours_.limit) > 0)) continue;
+      if (!found) found = neighbours_.around(p.position);
+      if (!found->has(slot)) return;
+      neighbours_.enter(p, slot, *found);
+      found_.push_back(p);
     }
-    keepOpen();
-  }
-
-  /// Light leaves a cell from the place of its VPL, so a point counts by how well it is seen compared with that place:
-  /// the number of viewers, points that the camera sees, that see it over the number that see the VPL, two at most.
-  /// What none sees counts nothing: the sunlit outside of a wall beside a window.
-  void weighByVisibility(const Vpl& vpl, std::span<const vec3> viewers, RayCounts& counts) {
-    std::vector<uint16_t> seen(points_.size(), 0);
-    open_.assign(points_.size(), 0);
-    float seenVpl = 0;
-    for (const vec3& from : viewers) {
-      batch_.clear();
-      which_.clear();
-      if (glm::dot(from - vpl.position, vpl.geometricNormal) > 0) {
-        ++counts.occlusion;
-        seenVpl += !rays_.occluded(segment(from, offsetPoint(vpl.position, vpl.geometricNormal, rays_.grain())));
-      }
-      for (uint32_t i = 0; i < points_.size(); ++i) {
-        const CellPoint& p = points_[i];
-        if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
-        batch_.push_back(segment(from, offsetPoint(p.position, p.geometricNormal, rays_.grain())));
-        which_.push_back(i);
-      }
-      open_.assign(points_.size(), 0);
-      test(counts);
-      for (size_t i = 0; i < open_.size(); ++i) seen[i] += open_[i];
-    }
-    const bool own = viewers.size() == 1 && viewers[0] == vpl.mailbox;
-    if (seenVpl == 0 && !own) return weighByVisibility(vpl, {&vpl.mailbox, 1}, counts); // looked at from there only
-    for (size_t i = 0; i < points_.size(); ++i) {
-      open_[i] = seen[i] > 0;
-      points_[i].area *= seenVpl > 0 ? std::min(2.0f, float(seen[i]) / seenVpl) : 1.0f;
-    }
-    keepOpen();
-  }
-
-  /// Opens what the segments reach.
-  void test(RayCounts& counts) {
-    blocked_.resize(batch_.size());
-    rays_.occluded(batch_, blocked_);
-    counts.occlusion += batch_.size();
-    for (size_t j = 0; j < which_.size(); ++j) open_[which_[j]] = !blocked_[j];
-  }
-
-  void keepOpen() {
-    size_t kept = 0;
-    for (size_t i = 0; i < points_.size(); ++i)
-      if (open_[i]) points_[kept++] = points_[i];
-    points_.resize(kept);
   }
 
   const RayQuery& rays_;
-  const float reachLimit_;
+  const Neighbours& neighbours_;
   const uint32_t seed_;
-  std::vector<CellPoint> points_;
+  std::vector<SurfaceSample> found_;
   std::vector<Ray> batch_;
   std::vector<SurfaceHit> hits_;
-  std::vector<uint8_t> open_, blocked_;
-  std::vector<uint32_t> which_;
 };
 
-/// VPLs of the set with the slots they are in.
-struct Standing {
-  std::vector<DensityPoint> points;
-  std::vector<uint32_t> slots;
-};
-
-Standing standing(const VplSet& set) {
-  Standing s;
-  for (uint32_t i = 0; i < set.slots.size(); ++i)
-    if (set.slots[i].alive) {
-      s.points.push_back({set.slots[i].position, set.slots[i].normal});
-      s.slots.push_back(i);
-    }
-  return s;
-}
-
-/// Whether the VPL in slot `a` has the point rather than the one in `b`, by squared distances; of two VPLs in one place
-/// only one has it.
-bool nearer(float a2, uint32_t a, float b2, uint32_t b) { return a2 < b2 || (a2 == b2 && a < b); }
-
-/// Nearest connected VPL that is nearer to `p` than its own, the one in `own`.
-void findRival(CellPoint& p, uint32_t own, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
-               const Connection& connected) {
-  std::array<uint32_t, kNeighbours> index;
-  std::array<float, kNeighbours> distance2;
-  const size_t found = tree.nearest(p.position, kNeighbours, index, distance2);
-  p.rival = kNone;
-  for (size_t j = 0; j < found && distance2[j] <= p.own2; ++j) {
-    const uint32_t slot = vpls.slots[index[j]];
-    if (slot == own || !nearer(distance2[j], slot, p.own2, own)) continue;
-    if (!sameSide(p.normal, set.slots[slot].normal) || !connected(set.slots[slot], p, distance2[j])) continue;
-    p.rival = slot;
-    p.rival2 = distance2[j];
-    return;
+/// Notes who looks at the VPL: mailbox points of the VPLs nearest to it, not its own, which sees it by definition. That
+/// one where none of them does.
+void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
+                 const RayQuery& rays, VplCell& cell, RayCounts& counts) {
+  std::array<uint32_t, SurfaceSample::kNear> index;
+  std::array<float, SurfaceSample::kNear> distance2;
+  const size_t found = tree.nearest(vpl.position, SurfaceSample::kNear, index, distance2);
+  cell.viewers.clear();
+  cell.seenVpl = 0;
+  const vec3 to = offsetPoint(vpl.position, vpl.geometricNormal, rays.grain());
+  for (size_t j = 0; j < found; ++j) {
+    const Vpl& other = set.slots[vpls.slots[index[j]]];
+    if (&other == &vpl) continue;
+    cell.viewers.push_back(other.mailbox);
+    if (glm::dot(other.mailbox - vpl.position, vpl.geometricNormal) <= 0) continue;
+    ++counts.occlusion;
+    cell.seenVpl += !rays.occluded(segment(other.mailbox, to));
   }
+  if (cell.seenVpl > 0) return;
+  cell.viewers = {vpl.mailbox};
+  cell.seenVpl = 1;
 }
 
-/// Mailbox points of the VPLs nearest to this one: what looks this way. Not its own, which sees it by definition.
-std::vector<vec3> viewersOf(const Vpl& vpl, const VplSet& set, const Standing& vpls, const NeighbourTree& tree) {
-  std::array<uint32_t, kNeighbours> index;
-  std::array<float, kNeighbours> distance2;
-  const size_t found = tree.nearest(vpl.position, kNeighbours, index, distance2);
-  std::vector<vec3> viewers;
-  for (size_t j = 0; j < found; ++j)
-    if (&set.slots[vpls.slots[index[j]]] != &vpl) viewers.push_back(set.slots[vpls.slots[index[j]]].mailbox);
-  return viewers;
+/// Light leaves a cell from the place of its VPL, so a sample counts by how well it is seen compared with that place:
+/// the number of viewers that see it over the number that see the VPL, two at most. What none sees counts nothing: the
+/// sunlit outside of a wall beside a window.
+float seenBy(const VplCell& cell, const SurfaceSample& p, const RayQuery& rays, RayCounts& counts) {
+  const vec3 to = offsetPoint(p.position, p.geometricNormal, rays.grain());
+  float seen = 0;
+  for (const vec3& from : cell.viewers) {
+    if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
+    ++counts.occlusion;
+    seen += !rays.occluded(segment(from, to));
+  }
+  return std::min(2.0f, seen / cell.seenVpl);
+}
+
+/// A sample and whose it is.
+struct Share {
+  uint32_t owner;
+  SurfaceSample* sample;
+};
+
+/// Makes the cell of `vpl` of the samples that it has.
+void assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const RayQuery& rays, RayCounts& counts) {
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const Share& a, const Share& b) { return a.sample->owner2 < b.sample->owner2; });
+  std::vector<CellPoint> points;
+  vpl.area = 0;
+  for (const Share& share : shares) {
+    SurfaceSample& p = *share.sample;
+    if (p.weighed != cell.drawing) {
+      p.seen = seenBy(cell, p, rays, counts);
+      p.weighed = cell.drawing;
+    }
+    if (!(p.seen > 0)) continue;
+    points.push_back({p.position, p.normal, p.geometricNormal, p.albedo, p.seen / p.density});
+    vpl.area += points.back().area;
+  }
+  cell.points = std::vector<CellPoint>(points.begin(), points.end());
 }
 
 } // namespace
@@ -271,75 +304,125 @@ std::vector<vec3> viewersOf(const Vpl& vpl, const VplSet& set, const Standing& v
 std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Disturbance& disturbance,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
-  if (set.cells.size() != set.slots.size()) set.cells.assign(set.slots.size(), {}); // rivals may be gone: draw all anew
+  const size_t slots = set.slots.size();
+  if (set.cells.size() != slots) set.cells.assign(slots, {}); // slots may be others: draw all anew
   const Standing vpls = standing(set);
   const NeighbourTree tree(vpls.points);
+  const Neighbours neighbours{set, vpls, tree, kReachLimit * radiusLimit};
   // Scale of a cell: 0.9 of the distance to its third neighbour. Chords reach four times as far.
   constexpr int kScaleNeighbour = 3;
-  // Where light comes up in the dark the first VPLs are few, and their cells would take in the whole room: places from
-  // which no such light leaves (a lift that opens the way for light: error in motion over that at rest 1.5 without this
-  // limit, 1.1 with it; Cornell box and hall at rest: no difference).
-  constexpr float kReachLimit = 2;                // of radiusLimit
   constexpr float kTried = 1 + Connection::kLift; // connections stay this near, in distances of their ends
   const std::vector<float> shares =
       representedAreas(vpls.points, vpls.points, true, kScaleNeighbour, DensityEstimator::KnnSide, kInfinity);
-  std::vector<uint8_t> placed(set.slots.size(), 0), changed(set.slots.size(), 0);
-  for (uint32_t slot : moved) placed[slot] = 1;
+
+  // Whose samples are drawn anew: those that stand elsewhere, have other neighbours or see something move.
+  std::vector<uint8_t> anew(slots, 0), touched(slots, 0);
+  std::vector<vec3> places; // where VPLs came or went, or draw otherwise
+  for (uint32_t slot : moved) anew[slot] = 1;
+  for (size_t n = 0; n < vpls.slots.size(); ++n) {
+    const uint32_t slot = vpls.slots[n];
+    const float radius =
+        std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
+    VplCell& cell = set.cells[slot];
+    const Vpl& vpl = set.slots[slot];
+    anew[slot] |= !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
+                  disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
+    if (!anew[slot]) continue;
+    if (cell.radius > 0) places.push_back(cell.centre);
+    places.push_back(vpl.position);
+    cell.radius = radius;
+    cell.centre = vpl.position;
+    cell.drawing = ++set.drawings;
+  }
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    VplCell& cell = set.cells[slot];
+    if (set.slots[slot].alive || cell.radius == 0) continue;
+    places.push_back(cell.centre);
+    anew[slot] = 1;
+  }
+  if (places.empty() && disturbance.empty()) return {};
 
   constexpr size_t kGrain = 32;
-  std::vector<RayCounts> perBlock((vpls.slots.size() + kGrain - 1) / kGrain);
-  parallelFor(vpls.slots.size(), kGrain, [&](size_t begin, size_t end) {
+  const auto blocks = [](size_t n) { return (n + kGrain - 1) / kGrain; };
+  std::vector<RayCounts> perBlock(blocks(slots));
+  std::vector<std::vector<uint32_t>> concerned(blocks(slots)); // slots that got or lost samples
+  parallelFor(slots, kGrain, [&](size_t begin, size_t end) {
     RayCounts& count = perBlock[begin / kGrain];
-    CellSampler sampler(rays, kReachLimit * radiusLimit, seed);
+    std::vector<uint32_t>& owners = concerned[begin / kGrain];
+    CellSampler sampler(rays, neighbours, seed);
     const Connection connected{rays, count};
-    std::vector<uint32_t> near;
-    for (size_t n = begin; n < end; ++n) {
-      const uint32_t slot = vpls.slots[n];
-      Vpl& vpl = set.slots[slot];
+    std::vector<vec3> near;
+    for (uint32_t slot = uint32_t(begin); slot < end; ++slot) {
       VplCell& cell = set.cells[slot];
-      const float spacing = std::sqrt(shares[n] * float(kScaleNeighbour) / kPi);
-      const float radius = std::min(0.9f * spacing, radiusLimit);
-      const bool draw = placed[slot] || !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
-                        disturbance.touches(vpl.position, kTried * kScales.back().radius * cell.radius);
-      if (draw) {
-        sampler.draw(vpl, std::max(radius, rays.grain()), viewersOf(vpl, set, vpls, tree), cell, count);
-        for (CellPoint& p : cell.points) findRival(p, slot, set, vpls, tree, connected);
-        changed[slot] = 1;
-      } else {
-        near.clear(); // moved VPLs that can be nearer to a point than its own
-        const float reach = 2 * kScales.back().radius * cell.radius;
-        for (uint32_t other : moved) {
-          const vec3 d = set.slots[other].position - vpl.position;
-          if (set.slots[other].alive && glm::dot(d, d) < reach * reach) near.push_back(other);
+      const Vpl& vpl = set.slots[slot];
+      if (cell.radius == 0) continue;
+      if (anew[slot]) {
+        for (const SurfaceSample& p : cell.samples)
+          if (p.owner != kNone) owners.push_back(p.owner);
+        if (!vpl.alive) {
+          cell = {};
+          owners.push_back(slot);
+          continue;
         }
-        for (CellPoint& p : cell.points) {
-          const bool before = p.owned();
-          if ((p.rival != kNone && (placed[p.rival] || !set.slots[p.rival].alive)) ||
-              disturbance.touches(p.position, kTried * std::sqrt(p.own2))) // its rivals stand no farther than its own
-            findRival(p, slot, set, vpls, tree, connected);
-          for (uint32_t other : near) {
-            const Vpl& v = set.slots[other];
-            const vec3 d = v.position - p.position;
-            const float d2 = glm::dot(d, d);
-            const bool wins = p.owned() ? nearer(d2, other, p.own2, slot) : nearer(d2, other, p.rival2, p.rival);
-            if (!wins || !sameSide(p.normal, v.normal) || !connected(v, p, d2)) continue;
-            p.rival = other;
-            p.rival2 = d2;
-          }
-          changed[slot] |= before != p.owned();
+        findViewers(vpl, set, vpls, tree, rays, cell, count);
+        sampler.draw(slot, cell, count);
+        owners.push_back(slot);
+        for (SurfaceSample& p : cell.samples) {
+          neighbours.giveToNearest(p, connected, [](uint32_t) { return false; });
+          if (p.owner != kNone) owners.push_back(p.owner);
+        }
+      } else {
+        near.clear();
+        for (const vec3& place : places)
+          if (glm::distance(place, vpl.position) < cell.reach) near.push_back(place);
+        for (SurfaceSample& p : cell.samples) {
+          const float tried = kTried * std::sqrt(p.owner == kNone ? p.reach2 : p.owner2);
+          const bool disturbed = disturbance.touches(p.position, tried);
+          const bool others = std::any_of(near.begin(), near.end(), [&](const vec3& place) {
+            const vec3 d = place - p.position;
+            return glm::dot(d, d) <= p.reach2;
+          });
+          if (!disturbed && !others) continue;
+          const uint32_t owner = p.owner;
+          const float density = p.density;
+          const std::array<uint32_t, SurfaceSample::kNear> before = p.near;
+          neighbours.enter(p, slot, neighbours.around(p.position));
+          neighbours.giveToNearest(p, connected, [&](uint32_t other) {
+            return !disturbed && !anew[other] && std::find(before.begin(), before.end(), other) != before.end();
+          });
+          if (p.owner == owner && p.density == density) continue;
+          for (const uint32_t o : {owner, p.owner})
+            if (o != kNone) owners.push_back(o);
         }
       }
-      float area = 0;
-      for (const CellPoint& p : cell.points)
-        if (p.owned()) area += p.area;
-      vpl.area = area;
+      cell.reach = 0;
+      for (const SurfaceSample& p : cell.samples)
+        cell.reach = std::max(cell.reach, glm::distance(p.position, vpl.position) + std::sqrt(p.reach2));
+    }
+    std::sort(owners.begin(), owners.end());
+    owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+  });
+  for (const auto& owners : concerned)
+    for (const uint32_t slot : owners) touched[slot] = 1;
+
+  std::vector<Share> all;
+  for (VplCell& cell : set.cells)
+    for (SurfaceSample& p : cell.samples)
+      if (p.owner != kNone && touched[p.owner]) all.push_back({p.owner, &p});
+  std::stable_sort(all.begin(), all.end(), [](const Share& a, const Share& b) { return a.owner < b.owner; });
+  std::vector<uint32_t> changed;
+  for (uint32_t slot = 0; slot < slots; ++slot)
+    if (touched[slot]) changed.push_back(slot);
+  perBlock.resize(std::max(perBlock.size(), blocks(changed.size())));
+  parallelFor(changed.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto [first, last] = std::equal_range(all.begin(), all.end(), Share{changed[i], nullptr},
+                                                  [](const Share& a, const Share& b) { return a.owner < b.owner; });
+      assemble(set.slots[changed[i]], set.cells[changed[i]], {first, last}, rays, perBlock[begin / kGrain]);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;
-  std::vector<uint32_t> slots;
-  for (uint32_t i = 0; i < changed.size(); ++i)
-    if (changed[i]) slots.push_back(i);
-  return slots;
+  return changed;
 }
 
 } // namespace lambent

@@ -79,23 +79,16 @@ class VplEstimator {
   /// empty.
   bool spreadOver(const VplCell& cell, float u) {
     float total = 0;
-    for (const CellPoint& p : cell.points)
-      if (p.owned()) total += p.area;
+    for (const CellPoint& p : cell.points) total += p.area;
     if (total <= 0) return false;
     int path = 0;
     float sum = 0;
     for (const CellPoint& p : cell.points) {
-      if (!p.owned()) continue;
       sum += p.area;
       for (; path < paths_ && (float(path) + u) * total <= sum * float(paths_); ++path) place(path, p);
     }
-    for (const CellPoint& last = lastOwned(cell); path < paths_; ++path) place(path, last); // rounding
+    for (; path < paths_; ++path) place(path, cell.points.back()); // rounding
     return true;
-  }
-  static const CellPoint& lastOwned(const VplCell& cell) {
-    size_t i = cell.points.size() - 1;
-    while (!cell.points[i].owned()) --i;
-    return cell.points[i];
   }
   void place(int path, const CellPoint& p) {
     starts_[path].at = {p.position, p.normal, p.geometricNormal};

@@ -8,6 +8,7 @@
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/settling.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -51,25 +52,41 @@ inline VirtualLight lightOf(const Vpl& v) {
   return {v.position, v.normal, v.geometricNormal, v.radiance, v.alive ? v.area : 0, v.alive};
 }
 
-/// A point of the surface near a VPL, with what decides whose cell it lies in. World space.
+/// A point of the surface drawn around one VPL; it lies in the cell of that one or of another. World space.
+struct SurfaceSample {
+  static constexpr size_t kNear = 8;
+  vec3 position, normal, geometricNormal, albedo;
+  std::array<uint32_t, kNear> near; // slots of the VPLs nearest to it, nearest first; kNone beyond the last
+  float reach2 = 0;                 // squared distance to the last of them, m²; infinite where they are fewer
+  float density = 0;      // samples per m² that all of them draw here; 0: the one that drew it is not among them
+  uint32_t owner = kNone; // the nearest that is connected to it
+  float owner2 = 0;       // squared distance to that, m²
+  uint32_t weighed = 0;   // VplCell::drawing of the owner that `seen` is for
+  float seen = 0;         // how well it is seen, by the place of its owner
+};
+
+/// A share of a cell.
 struct CellPoint {
   vec3 position, normal, geometricNormal, albedo;
-  float area = 0;         // m² of surface that the point stands for
-  float own2 = 0;         // squared distance to the VPL, m²
-  float rival2 = 0;       // to the nearest other VPL on the same piece of surface, where that is nearer
-  uint32_t rival = kNone; // its slot
-  bool owned() const { return rival == kNone; }
+  float area = 0; // m² of surface that it stands for
 };
 
 /// The surface that a VPL stands for: all that is nearer to it than to any other (see gi/vpl/cells.cpp).
 struct VplCell {
-  std::vector<CellPoint> points; // those owned and those that may become so
-  float radius = 0;              // m, scale that the points were drawn with; 0 = none drawn
+  std::vector<CellPoint> points;      // from the middle outwards
+  std::vector<SurfaceSample> samples; // drawn around this VPL, whoever has them
+  std::vector<vec3> viewers;          // points that the camera sees and that look this way
+  float seenVpl = 1;                  // how many of them see the VPL
+  vec3 centre{0};                     // where the samples were drawn
+  float radius = 0;                   // m, scale that they were drawn with; 0 = none drawn
+  float reach = 0;                    // m: VPLs farther away concern none of the samples
+  uint32_t drawing = 0;               // number of the drawing, of all cells
 };
 
 struct VplSet {
   std::vector<Vpl> slots;
   std::vector<VplCell> cells;                      // by slot; empty with densities by nearest neighbours
+  uint32_t drawings = 0;                           // of cells, so far
   std::vector<KeptPaths> samplerPaths, lightPaths; // by slot: of samplerRadiance and radiance; empty without path cache
   std::vector<Vpl> pool;                           // candidates that may yet be wanted, oldest first
   std::vector<KeptPaths> poolPaths;                // of their samplerRadiance

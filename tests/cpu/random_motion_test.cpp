@@ -215,7 +215,7 @@ size_t bytesOf(const std::vector<KeptPaths>& all) {
 /// All that the set holds on to.
 size_t bytesOf(const VplSet& set) {
   size_t sum = bytes(set.slots) + bytes(set.cells) + bytes(set.pool);
-  for (const VplCell& c : set.cells) sum += bytes(c.points);
+  for (const VplCell& c : set.cells) sum += bytes(c.points) + bytes(c.samples) + bytes(c.viewers);
   return sum + bytesOf(set.samplerPaths) + bytesOf(set.lightPaths) + bytesOf(set.poolPaths);
 }
 
@@ -285,7 +285,7 @@ uint64_t hashOf(const VplSet& set) {
   for (const Vpl& v : set.slots) mixVpl(v);
   for (const Vpl& v : set.pool) mixVpl(v);
   for (const VplCell& c : set.cells)
-    for (const CellPoint& p : c.points) mix(p.position), mix(p.area), mix(p.rival);
+    for (const CellPoint& p : c.points) mix(p.position), mix(p.area);
   mix(set.nextId), mix(set.frame), mix(set.visibleArea);
   return h;
 }
