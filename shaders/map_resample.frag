@@ -10,6 +10,24 @@ uniform vec3 axisX;         // the cube's axes in the light's frame (tangent, bi
 uniform vec3 axisY;
 uniform vec3 axisZ;
 
+float faceDepth(ivec2 texel, int face) {
+  return texelFetch(faces, ivec3(clamp(texel, ivec2(0), textureSize(faces, 0).xy - 1), face), 0).r;
+}
+
+float lesser(float a, float b) { return abs(a) < abs(b) ? a : b; }
+
+/// Reversed depth at `place`, texels. It is linear on a plane, so the nearest texel's value goes on by its slope: that of
+/// the side where no other surface begins. (Without, a texel beside the receiver answers for its plane, and grazing light
+/// is striped: lookups expect distances through the centres of the map's texels.)
+float depthAt(vec2 place, int face) {
+  ivec2 texel = ivec2(floor(place));
+  float centre = faceDepth(texel, face);
+  if (centre == 0.0) return 0.0;
+  vec2 slope = vec2(lesser(faceDepth(texel + ivec2(1, 0), face) - centre, centre - faceDepth(texel - ivec2(1, 0), face)),
+                    lesser(faceDepth(texel + ivec2(0, 1), face) - centre, centre - faceDepth(texel - ivec2(0, 1), face)));
+  return max(centre + dot(slope, place - vec2(texel) - 0.5), 1e-6 * centre);
+}
+
 void main() {
   gl_FragDepth = 1.0;
   vec3 d = directionFromParaboloid(gl_FragCoord.xy / resolution);
@@ -20,7 +38,6 @@ void main() {
   int face = cube.x >= cube.y && cube.x >= cube.z ? 0 : (cube.y >= cube.z ? 1 : 2);
   vec3 local = face == 0 ? cube.yzx : (face == 1 ? cube.zxy : cube); // right, up, forward of the face
   vec2 uv = (local.xy / local.z + 2.0) / 3.0;
-  ivec2 size = textureSize(faces, 0).xy;
-  float depth = texelFetch(faces, ivec3(clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1), face), 0).r;
+  float depth = depthAt(uv * vec2(textureSize(faces, 0).xy), face);
   if (depth > 0.0) gl_FragDepth = min(nearDistance / depth / local.z / farDistance, 1.0);
 }

@@ -27,7 +27,8 @@ enum class Stream : uint32_t {
   Cells,
   Photons,
   Acceptance,
-  MapTests
+  MapTests,
+  NearLight
 };
 
 /// A sequence of numbers addressed by what they are for.

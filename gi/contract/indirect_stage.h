@@ -17,6 +17,7 @@ struct IndirectInputs {
   Patches& patches; // of the surfaces
   SeenLights seen;  // without slots for a technique that has no virtual lights
   const Settings& settings;
+  uint32_t seed = 1;
 };
 
 class IndirectStage {

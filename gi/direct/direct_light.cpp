@@ -103,7 +103,7 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
                 .smoothShadows = &compare_,
                 .areas = gatherAreas(in.surfaces, 1),
                 .addToTarget = true,
-                .biasTexels = 1.5f * shadow.bias}); // bilinear comparison reaches half a texel farther
+                .biasTexels = 1.5f}); // bilinear comparison reaches half a texel farther than one
   return target_.light();
 }
 

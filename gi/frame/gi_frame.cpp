@@ -106,7 +106,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     if (plan.on(EffectId::Indirect)) {
       const DrawCount indirectDraws;
       const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
-      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings}, stats);
+      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, k.seed}, stats);
       const FilterSettings filter = k.filterFor(plan);
       const DrawCount filterDraws;
       indirect = k.filter.run({surfaces, gathered, filter});

@@ -1,5 +1,6 @@
 // Gather at pixels: every light at each of them, or the 4×4 subsets side by side.
 #include "gi/gather/draw_gather.h"
+#include "gi/gather/near_light_pass.h"
 #include "gi/gather/stages.h"
 
 namespace lambent {
@@ -10,22 +11,28 @@ class PixelGather : public IndirectStage {
  public:
   explicit PixelGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats&) override {
-    const gl::PassScope scope = context_.scope(StageId::Gather);
-    const bool subsets = rowOf(in.settings.gather.mode).subsets;
-    target_.fit(in.surfaces, subsets ? 4 * tileSize(in.surfaces) : glm::ivec2(in.surfaces.width, in.surfaces.height));
-    drawGather(context_.programs, target_.framebuffer(),
-               {.surfaces = in.surfaces,
-                .seen = in.seen,
-                .areas = gatherAreas(in.surfaces, subsets ? 4 : 1),
-                .grid = subsets ? 4 : 1,
-                .biasTexels = in.settings.shadow.bias,
-                .bounds = in.settings.gather});
-    return target_.light(subsets);
+  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+    const int grid = rowOf(in.settings.gather.mode).subsets ? 4 : 1;
+    gather(in, grid);
+    near_.add(in, target_, grid, stats);
+    return target_.light(grid > 1);
   }
 
  private:
+  void gather(const IndirectInputs& in, int grid) {
+    const gl::PassScope scope = context_.scope(StageId::Gather);
+    target_.fit(in.surfaces, grid > 1 ? 4 * tileSize(in.surfaces) : glm::ivec2(in.surfaces.width, in.surfaces.height));
+    drawGather(context_.programs, target_.framebuffer(),
+               {.surfaces = in.surfaces,
+                .seen = in.seen,
+                .areas = gatherAreas(in.surfaces, grid),
+                .grid = grid,
+                .biasTexels = in.settings.shadow.bias,
+                .bounds = in.settings.gather});
+  }
+
   PassContext context_;
+  NearLightPass near_{context_};
   LightTarget target_{"gather"};
 };
 

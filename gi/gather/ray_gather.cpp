@@ -1,8 +1,7 @@
 // Gather on the CPU with a ray for every pixel and light: the measure of shadow maps and subsets (paper 1, fig. 8).
+#include "gi/gather/near_light_pass.h"
 #include "gi/gather/stages.h"
 #include "gi/vpl/smc.h"
-
-#include <algorithm>
 
 namespace lambent {
 
@@ -22,25 +21,20 @@ class RayGather : public IndirectStage {
       irradiance = gatherByRays(in.world.rays, camera, in.seen.lights.slots, in.settings.gather, stats.raysGather,
                                 lobes ? &glossy : nullptr);
     }
-    const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
-    target_.fit(in.surfaces);
-    const LightOnSurfaces light = target_.light();
-    upload(*light.irradiance, irradiance);
-    if (lobes) upload(*light.glossy, glossy.radiance);
-    return light;
+    {
+      const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
+      target_.fit(in.surfaces);
+      const LightOnSurfaces light = target_.light();
+      uploadPixels(*light.irradiance, irradiance, in.surfaces, 1);
+      if (lobes) uploadPixels(*light.glossy, glossy.radiance, in.surfaces, 1);
+    }
+    near_.add(in, target_, 1, stats);
+    return target_.light();
   }
 
  private:
-  /// Rows of the picture count from the top, GL's from the bottom.
-  static void upload(const gl::Texture& texture, const std::vector<vec3>& pixels) {
-    const int width = texture.width(), height = texture.height();
-    std::vector<vec3> bottomUp(pixels.size());
-    for (int y = 0; y < height; ++y)
-      std::copy_n(&pixels[size_t(y) * width], width, &bottomUp[size_t(height - 1 - y) * width]);
-    glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, GL_RGB, GL_FLOAT, bottomUp.data());
-  }
-
   PassContext context_;
+  NearLightPass near_{context_};
   LightTarget target_{"irradiance upload"};
 };
 

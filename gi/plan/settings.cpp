@@ -94,6 +94,8 @@ class Table {
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
+    number("gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays"}, Nothing,
+           "rays per pixel for the light that gather.disk and gather.clamp take from near VPLs; 0 = it is lost");
     flag("gather.glossy", &Settings::gather, &GatherSettings::glossy, Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,

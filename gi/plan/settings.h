@@ -72,7 +72,7 @@ struct SmcSettings {
 struct ShadowSettings {
   int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
-  float bias = 1.0f;   // in texels of the map at the receiver
+  float bias = 0.4f;   // depth left for round-off and curved receivers, texels of the map at the receiver
   int refresh = 32;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
   int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
@@ -90,6 +90,7 @@ struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  int near = 1;        // rays per pixel for what disk and clamp take from near VPLs; 0 = that light is lost
   bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
   bool operator==(const GatherSettings&) const = default;

@@ -24,15 +24,17 @@ std::vector<SurfaceHit> visibleSurfaces(const RayQuery& rays, const CameraView& 
   return out;
 }
 
-/// What the gather decides with this map (metres) for a receiver in direction d, a unit vector in the map's frame.
-bool lit(const std::vector<float>& map, const ParaboloidMapInputs& maps, const vec3& d, float distance,
-         float cosReceiver, float bias) {
+/// What the gather decides with this map (metres) for a receiver in direction d, a unit vector in the map's frame as
+/// its normal is.
+bool lit(const std::vector<float>& map, const ParaboloidMapInputs& maps, const vec3& d, const vec3& normal,
+         float distance, float cosReceiver, float bias) {
   const vec2 uv = paraboloidFromDirection(d);
   const int x = std::clamp(int(uv.x * float(maps.resolution)), 0, maps.resolution - 1);
   const int y = std::clamp(int(uv.y * float(maps.resolution)), 0, maps.resolution - 1);
   const float met = std::min(map[size_t(y) * maps.resolution + x], maps.farDistance);
-  return (met + paraboloidRounding() * maps.farDistance) * cosReceiver >=
-         paraboloidReach(distance, cosReceiver, d.z, bias, float(maps.resolution));
+  const vec2 centre = (vec2(x, y) + 0.5f) * (2.0f / float(maps.resolution)) - 1.0f;
+  return paraboloidLit(met + paraboloidRounding() * maps.farDistance, centre, normal, distance, cosReceiver, bias,
+                       float(maps.resolution));
 }
 
 } // namespace
@@ -63,9 +65,10 @@ ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const Paraboloid
       const double weight =
           double(luminance(v.radiance)) * v.area * geometryTerm(cosReceiver, cosVpl, r2, v.area, settings.gather);
       if (!(weight > 0)) continue;
-      const vec3 direction(glm::dot(tangent, d) / r, glm::dot(bitangent, d) / r, cosVpl);
-      const bool byRaster = lit(comparison.raster, maps, direction, r, cosReceiver, settings.shadow.bias);
-      const bool byCast = lit(comparison.rays, maps, direction, r, cosReceiver, settings.shadow.bias);
+      const mat3 mapFromWorld = glm::transpose(mat3(tangent, bitangent, v.normal));
+      const vec3 direction = mapFromWorld * d / r, normal = mapFromWorld * h.normal;
+      const bool byRaster = lit(comparison.raster, maps, direction, normal, r, cosReceiver, settings.shadow.bias);
+      const bool byCast = lit(comparison.rays, maps, direction, normal, r, cosReceiver, settings.shadow.bias);
       const bool byRay = !rays.occluded(segment(offsetPoint(h.position, h.geometricNormal, rays.grain()),
                                                 offsetPoint(v.position, v.geometricNormal, rays.grain())));
       ++result.pairs;

@@ -36,22 +36,31 @@ class VplEstimator {
         lightOrder_(spreadOrder(uint32_t(paths_), 0.6180339887498949)),
         stratumOrder_(spreadOrder(uint32_t(paths_), 0.7548776662466927)) {}
 
+  /// The estimate of one path from the VPL itself, with the numbers that it has among all of them.
+  vec3 estimateOne(const Vpl& vpl, int path, KeptPaths& scratch, PathCounts& counts) {
+    const uint32_t id = begin(vpl);
+    ++counts.paths;
+    ++counts.traced;
+    scratch.vertices.assign(size_t(paths_) * update_.bounces, {});
+    scratch.lengths.assign(paths_, 0);
+    scratch.emitters.clear();
+    scratch.bounces = update_.bounces;
+    scratch.lastRays = lastRays();
+    stale_.assign(1, path);
+    trace(scratch, id, counts);
+    return light(scratch, id, counts);
+  }
+
   /// Brings `kept` up to date. False: the radiance is what it was.
   bool estimate(const Vpl& vpl, const VplCell* cell, KeptPaths& kept, vec3& radiance, PathCounts& counts) {
-    const uint32_t id = uint32_t(mix64(vpl.id));
-    Rng first(update_.seed, stream_, id);
-    shift_ = first.next3();
-    lightShift_ = first.next();
-    lightTurn_ = first.below(uint32_t(paths_));
-    stratumTurn_ = first.below(uint32_t(paths_));
+    const uint32_t id = begin(vpl);
     counts.paths += uint64_t(paths_);
-    for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
-    if (cell && !spreadOver(*cell, first.next())) {
+    if (cell && !spreadOver(*cell, uStart_)) {
       kept.clear();
       radiance = vec3(0);
       return true;
     }
-    const bool lastRays = update_.lastRays || !lights_.emitters.empty() || luminance(lights_.sky) > 0;
+    const bool lastRays = this->lastRays();
     const bool anew = kept.id != vpl.id || kept.paths != paths_ || kept.bounces != update_.bounces ||
                       (lastRays && !kept.lastRays) || (update_.instancesChanged && !kept.emitters.empty()) ||
                       (cell != nullptr) != kept.overCell;
@@ -75,6 +84,20 @@ class VplEstimator {
   }
 
  private:
+  /// Numbers that the VPL's paths share; all start at its place. Gives what its numbers are seeded by.
+  uint32_t begin(const Vpl& vpl) {
+    const uint32_t id = uint32_t(mix64(vpl.id));
+    Rng first(update_.seed, stream_, id);
+    shift_ = first.next3();
+    lightShift_ = first.next();
+    lightTurn_ = first.below(uint32_t(paths_));
+    stratumTurn_ = first.below(uint32_t(paths_));
+    uStart_ = first.next();
+    for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
+    return id;
+  }
+  bool lastRays() const { return update_.lastRays || !lights_.emitters.empty() || luminance(lights_.sky) > 0; }
+
   /// Starts the paths at points of the cell, in proportion to their areas (systematic sampling). False when it is
   /// empty.
   bool spreadOver(const VplCell& cell, float u) {
@@ -243,7 +266,7 @@ class VplEstimator {
   const int paths_;
   const Stream stream_;
   vec3 shift_{0};
-  float lightShift_ = 0;
+  float lightShift_ = 0, uStart_ = 0;
   uint32_t lightTurn_ = 0, stratumTurn_ = 0; // where the orders begin
   std::vector<KeptVertex> starts_;
   const std::vector<uint32_t> lightOrder_, stratumOrder_; // slice of the lights and stratum of directions, by path
@@ -277,6 +300,10 @@ PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& r
         continue;
       }
       PathCounts& counts = perBlock[begin / kGrain];
+      if (job.path >= 0) {
+        job.vpl->*result = estimator.estimateOne(*job.vpl, job.path, scratch, counts);
+        continue;
+      }
       counts.lit += estimator.estimate(*job.vpl, job.cell, kept, job.vpl->*result, counts);
     }
   });

@@ -97,6 +97,7 @@ struct RadianceJob {
   Vpl* vpl = nullptr;
   const VplCell* cell = nullptr; // null: all paths start at the VPL
   KeptPaths* kept = nullptr;     // null: from scratch
+  int path = -1;                 // only this one of the paths, from scratch: its own estimate, not its share of all
 };
 
 struct PathCounts {

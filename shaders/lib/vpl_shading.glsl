@@ -58,20 +58,26 @@ Received receivedNothing() {
 }
 
 #ifdef SHADOWS
-/// 1 where the light's map shows nothing nearer than the receiver in direction d (light's frame).
-float visibility(int layer, vec3 d, float distance, float cosine) {
-  float reach = paraboloidReach(distance, cosine, d.z, biasTexels, mapResolution);
+/// 1 where the light's map shows nothing nearer than the receiver in direction d. `d` and the receiver's normal `n` are
+/// in the light's frame.
+float visibility(int layer, vec3 d, vec3 n, float distance, float cosine) {
   vec2 uv = paraboloidFromDirection(d);
 #ifdef SMOOTH_SHADOWS
+  float reach = paraboloidReach(distance, cosine, d.z, biasTexels, mapResolution);
   return texture(maps, vec4(uv, layer, reach / (max(cosine, 1e-4) * farDistance) - paraboloidRounding()));
 #else
   // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
   ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
-  float met = texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding();
-  return met * farDistance * cosine >= reach ? 1.0 : 0.0;
+  float met = (texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding()) * farDistance;
+  vec2 centre = (vec2(texel) + 0.5) * (2.0 / mapResolution) - 1.0;
+  return paraboloidLit(met, centre, n, distance, cosine, biasTexels, mapResolution) ? 1.0 : 0.0;
 #endif
 }
 #endif
+
+vec3 inFrame(VplLight light, vec3 lightNormal, vec3 v) {
+  return vec3(dot(light.tangentNormalY.xyz, v), dot(light.bitangentNormalZ.xyz, v), dot(lightNormal, v));
+}
 
 /// E = L·a·cosx·cosy/(r² + a/π)·V. No branches: pixels of a group disagree nearly always, and software Mesa pays for every
 /// mask. An empty slot has no power. `layer` is its map's.
@@ -81,12 +87,12 @@ void receive(inout Received sum, Surface s, VplLight light, int layer) {
   float inverseDistance = inversesqrt(distance2);
   vec3 direction = fromLight * inverseDistance;
   float cosineReceiver = -dot(s.normal, direction);
-  vec3 d = vec3(dot(light.tangentNormalY.xyz, direction), dot(light.bitangentNormalZ.xyz, direction),
-                dot(vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w), direction));
+  vec3 lightNormal = vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w);
+  vec3 d = inFrame(light, lightNormal, direction);
   float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
   g = min(g, largestG);
 #ifdef SHADOWS
-  g *= visibility(layer, d, distance2 * inverseDistance, cosineReceiver);
+  g *= visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosineReceiver);
 #endif
   sum.irradiance += light.powerNormalX.rgb * g;
 #ifdef GLOSSY

@@ -7,10 +7,25 @@ SHARED_BEGIN
 /// Share of the far distance that map values may be off by: rounding to 16 bits and the offset of the map's origin.
 SHARED_INLINE float paraboloidRounding() { return 4e-5f; }
 
-/// Distance that the map must hold at least for the receiver to be lit, times the cosine at the receiver (kept as a factor
-/// to spare a division per light). The bias is what the receiver's plane can rise within `biasTexels` map texels,
-/// distance · texelAngle · tanθ, and a tenth of a texel for round-off. `cosineLight` is that of the direction to the
-/// receiver at the light; the stereographic scale of the map grows with it.
+/// Whether a texel leaves a receiver in the light. `met` is the distance that it holds, `centre` its place in [-1,1]²,
+/// `normal` the receiver's in the light's frame, `distance` the receiver's, `cosine` that at the receiver; metres.
+///
+/// The texel was drawn through its centre, the receiver lies beside that: what counts is where the receiver's plane is
+/// in the direction of the centre, distance · cosine / cosineCentre. No nearer than the receiver where the plane falls
+/// away: near edges it is not there. `biasTexels` texels' share of the distance are left for round-off and for surfaces
+/// that are not planes. (An allowance for the plane in any direction, distance · tanθ · texel, lets light in under all
+/// that stands on floors: relMSE 0.31 in place of 0.14 in veach-ajar, all VPLs at every pixel; by rays 0.10.)
+SHARED_INLINE bool paraboloidLit(float met, vec2 centre, vec3 normal, float distanceMetres, float cosine,
+                                 float biasTexels, float resolution) {
+  float r2 = centre.x * centre.x + centre.y * centre.y;
+  float cosineCentre = -(2.0f * (normal.x * centre.x + normal.y * centre.y) + normal.z * (1.0f - r2)) / (1.0f + r2);
+  return met * max(cosineCentre, cosine) >= distanceMetres * cosine * (1.0f - biasTexels * 2.0f / resolution);
+}
+
+/// For lookups that blend texels, which have no one centre: distance that the map must hold at least for the receiver
+/// to be lit, times the cosine at the receiver. The bias is what the receiver's plane can rise within `biasTexels` map
+/// texels, distance · texelAngle · tanθ, and a tenth of a texel for round-off. `cosineLight` is that of the direction to
+/// the receiver at the light; the stereographic scale of the map grows with it.
 SHARED_INLINE float paraboloidReach(float distanceMetres, float cosineReceiver, float cosineLight, float biasTexels,
                                     float resolution) {
   float texelAngle = biasTexels * 2.0f / resolution * (1.0f + cosineLight);

@@ -130,7 +130,7 @@ TEST(Cells, MovesLeaveWhatDrawingAnewWouldFind) {
       areas[p.owner] += p.seen / p.density;
     }
   for (uint32_t slot = 0; slot < 400; ++slot)
-    if (set.slots[slot].alive) EXPECT_NEAR(set.slots[slot].area, areas[slot], 1e-4 * areas[slot]) << slot;
+    EXPECT_NEAR(set.slots[slot].alive ? set.slots[slot].area : 0, areas[slot], 1e-4 * areas[slot]) << slot;
   EXPECT_GT(owned, 4000u);
   EXPECT_GT(passedOver, 100u) << "or nobody came between a sample and the VPL that drew it";
 }

@@ -1,8 +1,8 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
-// gather must agree with it, clamped alike.
+// gather must agree with it, clamped alike, or with what bounds take given back.
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
-#include "gi/vpl/smc.h"
+#include "gi/vpl/near_light.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/spread_lights.h"
 #include "tests/support/statistics.h"
@@ -10,55 +10,108 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 namespace lambent {
 namespace {
 
-TEST(ReferenceAgainstVpls, ClampedGatherOfEvenlySpreadLights) {
+constexpr int kBounces = 3;
+const vec3 kSize(2, 1, 3), kAlbedo(0.6f, 0.5f, 0.4f);
+
+/// A box with an emissive quad under its ceiling and a lamp in a corner.
+struct Room {
   test::HandScene scene;
-  const vec3 size(2, 1, 3), albedo(0.6f, 0.5f, 0.4f);
-  scene.box({0, 0, 0}, size, scene.material(albedo), true);
-  scene.quad({0.7f, 0.99f, 1}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.material(vec3(0), vec3(4))); // faces down
-  LightView lamp;
-  lamp.position = {1.6f, 0.4f, 2.5f};
-  scene.lights.push_back(lamp);
-  scene.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
-  scene.camera.worldFromView[2] = vec4(0, 0, -1, 0);
-  scene.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
-  scene.camera.width = 24;
-  scene.camera.height = 16;
-  const SceneView view = scene.view();
-  EmbreeQuery rays(scene.assets);
-  rays.update(view);
-  const LightSet lights = collectLights(view);
-  constexpr int kBounces = 3, kPerSet = 2000, kSets = 16;
-  constexpr float kClamp = 3; // 1/m²
-  GatherSettings gather;
-  gather.disk = 0;
-  gather.clamp = kClamp;
+  SceneView view;
+  std::optional<EmbreeQuery> rays;
+  LightSet lights;
   RayCounts counts;
 
-  std::vector<double> means;
-  for (uint32_t set = 0; set < kSets; ++set) {
-    std::vector<Vpl> vpls = test::spreadOverBox(size, albedo, kPerSet, set);
-    std::vector<Vpl*> all;
-    for (Vpl& v : vpls) all.push_back(&v);
-    estimateRadiance(all, rays, lights, 16, kBounces, 1, counts);
-    double sum = 0;
-    for (const vec3& e : gatherByRays(rays, view.camera, lightsOf(vpls), gather, counts)) sum += double(e.y) / (24 * 16);
-    means.push_back(sum);
+  Room() {
+    scene.box({0, 0, 0}, kSize, scene.material(kAlbedo), true);
+    scene.quad({0.7f, 0.99f, 1}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.material(vec3(0), vec3(4))); // faces down
+    LightView lamp;
+    lamp.position = {1.6f, 0.4f, 2.5f};
+    scene.lights.push_back(lamp);
+    scene.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
+    scene.camera.worldFromView[2] = vec4(0, 0, -1, 0);
+    scene.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
+    scene.camera.width = 24;
+    scene.camera.height = 16;
+    view = scene.view();
+    rays.emplace(scene.assets);
+    rays->update(view);
+    lights = collectLights(view);
   }
 
-  ReferenceSums sums(24, 16);
-  const ReferenceInputs in{rays, lights, view.camera, kBounces, kClamp, 1};
-  addSamples(sums, in, 1000, counts);
-  const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Irradiance);
-  double truth = 0;
-  for (const vec3& e : picture.mean.pixels) truth += double(e.y) / (24 * 16);
-  const test::Mean m = test::meanOf(means);
-  EXPECT_LT(std::abs(m.mean - truth), test::kDeviateLimit * std::hypot(m.error, truth * picture.relativeErrorOfMean))
-      << m.mean << " against " << truth;
-  EXPECT_LT(m.error, 0.01 * truth) << "too noisy to tell";
+  /// Lights of equal areas, anywhere on the walls.
+  std::vector<VirtualLight> spread(int count, uint32_t seed) {
+    std::vector<Vpl> vpls = test::spreadOverBox(kSize, kAlbedo, count, seed);
+    std::vector<Vpl*> all;
+    for (Vpl& v : vpls) all.push_back(&v);
+    estimateRadiance(all, *rays, lights, 16, kBounces, 1, counts);
+    return lightsOf(vpls);
+  }
+
+  /// Mean irradiance of the picture by the reference, and its standard error.
+  test::Mean truth(float clamp, uint32_t samples) {
+    ReferenceSums sums(24, 16);
+    const ReferenceInputs in{*rays, lights, view.camera, kBounces, clamp, 1};
+    addSamples(sums, in, samples, counts);
+    const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Irradiance);
+    const double mean = meanOfPixels(picture.mean.pixels);
+    return {mean, mean * picture.relativeErrorOfMean};
+  }
+  static double meanOfPixels(std::span<const vec3> pixels) {
+    double sum = 0;
+    for (const vec3& e : pixels) sum += double(e.y) / double(pixels.size());
+    return sum;
+  }
+};
+
+TEST(ReferenceAgainstVpls, ClampedGatherOfEvenlySpreadLights) {
+  Room room;
+  GatherSettings gather;
+  gather.disk = 0;
+  gather.clamp = 3; // 1/m²
+  std::vector<double> means;
+  for (uint32_t set = 0; set < 16; ++set)
+    means.push_back(
+        Room::meanOfPixels(gatherByRays(*room.rays, room.view.camera, room.spread(2000, set), gather, room.counts)));
+  const test::Mean m = test::meanOf(means), truth = room.truth(gather.clamp, 1000);
+  EXPECT_LT(std::abs(m.mean - truth.mean), test::kDeviateLimit * std::hypot(m.error, truth.error))
+      << m.mean << " against " << truth.mean;
+  EXPECT_LT(m.error, 0.01 * truth.mean) << "too noisy to tell";
+}
+
+/// Few lights and wide bounds: a tenth of the light or more is near light, and all of it comes back.
+TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
+  Room room;
+  const test::Mean truth = room.truth(0, 4000);
+  for (const bool subsets : {false, true}) {
+    GatherSettings gather;
+    gather.disk = subsets ? 4 : 1;
+    gather.clamp = subsets ? 0 : 2;
+    std::vector<double> bounded, means;
+    for (uint32_t set = 0; set < 400; ++set) {
+      const std::vector<VirtualLight> lights = room.spread(150, set);
+      bounded.push_back(Room::meanOfPixels(gatherByRays(*room.rays, room.view.camera, lights, gather, room.counts)));
+      const NearLight near = traceNearLight({.view = room.view,
+                                             .rays = *room.rays,
+                                             .lights = room.lights,
+                                             .virtuals = lights,
+                                             .gather = gather,
+                                             .bounces = kBounces,
+                                             .subsets = subsets,
+                                             .seed = set + 1},
+                                            room.counts);
+      means.push_back(bounded.back() + Room::meanOfPixels(near.irradiance));
+    }
+    const test::Mean m = test::meanOf(means);
+    EXPECT_LT(std::abs(m.mean - truth.mean), test::kDeviateLimit * std::hypot(m.error, truth.error))
+        << m.mean << " against " << truth.mean << ", subsets " << subsets;
+    EXPECT_LT(m.error, 0.004 * truth.mean) << "too noisy to tell";
+    EXPECT_LT(test::meanOf(bounded).mean, 0.9 * truth.mean) << "or there was little to give back";
+  }
 }
 
 } // namespace

@@ -1,0 +1,33 @@
+// Light that the bounded geometry term takes away, given back.
+#pragma once
+
+#include "gi/contract/virtual_lights.h"
+#include "gi/plan/settings.h"
+#include "gi/vpl/light_set.h"
+#include "gi/vpl/smc.h"
+
+namespace lambent {
+
+struct NearLightInputs {
+  const SceneView& view;
+  const RayQuery& rays;
+  const LightSet& lights;                 // of the scene
+  std::span<const VirtualLight> virtuals; // that were gathered, bounded as `gather` says
+  const GatherSettings& gather;
+  int bounces = 1;      // of the virtual lights: SmcSettings::bounces
+  bool subsets = false; // interleaved: each pixel of 4×4 casts a sixteenth of the rays
+  bool glossy = false;
+  uint32_t seed = 1;
+};
+
+/// At pixel centres of the view's camera, row by row from the top.
+struct NearLight {
+  std::vector<vec3> irradiance;
+  std::vector<vec3> glossy; // as GlossyGather::radiance; empty where not asked for
+};
+
+/// Without bias: virtual lights and this together are what virtual lights would bring without bounds, if they were as
+/// many as the surface has points.
+NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts);
+
+} // namespace lambent
