@@ -95,7 +95,12 @@ class Table {
     number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number("gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays"}, Nothing,
-           "rays per pixel for the light that gather.disk and gather.clamp take from near VPLs; 0 = it is lost");
+           "rays per pixel for the light that gather.disk and gather.clamp take from near VPLs (gather at pixels); 0 = "
+           "it is "
+           "lost");
+    number(
+        "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,
+        "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
     flag("gather.glossy", &Settings::gather, &GatherSettings::glossy, Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,

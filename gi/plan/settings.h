@@ -90,7 +90,8 @@ struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
-  int near = 1;        // rays per pixel for what disk and clamp take from near VPLs; 0 = that light is lost
+  int near = 1;    // rays per pixel for what disk and clamp take from near VPLs; 0 = that light is lost
+  float nearLimit = 4; // radiance of a near surface counts up to so many times its VPL's; 0 = whatever it is
   bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
   bool operator==(const GatherSettings&) const = default;
@@ -125,7 +126,7 @@ struct FilterSettings {
   bool on = true;
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
   float normalPower = 16;                        // weight = max(0, n·n')^power
-  float distance = 0.02f; // standard deviation of the plane distance, share of the pixel's view distance
+  float distance = 0.01f; // standard deviation of the plane distance, share of the pixel's view distance
   bool operator==(const FilterSettings&) const = default;
 };
 
@@ -176,16 +177,16 @@ const char* costText(ChangeCost cost);
 
 /// One setting. Values are numbers: 0 and 1 of a flag, the index of a choice.
 struct SettingRow {
-  std::string name; // "smc.vpls"
-  std::string help; // meaning and cost, one line
+  std::string name;      // "smc.vpls"
+  std::string help = {}; // meaning and cost, one line
   SettingKind kind = SettingKind::Real;
   double low = 0, high = 0, standard = 0;
   const char* unit = "";
   Scale scale = Scale::Linear;
   ChangeCost change = ChangeCost::Nothing;
-  std::vector<std::string> choices; // also of a flag
-  std::function<double(const Settings&)> get;
-  std::function<void(Settings&, double)> set; // a value of the range
+  std::vector<std::string> choices = {}; // also of a flag
+  std::function<double(const Settings&)> get = {};
+  std::function<void(Settings&, double)> set = {}; // a value of the range
 
   std::string text(double value) const; // as applySetting reads it
   std::string range() const;            // "1..65536", "maps|rays|none"

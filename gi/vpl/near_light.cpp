@@ -5,6 +5,10 @@
 // reflects. That radiance must be y's own. The cell's mean brightens the gaps of a pavement and the undersides of
 // chairs, for cells are larger than the places where bounds matter (relMSE of the citadel 0.33, with y's own 0.15).
 //
+// One path is noise, and beside lamps a tail of bright spots: it counts up to GatherSettings::nearLimit times the
+// cell's mean. (Without, N = 2048: hall relMSE 0.16 in place of 0.11, bias -0.4 in place of -2.1 %; limit 2: 0.09, -3.6
+// %.)
+//
 // Rays whose rest is small go on with a probability in proportion to it. The pixels of 4×4 cast the rays of one
 // stratified pattern, the same in every block and fixed in the surface's frame, so that the error does not flicker and
 // the filter over the subsets takes most of it away.
@@ -22,7 +26,8 @@ namespace lambent {
 
 namespace {
 
-constexpr float kCertain = 0.125f; // rests of this and more are always traced on
+constexpr float kCertain = 0.25f; // rests of this and more are always traced on
+constexpr float kWide = 2;        // lights of this many times the mean area are as likely as they should be
 
 /// Finds the light in whose cell a surface lies.
 class Cells {
@@ -67,6 +72,13 @@ float restOf(float cosReceiver, float cosLight, float distance2, float area, con
   return exact > 0 ? 1 - geometryTerm(cosReceiver, cosLight, distance2, area, settings) / exact : 0;
 }
 
+/// How far off surfaces may be that leave out `rest` or more of the light of an area, m².
+float reach2Of(float rest, float area, const GatherSettings& settings) {
+  if (rest >= 1) return 0;
+  const float byDisk = settings.disk * area / kPi * (1 / rest - 1);
+  return settings.clamp > 0 ? std::max(byDisk, (1 - rest) / settings.clamp) : byDisk;
+}
+
 /// A ray that goes on.
 struct Near {
   size_t pixel;
@@ -74,6 +86,7 @@ struct Near {
   float weight;   // times the radiance met: irradiance
   float spread;   // lobeSpread of the surface met
   uint32_t path;  // of the pattern
+  float most;     // luminance that the radiance met counts up to
 };
 
 } // namespace
@@ -115,8 +128,10 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
         const vec3 u = additiveRecurrence3(path, shift);
         const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
         if (glm::dot(direction, h.geometricNormal) <= 0) continue;
-        segments.push_back({offsetPoint(h.position, h.geometricNormal, in.rays.grain()), direction});
-        near.push_back({i, direction, u.z, 0, path});
+        // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
+        const float reach2 = reach2Of(std::max(u.z, 1e-6f) * kCertain / kWide, cells.meanArea(), in.gather);
+        segments.push_back({offsetPoint(h.position, h.geometricNormal, in.rays.grain()), direction, std::sqrt(reach2)});
+        near.push_back({i, direction, u.z, 0, path, kInfinity});
       }
     }
     std::vector<SurfaceHit> hits(segments.size());
@@ -131,10 +146,8 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       Near n = near[j];
       const float cosReceiver = glm::dot(n.direction, surfaces[n.pixel - begin].normal),
                   cosLight = -glm::dot(n.direction, h.normal), distance2 = h.t * h.t;
-      // First by a light of mean area, so that far surfaces need not look for theirs.
-      const float u = n.weight;
-      const float likely =
-          std::min(1.0f, 4 * restOf(cosReceiver, cosLight, distance2, cells.meanArea(), in.gather) / kCertain);
+      const float u = n.weight, mean = restOf(cosReceiver, cosLight, distance2, cells.meanArea(), in.gather);
+      const float likely = std::min(1.0f, kWide * mean / kCertain);
       if (!(u < likely)) continue;
       const VirtualLight* light = cells.at(h);
       if (!light) continue;
@@ -143,6 +156,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       if (!(u < chance)) continue;
       n.weight = kPi * rest / (chance * float(perPixel));
       n.spread = lobeSpread(in.gather.spread, light->area, cosLight, distance2);
+      if (in.gather.nearLimit > 0) n.most = in.gather.nearLimit * luminance(light->radiance);
       near[kept++] = n;
       Vpl v;
       v.position = h.position;
@@ -157,7 +171,9 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     count += estimateRadiance(jobs, in.rays, in.lights, update).rays;
     for (size_t j = 0; j < kept; ++j) {
       const Near& n = near[j];
-      const vec3 light = met[j].radiance * n.weight;
+      const float brightness = luminance(met[j].radiance);
+      if (!(brightness > 0)) continue;
+      const vec3 light = met[j].radiance * (n.weight * std::min(1.0f, n.most / brightness));
       out.irradiance[n.pixel] += light;
       if (!in.glossy) continue;
       const Receiver receiver = receiverOf(in.view, surfaces[n.pixel - begin]);

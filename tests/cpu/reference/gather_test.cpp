@@ -91,6 +91,7 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
     GatherSettings gather;
     gather.disk = subsets ? 4 : 1;
     gather.clamp = subsets ? 0 : 2;
+    gather.nearLimit = 0;
     std::vector<double> bounded, means;
     for (uint32_t set = 0; set < 400; ++set) {
       const std::vector<VirtualLight> lights = room.spread(150, set);
@@ -112,6 +113,35 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
     EXPECT_LT(m.error, 0.004 * truth.mean) << "too noisy to tell";
     EXPECT_LT(test::meanOf(bounded).mean, 0.9 * truth.mean) << "or there was little to give back";
   }
+}
+
+/// No ray brings more than the limit allows, and where the limit is out of reach nothing changes.
+TEST(ReferenceAgainstVpls, NearLightKeepsToItsLimit) {
+  Room room;
+  const std::vector<VirtualLight> lights = room.spread(150, 1);
+  float brightest = 0;
+  for (const VirtualLight& light : lights) brightest = std::max(brightest, luminance(light.radiance));
+  const auto traced = [&](float limit) {
+    GatherSettings gather;
+    gather.nearLimit = limit;
+    const NearLightInputs in{.view = room.view,
+                             .rays = *room.rays,
+                             .lights = room.lights,
+                             .virtuals = lights,
+                             .gather = gather,
+                             .bounces = kBounces,
+                             .subsets = true};
+    return traceNearLight(in, room.counts).irradiance;
+  };
+  const std::vector<vec3> free = traced(0), far = traced(1e6f), limited = traced(0.5f);
+  EXPECT_EQ(free, far);
+  double lost = 0;
+  for (size_t i = 0; i < free.size(); ++i) {
+    EXPECT_LE(luminance(limited[i]), 1.0001f * kPi * 0.5f * brightest);
+    EXPECT_LE(luminance(limited[i]), 1.0001f * luminance(free[i]));
+    lost += luminance(free[i]) - luminance(limited[i]);
+  }
+  EXPECT_GT(lost, 0);
 }
 
 } // namespace
