@@ -1,4 +1,4 @@
-// What bounds take from near virtual lights, traced on the CPU and added to what pixels gathered.
+// What bounds take from near virtual lights, traced on the CPU and added to what was gathered.
 #pragma once
 
 #include "gi/contract/figures.h"

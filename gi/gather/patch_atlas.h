@@ -35,6 +35,7 @@ class PatchAtlas {
   /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
   void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);
   LightOnSurfaces light() const { return target_.light(shape_.grid > 1); }
+  const LightTarget& target() const { return target_; } // of the pixels
 
  private:
   PassContext context_;

@@ -4,6 +4,7 @@
 // every fourth pixel; a patch of such a buffer lies within a smooth block of the picture, so that all subsets have the
 // same patches.
 #include "engine/gl/query_ring.h"
+#include "gi/gather/near_light_pass.h"
 #include "gi/gather/patch_atlas.h"
 #include "gi/gather/stages.h"
 #include "shaders/shared/patches.h"
@@ -21,8 +22,11 @@ class PatchGather : public IndirectStage {
     atlas_.fit(in.surfaces, patches, rowOf(in.settings.gather.mode).subsets);
     mark(in.surfaces, patches);
     gather(in);
-    const gl::PassScope scope = context_.scope(StageId::Upsample);
-    atlas_.upsample(in.surfaces, in.settings);
+    {
+      const gl::PassScope scope = context_.scope(StageId::Upsample);
+      atlas_.upsample(in.surfaces, in.settings);
+    }
+    near_.add(in, atlas_.target(), atlas_.shape().grid, stats);
     stats.patches = marks_.latest().value_or(0);
     return atlas_.light();
   }
@@ -84,6 +88,7 @@ class PatchGather : public IndirectStage {
 
   PassContext context_;
   PatchAtlas atlas_{context_};
+  NearLightPass near_{context_};
   gl::Framebuffer stencilFramebuffer_;
   GLuint stencilOf_ = 0; // texture that it draws into
   gl::QueryRing marks_{GL_SAMPLES_PASSED};

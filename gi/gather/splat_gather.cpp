@@ -1,4 +1,5 @@
 // Lights splatted into patches (paper 2), all into the same, or each into patches of its own.
+#include "gi/gather/near_light_pass.h"
 #include "gi/gather/splat.h"
 #include "gi/gather/stages.h"
 
@@ -10,25 +11,29 @@ class SplatGather : public IndirectStage {
  public:
   explicit SplatGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats&) override {
+  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, false);
     const GatherDraw draw{
         .surfaces = in.surfaces, .seen = in.seen, .biasTexels = in.settings.shadow.bias, .bounds = in.settings.gather};
     const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
-    if (in.settings.gather.mode == GatherMode::SplatPerVpl) {
+    if (in.settings.gather.mode == GatherMode::SplatPerVpl)
       splatEach(in, splats);
-      return atlas_.light();
-    }
+    else
+      splatAll(in, splats);
+    near_.add(in, atlas_.target(), 1, stats);
+    return atlas_.light();
+  }
+
+ private:
+  void splatAll(const IndirectInputs& in, const SplatInputs& splats) {
     splat_.refine(splats);
     atlas_.clear();
     splat_.splat(splats, atlas_.framebuffer());
     const gl::PassScope scope = context_.scope(StageId::Upsample);
     atlas_.upsample(in.surfaces, in.settings);
-    return atlas_.light();
   }
 
- private:
   /// Each light has patches of its own, so each is upsampled by itself before the next is added.
   void splatEach(const IndirectInputs& in, const SplatInputs& splats) {
     const gl::PassScope scope = context_.scope(StageId::SplatPerVpl);
@@ -43,6 +48,7 @@ class SplatGather : public IndirectStage {
 
   PassContext context_;
   PatchAtlas atlas_{context_};
+  NearLightPass near_{context_};
   SplatPass splat_{context_};
 };
 

@@ -3,11 +3,11 @@
 //   draw_gather     the draw that all of them share
 //   pixel_gather    at pixels: every light at each, or the 4×4 subsets of interleaved sampling
 //   ray_gather      at pixels, on the CPU, with a ray for every pair
-//   near_light_pass what bounds take from near lights, for these two
 //   patch_atlas     the multiresolution buffer of papers 2 and 3, flattened; from its patches to pixels
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
 //   tree_gather     the draw of light trees
+//   near_light_pass what bounds take from near lights, added to any of these
 //   filter          the subsets mixed
 #pragma once
 

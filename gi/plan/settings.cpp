@@ -95,9 +95,9 @@ class Table {
     number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number("gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays"}, Nothing,
-           "rays per pixel for the light that gather.disk and gather.clamp take from near VPLs (gather at pixels); 0 = "
-           "it is "
-           "lost");
+           "rays for the light that gather.disk and gather.clamp take from near VPLs: so many per pixel of 4x4 "
+           "subsets, 16 "
+           "times as many where there are none; 0 = it is lost");
     number(
         "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");

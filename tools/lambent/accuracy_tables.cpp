@@ -111,7 +111,7 @@ const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kR
 
 void accuracyConvergence(const AccuracyOptions& options) {
   needClamp(options);
-  Study study(options, "64x36", {{"gather.disk", "0"}, {"vpl.visibility", "rays"}});
+  Study study(options, "64x36", {{"gather.disk", "0"}, {"gather.near", "0"}, {"vpl.visibility", "rays"}});
   const ReferencePicture truth = study.trace(4096, ReferenceBuffer::Irradiance, true).picture;
   const std::vector<double> counts =
       options.quick ? std::vector<double>{64, 256} : std::vector<double>{512, 2048, 8192};
@@ -151,7 +151,7 @@ void accuracyConvergence(const AccuracyOptions& options) {
 }
 
 void accuracyGathers(const AccuracyOptions& options) {
-  Study study(options, "320x180");
+  Study study(options, "320x180", {{"gather.near", "0"}}); // the same for all of them
   std::vector<Variant> variants{study.variant("full", {{"gather.mode", "full"}})};
   for (const char* mode : {"interleaved", "multires-interleaved", "multires"})
     variants.push_back(study.variant(mode, {{"gather.mode", mode}}));
@@ -233,7 +233,7 @@ void accuracyPresets(const AccuracyOptions& options) {
 void accuracyFigure(const AccuracyOptions& options) {
   if (options.figure != 9) needClamp(options);
   const fs::path folder = reportFolder(options.output.out, format("out/figure-%d", options.figure));
-  Study study(options, "320x180", {{"gather.disk", "0"}});
+  Study study(options, "320x180", {{"gather.disk", "0"}, {"gather.near", "0"}});
   const bool quick = options.quick;
 
   // What pictures are held to comes first.
