@@ -14,7 +14,11 @@ float faceDepth(ivec2 texel, int face) {
   return texelFetch(faces, ivec3(clamp(texel, ivec2(0), textureSize(faces, 0).xy - 1), face), 0).r;
 }
 
-float lesser(float a, float b) { return abs(a) < abs(b) ? a : b; }
+/// The lesser of the slopes on two sides; none across a texel that stands alone, before or behind both.
+float slopeOf(float a, float b, float centre) {
+  float lesser = abs(a) < abs(b) ? a : b;
+  return a * b < 0.0 && abs(lesser) > 0.1 * centre ? 0.0 : lesser;
+}
 
 /// Reversed depth at `place`, texels. It is linear on a plane, so the nearest texel's value goes on by its slope: that of
 /// the side where no other surface begins. (Without, a texel beside the receiver answers for its plane, and grazing light
@@ -23,8 +27,9 @@ float depthAt(vec2 place, int face) {
   ivec2 texel = ivec2(floor(place));
   float centre = faceDepth(texel, face);
   if (centre == 0.0) return 0.0;
-  vec2 slope = vec2(lesser(faceDepth(texel + ivec2(1, 0), face) - centre, centre - faceDepth(texel - ivec2(1, 0), face)),
-                    lesser(faceDepth(texel + ivec2(0, 1), face) - centre, centre - faceDepth(texel - ivec2(0, 1), face)));
+  vec2 after = vec2(faceDepth(texel + ivec2(1, 0), face), faceDepth(texel + ivec2(0, 1), face)) - centre;
+  vec2 before = centre - vec2(faceDepth(texel - ivec2(1, 0), face), faceDepth(texel - ivec2(0, 1), face));
+  vec2 slope = vec2(slopeOf(after.x, before.x, centre), slopeOf(after.y, before.y, centre));
   return max(centre + dot(slope, place - vec2(texel) - 0.5), 1e-6 * centre);
 }
 

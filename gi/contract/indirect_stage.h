@@ -17,6 +17,7 @@ struct IndirectInputs {
   Patches& patches; // of the surfaces
   SeenLights seen;  // without slots for a technique that has no virtual lights
   const Settings& settings;
+  int bounces = 1; // that the virtual lights hold, themselves included
   uint32_t seed = 1;
 };
 

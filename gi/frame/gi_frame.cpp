@@ -106,7 +106,9 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     if (plan.on(EffectId::Indirect)) {
       const DrawCount indirectDraws;
       const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
-      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, k.seed}, stats);
+      const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
+      const int bounces = more ? settings.smc.bounces : 1;
+      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, bounces, k.seed}, stats);
       const FilterSettings filter = k.filterFor(plan);
       const DrawCount filterDraws;
       indirect = k.filter.run({surfaces, gathered, filter});

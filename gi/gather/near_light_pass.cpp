@@ -17,11 +17,12 @@ void NearLightPass::add(const IndirectInputs& in, const LightTarget& target, int
                             .lights = in.world.lights,
                             .virtuals = in.seen.lights.slots,
                             .gather = gather,
-                            .bounces = rowOf(in.settings.vpl.source).sampled ? in.settings.smc.bounces : 1,
+                            .bounces = in.bounces,
                             .subsets = grid > 1,
                             .glossy = in.surfaces.finish != nullptr,
                             .seed = in.seed},
                            stats.raysNear);
+    stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }
   const gl::PassScope scope = context_.scope(StageId::NearLight);
   traced_.fit(in.surfaces, target.size());

@@ -325,7 +325,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
-    anew[slot] |= !(cell.radius > 0.5f * radius && cell.radius < 2 * radius) ||
+    anew[slot] |= !(cell.radius > 0.7f * radius && cell.radius < 2 * radius) ||
                   disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
     if (!anew[slot]) continue;
     if (cell.radius > 0) places.push_back(cell.centre);

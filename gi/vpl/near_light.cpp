@@ -19,6 +19,7 @@
 #include "engine/core/sampling.h"
 #include "gi/vpl/receivers.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -107,10 +108,10 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   update.bounces = in.bounces;
   update.seed = in.seed;
 
-  constexpr size_t kGrain = 256; // pixels
-  std::vector<RayCounts> countsOf((pixels + kGrain - 1) / kGrain);
-  parallelFor(pixels, kGrain, [&](size_t begin, size_t end) {
-    RayCounts& count = countsOf[begin / kGrain];
+  const size_t grain = size_t(std::clamp(4096 / perPixel, 16, 256)); // pixels
+  std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
+  parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+    RayCounts& count = countsOf[begin / grain];
     std::vector<vec2> centres;
     for (size_t i = begin; i < end; ++i)
       centres.push_back((vec2(i % camera.width, i / camera.width) + 0.5f) / vec2(camera.width, camera.height));
@@ -142,7 +143,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     size_t kept = 0;
     for (size_t j = 0; j < hits.size(); ++j) {
       const SurfaceHit& h = hits[j];
-      if (!h.valid() || maxComponent(h.albedo) <= 0) continue;
+      if (!h.valid() || !(h.t > 0) || maxComponent(h.albedo) <= 0) continue;
       Near n = near[j];
       const float cosReceiver = glm::dot(n.direction, surfaces[n.pixel - begin].normal),
                   cosLight = -glm::dot(n.direction, h.normal), distance2 = h.t * h.t;

@@ -26,8 +26,9 @@ struct NearLight {
   std::vector<vec3> glossy; // as GlossyGather::radiance; empty where not asked for
 };
 
-/// Without bias: virtual lights and this together are what virtual lights would bring without bounds, if they were as
-/// many as the surface has points.
+/// Virtual lights and this together are what virtual lights would bring without bounds, if they were as many as the
+/// surface has points: without bias where nearLimit is 0, as far as a surface lies in the cell of the nearest light on
+/// its side.
 NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts);
 
 } // namespace lambent
