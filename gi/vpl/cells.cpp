@@ -305,6 +305,10 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
   const size_t slots = set.slots.size();
+  // The limit is a running figure: densities of kept samples are for the one that they were drawn with.
+  const bool drifted = !(set.cellLimit > 0.8f * radiusLimit && set.cellLimit < 1.25f * radiusLimit);
+  if (drifted) set.cellLimit = radiusLimit;
+  radiusLimit = set.cellLimit;
   if (set.cells.size() != slots) set.cells.assign(slots, {}); // slots may be others: draw all anew
   const Standing vpls = standing(set);
   const NeighbourTree tree(vpls.points);
@@ -325,7 +329,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
-    anew[slot] |= !(cell.radius > 0.7f * radius && cell.radius < 2 * radius) ||
+    anew[slot] |= drifted || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius) ||
                   disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
     if (!anew[slot]) continue;
     if (cell.radius > 0) places.push_back(cell.centre);

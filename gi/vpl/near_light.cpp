@@ -80,6 +80,34 @@ float reach2Of(float rest, float area, const GatherSettings& settings) {
   return settings.clamp > 0 ? std::max(byDisk, (1 - rest) / settings.clamp) : byDisk;
 }
 
+/// Mixes the 16 parts of the pattern: a tent of 5×5 in which each has the same weight, over pixels that see surfaces no
+/// farther than `reach` apart and turned roughly alike. The filter over the subsets, which tells normals apart, finds
+/// too few pixels to mix on mouldings and leaves.
+void mixBlocks(std::vector<vec3>& light, std::span<const vec3> positions, std::span<const vec3> normals, int width,
+               float reach) {
+  constexpr float kAlike = 0.3f; // cosine between normals
+  const std::vector<vec3> traced = light;
+  const int height = int(light.size()) / width;
+  parallelFor(size_t(height), 8, [&](size_t begin, size_t end) {
+    for (int y = int(begin); y < int(end); ++y)
+      for (int x = 0; x < width; ++x) {
+        const size_t at = size_t(y) * width + x;
+        vec3 sum(0);
+        float weights = 0;
+        for (int v = std::max(y - 2, 0); v <= std::min(y + 2, height - 1); ++v)
+          for (int u = std::max(x - 2, 0); u <= std::min(x + 2, width - 1); ++u) {
+            const size_t other = size_t(v) * width + u;
+            const vec3 d = positions[other] - positions[at];
+            if (!(glm::dot(d, d) <= reach * reach) || glm::dot(normals[other], normals[at]) < kAlike) continue;
+            const float weight = (std::abs(u - x) == 2 ? 0.5f : 1.0f) * (std::abs(v - y) == 2 ? 0.5f : 1.0f);
+            sum += weight * traced[other];
+            weights += weight;
+          }
+        if (weights > 0) light[at] = sum / weights;
+      }
+  });
+}
+
 /// A ray that goes on.
 struct Near {
   size_t pixel;
@@ -100,6 +128,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   if (in.glossy) out.glossy.assign(pixels, vec3(0));
   const Cells cells(in.virtuals);
   if (!(cells.meanArea() > 0)) return out;
+  std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
   const int perBlock = 16 * in.gather.near, perPixel = in.subsets ? in.gather.near : perBlock;
   Rng rng(in.seed, Stream::NearLight, 0);
   const vec3 shift = rng.next3();
@@ -123,6 +152,8 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     for (size_t i = begin; i < end; ++i) {
       const SurfaceHit& h = surfaces[i - begin];
       if (!h.valid()) continue;
+      positions[i] = h.position;
+      normals[i] = h.normal;
       const int subset = int(i % camera.width & 3) + 4 * int(i / camera.width & 3);
       for (int k = 0; k < perPixel; ++k) {
         const uint32_t path = uint32_t(in.subsets ? subset + 16 * k : k);
@@ -182,6 +213,11 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
   });
   for (const RayCounts& c : countsOf) counts += c;
+  if (in.subsets) {
+    const float reach = std::sqrt(cells.meanArea());
+    mixBlocks(out.irradiance, positions, normals, camera.width, reach);
+    if (in.glossy) mixBlocks(out.glossy, positions, normals, camera.width, reach);
+  }
   return out;
 }
 

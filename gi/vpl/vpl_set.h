@@ -87,6 +87,7 @@ struct VplSet {
   std::vector<Vpl> slots;
   std::vector<VplCell> cells;                      // by slot; empty with densities by nearest neighbours
   uint32_t drawings = 0;                           // of cells, so far
+  float cellLimit = 0;                             // m: the limit on radii that their densities are for
   std::vector<KeptPaths> samplerPaths, lightPaths; // by slot: of samplerRadiance and radiance; empty without path cache
   std::vector<Vpl> pool;                           // candidates that may yet be wanted, oldest first
   std::vector<KeptPaths> poolPaths;                // of their samplerRadiance

@@ -168,6 +168,21 @@ TEST(Cells, AWallBetweenASampleAndItsOwnerPartsThem) {
   EXPECT_EQ(after, 0);
 }
 
+/// The limit on radii follows an average. Little by little it changes nothing; far from what samples were drawn with, all
+/// are drawn anew, for chords end where it was.
+TEST(Cells, ALimitThatDriftsDrawsThemAnew) {
+  const vec3 half(2, 1, 3);
+  AnalyticQuery rays;
+  rays.addBox(-half, half, {vec3(0.5f)});
+  VplSet set = onBox(half, 20, 1), anew = set;
+  RayCounts counts;
+  updateCells(set, rays, {}, allSlots(set), 0.3f, 1, counts);
+  EXPECT_TRUE(updateCells(set, rays, {}, {}, 0.35f, 1, counts).empty());
+  EXPECT_EQ(updateCells(set, rays, {}, {}, 1, 1, counts).size(), 20u);
+  updateCells(anew, rays, {}, allSlots(anew), 1, 1, counts);
+  for (uint32_t i = 0; i < 20; ++i) EXPECT_FLOAT_EQ(set.slots[i].area, anew.slots[i].area) << i;
+}
+
 TEST(Cells, TwoVplsInOnePlaceShareNothing) {
   AnalyticQuery rays;
   rays.addBox({-2, -1, -2}, {2, 1, 2}, {vec3(0.5f)});
