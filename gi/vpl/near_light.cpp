@@ -112,7 +112,7 @@ void mixBlocks(std::vector<vec3>& light, std::span<const vec3> positions, std::s
 struct Near {
   size_t pixel;
   vec3 direction; // from the receiver
-  float weight;   // times the radiance met: irradiance
+  float weight;   // first the number that says whether it goes on; then, times the radiance met, irradiance
   float spread;   // lobeSpread of the surface met
   uint32_t path;  // of the pattern
   float most;     // luminance that the radiance met counts up to
