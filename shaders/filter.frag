@@ -25,7 +25,10 @@ ivec2 placeOf(ivec2 pixel) {
 #endif
 }
 
-vec3 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0).rgb; }
+vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
+
+/// What a neighbour counts for, by the pictures in this pixel's mean: one that holds every class needs none.
+float shareOf(float pictures) { return clamp((16.0 - pictures) / 15.0, 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -47,7 +50,17 @@ void main() {
   float base = dot(normalView.xy, ray) - (orthographic ? 0.0 : normalView.z);
   float plane = orthographic ? base - normalView.z * viewDistance : base * viewDistance;
   float inverseSigma = 1.0 / (distanceSigma * viewDistance);
+  vec4 own = irradianceAt(pixel);
+  float share = shareOf(own.a);
+#ifdef GLOSSY
+  vec4 ownGlossy = texelFetch(glossy, placeOf(pixel), 0);
+  float glossyShare = shareOf(ownGlossy.a);
+  bool alone = share == 0.0 && glossyShare == 0.0;
+#else
+  bool alone = share == 0.0;
+#endif
   ivec2 first = max(-reach, -pixel), last = min(reach, ivec2(camera.size.xy) - 1 - pixel);
+  if (alone) first = last = ivec2(0);
   vec3 sum = vec3(0.0);
   float weights = 0.0;
 #ifdef GLOSSY
@@ -67,23 +80,25 @@ void main() {
       // alignment^power · exp(-h²/2), with one exponential
       float weight = float((4 - abs(dx)) * (4 - abs(dy))) *
                      exp2(normalPower * log2(alignment) - 0.7213475 * height * height);
-      sum += weight * irradianceAt(neighbour);
-      weights += weight;
+      bool other = dx != 0 || dy != 0;
+      float counts = weight * (other ? share : 1.0);
+      sum += counts * irradianceAt(neighbour).rgb;
+      weights += counts;
 #ifdef GLOSSY
       // Lobes of other shape hold other light: exp(-Δ²/2σ²), σ = 0.1 of roughness or metalness.
       vec2 difference = texelFetch(gbufferFinish, neighbour, 0).rg - finish;
-      weight *= exp2(-72.13475 * dot(difference, difference));
-      glossySum += weight * texelFetch(glossy, placeOf(neighbour), 0).rgb;
-      glossyWeights += weight;
+      counts = weight * (other ? glossyShare : 1.0) * exp2(-72.13475 * dot(difference, difference));
+      glossySum += counts * texelFetch(glossy, placeOf(neighbour), 0).rgb;
+      glossyWeights += counts;
 #endif
     }
   }
-  outIrradiance = vec4(weights > 0.0 ? sum / weights : irradianceAt(pixel), 1.0);
+  outIrradiance = vec4(weights > 0.0 ? sum / weights : own.rgb, own.a);
 #ifdef GLOSSY
-  outGlossy = vec4(glossyWeights > 0.0 ? glossySum / glossyWeights : texelFetch(glossy, placeOf(pixel), 0).rgb, 1.0);
+  outGlossy = vec4(glossyWeights > 0.0 ? glossySum / glossyWeights : ownGlossy.rgb, ownGlossy.a);
 #endif
 #else
-  outIrradiance = vec4(irradianceAt(pixel), 1.0);
+  outIrradiance = irradianceAt(pixel);
 #ifdef GLOSSY
   outGlossy = texelFetch(glossy, placeOf(pixel), 0);
 #endif

@@ -13,6 +13,7 @@ struct LightOnSurfaces {
   const gl::Texture* irradiance = nullptr; // RGBA32F
   const gl::Texture* glossy = nullptr;     // RGBA32F W/(m² sr) over glossyTint (shaders/shared/ggx.h)
   bool deinterleaved = false;
+  bool subsets = deinterleaved; // pixels side by side were lit by other classes
 };
 
 /// A stage's own textures for that, and the framebuffer that draws into them.

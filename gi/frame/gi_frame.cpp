@@ -44,12 +44,15 @@ struct GiFrame::Kept {
   DirectLight direct{context};
   MapKeeper keeper{context};
   IndirectStages indirectStages{context};
-  FilterPass filter{context};
+  HistoryPass history{context};
+  FilterPass fresh{context}, filter{context};
   CompositePass composite{context};
   DisplayPass display{context};
   std::unique_ptr<LightSource> source; // below the world, which its update reads
   VplSource sourceOf = VplSource::None;
 
+  uint32_t picture = 0; // of those that the history averages
+  int averaged = 0;     // of them since anything changed
   float exposure = 0;
   FrameResults results;
   FrameStats stats;
@@ -86,6 +89,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                                         .host = host != nullptr,
                                         .settled = source && source->settled(),
                                         .mapsWaiting = k.keeper.waiting(),
+                                        .averaged = k.averaged,
                                         .lightArrived = source && source->arrived()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
@@ -108,10 +112,26 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
       const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
       const int bounces = more ? settings.smc.bounces : 1;
-      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, bounces, k.seed}, stats);
+      const bool averages = plan.on(EffectId::History);
+      if (!averages) k.picture = 0;
+      if (!averages || k.world.drawingSettingsChanged()) k.history.forget();
+      gathered = k.indirectStages.of(settings).run(
+          {world, surfaces, patches, seen, settings, bounces, k.seed, k.picture, averages}, stats);
+      LightOnSurfaces mean = gathered;
+      if (averages) {
+        const DrawCount historyDraws;
+        LightOnSurfaces fresh;
+        const bool changes = plan.lightChanges();
+        if (changes) fresh = k.fresh.run({surfaces, gathered, k.filterFor(plan)});
+        mean = k.history.run(
+            {surfaces, gathered, changes ? &fresh : nullptr, world.view.changes.camera, settings.history});
+        stats.of(EffectId::History) = historyDraws();
+        ++k.picture;
+        k.averaged = plan.changed() ? 1 : k.averaged + 1;
+      }
       const FilterSettings filter = k.filterFor(plan);
       const DrawCount filterDraws;
-      indirect = k.filter.run({surfaces, gathered, filter});
+      indirect = k.filter.run({surfaces, mean, filter});
       if (filter.on) stats.of(EffectId::Filter) = filterDraws();
       stats.of(EffectId::Indirect) += indirectDraws();
     }

@@ -35,7 +35,8 @@ bool WorldKeeper::open(const SceneAssets& assets, FrameStats& stats) {
 
 EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
   untold_ |= before_.effects != settings.effects || in.first;
-  const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
+  drawingSettingsChanged_ = before_ != settings;
+  const bool drawingChanged = drawingSettingsChanged_ || shadersChanged_ || in.host || hosted_;
   settingsChanged_ =
       before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || in.first;
   before_ = settings;
@@ -51,6 +52,7 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
                          .drawingChanged = drawingChanged,
                          .settled = in.settled,
                          .mapsWaiting = in.mapsWaiting,
+                         .averaged = in.averaged,
                          .lightArrived = in.lightArrived};
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);

@@ -11,13 +11,21 @@ namespace lambent {
 
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
-std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid) {
+// The turns are those of a 4×4 ordered dither, so that few pictures are spread evenly too.
+int lightClassOf(const glm::ivec2& subset, uint32_t picture) {
+  const auto bit = [&](int i) { return int(picture >> i & 1); };
+  const glm::ivec2 turn(2 * bit(0) + bit(2), 2 * (bit(0) ^ bit(1)) + (bit(2) ^ bit(3)));
+  return ((subset.x + turn.x) & 3) + 4 * ((subset.y + turn.y) & 3);
+}
+
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture) {
   if (grid == 1) return {{.origin = {0, 0}, .size = {gbuffer.width, gbuffer.height}}};
   std::vector<GatherArea> areas;
   const glm::ivec2 tile = tileSize(gbuffer);
   for (int c = 0; c < kLightClasses; ++c) {
     const glm::ivec2 subset(c % grid, c / grid);
-    areas.push_back({.origin = subset * tile, .size = tile, .subset = subset});
+    areas.push_back(
+        {.origin = subset * tile, .size = tile, .subset = subset, .lightClass = lightClassOf(subset, picture)});
   }
   return areas;
 }
@@ -91,9 +99,8 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
       packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
       program.set("blockClass", block * kClassesPerLightBlock);
       for (const GatherArea& area : in.areas) {
-        const int lightClass = area.subset.x + 4 * area.subset.y;
-        if (subsets && lightClass / kClassesPerLightBlock != block) continue;
-        program.set("firstClass", subsets ? lightClass % kClassesPerLightBlock : 0);
+        if (subsets && area.lightClass / kClassesPerLightBlock != block) continue;
+        program.set("firstClass", subsets ? area.lightClass % kClassesPerLightBlock : 0);
         drawArea(program, area, in.patches, in.addToTarget || chunk > 0 || (!subsets && block > 0));
       }
     }

@@ -11,7 +11,8 @@ namespace lambent {
 /// A rectangle of the target whose fragments are the pixels of one sub-image, or patches of it.
 struct GatherArea {
   glm::ivec2 origin, size; // texels of the target
-  glm::ivec2 subset{0};    // which sub-image, and of which class of lights; (0, 0) and every light if there is one only
+  glm::ivec2 subset{0};    // which sub-image; (0, 0) if there is one only
+  int lightClass = 0;      // that it gathers; every light if there is one sub-image only
   int level = 0;           // of the patches: see shaders/shared/patches.h
 };
 
@@ -30,8 +31,11 @@ struct GatherDraw {
 /// Size of one of the 16 sub-images of a de-interleaved picture.
 glm::ivec2 tileSize(const GBuffer& gbuffer);
 
+/// The class of lights that a sub-image of 4×4 gathers in a picture: each in turn, within 16 pictures.
+int lightClassOf(const glm::ivec2& subset, uint32_t picture);
+
 /// Pixels of the picture as they are, or as 16 tiles.
-std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid);
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture = 0);
 
 /// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
 /// G-buffer has finishes, else none.

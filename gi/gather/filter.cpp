@@ -8,7 +8,8 @@
 namespace lambent {
 
 LightOnSurfaces FilterPass::run(const FilterInputs& in) {
-  if (!in.gathered.deinterleaved) return in.gathered; // nothing to mix: every pixel has seen every light
+  const bool moves = in.gathered.deinterleaved;
+  if (!moves && !(in.gathered.subsets && in.filter.on)) return in.gathered; // nothing to mix
   const gl::PassScope scope = context_.scope(StageId::Filter);
   target_.fit(in.surfaces);
   rows_.fit(in.surfaces);
@@ -19,6 +20,7 @@ LightOnSurfaces FilterPass::run(const FilterInputs& in) {
       from.glossy->bind(3);
       defines.push_back("GLOSSY");
     }
+    if (from.deinterleaved) defines.push_back("SUBSETS");
     const gl::Program& program = context_.programs.get({.fragment = "filter.frag", .defines = std::move(defines)});
     program.use();
     program.set("tileSize", tileSize(in.surfaces));
@@ -31,11 +33,11 @@ LightOnSurfaces FilterPass::run(const FilterInputs& in) {
     gl::drawFullscreen();
   };
   if (!in.filter.on) {
-    draw(in.gathered, {"SUBSETS"}, {0, 0}, target_);
+    draw(in.gathered, {}, {0, 0}, target_);
   } else if (in.filter.kernel == FilterKernel::Whole) {
-    draw(in.gathered, {"SUBSETS", "FILTER"}, {3, 3}, target_);
+    draw(in.gathered, {"FILTER"}, {3, 3}, target_);
   } else {
-    draw(in.gathered, {"SUBSETS", "FILTER"}, {3, 0}, rows_);
+    draw(in.gathered, {"FILTER"}, {3, 0}, rows_);
     draw(rows_.light(), {"FILTER"}, {0, 3}, target_);
   }
   return target_.light();

@@ -20,7 +20,9 @@ void NearLightPass::add(const IndirectInputs& in, const LightTarget& target, int
                             .bounces = in.bounces,
                             .subsets = grid > 1,
                             .glossy = in.surfaces.finish != nullptr,
-                            .seed = in.seed},
+                            .seed = in.seed,
+                            .picture = in.picture,
+                            .averaged = in.averaged},
                            stats.raysNear);
     stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }

@@ -71,8 +71,11 @@ class PatchGather : public IndirectStage {
       const glm::ivec2 sub = shape.sub(level);
       for (int c = 0; c < shape.grid * shape.grid; ++c) {
         const glm::ivec2 subset(c % shape.grid, c / shape.grid);
-        areas.push_back(
-            {.origin = atlasOrigin(shape.base, level) + subset * sub, .size = sub, .subset = subset, .level = level});
+        areas.push_back({.origin = atlasOrigin(shape.base, level) + subset * sub,
+                         .size = sub,
+                         .subset = subset,
+                         .lightClass = lightClassOf(subset, in.picture),
+                         .level = level});
       }
     }
     drawGather(context_.programs, atlas_.framebuffer(),

@@ -25,7 +25,7 @@ class PixelGather : public IndirectStage {
     drawGather(context_.programs, target_.framebuffer(),
                {.surfaces = in.surfaces,
                 .seen = in.seen,
-                .areas = gatherAreas(in.surfaces, grid),
+                .areas = gatherAreas(in.surfaces, grid, in.picture),
                 .grid = grid,
                 .biasTexels = in.settings.shadow.bias,
                 .bounds = in.settings.gather});

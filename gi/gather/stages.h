@@ -35,6 +35,37 @@ class IndirectStages {
   std::vector<std::pair<Make, std::unique_ptr<IndirectStage>>> made_;
 };
 
+struct HistoryInputs {
+  const GBuffer& surfaces;
+  const LightOnSurfaces& gathered;
+  const LightOnSurfaces* fresh; // the same, filtered, where light changes; what is kept then keeps to its range
+  bool camera;                  // moves: glossy light is this picture's own
+  const HistorySettings& settings;
+};
+
+/// The mean of what was gathered at the place of each pixel in this picture and those before it.
+class HistoryPass {
+ public:
+  explicit HistoryPass(PassContext context) : context_(context) {}
+  LightOnSurfaces run(const HistoryInputs& in);
+  void forget() { pictures_ = 0; }
+
+ private:
+  /// One picture's light, and where the surfaces lay that it fell on.
+  struct Kept {
+    gl::Texture irradiance, seen, glossy;
+    gl::Framebuffer framebuffer;
+  };
+  void fit(const GBuffer& surfaces);
+
+  PassContext context_;
+  Kept kept_[2];
+  int now_ = 0;
+  uint32_t pictures_ = 0; // since it was forgotten
+  CameraBlock before_;
+  gl::Ring cameras_{"history/camera"};
+};
+
 struct FilterInputs {
   const GBuffer& surfaces;
   const LightOnSurfaces& gathered;

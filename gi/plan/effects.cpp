@@ -19,6 +19,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"relight", "VPLs follow lights and geometry that change", "VPLs"},
     {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
     {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
+    {"history", "indirect light of a pixel is averaged over pictures; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
@@ -148,6 +149,12 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : !settings.filter.on                            ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});
 
+  const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
+  decide(EffectId::History, !lights                        ? none
+                            : settings.history.frames == 0 ? Answer{false, "history.frames is 0"}
+                            : sixteenths                   ? Answer{true, "the gather is interleaved"}
+                            : settings.gather.near > 0     ? Answer{true, "near light is traced"}
+                                                           : Answer{false, "every picture gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});
@@ -184,13 +191,18 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}
                                                      : Answer{true, "the view or the scene changed"});
+  const int historyFrames = plan.on(EffectId::History) ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
   const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
-  decide(EffectId::Redraw, !still                              ? Answer{true, "the view, the scene or settings changed"}
-                           : facts.drawingChanged              ? Answer{true, "settings or shaders changed"}
-                           : newLight                          ? Answer{true, "VPLs change"}
-                           : indirect && facts.mapsWaiting > 0 ? Answer{true, "shadow maps are waiting"}
-                                                               : Answer{false, "nothing changed"});
+  const bool waiting = indirect && facts.mapsWaiting > 0;
+  plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
+  plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
+  decide(EffectId::Redraw, !still                           ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged           ? Answer{true, "settings or shaders changed"}
+                           : newLight                       ? Answer{true, "VPLs change"}
+                           : waiting                        ? Answer{true, "shadow maps are waiting"}
+                           : facts.averaged < historyFrames ? Answer{true, "light is averaged over pictures"}
+                                                            : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no picture yet";

@@ -34,6 +34,7 @@ struct FrameFacts {
   bool drawingChanged = true;  // other settings, or the shaders
   bool settled = false;        // no better set of VPLs is in reach, see gi/vpl/settling.h
   uint32_t mapsWaiting = 0;    // maps that show where a moved object was
+  int averaged = 0;            // pictures in the history since anything last changed
   bool lightArrived = false;   // VPLs were updated beside the last picture and are not in it
 };
 
@@ -44,12 +45,17 @@ class EffectPlan {
   /// On without need: the work is done, and must not change anything.
   bool idle(EffectId id) const { return on(id) && !calledFor(id); }
   const Effect& operator[](EffectId id) const { return effects_[size_t(id)]; }
+  /// The picture would be drawn anew even if light were not averaged over pictures.
+  bool changed() const { return changed_; }
+  /// Light in the scene may be other than in the picture before, not only what the camera sees of it.
+  bool lightChanges() const { return lightChanges_; }
   /// Names of the effects that are on, separated by '+'; "none".
   std::string oneLine() const;
 
  private:
   friend EffectPlan planEffects(const SceneView&, const Settings&, const FrameFacts&);
   std::array<Effect, kEffects> effects_;
+  bool changed_ = true, lightChanges_ = true;
 };
 
 /// `view.changes` counts: what nothing changed about needs no work.

@@ -135,6 +135,9 @@ class Table {
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
     number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
+    number("history.frames", &Settings::history, &HistorySettings::frames, {0, 256, "frames", PowersOfTwo}, Nothing,
+           "pictures that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
+           "the VPLs; 0 = each picture by itself");
     flag("filter.on", &Settings::filter, &FilterSettings::on, Nothing, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"}, Nothing,
            "7x7 filter along rows then columns, or all 49 taps at once");

@@ -32,6 +32,7 @@ enum class EffectId : int {
   Relight,
   Replace,
   Filter,
+  History,
   Glossy,
   SoftShadows,
   Redraw,
@@ -130,6 +131,12 @@ struct FilterSettings {
   bool operator==(const FilterSettings&) const = default;
 };
 
+/// Indirect light of a pixel, averaged over pictures.
+struct HistorySettings {
+  int frames = 32; // that count; 0 = each picture by itself
+  bool operator==(const HistorySettings&) const = default;
+};
+
 struct ImageSettings {
   float exposure = 0; // factor on radiance before Reinhard; 0 = measured once when the first picture is drawn
   bool operator==(const ImageSettings&) const = default;
@@ -156,6 +163,7 @@ struct Settings {
   GatherSettings gather;
   MultiresSettings multires;
   RsmSettings rsm;
+  HistorySettings history;
   FilterSettings filter;
   ImageSettings image;
   FrameSettings frame;

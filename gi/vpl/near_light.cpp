@@ -130,12 +130,12 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   if (!(cells.meanArea() > 0)) return out;
   std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
   const int perBlock = 16 * in.gather.near, perPixel = in.subsets ? in.gather.near : perBlock;
-  Rng rng(in.seed, Stream::NearLight, 0);
+  Rng rng(in.seed, Stream::NearLight, in.picture);
   const vec3 shift = rng.next3();
   RadianceUpdate update;
   update.paths = perBlock;
   update.bounces = in.bounces;
-  update.seed = in.seed;
+  update.seed = in.seed + 0x9e3779b9u * in.picture;
 
   const size_t grain = size_t(std::clamp(4096 / perPixel, 16, 256)); // pixels
   std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
@@ -213,7 +213,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
   });
   for (const RayCounts& c : countsOf) counts += c;
-  if (in.subsets) {
+  if (in.subsets && !in.averaged) {
     const float reach = std::sqrt(cells.meanArea());
     mixBlocks(out.irradiance, positions, normals, camera.width, reach);
     if (in.glossy) mixBlocks(out.glossy, positions, normals, camera.width, reach);

@@ -18,6 +18,8 @@ struct NearLightInputs {
   bool subsets = false; // interleaved: each pixel of 4×4 casts a sixteenth of the rays
   bool glossy = false;
   uint32_t seed = 1;
+  uint32_t picture = 0;  // another pattern in each
+  bool averaged = false; // over pictures; else blocks of pixels are mixed
 };
 
 /// At pixel centres of the view's camera, row by row from the top.
