@@ -3,6 +3,7 @@
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
 // the mean over all 16 subsets exactly. GLOSSY: glossy light too, with weights by roughness and metalness besides.
 #include "lib/gbuffer.glsl"
+#include "lib/subsets.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY
@@ -10,20 +11,10 @@ layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
 layout(binding = 7) uniform sampler2D gbufferFinish;
 layout(location = 1) out vec4 outGlossy;
 #endif
-uniform ivec2 tileSize;        // of a sub-image
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
 uniform float normalPower;
 uniform float distanceSigma;   // share of the view distance
 layout(location = 0) out vec4 outIrradiance;
-
-/// Where the value of a pixel lies.
-ivec2 placeOf(ivec2 pixel) {
-#ifdef SUBSETS
-  return (pixel & 3) * tileSize + (pixel >> 2);
-#else
-  return pixel;
-#endif
-}
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 

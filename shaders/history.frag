@@ -1,39 +1,32 @@
 #version 450
 // Mean of the light that fell on the place of a pixel, in this picture and those before it. The place is looked up where
-// the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (light of
-// this picture is de-interleaved), CHANGES (light changes: what is kept is held to the range of `fresh` around the pixel),
-// GLOSSY.
+// the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
+// picture's light is de-interleaved), CHANGES (what is kept, and this picture's difference to it, for
+// history_follow.frag), GLOSSY.
 #include "lib/gbuffer.glsl"
+#include "lib/subsets.glsl"
 #include "shared/octahedral.h"
 
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
 layout(binding = 2) uniform sampler2D irradiance; // of this picture
 layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, pictures in the mean (0: nothing)
+uniform float pictures; // of those before that count at most; 0: there are none
+layout(location = 0) out vec4 outIrradiance; // a: pictures in the mean
 #ifdef CHANGES
-layout(binding = 9) uniform sampler2D fresh; // this picture's light, filtered
-#endif
+layout(location = 1) out vec4 outChange;
+#else
+layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy;
 layout(binding = 8) uniform sampler2D keptGlossy; // a: pictures in its mean
 uniform float glossyPictures; // as `pictures`
 layout(location = 2) out vec4 outGlossy;
 #endif
-uniform ivec2 tileSize; // of a sub-image
-uniform float pictures; // of those before that count at most; 0: there are none
-layout(location = 0) out vec4 outIrradiance; // a: pictures in the mean
-layout(location = 1) out vec4 outSeen;
-
-const float kOnPlane = 0.01; // deviation from the pixel's plane, share of the view distance
-const float kAlike = 0.9;    // cosine between normals
-
-ivec2 placeOf(ivec2 pixel) {
-#ifdef SUBSETS
-  return (pixel & 3) * tileSize + (pixel >> 2);
-#else
-  return pixel;
 #endif
-}
+
+const float kOnPlane = 0.25; // deviation from the pixel's plane, pixels
+const float kAlike = 0.9;    // cosine between normals
 
 /// Position that a pixel of the picture before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
@@ -44,9 +37,14 @@ vec3 positionBefore(ivec2 pixel, float viewDistance) {
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = outSeen = vec4(0.0);
+  outIrradiance = vec4(0.0);
+#ifdef CHANGES
+  outChange = vec4(0.0);
+#else
+  outSeen = vec4(0.0);
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
+#endif
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
@@ -54,12 +52,13 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec4 kept = vec4(0.0);
   float weights = 0.0;
-#ifdef GLOSSY
+#if defined(GLOSSY) && !defined(CHANGES)
   vec4 keptLobe = vec4(0.0);
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
   if (pictures > 0.0 && clip.w > 0.0 && all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, before.size.xy))) {
+    float metresPerPixel = 2.0 * before.lens.y * before.size.w * (before.lens.w > 0.0 ? 1.0 : clip.w);
     vec2 corner = floor(at + 1e-3); // a camera that stands meets centres, but for rounding
     vec2 inside = max(at - corner, 0.0);
     for (int i = 0; i < 4; ++i) {
@@ -69,33 +68,28 @@ void main() {
       if (weight < 2e-3 || any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(before.size.xy)))) continue;
       vec4 seen = texelFetch(keptSeen, tap, 0);
       if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
-      if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * seen.z) continue;
+      if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
       kept += weight * texelFetch(keptIrradiance, tap, 0);
       weights += weight;
-#ifdef GLOSSY
+#if defined(GLOSSY) && !defined(CHANGES)
       keptLobe += weight * texelFetch(keptGlossy, tap, 0);
 #endif
     }
   }
   if (weights > 0.0) kept /= weights;
   kept.a = min(kept.a, pictures);
+  vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
 #ifdef CHANGES
-  vec3 least = vec3(3.4e38), most = vec3(0.0);
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      ivec2 other = clamp(pixel + ivec2(dx, dy), ivec2(0), ivec2(camera.size.xy) - 1);
-      if (texelFetch(gbufferDepth, other, 0).r == 0.0) continue;
-      vec3 light = texelFetch(fresh, other, 0).rgb;
-      least = min(least, light);
-      most = max(most, light);
-    }
-  kept.rgb = clamp(kept.rgb, least, most);
-#endif
-  outIrradiance = vec4(mix(kept.rgb, texelFetch(irradiance, placeOf(pixel), 0).rgb, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
+  outIrradiance = kept;
+  outChange = vec4(kept.a > 0.0 ? now - kept.rgb : now, 1.0);
+#else
+  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
   outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   keptLobe.a = min(keptLobe.a, glossyPictures);
-  outGlossy = vec4(mix(keptLobe.rgb, texelFetch(glossy, placeOf(pixel), 0).rgb, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
+  vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
+  outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
+#endif
 #endif
 }

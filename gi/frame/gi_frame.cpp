@@ -45,7 +45,7 @@ struct GiFrame::Kept {
   MapKeeper keeper{context};
   IndirectStages indirectStages{context};
   HistoryPass history{context};
-  FilterPass fresh{context}, filter{context};
+  FilterPass filter{context};
   CompositePass composite{context};
   DisplayPass display{context};
   std::unique_ptr<LightSource> source; // below the world, which its update reads
@@ -120,11 +120,8 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       LightOnSurfaces mean = gathered;
       if (averages) {
         const DrawCount historyDraws;
-        LightOnSurfaces fresh;
-        const bool changes = plan.lightChanges();
-        if (changes) fresh = k.fresh.run({surfaces, gathered, k.filterFor(plan)});
         mean = k.history.run(
-            {surfaces, gathered, changes ? &fresh : nullptr, world.view.changes.camera, settings.history});
+            {surfaces, gathered, world.view.changes.camera, plan.lightChanges(), settings.history, settings.filter});
         stats.of(EffectId::History) = historyDraws();
         ++k.picture;
         k.averaged = plan.changed() ? 1 : k.averaged + 1;

@@ -1,5 +1,11 @@
-// Light averaged over pictures. Each pixel looks where the place that it shows was seen in the picture before; what
-// lies there counts as far as it is of the same surface.
+// Light averaged over pictures. Each pixel gathers another sixteenth of the lights in every picture and casts other
+// near rays, so that its mean holds them all, without the blur of a filter over its neighbours. It looks up what is
+// kept where the camera before saw its place, and takes it as far as that is of the same surface.
+//
+// Where light changes, means over many pictures lag. There what is kept follows this picture: the filtered difference
+// between the two, which has all sixteen subsets in it and little noise, is added by a half, so that half of a coarse
+// change is shown in its first picture and nine tenths within three; only what is finer than the filter waits.
+// (Settings and lag in numbers: docs/measurements/light.md.)
 #include "gi/gather/draw_gather.h"
 #include "gi/gather/stages.h"
 
@@ -7,55 +13,107 @@
 
 namespace lambent {
 
+namespace {
+
+constexpr float kFollow = 0.25f;
+constexpr int kFollowOn = 4;    // pictures after the last change that still follow
+constexpr int kFewPictures = 8; // that means hold at most while light changes
+
+} // namespace
+
+LightOnSurfaces HistoryPass::run(const HistoryInputs& in) {
+  const gl::PassScope scope = context_.scope(StageId::History);
+  fit(in.surfaces);
+  if (in.lightChanges) following_ = kFollowOn + 1;
+  const bool changes = pictures_ > 0 && following_ > 0;
+  following_ = std::max(0, following_ - 1);
+  const Kept& before = kept_[now_];
+  now_ = 1 - now_;
+  const Kept& now = kept_[now_];
+  find(in, before, changes ? changing_ : now.framebuffer, changes);
+  if (changes) follow(in, now);
+  before_ = in.surfaces.block;
+  ++pictures_;
+  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.deinterleaved};
+}
+
 void HistoryPass::fit(const GBuffer& surfaces) {
   const bool glossy = surfaces.finish != nullptr;
-  const gl::Texture& present = kept_[0].irradiance;
-  if (present && present.width() == surfaces.width && present.height() == surfaces.height &&
+  if (found_ && found_.width() == surfaces.width && found_.height() == surfaces.height &&
       bool(kept_[0].glossy) == glossy)
     return;
   forget();
+  const auto make = [&](const char* label) {
+    return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
+  };
   for (Kept& k : kept_) {
-    const auto make = [&](const char* label) {
-      return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
-    };
     k.irradiance = make("history/irradiance");
     k.seen = make("history/seen");
     k.glossy = glossy ? make("history/glossy") : gl::Texture();
     k.framebuffer = glossy ? gl::Framebuffer("history", {&k.irradiance, &k.seen, &k.glossy})
                            : gl::Framebuffer("history", {&k.irradiance, &k.seen});
   }
+  found_ = make("history/found");
+  change_ = make("history/change");
+  tiles_ = gl::Texture("history/tiles",
+                       {.format = GL_RGBA32F, .width = (surfaces.width + 15) / 16, .height = (surfaces.height + 15) / 16});
+  tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
+  smooth_ = gl::Sampler("history/smooth");
+  glSamplerParameteri(smooth_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glSamplerParameteri(smooth_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(smooth_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  changing_ = gl::Framebuffer("history/changing", {&found_, &change_});
 }
 
-LightOnSurfaces HistoryPass::run(const HistoryInputs& in) {
-  const gl::PassScope scope = context_.scope(StageId::History);
-  fit(in.surfaces);
-  const Kept& before = kept_[now_];
-  now_ = 1 - now_;
-  const Kept& now = kept_[now_];
+void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes) {
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
-  if (in.fresh) defines.push_back("CHANGES");
+  if (changes) defines.push_back("CHANGES");
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
-  const float most = pictures_ == 0 ? 0.0f : float(in.settings.frames - 1);
-  program.set("pictures", most);
+  const int most = pictures_ == 0 ? 0 : in.settings.frames - 1;
+  program.set("pictures", float(changes ? std::min(most, kFewPictures) : most));
   cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
   before.seen.bind(4);
-  if (in.gathered.glossy) {
+  if (in.gathered.glossy && !changes) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    program.set("glossyPictures", in.camera || in.fresh ? 0.0f : most);
+    program.set("glossyPictures", in.cameraMoved ? 0.0f : float(most));
   }
-  if (in.fresh) in.fresh->irradiance->bind(9);
+  to.bind();
+  gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
+  gl::drawFullscreen();
+}
+
+void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
+  const LightOnSurfaces change{&change_, nullptr, false, in.gathered.deinterleaved};
+  const LightOnSurfaces filtered = filter_.run({in.surfaces, change, in.filter});
+  context_.programs.get({.fragment = "history_tiles.frag"}).use();
+  found_.bind(2);
+  change_.bind(3);
+  tilesFramebuffer_.bind();
+  gl::PipelineState{.width = tiles_.width(), .height = tiles_.height()}.apply();
+  gl::drawFullscreen();
+  std::vector<std::string> defines = bindSurfaces(in.surfaces);
+  if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
+  const gl::Program& program =
+      context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
+  program.use();
+  if (in.gathered.glossy) {
+    program.set("tileSize", tileSize(in.surfaces));
+    in.gathered.glossy->bind(5);
+  }
+  program.set("follow", kFollow);
+  filtered.irradiance->bind(4);
+  tiles_.bind(6);
+  glBindSampler(6, smooth_.name());
   now.framebuffer.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
   gl::drawFullscreen();
-  before_ = in.surfaces.block;
-  ++pictures_;
-  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.deinterleaved};
+  glBindSampler(6, 0);
 }
 
 } // namespace lambent

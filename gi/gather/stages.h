@@ -35,37 +35,6 @@ class IndirectStages {
   std::vector<std::pair<Make, std::unique_ptr<IndirectStage>>> made_;
 };
 
-struct HistoryInputs {
-  const GBuffer& surfaces;
-  const LightOnSurfaces& gathered;
-  const LightOnSurfaces* fresh; // the same, filtered, where light changes; what is kept then keeps to its range
-  bool camera;                  // moves: glossy light is this picture's own
-  const HistorySettings& settings;
-};
-
-/// The mean of what was gathered at the place of each pixel in this picture and those before it.
-class HistoryPass {
- public:
-  explicit HistoryPass(PassContext context) : context_(context) {}
-  LightOnSurfaces run(const HistoryInputs& in);
-  void forget() { pictures_ = 0; }
-
- private:
-  /// One picture's light, and where the surfaces lay that it fell on.
-  struct Kept {
-    gl::Texture irradiance, seen, glossy;
-    gl::Framebuffer framebuffer;
-  };
-  void fit(const GBuffer& surfaces);
-
-  PassContext context_;
-  Kept kept_[2];
-  int now_ = 0;
-  uint32_t pictures_ = 0; // since it was forgotten
-  CameraBlock before_;
-  gl::Ring cameras_{"history/camera"};
-};
-
 struct FilterInputs {
   const GBuffer& surfaces;
   const LightOnSurfaces& gathered;
@@ -82,6 +51,46 @@ class FilterPass {
  private:
   PassContext context_;
   LightTarget target_{"filter"}, rows_{"filter/rows"};
+};
+
+struct HistoryInputs {
+  const GBuffer& surfaces;
+  const LightOnSurfaces& gathered;
+  bool cameraMoved;  // glossy light is then this picture's own
+  bool lightChanges; // what is kept then follows this picture
+  const HistorySettings& settings;
+  const FilterSettings& filter;
+};
+
+/// The mean of what was gathered at the place of each pixel in this picture and those before it.
+class HistoryPass {
+ public:
+  explicit HistoryPass(PassContext context) : context_(context) {}
+  LightOnSurfaces run(const HistoryInputs& in);
+  void forget() { pictures_ = 0; }
+
+ private:
+  /// A picture's light, and the surfaces that it fell on.
+  struct Kept {
+    gl::Texture irradiance, seen, glossy;
+    gl::Framebuffer framebuffer;
+  };
+  void fit(const GBuffer& surfaces);
+  void find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes);
+  void follow(const HistoryInputs& in, const Kept& now);
+
+  PassContext context_;
+  FilterPass filter_{context_};
+  Kept kept_[2];
+  gl::Texture found_, change_; // where light changes: what is kept, and this picture's difference to it
+  gl::Texture tiles_;          // by how much it changes
+  gl::Framebuffer changing_, tilesFramebuffer_;
+  gl::Sampler smooth_;
+  int now_ = 0;
+  int pictures_ = 0;   // since it was forgotten
+  int following_ = 0;  // pictures that are still to be followed
+  CameraBlock before_; // the last picture's
+  gl::Ring cameras_{"history/camera"};
 };
 
 } // namespace lambent
