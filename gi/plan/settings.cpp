@@ -94,8 +94,8 @@ class Table {
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
-    number("gather.near", &Settings::gather, &GatherSettings::near, {0, 16, "rays"}, Nothing,
-           "rays for what gather.disk and gather.clamp take from near VPLs: per pixel of 4x4 subsets, else 16 times; 0 "
+    number("gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays", PowersOfTwo}, Nothing,
+           "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; 0 "
            "= lost");
     number(
         "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,

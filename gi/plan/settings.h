@@ -91,8 +91,8 @@ struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
-  int near = 1; // rays per pixel of subsets for what disk and clamp take from near VPLs (else 16 times); 0: it is lost
-  float nearLimit = 4; // radiance of a near surface counts up to so many times its VPL's; 0 = whatever it is
+  int near = 8; // rays per 4×4 pixels of subsets (else per pixel) for what disk and clamp take from near VPLs; 0: lost
+  float nearLimit = 8; // radiance of a near surface counts up to so many times its VPL's; 0 = whatever it is
   bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
   bool operator==(const GatherSettings&) const = default;
@@ -133,7 +133,7 @@ struct FilterSettings {
 
 /// Indirect light of a pixel, averaged over pictures.
 struct HistorySettings {
-  int frames = 32; // that count; 0 = each picture by itself
+  int frames = 64; // that count; 0 = each picture by itself
   bool operator==(const HistorySettings&) const = default;
 };
 

@@ -10,8 +10,8 @@
 // %.)
 //
 // Rays whose rest is small go on with a probability in proportion to it. The pixels of 4×4 cast the rays of one
-// stratified pattern, the same in every block and fixed in the surface's frame, so that the error does not flicker and
-// the filter over the subsets takes most of it away.
+// stratified pattern, the same in every block and fixed in the surface's frame: each picture of those that are averaged
+// has another, and other pixels of the block cast it.
 #include "gi/vpl/near_light.h"
 
 #include "engine/core/parallel.h"
@@ -80,6 +80,12 @@ float reach2Of(float rest, float area, const GatherSettings& settings) {
   return settings.clamp > 0 ? std::max(byDisk, (1 - rest) / settings.clamp) : byDisk;
 }
 
+/// Which of the pixels of 4×4 comes first, second and so on: those of a few turns are spread evenly (ordered dither).
+uint32_t turnOf(size_t x, size_t y) {
+  const uint32_t v = uint32_t(y), d = uint32_t(x) ^ v;
+  return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
+}
+
 /// Mixes the 16 parts of the pattern: a tent of 5×5 in which each has the same weight, over pixels that see surfaces no
 /// farther than `reach` apart and turned roughly alike. The filter over the subsets, which tells normals apart, finds
 /// too few pixels to mix on mouldings and leaves.
@@ -110,12 +116,12 @@ void mixBlocks(std::vector<vec3>& light, std::span<const vec3> positions, std::s
 
 /// A ray that goes on.
 struct Near {
-  size_t pixel;
-  vec3 direction; // from the receiver
-  float weight;   // first the number that says whether it goes on; then, times the radiance met, irradiance
-  float spread;   // lobeSpread of the surface met
-  uint32_t path;  // of the pattern
-  float most;     // luminance that the radiance met counts up to
+  uint32_t pixel, surface; // of the picture; of those that its block of pixels sees
+  vec3 direction;          // from the receiver
+  float weight;            // first the number that says whether it goes on; then, times the radiance met, irradiance
+  float spread;            // lobeSpread of the surface met
+  uint32_t path;           // of the pattern
+  float most;              // luminance that the radiance met counts up to
 };
 
 } // namespace
@@ -129,7 +135,8 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const Cells cells(in.virtuals);
   if (!(cells.meanArea() > 0)) return out;
   std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
-  const int perBlock = 16 * in.gather.near, perPixel = in.subsets ? in.gather.near : perBlock;
+  const int perBlock = in.gather.near;
+  const uint32_t stride = in.subsets ? 16 : 1; // paths of a pixel: every so many
   Rng rng(in.seed, Stream::NearLight, in.picture);
   const vec3 shift = rng.next3();
   RadianceUpdate update;
@@ -137,33 +144,39 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   update.bounces = in.bounces;
   update.seed = in.seed + 0x9e3779b9u * in.picture;
 
-  const size_t grain = size_t(std::clamp(4096 / perPixel, 16, 256)); // pixels
+  const size_t grain = size_t(std::clamp(4096 * int(stride) / perBlock, 16, 512)); // pixels
   std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
   parallelFor(pixels, grain, [&](size_t begin, size_t end) {
     RayCounts& count = countsOf[begin / grain];
+    // Pixels that cast, the first path of each; where blocks are mixed, those too that take from their neighbours.
+    std::vector<uint32_t> asked, paths;
     std::vector<vec2> centres;
-    for (size_t i = begin; i < end; ++i)
-      centres.push_back((vec2(i % camera.width, i / camera.width) + 0.5f) / vec2(camera.width, camera.height));
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t x = uint32_t(i % camera.width), y = uint32_t(i / camera.width);
+      const uint32_t path = (turnOf(x, y) + uint32_t(perBlock) * in.picture) % stride;
+      if (in.averaged && path >= uint32_t(perBlock)) continue;
+      asked.push_back(uint32_t(i));
+      paths.push_back(path);
+      centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
+    }
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
     count.closest += centres.size();
 
     std::vector<Ray> segments;
     std::vector<Near> near;
-    for (size_t i = begin; i < end; ++i) {
-      const SurfaceHit& h = surfaces[i - begin];
+    for (uint32_t s = 0; s < asked.size(); ++s) {
+      const SurfaceHit& h = surfaces[s];
       if (!h.valid()) continue;
-      positions[i] = h.position;
-      normals[i] = h.normal;
-      const int subset = int(i % camera.width & 3) + 4 * int(i / camera.width & 3);
-      for (int k = 0; k < perPixel; ++k) {
-        const uint32_t path = uint32_t(in.subsets ? subset + 16 * k : k);
+      positions[asked[s]] = h.position;
+      normals[asked[s]] = h.normal;
+      for (uint32_t path = paths[s]; path < uint32_t(perBlock); path += stride) {
         const vec3 u = additiveRecurrence3(path, shift);
         const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
         if (glm::dot(direction, h.geometricNormal) <= 0) continue;
         // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
         const float reach2 = reach2Of(std::max(u.z, 1e-6f) * kCertain / kWide, cells.meanArea(), in.gather);
         segments.push_back({offsetPoint(h.position, h.geometricNormal, in.rays.grain()), direction, std::sqrt(reach2)});
-        near.push_back({i, direction, u.z, 0, path, kInfinity});
+        near.push_back({asked[s], s, direction, u.z, 0, path, kInfinity});
       }
     }
     std::vector<SurfaceHit> hits(segments.size());
@@ -176,7 +189,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       const SurfaceHit& h = hits[j];
       if (!h.valid() || !(h.t > 0) || maxComponent(h.albedo) <= 0) continue;
       Near n = near[j];
-      const float cosReceiver = glm::dot(n.direction, surfaces[n.pixel - begin].normal),
+      const float cosReceiver = glm::dot(n.direction, surfaces[n.surface].normal),
                   cosLight = -glm::dot(n.direction, h.normal), distance2 = h.t * h.t;
       const float u = n.weight, mean = restOf(cosReceiver, cosLight, distance2, cells.meanArea(), in.gather);
       const float likely = std::min(1.0f, kWide * mean / kCertain);
@@ -186,7 +199,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       const float rest = restOf(cosReceiver, cosLight, distance2, light->area, in.gather);
       const float chance = std::min(likely, rest / kCertain);
       if (!(u < chance)) continue;
-      n.weight = kPi * rest / (chance * float(perPixel));
+      n.weight = kPi * rest * float(stride) / (chance * float(perBlock));
       n.spread = lobeSpread(in.gather.spread, light->area, cosLight, distance2);
       if (in.gather.nearLimit > 0) n.most = in.gather.nearLimit * luminance(light->radiance);
       near[kept++] = n;
@@ -208,7 +221,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       const vec3 light = met[j].radiance * (n.weight * std::min(1.0f, n.most / brightness));
       out.irradiance[n.pixel] += light;
       if (!in.glossy) continue;
-      const Receiver receiver = receiverOf(in.view, surfaces[n.pixel - begin]);
+      const Receiver receiver = receiverOf(in.view, surfaces[n.surface]);
       out.glossy[n.pixel] += light * glossyReflectance(receiver, n.direction, n.spread) / glossyTint(receiver);
     }
   });

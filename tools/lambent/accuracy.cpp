@@ -70,9 +70,10 @@ void declareAccuracy(CLI::App& app) {
                   "tracing clamped alike (paper 1, 5.4)");
   forms->add_flag("--gathers", options->gathers,
                   "ways to gather the same VPLs: time, and error against all at every pixel");
-  forms->add_flag("--light", options->light,
-                  "indirect light as set against path tracing: bias, error, share of blocks that are right; beside it "
-                  "every light at every pixel by rays");
+  forms->add_flag(
+      "--light", options->light,
+      "indirect light as set, averaged over pictures, against path tracing: bias, error, share of blocks that "
+      "are right; beside it one picture, and every light at every pixel by rays");
   forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
   forms
       ->add_option("--figure", options->figure,
@@ -87,6 +88,8 @@ void declareAccuracy(CLI::App& app) {
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
   command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --presets (2)")
       ->check(CLI::Range(1, 1000));
+  command->add_option("--frame", options->frame, "--light: of a shot, with all that moves before it")
+      ->check(CLI::Range(1, 1000000));
   command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
   command->callback([options] {
     const AccuracyOptions& o = *options;

@@ -14,6 +14,7 @@ struct AccuracyOptions {
   int slots = 64, points = 1024;
   std::string curve; // empty: none
   int figure = 0;    // 0: none
+  int frame = 0;     // of a shot
   bool convergence = false, light = false, gathers = false, presets = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²

@@ -51,11 +51,21 @@ class Study {
     return measure(variants, plan);
   }
 
+  /// Of a shot, from its first frame to this one.
+  std::vector<Measured> drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) {
+    Progress progress("drawing", options_.output.quiet);
+    RunPlan plan = planOf(*stage, progress, frame + 1);
+    plan.inTurn = false, plan.picture = buffer;
+    if (plan.frames <= frame) throw InputError("--frame", "the shot has only " + std::to_string(plan.frames));
+    return measure(variants, plan);
+  }
+
   /// `state` keeps the sums; empty: nothing does.
-  const TracedPicture& trace(int samples, ReferenceBuffer buffer, bool clamped, const fs::path& state = {}) {
+  const TracedPicture& trace(int samples, ReferenceBuffer buffer, bool clamped, const fs::path& state = {},
+                             int frame = 0) {
     Progress progress("tracing paths", options_.output.quiet);
-    const RunPlan plan = stillPlan(*stage, progress, Buffer::Indirect);
-    truth = tracePicture(plan.view(0), stage->settings,
+    const RunPlan plan = planOf(*stage, progress, 0);
+    truth = tracePicture(plan.view(frame), stage->settings,
                          {.buffer = buffer,
                           .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
                           .clamped = clamped,
@@ -111,7 +121,8 @@ const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kR
 
 void accuracyConvergence(const AccuracyOptions& options) {
   needClamp(options);
-  Study study(options, "64x36", {{"gather.disk", "0"}, {"gather.near", "0"}, {"vpl.visibility", "rays"}});
+  Study study(options, "64x36",
+              {{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}, {"vpl.visibility", "rays"}});
   const ReferencePicture truth = study.trace(4096, ReferenceBuffer::Irradiance, true).picture;
   const std::vector<double> counts =
       options.quick ? std::vector<double>{64, 256} : std::vector<double>{512, 2048, 8192};
@@ -151,7 +162,7 @@ void accuracyConvergence(const AccuracyOptions& options) {
 }
 
 void accuracyGathers(const AccuracyOptions& options) {
-  Study study(options, "320x180", {{"gather.near", "0"}}); // the same for all of them
+  Study study(options, "320x180", {{"gather.near", "0"}, {"history.frames", "0"}}); // the same for all of them
   std::vector<Variant> variants{study.variant("full", {{"gather.mode", "full"}})};
   for (const char* mode : {"interleaved", "multires-interleaved", "multires"})
     variants.push_back(study.variant(mode, {{"gather.mode", mode}}));
@@ -179,22 +190,33 @@ void accuracyGathers(const AccuracyOptions& options) {
 
 void accuracyLight(const AccuracyOptions& options) {
   Study study(options, "160x90");
-  const Image truth = study.trace(2048, ReferenceBuffer::Irradiance, false).picture.mean;
+  if (options.frame > 0 && !study.stage->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
+  const Image truth = study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame).picture.mean;
   const Image most = allButBrightest(truth, 0.01);
-  const int seeds = options.seeds.value_or(options.quick ? 1 : 3);
-  std::vector<Variant> variants;
-  for (int k = 0; k < seeds; ++k) {
-    variants.push_back(study.variant("as set", {}));
-    variants.push_back(study.variant("all, rays", {{"gather.mode", "full"}, {"vpl.visibility", "rays"}}));
-    for (Variant* v = &variants.end()[-2]; v != variants.data() + variants.size(); ++v) v->seed += uint32_t(k);
-  }
+  const int averaged = study.stage->settings.history.frames;
+  struct Way {
+    const char* name;
+    Assignments assignments;
+    int frames; // of a still view
+  };
+  std::vector<Way> ways{{"as set", {}, std::max(1, averaged)}, {"one picture", {{"history.frames", "0"}}, 1}};
+  if (options.frame == 0) // as many near rays as averaged pictures have
+    ways.push_back({"all, rays", {{"gather.mode", "full"}, {"vpl.visibility", "rays"}, {"gather.near", "32"}}, 1});
   nlohmann::json rows;
-  for (const Measured& m : study.draw(variants, Buffer::Irradiance)) {
-    rows.push_back(rowOf(pictureError(m.picture, truth)));
-    rows.back().update({{"lights", m.variant.name},
-                        {"seed", m.variant.seed},
-                        {"bias_most", pictureError(m.picture, truth, most).bias},
-                        {"blocks", blocksWithin(m.picture, truth, 10, 0.06)}});
+  for (const Way& way : ways) {
+    std::vector<Variant> variants;
+    for (int k = 0; k < options.seeds.value_or(options.quick ? 1 : 3); ++k) {
+      variants.push_back(study.variant(way.name, way.assignments));
+      variants.back().seed += uint32_t(k);
+    }
+    for (const Measured& m : options.frame > 0 ? study.drawUpTo(options.frame, variants, Buffer::Irradiance)
+                                               : study.draw(variants, Buffer::Irradiance, way.frames)) {
+      rows.push_back(rowOf(pictureError(m.picture, truth)));
+      rows.back().update({{"lights", m.variant.name},
+                          {"seed", m.variant.seed},
+                          {"bias_most", pictureError(m.picture, truth, most).bias},
+                          {"blocks", blocksWithin(m.picture, truth, 10, 0.06)}});
+    }
   }
   study.report({{"lights", "lights"},
                 {"seed", "seed"},
@@ -233,7 +255,7 @@ void accuracyPresets(const AccuracyOptions& options) {
 void accuracyFigure(const AccuracyOptions& options) {
   if (options.figure != 9) needClamp(options);
   const fs::path folder = reportFolder(options.output.out, format("out/figure-%d", options.figure));
-  Study study(options, "320x180", {{"gather.disk", "0"}, {"gather.near", "0"}});
+  Study study(options, "320x180", {{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}});
   const bool quick = options.quick;
 
   // What pictures are held to comes first.

@@ -14,7 +14,7 @@ struct RenderOptions {
   LaunchOptions launch;
   OutputOptions output;
   std::string buffer = "beauty";
-  int frames = 1;
+  int frames = 0; // as many as light is averaged over
 };
 
 /// How many virtual lights there are, of so many that may be.
@@ -35,8 +35,11 @@ void render(const RenderOptions& options) {
   GiFrame gi(stage->settings, stage->seed);
   Progress progress("placing virtual lights", options.output.quiet);
   const FrameStats* stats = nullptr;
-  for (int i = 0; i < options.frames; ++i)
+  int frames = std::max(1, options.frames);
+  for (int i = 0; i < frames; ++i) {
     stats = &gi.run(stage->at(0), [&](int done, int total) { progress.update(done, total); });
+    if (options.frames == 0 && stats->plan.on(EffectId::History)) frames = stage->settings.history.frames;
+  }
   writeBuffer(out, gi, buffer);
   nlohmann::json figures = figuresOf(*stats);
   figures["exposure"] = gi.exposure();
@@ -58,7 +61,9 @@ void declareRender(CLI::App& app) {
   addOutputOptions(*command, options->output, "picture, .png or linear .exr (default lambent.png)");
   command->add_option("--buffer", options->buffer,
                       "beauty, direct, indirect, irradiance, albedo, normal, depth, or a debug view");
-  command->add_option("--frames", options->frames, "frames to converge before the picture")
+  command
+      ->add_option("--frames", options->frames,
+                   "frames up to the picture (default: as many as its light is averaged over, history.frames)")
       ->check(CLI::Range(1, 1000000));
   command->callback([options] { render(*options); });
 }
