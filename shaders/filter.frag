@@ -18,8 +18,10 @@ layout(location = 0) out vec4 outIrradiance;
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
+uniform bool fresh; // light of one picture, whatever its a
+
 /// What a neighbour counts for, by the pictures in this pixel's mean: one that holds every class needs none.
-float shareOf(float pictures) { return clamp((16.0 - pictures) / 15.0, 0.0, 1.0); }
+float shareOf(float pictures) { return fresh ? 1.0 : clamp((16.0 - pictures) / 15.0, 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

@@ -27,6 +27,7 @@ layout(location = 2) out vec4 outGlossy;
 
 const float kOnPlane = 0.25; // deviation from the pixel's plane, pixels
 const float kAlike = 0.9;    // cosine between normals
+const float kMoving = 16.0;  // pictures in the mean of a place that moves over the pixels: looking up blurs a little
 
 /// Position that a pixel of the picture before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
@@ -52,6 +53,7 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec4 kept = vec4(0.0);
   float weights = 0.0;
+  bool moves = false;
 #if defined(GLOSSY) && !defined(CHANGES)
   vec4 keptLobe = vec4(0.0);
 #endif
@@ -61,6 +63,7 @@ void main() {
     float metresPerPixel = 2.0 * before.lens.y * before.size.w * (before.lens.w > 0.0 ? 1.0 : clip.w);
     vec2 corner = floor(at + 1e-3); // a camera that stands meets centres, but for rounding
     vec2 inside = max(at - corner, 0.0);
+    moves = any(greaterThan(inside, vec2(2e-3)));
     for (int i = 0; i < 4; ++i) {
       ivec2 step = ivec2(i & 1, i >> 1), tap = ivec2(corner) + step;
       vec2 near = mix(1.0 - inside, inside, vec2(step));
@@ -69,7 +72,7 @@ void main() {
       vec4 seen = texelFetch(keptSeen, tap, 0);
       if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
       if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
-      kept += weight * texelFetch(keptIrradiance, tap, 0);
+      kept += weight * vec4(texelFetch(keptIrradiance, tap, 0).rgb, seen.a);
       weights += weight;
 #if defined(GLOSSY) && !defined(CHANGES)
       keptLobe += weight * texelFetch(keptGlossy, tap, 0);
@@ -77,7 +80,7 @@ void main() {
     }
   }
   if (weights > 0.0) kept /= weights;
-  kept.a = min(kept.a, pictures);
+  kept.a = min(kept.a, moves ? min(pictures, kMoving - 1.0) : pictures);
   vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
 #ifdef CHANGES
   outIrradiance = kept;

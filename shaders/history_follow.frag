@@ -18,7 +18,7 @@ layout(binding = 5) uniform sampler2D glossy; // of this picture
 layout(location = 2) out vec4 outGlossy;
 #endif
 
-const float kNoise = 0.15, kCertain = 0.4; // changes of a tile that are followed by `follow` and at once
+const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -28,15 +28,13 @@ void main() {
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
-  vec4 before = texelFetch(kept, pixel, 0);
-  vec3 now = before.rgb + texelFetch(change, pixel, 0).rgb;
-  vec3 difference = texelFetch(filtered, pixel, 0).rgb;
+  vec4 before = texelFetch(kept, pixel, 0), difference = texelFetch(change, pixel, 0);
   float share = texture(shares, gl_FragCoord.xy / (16.0 * vec2(textureSize(shares, 0)))).r;
-  float by = mix(follow, 1.0, smoothstep(kNoise, kCertain, share));
-  vec3 brought = max(before.rgb + by * difference, 0.0);
-  outIrradiance = vec4(mix(brought, now, 1.0 / (before.a + 1.0)), before.a + 1.0);
+  float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays;
+  vec3 brought = max(before.rgb + follow * texelFetch(filtered, pixel, 0).rgb, 0.0);
+  outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), count + 1.0);
   outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
-                 before.a + 1.0);
+                 count + 1.0);
 #ifdef GLOSSY
   outGlossy = vec4(texelFetch(glossy, placeOf(pixel), 0).rgb, 1.0);
 #endif

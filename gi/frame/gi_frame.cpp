@@ -112,11 +112,12 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
       const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
       const int bounces = more ? settings.smc.bounces : 1;
-      const bool averages = plan.on(EffectId::History);
+      const bool averages = plan.on(EffectId::History) && settings.history.frames > 1;
       if (!averages) k.picture = 0;
       if (!averages || k.world.drawingSettingsChanged()) k.history.forget();
-      gathered = k.indirectStages.of(settings).run(
-          {world, surfaces, patches, seen, settings, bounces, k.seed, k.picture, averages}, stats);
+      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, bounces, k.seed,
+                                                    k.picture, averages, averages && plan.lightChanges()},
+                                                   stats);
       LightOnSurfaces mean = gathered;
       if (averages) {
         const DrawCount historyDraws;
@@ -128,7 +129,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       }
       const FilterSettings filter = k.filterFor(plan);
       const DrawCount filterDraws;
-      indirect = k.filter.run({surfaces, mean, filter});
+      indirect = k.filter.run({surfaces, mean, filter, !averages});
       if (filter.on) stats.of(EffectId::Filter) = filterDraws();
       stats.of(EffectId::Indirect) += indirectDraws();
     }

@@ -25,6 +25,7 @@ LightOnSurfaces FilterPass::run(const FilterInputs& in) {
     program.use();
     program.set("tileSize", tileSize(in.surfaces));
     program.set("reach", reach);
+    program.set("fresh", in.fresh);
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
     from.irradiance->bind(2);

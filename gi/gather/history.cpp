@@ -24,7 +24,7 @@ constexpr int kFewPictures = 8; // that means hold at most while light changes
 LightOnSurfaces HistoryPass::run(const HistoryInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::History);
   fit(in.surfaces);
-  if (in.lightChanges) following_ = kFollowOn + 1;
+  if (in.lightChanges && pictures_ > 0) following_ = kFollowOn + 1;
   const bool changes = pictures_ > 0 && following_ > 0;
   following_ = std::max(0, following_ - 1);
   const Kept& before = kept_[now_];
@@ -55,8 +55,9 @@ void HistoryPass::fit(const GBuffer& surfaces) {
   }
   found_ = make("history/found");
   change_ = make("history/change");
-  tiles_ = gl::Texture("history/tiles",
-                       {.format = GL_RGBA32F, .width = (surfaces.width + 15) / 16, .height = (surfaces.height + 15) / 16});
+  tiles_ =
+      gl::Texture("history/tiles",
+                  {.format = GL_RGBA32F, .width = (surfaces.width + 15) / 16, .height = (surfaces.height + 15) / 16});
   tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
   smooth_ = gl::Sampler("history/smooth");
   glSamplerParameteri(smooth_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -72,7 +73,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
-  const int most = pictures_ == 0 ? 0 : in.settings.frames - 1;
+  const int most = pictures_ == 0 ? 0 : std::max(0, in.settings.frames - 1);
   program.set("pictures", float(changes ? std::min(most, kFewPictures) : most));
   cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);

@@ -17,6 +17,7 @@ void NearLightPass::add(const IndirectInputs& in, const LightTarget& target, int
                             .lights = in.world.lights,
                             .virtuals = in.seen.lights.slots,
                             .gather = gather,
+                            .casts = gather.near * (in.changes ? 2 : 1),
                             .bounces = in.bounces,
                             .subsets = grid > 1,
                             .glossy = in.surfaces.finish != nullptr,

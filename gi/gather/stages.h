@@ -39,6 +39,7 @@ struct FilterInputs {
   const GBuffer& surfaces;
   const LightOnSurfaces& gathered;
   const FilterSettings& filter;
+  bool fresh = true; // of one picture; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
 
 /// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. Light that is in its place

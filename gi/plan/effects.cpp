@@ -150,11 +150,13 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                  : Answer{true, "the gather is interleaved"});
 
   const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
-  decide(EffectId::History, !lights                        ? none
-                            : settings.history.frames == 0 ? Answer{false, "history.frames is 0"}
-                            : sixteenths                   ? Answer{true, "the gather is interleaved"}
-                            : settings.gather.near > 0     ? Answer{true, "near light is traced"}
-                                                           : Answer{false, "every picture gathers the same light"});
+  const bool bounded =
+      source.sampled && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
+  decide(EffectId::History, !lights                       ? none
+                            : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
+                            : sixteenths                  ? Answer{true, "the gather is interleaved"}
+                            : bounded                     ? Answer{true, "near light is traced"}
+                                                          : Answer{false, "every picture gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});

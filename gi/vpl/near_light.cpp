@@ -135,7 +135,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const Cells cells(in.virtuals);
   if (!(cells.meanArea() > 0)) return out;
   std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
-  const int perBlock = in.gather.near;
+  const int perBlock = in.casts;
   const uint32_t stride = in.subsets ? 16 : 1; // paths of a pixel: every so many
   Rng rng(in.seed, Stream::NearLight, in.picture);
   const vec3 shift = rng.next3();

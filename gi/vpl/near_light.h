@@ -14,6 +14,7 @@ struct NearLightInputs {
   const LightSet& lights;                 // of the scene
   std::span<const VirtualLight> virtuals; // that were gathered, bounded as `gather` says
   const GatherSettings& gather;
+  int casts = 8;        // rays, as GatherSettings::near
   int bounces = 1;      // of the virtual lights: SmcSettings::bounces
   bool subsets = false; // interleaved: each pixel of 4×4 casts a sixteenth of the rays
   bool glossy = false;

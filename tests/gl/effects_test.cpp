@@ -94,6 +94,7 @@ class EffectsTest : public GlTest {
     s.shadow.maker = ShadowMaker::Rays;
     s.debug.timing = TimingMode::Finish;
     s.image.exposure = 1;
+    s.history.frames = 0; // history_test.cpp
     return s;
   }
   static Settings withAll(EffectMode mode) {

@@ -46,7 +46,9 @@ class FrameTest : public GlTest {
 TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
   HandScene scene;
   furnish(scene);
-  GiFrame gi(quick());
+  Settings settings = quick();
+  settings.history.frames = 0;
+  GiFrame gi(settings);
   gi.run(scene.view());
   const Image interleaved = gi.read(Buffer::Irradiance);
   gi.settings().smc.moves = 0; // the same lights for all three

@@ -269,6 +269,7 @@ TEST_F(GlossyFrameTest, MapsAgreeWithARayForEveryPair) {
 TEST_F(GlossyFrameTest, BuffersAddUpAndSwitchingOffGoesBack) {
   settings.gather.mode = GatherMode::Interleaved;
   settings.smc.moves = 0;
+  settings.history.frames = 0;
   GiFrame gi(settings);
   gi.run(room.scene.view());
   const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), indirect = gi.read(Buffer::Indirect);

@@ -122,7 +122,7 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec4> texels(64 * 48);
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(float(1 << (x / 16 + 4 * (y / 12))));
+    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(vec3(float(1 << (x / 16 + 4 * (y / 12)))), 1);
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const LightOnSurfaces raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));

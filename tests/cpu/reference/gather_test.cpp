@@ -103,7 +103,9 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
                                              .gather = gather,
                                              .bounces = kBounces,
                                              .subsets = subsets,
-                                             .seed = set + 1},
+                                             .seed = set + 1,
+                                             .picture = set,
+                                             .averaged = set % 2 == 1},
                                             room.counts);
       means.push_back(bounded.back() + Room::meanOfPixels(near.irradiance));
     }
@@ -129,6 +131,7 @@ TEST(ReferenceAgainstVpls, NearLightKeepsToItsLimit) {
                              .lights = room.lights,
                              .virtuals = lights,
                              .gather = gather,
+                             .casts = 16,
                              .bounces = kBounces,
                              .subsets = true};
     return traceNearLight(in, room.counts).irradiance;

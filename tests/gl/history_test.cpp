@@ -1,0 +1,135 @@
+// Light averaged over pictures: what it comes to in a still view, while the camera moves, and when light changes.
+#include "gi/frame/gi_frame.h"
+#include "gl_fixture.h"
+#include "tests/support/images.h"
+
+namespace lambent::test {
+
+class HistoryTest : public GlTest {
+ protected:
+  HistoryTest() {
+    settings.smc.vpls = 512;
+    settings.smc.points = 512;
+    settings.smc.warmup = 20;
+    settings.smc.moves = 0; // the same lights in every picture
+    settings.gather.near = 0;
+    settings.shadow.resolution = 64;
+    settings.shadow.maker = ShadowMaker::Rays;
+    settings.history.frames = 16;
+    settings.image.exposure = 1;
+    LightView lamp;
+    lamp.position = {0.4f, 0.7f, 0.4f};
+    lamp.intensity = vec3(1);
+    room.scene.lights.push_back(lamp);
+    room.scene.camera.width = 96;
+    room.scene.camera.height = 72;
+  }
+
+  SceneView view(const SceneChanges& changes) const {
+    SceneView v = room.scene.view();
+    v.changes = changes;
+    for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
+    return v;
+  }
+  SceneView still() const { return view({false, false, false, false, false}); }
+
+  static Settings with(Settings s, GatherMode mode, int frames) {
+    s.gather.mode = mode;
+    s.history.frames = frames;
+    return s;
+  }
+  /// Every light at every pixel.
+  Image allLights() const {
+    GiFrame gi(with(settings, GatherMode::Full, 0));
+    gi.run(room.scene.view());
+    return gi.read(Buffer::Irradiance);
+  }
+
+  Room room;
+  Settings settings;
+};
+
+TEST_F(HistoryTest, AStillViewComesToHoldEveryLightAndSleeps) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  const Image all = allLights();
+  const double first = relativeRmse(gi.read(Buffer::Irradiance), all);
+  for (int i = 1; i < 16; ++i) EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Redraw)) << i;
+  EXPECT_GT(first, 0.01) << "the filter blurs";
+  EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), all), 1e-4);
+  const FrameStats& asleep = gi.run(still());
+  EXPECT_FALSE(asleep.plan.on(EffectId::Redraw)) << asleep.plan[EffectId::Redraw].reason;
+  EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), all), 1e-4);
+}
+
+TEST_F(HistoryTest, NearLightIsAveragedToo) {
+  settings.gather.near = 8;
+  settings.gather.nearLimit = 0;
+  settings.history.frames = 64;
+  Settings many = with(settings, GatherMode::Full, 0);
+  many.gather.near = 256;
+  GiFrame truth(many), one(with(settings, GatherMode::Interleaved, 0)), gi(settings);
+  truth.run(room.scene.view());
+  one.run(room.scene.view());
+  gi.run(room.scene.view());
+  for (int i = 1; i < 64; ++i) gi.run(still());
+  const Image expected = truth.read(Buffer::Irradiance), averaged = gi.read(Buffer::Irradiance);
+  EXPECT_LT(relativeRmse(averaged, expected), 0.6 * relativeRmse(one.read(Buffer::Irradiance), expected));
+  EXPECT_NEAR(meanLuminance(averaged), meanLuminance(expected), 0.01 * meanLuminance(expected));
+}
+
+TEST_F(HistoryTest, FollowsTheCamera) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  for (int i = 0; i < 24; ++i) { // past the block, one to two pixels a picture, and turning
+    mat4& pose = room.scene.camera.worldFromView;
+    pose = glm::rotate(pose, 0.01f, vec3(0, 1, 0));
+    pose[3].x += 0.015f;
+    gi.run(view({false, true, false, false, false}));
+  }
+  const Image last = gi.read(Buffer::Irradiance);
+  gi.settings() = with(settings, GatherMode::Interleaved, 0); // the same lights
+  gi.run(still());
+  const Image one = gi.read(Buffer::Irradiance);
+  gi.settings() = with(settings, GatherMode::Full, 0);
+  gi.run(still());
+  const Image all = gi.read(Buffer::Irradiance);
+  const double moving = relativeRmse(last, all), single = relativeRmse(one, all);
+  std::printf("moving %.4f, one picture %.4f\n", moving, single);
+  EXPECT_LT(moving, 0.95 * single);
+  EXPECT_NEAR(meanLuminance(last), meanLuminance(all), 0.01 * meanLuminance(all));
+}
+
+TEST_F(HistoryTest, FollowsLightThatChanges) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  for (int i = 1; i < 20; ++i) gi.run(still());
+  for (const float intensity : {4.0f, 0.25f, 0.3f}) { // twice at once, then by a fifth
+    room.scene.lights[0].intensity = vec3(intensity);
+    gi.run(view({false, false, true, false, false}));
+    const double first = meanLuminance(gi.read(Buffer::Irradiance)), wanted = meanLuminance(allLights());
+    EXPECT_NEAR(first, wanted, 0.15 * wanted) << intensity;
+    for (int i = 0; i < 4; ++i) gi.run(still());
+    EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), wanted, 0.03 * wanted) << intensity;
+    for (int i = 0; i < 60; ++i) gi.run(still());
+    EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), allLights()), 0.02) << intensity;
+  }
+}
+
+TEST_F(HistoryTest, ForgetsWithOtherSettingsAndSizes) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  for (int i = 1; i < 16; ++i) gi.run(still());
+  gi.settings().gather.disk = 0;
+  gi.run(still());
+  GiFrame fresh(gi.settings());
+  fresh.run(room.scene.view());
+  // The class that a pixel gathers depends on how many pictures were drawn: not the same bytes, but the same noise.
+  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(fresh.read(Buffer::Irradiance)),
+              0.02 * meanLuminance(fresh.read(Buffer::Irradiance)));
+  room.scene.camera.width = 64;
+  gi.run(view({false, true, false, false, false}));
+  EXPECT_EQ(gi.read(Buffer::Irradiance).width, 64);
+}
+
+} // namespace lambent::test
