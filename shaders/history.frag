@@ -5,17 +5,18 @@
 // history_follow.frag), GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
+#include "shared/octahedral.h"
 
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
 layout(binding = 2) uniform sampler2D irradiance; // of this picture
-layout(binding = 3) uniform sampler2D keptIrradiance; // a: pictures in the mean
-layout(binding = 4) uniform sampler2D keptDistance;   // that the picture before saw, along its view direction; 0: nothing
+layout(binding = 3) uniform sampler2D keptIrradiance;
+layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, pictures in the mean (0: nothing)
 uniform float pictures; // of those before that count at most; 0: there are none
 layout(location = 0) out vec4 outIrradiance; // a: pictures in the mean
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
 #else
-layout(location = 1) out float outDistance;
+layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy;
 layout(binding = 8) uniform sampler2D keptGlossy; // a: pictures in its mean
@@ -25,6 +26,7 @@ layout(location = 2) out vec4 outGlossy;
 #endif
 
 const float kOnPlane = 0.25; // deviation from the pixel's plane, pixels
+const float kAlike = 0.9;    // cosine between normals
 const float kMoving = 16.0;  // pictures in the mean of a place that moves over the pixels: looking up blurs a little
 
 /// Position that a pixel of the picture before saw.
@@ -40,7 +42,7 @@ void main() {
 #ifdef CHANGES
   outChange = vec4(0.0);
 #else
-  outDistance = 0.0;
+  outSeen = vec4(0.0);
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
@@ -67,10 +69,10 @@ void main() {
       vec2 near = mix(1.0 - inside, inside, vec2(step));
       float weight = near.x * near.y;
       if (weight < 2e-3 || any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(before.size.xy)))) continue;
-      float distance = texelFetch(keptDistance, tap, 0).r;
-      if (distance == 0.0) continue;
-      if (abs(dot(normal, positionBefore(tap, distance) - position)) > kOnPlane * metresPerPixel) continue;
-      kept += weight * texelFetch(keptIrradiance, tap, 0);
+      vec4 seen = texelFetch(keptSeen, tap, 0);
+      if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
+      if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
+      kept += weight * vec4(texelFetch(keptIrradiance, tap, 0).rgb, seen.a);
       weights += weight;
 #if defined(GLOSSY) && !defined(CHANGES)
       keptLobe += weight * texelFetch(keptGlossy, tap, 0);
@@ -85,7 +87,7 @@ void main() {
   outChange = vec4(kept.a > 0.0 ? now - kept.rgb : now, 1.0);
 #else
   outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
-  outDistance = viewDistanceFromDepth(camera, depth);
+  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   keptLobe.a = min(keptLobe.a, glossyPictures);

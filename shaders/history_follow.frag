@@ -4,6 +4,7 @@
 // picture's own. Variants: SUBSETS, GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
+#include "shared/octahedral.h"
 
 layout(binding = 2) uniform sampler2D kept;     // a: pictures in the mean
 layout(binding = 3) uniform sampler2D change;   // this picture - kept
@@ -11,7 +12,7 @@ layout(binding = 4) uniform sampler2D filtered; // of change
 layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag
 uniform float follow;
 layout(location = 0) out vec4 outIrradiance;
-layout(location = 1) out float outDistance;
+layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy; // of this picture
 layout(location = 2) out vec4 outGlossy;
@@ -21,8 +22,7 @@ const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = vec4(0.0);
-  outDistance = 0.0;
+  outIrradiance = outSeen = vec4(0.0);
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
@@ -33,7 +33,8 @@ void main() {
   float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays;
   vec3 brought = max(before.rgb + follow * texelFetch(filtered, pixel, 0).rgb, 0.0);
   outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), count + 1.0);
-  outDistance = viewDistanceFromDepth(camera, depth);
+  outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
+                 count + 1.0);
 #ifdef GLOSSY
   outGlossy = vec4(texelFetch(glossy, placeOf(pixel), 0).rgb, 1.0);
 #endif

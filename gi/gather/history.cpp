@@ -43,15 +43,15 @@ void HistoryPass::fit(const GBuffer& surfaces) {
       bool(kept_[0].glossy) == glossy)
     return;
   forget();
-  const auto make = [&](const char* label, GLenum format = GL_RGBA32F) {
-    return gl::Texture(label, {.format = format, .width = surfaces.width, .height = surfaces.height});
+  const auto make = [&](const char* label) {
+    return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
   };
   for (Kept& k : kept_) {
     k.irradiance = make("history/irradiance");
-    k.distance = make("history/distance", GL_R32F);
+    k.seen = make("history/seen");
     k.glossy = glossy ? make("history/glossy") : gl::Texture();
-    k.framebuffer = glossy ? gl::Framebuffer("history", {&k.irradiance, &k.distance, &k.glossy})
-                           : gl::Framebuffer("history", {&k.irradiance, &k.distance});
+    k.framebuffer = glossy ? gl::Framebuffer("history", {&k.irradiance, &k.seen, &k.glossy})
+                           : gl::Framebuffer("history", {&k.irradiance, &k.seen});
   }
   found_ = make("history/found");
   change_ = make("history/change");
@@ -78,7 +78,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
-  before.distance.bind(4);
+  before.seen.bind(4);
   if (in.gathered.glossy && !changes) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);

@@ -73,7 +73,7 @@ class HistoryPass {
  private:
   /// A picture's light, and the surfaces that it fell on.
   struct Kept {
-    gl::Texture irradiance, distance, glossy;
+    gl::Texture irradiance, seen, glossy;
     gl::Framebuffer framebuffer;
   };
   void fit(const GBuffer& surfaces);
