@@ -1,8 +1,9 @@
 #version 450
-// One buffer as a display shows it. MODE 0: radiance (exposure, Reinhard on luminance, sRGB); 1: colour in [0,1]
+// One buffer as a display shows it. MODE 0: radiance (exposure, tone mapper, sRGB, dither); 1: colour in [0,1]
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
 // and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
 // patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes).
+#include "shared/tone_map.h"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 layout(binding = 8) uniform sampler2D glossy; // radiance over glossyTint
@@ -16,6 +17,7 @@ uniform float factor;     // exposure (mode 0); metres shown as mid grey (mode 3
 uniform vec2 lens;        // near, far (0: perspective), metres (mode 3)
 uniform vec3 skyRadiance; // EMITTED
 uniform ivec2 tileSize;   // DEINTERLEAVED
+uniform int toneMapper;
 uniform int markNan;
 layout(location = 0) out vec4 outColor;
 
@@ -31,6 +33,10 @@ vec3 srgbFromLinear(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
+
+/// In [0, 1), spread evenly over any few neighbours (interleaved gradient noise, Jimenez 2014): what 8 bits cannot hold
+/// is right in the mean, without bands. Values that they hold stay as they are.
+float ditherAt(ivec2 pixel) { return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715)))); }
 
 vec3 sourceAt(ivec2 pixel) {
 #ifdef DEINTERLEAVED
@@ -63,7 +69,7 @@ void main() {
     return;
   }
   value = max(value * factor, 0.0);
-  value /= 1.0 + dot(value, vec3(0.2126, 0.7152, 0.0722));
+  value = toneMapped(value, toneMapper);
 #ifdef PATCHES
   int level = finestPatch;
   for (int i = finestPatch + 1; i <= patchLevels; ++i)
@@ -77,7 +83,7 @@ void main() {
 #ifdef GREY
   value = vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)));
 #endif
-  outColor = vec4(srgbFromLinear(value), 1.0);
+  outColor = vec4(srgbFromLinear(value) + (ditherAt(pixel) - 0.5) / 255.0, 1.0);
 #else
   outColor = vec4(0.0, 0.0, 0.0, 1.0);
   if (depth == 0.0) return;

@@ -1,7 +1,7 @@
 #version 450
 // Puts the 4×4 subsets back in their places (SUBSETS) and filters (FILTER): a cross-bilateral tent of 7×7, weights
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
-// the mean over all 16 subsets exactly. GLOSSY: glossy light too, with weights by roughness and metalness besides.
+// the mean over all 16 subsets exactly; the more pictures a pixel holds, the less its neighbours count. GLOSSY: glossy light too, with weights by roughness and metalness besides.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 

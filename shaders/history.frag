@@ -12,6 +12,7 @@ layout(binding = 2) uniform sampler2D irradiance; // of this picture
 layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, pictures in the mean (0: nothing)
 uniform float pictures; // of those before that count at most; 0: there are none
+uniform bool stands;    // the camera is where it was
 layout(location = 0) out vec4 outIrradiance; // a: pictures in the mean
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
@@ -53,22 +54,19 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec4 kept = vec4(0.0);
   float weights = 0.0;
-  bool moves = false;
 #if defined(GLOSSY) && !defined(CHANGES)
   vec4 keptLobe = vec4(0.0);
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
-  vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
+  vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
   if (pictures > 0.0 && clip.w > 0.0 && all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, before.size.xy))) {
     float metresPerPixel = 2.0 * before.lens.y * before.size.w * (before.lens.w > 0.0 ? 1.0 : clip.w);
-    vec2 corner = floor(at + 1e-3); // a camera that stands meets centres, but for rounding
-    vec2 inside = max(at - corner, 0.0);
-    moves = any(greaterThan(inside, vec2(2e-3)));
+    vec2 corner = floor(at), inside = at - corner;
     for (int i = 0; i < 4; ++i) {
       ivec2 step = ivec2(i & 1, i >> 1), tap = ivec2(corner) + step;
       vec2 near = mix(1.0 - inside, inside, vec2(step));
       float weight = near.x * near.y;
-      if (weight < 2e-3 || any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(before.size.xy)))) continue;
+      if (weight == 0.0 || any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, ivec2(before.size.xy)))) continue;
       vec4 seen = texelFetch(keptSeen, tap, 0);
       if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
       if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
@@ -79,17 +77,20 @@ void main() {
 #endif
     }
   }
-  if (weights > 0.0) kept /= weights;
-  kept.a = min(kept.a, moves ? min(pictures, kMoving - 1.0) : pictures);
   vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
+  kept = weights > 0.0 ? kept / weights : vec4(now, 0.0);
+  if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one picture, not of all that follow
+  kept.a = min(kept.a, stands ? pictures : min(pictures, kMoving - 1.0));
 #ifdef CHANGES
   outIrradiance = kept;
-  outChange = vec4(kept.a > 0.0 ? now - kept.rgb : now, 1.0);
+  bool known = !any(isnan(now)) && !any(isinf(now));
+  outChange = vec4(known ? now - kept.rgb : vec3(0.0), 1.0);
 #else
   outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
   outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
+  if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   keptLobe.a = min(keptLobe.a, glossyPictures);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);

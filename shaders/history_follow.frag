@@ -1,6 +1,6 @@
 #version 450
 // What history.frag found where light changes: its coarse part follows the filtered difference to this picture by `follow`,
-// its fine part is averaged on. Where nothing was kept the difference is this picture's light. Glossy light is this
+// its fine part is averaged on. Glossy light is this
 // picture's own. Variants: SUBSETS, GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"

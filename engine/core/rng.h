@@ -28,7 +28,8 @@ enum class Stream : uint32_t {
   Photons,
   Acceptance,
   MapTests,
-  NearLight
+  NearLight,
+  Turns
 };
 
 /// A sequence of numbers addressed by what they are for.

@@ -19,7 +19,7 @@ struct IndirectInputs {
   const Settings& settings;
   int bounces = 1; // that the virtual lights hold, themselves included
   uint32_t seed = 1;
-  uint32_t picture = 0; // of those that are averaged: each takes other rays, and pixels another part of the lights
+  uint32_t picture = 0;  // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such pictures
   bool changes = false;  // light does; means are short then
 };

@@ -41,11 +41,11 @@ struct PackedLights {
 struct VirtualLights {
   PackedLights packed = {};                 // what gathers read; empty where visibility or a tree does without
   std::span<const VirtualLight> slots = {}; // the same on the CPU, where visibility needs them there
-  std::vector<uint32_t> moved = {};   // slots whose light is another than when last seen, ascending
+  std::vector<uint32_t> moved = {};         // slots whose light is another than when last seen, ascending
   std::vector<uint32_t> carried = {}; // slots whose light is the same and stands elsewhere, on an object that moved
-  bool mayWait = false;                     // maps of lights that stay may follow moving objects some frames late
-  const LightTrees* trees = nullptr;        // in place of a list
-  uint32_t alive = 0;                       // that bring light, as far as known
+  bool mayWait = false;               // maps of lights that stay may follow moving objects some frames late
+  const LightTrees* trees = nullptr;  // in place of a list
+  uint32_t alive = 0;                 // that bring light, as far as known
 };
 
 /// Distance maps of one set of lights: DEPTH16 texture arrays of up to 2048 layers, layer = slot mod 2048 of array

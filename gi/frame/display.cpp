@@ -80,7 +80,7 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
 
 } // namespace
 
-const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan) {
+const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, const Look& look) {
   const gl::PassScope scope = context_.scope(StageId::Display);
   const int width = frame.surfaces.width, height = frame.surfaces.height;
   if (!black_) {
@@ -107,7 +107,7 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
     return display_;
   }
 
-  View view = viewOf(buffer, frame, exposure);
+  View view = viewOf(buffer, frame, look.exposure);
   if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
     const std::vector<std::string> glossy = bindSurfaces(frame.surfaces);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
@@ -119,7 +119,8 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, fl
   program.set("lens", vec2(frame.surfaces.block.lens.z, frame.surfaces.block.lens.w));
   program.set("skyRadiance", frame.skyRadiance);
   program.set("tileSize", tileSize(frame.surfaces));
-  program.set("markNan", markNan || buffer == Buffer::Nan ? 1 : 0);
+  program.set("toneMapper", int(look.toneMapper));
+  program.set("markNan", look.markNan || buffer == Buffer::Nan ? 1 : 0);
   if (frame.patches && frame.patches->normalLo) {
     program.set("patchLevels", frame.patches->levels);
     program.set("finestPatch", frame.gathered.deinterleaved ? 2 : 0);

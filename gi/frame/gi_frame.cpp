@@ -51,8 +51,7 @@ struct GiFrame::Kept {
   std::unique_ptr<LightSource> source; // below the world, which its update reads
   VplSource sourceOf = VplSource::None;
 
-  uint32_t picture = 0; // of those that the history averages
-  int averaged = 0;     // of them since anything changed
+  int averaged = 0; // pictures in the history since anything changed
   float exposure = 0;
   FrameResults results;
   FrameStats stats;
@@ -64,6 +63,7 @@ struct GiFrame::Kept {
   LightSource* sourceFor(VplSource wanted);
   FilterSettings filterFor(const EffectPlan& plan) const;
   void expose(const Picture& picture);
+  Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan}; }
 };
 
 GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}
@@ -93,6 +93,8 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                                         .lightArrived = source && source->arrived()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
+  const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History); // forced, it has nothing to do
+  if (!averages || k.world.gatherChanged()) k.history.forget();
 
   VirtualLights lights;
   if (source && plan.on(EffectId::Indirect))
@@ -112,22 +114,20 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
       const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
       const int bounces = more ? settings.smc.bounces : 1;
-      const bool averages = plan.on(EffectId::History) && settings.history.frames > 1;
-      if (!averages) k.picture = 0;
-      if (!averages || k.world.drawingSettingsChanged()) k.history.forget();
+      if (averages) k.history.fit(surfaces);
       gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, bounces, k.seed,
-                                                    k.picture, averages, averages && plan.lightChanges()},
+                                                    averages ? k.history.picture() : 0, averages,
+                                                    averages && plan.lightChanges()},
                                                    stats);
+      const FilterSettings filter = k.filterFor(plan);
       LightOnSurfaces mean = gathered;
       if (averages) {
         const DrawCount historyDraws;
         mean = k.history.run(
-            {surfaces, gathered, world.view.changes.camera, plan.lightChanges(), settings.history, settings.filter});
+            {surfaces, gathered, world.view.changes.camera, plan.lightChanges(), settings.history, filter});
         stats.of(EffectId::History) = historyDraws();
-        ++k.picture;
         k.averaged = plan.changed() ? 1 : k.averaged + 1;
       }
-      const FilterSettings filter = k.filterFor(plan);
       const DrawCount filterDraws;
       indirect = k.filter.run({surfaces, mean, filter, !averages});
       if (filter.on) stats.of(EffectId::Filter) = filterDraws();
@@ -170,6 +170,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
   if (!world.open(*given.assets, stats)) return;
   if (source) source->forget();
   keeper.forget();
+  history.forget();
   results = {};
 }
 
@@ -234,14 +235,14 @@ Image GiFrame::read(Buffer buffer) const {
 Image8 GiFrame::readDisplay(Buffer buffer) const {
   const gl::StateGuard guard;
   if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
-  kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
+  kept_->display.run(buffer, kept_->results, kept_->look());
   return kept_->display.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
   if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
-  kept_->display.run(buffer, kept_->results, kept_->exposure, kept_->settings.debug.nan);
+  kept_->display.run(buffer, kept_->results, kept_->look());
   kept_->display.present(framebuffer, width, height);
 }
 

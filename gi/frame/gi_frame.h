@@ -59,7 +59,8 @@ class GiFrame {
   /// The last frame as linear values: radiance (beauty, direct, indirect), irradiance, albedo, world normal, depth in
   /// metres along the view direction.
   Image read(Buffer buffer) const;
-  /// The last frame as shown on a display: exposure, Reinhard, sRGB (albedo, normal, depth mapped to visible ranges).
+  /// The last frame as shown on a display: exposure, tone mapper, sRGB (albedo, normal, depth mapped to visible
+  /// ranges).
   Image8 readDisplay(Buffer buffer) const;
   /// Name of the texture that holds the last frame's radiance (beauty) or irradiance (direct, before albedo;
   /// irradiance): RGBA32F, rows from the bottom, valid until the next run. 0 where it was not made.

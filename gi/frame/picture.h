@@ -6,6 +6,7 @@
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
 #include "gi/contract/virtual_lights.h"
+#include "gi/plan/settings.h"
 
 #include <optional>
 
@@ -58,13 +59,18 @@ struct FrameResults {
   float sceneDiameter = 1; // metres; scales the depth view
 };
 
+struct Look {
+  float exposure = 1; // factor on radiance
+  ToneMapper toneMapper = ToneMapper::Reinhard;
+  bool markNan = true; // NaN magenta and infinity cyan in every radiometric view
+};
+
 class DisplayPass {
  public:
   explicit DisplayPass(PassContext context) : context_(context) {}
 
-  /// Draws `buffer` as a display shows it into a texture (RGBA8, sRGB-encoded) of the picture's size.
-  /// `markNan`: paint NaN magenta and infinity cyan in every radiometric view.
-  const gl::Texture& run(Buffer buffer, const FrameResults& frame, float exposure, bool markNan);
+  /// Draws `buffer` as a display shows it into a texture (RGBA8, sRGB-encoded, dithered) of the picture's size.
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
   /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height.
   void present(uint32_t framebuffer, int width, int height);
   /// The texture of the last run.

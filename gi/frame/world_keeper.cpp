@@ -35,8 +35,14 @@ bool WorldKeeper::open(const SceneAssets& assets, FrameStats& stats) {
 
 EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
   untold_ |= before_.effects != settings.effects || in.first;
-  drawingSettingsChanged_ = before_ != settings;
-  const bool drawingChanged = drawingSettingsChanged_ || shadersChanged_ || in.host || hosted_;
+  Settings gather = settings; // but for what does not touch what pixels gather
+  gather.history = before_.history;
+  gather.filter = before_.filter;
+  gather.image = before_.image;
+  gather.frame = before_.frame;
+  gather.debug = before_.debug;
+  gatherChanged_ = before_ != gather || shadersChanged_;
+  const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
   settingsChanged_ =
       before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || in.first;
   before_ = settings;

@@ -36,8 +36,8 @@ class WorldKeeper {
   /// Figures of what rays and draws met since the last call.
   void countWork(FrameStats& stats);
 
-  bool settingsChanged() const { return settingsChanged_; }               // of VPLs or effects
-  bool drawingSettingsChanged() const { return drawingSettingsChanged_; } // any
+  bool settingsChanged() const { return settingsChanged_; } // of VPLs or effects
+  bool gatherChanged() const { return gatherChanged_; }     // settings or shaders: pixels gather other light
   void shadersChanged() { shadersChanged_ = true; }
   /// As last placed.
   World again() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, reach_}; }
@@ -53,7 +53,7 @@ class WorldKeeper {
   Settings before_;
   float reach_ = 0;
   uint64_t testedDraws_ = 0; // the scene's count when last asked
-  bool settingsChanged_ = true, drawingSettingsChanged_ = true, shadersChanged_ = false;
+  bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
   bool hosted_ = false; // the last surfaces were a host's
   bool frozen_ = false; // objects stand where they stood
   bool untold_ = false; // something changed that not all stages were told of

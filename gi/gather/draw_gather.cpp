@@ -5,17 +5,25 @@
 
 #include "engine/core/error.h"
 
+#include "engine/core/rng.h"
+
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 namespace lambent {
 
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
-// The turns are those of a 4×4 ordered dither, so that few pictures are spread evenly too.
+// Each cycle of 16 pictures has an order of its own, so that nothing that moves over the pixels keeps step with it.
 int lightClassOf(const glm::ivec2& subset, uint32_t picture) {
-  const auto bit = [&](int i) { return int(picture >> i & 1); };
-  const glm::ivec2 turn(2 * bit(0) + bit(2), 2 * (bit(0) ^ bit(1)) + (bit(2) ^ bit(3)));
-  return ((subset.x + turn.x) & 3) + 4 * ((subset.y + turn.y) & 3);
+  std::array<int, kLightClasses> turns;
+  std::iota(turns.begin(), turns.end(), 0);
+  Rng rng(0, Stream::Turns, picture / kLightClasses);
+  for (uint32_t i = kLightClasses; i > 1; --i) std::swap(turns[i - 1], turns[rng.below(i)]);
+  const int first = picture < kLightClasses ? turns[0] : 0; // the very first picture is that of paper 1
+  const int turn = turns[picture % kLightClasses] ^ first;
+  return ((subset.x + turn) & 3) + 4 * ((subset.y + (turn >> 2)) & 3);
 }
 
 std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture) {

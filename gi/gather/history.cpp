@@ -2,14 +2,16 @@
 // near rays, so that its mean holds them all, without the blur of a filter over its neighbours. It looks up what is
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //
-// Where light changes, means over many pictures lag. There what is kept follows this picture: the filtered difference
-// between the two, which has all sixteen subsets in it and little noise, is added by a half, so that half of a coarse
-// change is shown in its first picture and nine tenths within three; only what is finer than the filter waits.
-// (Settings and lag in numbers: docs/measurements/light.md.)
+// Where light changes, means over many pictures lag. There means hold few pictures, and what is kept follows this one:
+// a quarter of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added,
+// so that a third of a coarse change is shown in its first picture and two thirds within three. Tiles of the picture
+// whose light changes by much more than its noise begin anew (history_follow.frag). Numbers:
+// docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
 #include "gi/gather/stages.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace lambent {
 
@@ -23,7 +25,6 @@ constexpr int kFewPictures = 8; // that means hold at most while light changes
 
 LightOnSurfaces HistoryPass::run(const HistoryInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::History);
-  fit(in.surfaces);
   if (in.lightChanges && pictures_ > 0) following_ = kFollowOn + 1;
   const bool changes = pictures_ > 0 && following_ > 0;
   following_ = std::max(0, following_ - 1);
@@ -55,14 +56,11 @@ void HistoryPass::fit(const GBuffer& surfaces) {
   }
   found_ = make("history/found");
   change_ = make("history/change");
-  tiles_ =
-      gl::Texture("history/tiles",
-                  {.format = GL_RGBA32F, .width = (surfaces.width + 15) / 16, .height = (surfaces.height + 15) / 16});
+  tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,
+                                         .width = (surfaces.width + 15) / 16,
+                                         .height = (surfaces.height + 15) / 16,
+                                         .linear = true});
   tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
-  smooth_ = gl::Sampler("history/smooth");
-  glSamplerParameteri(smooth_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glSamplerParameteri(smooth_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glSamplerParameteri(smooth_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   changing_ = gl::Framebuffer("history/changing", {&found_, &change_});
 }
 
@@ -73,8 +71,9 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
-  const int most = pictures_ == 0 ? 0 : std::max(0, in.settings.frames - 1);
+  const int most = pictures_ == 0 ? 0 : in.settings.frames - 1;
   program.set("pictures", float(changes ? std::min(most, kFewPictures) : most));
+  program.set("stands", pictures_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
@@ -110,11 +109,9 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   program.set("follow", kFollow);
   filtered.irradiance->bind(4);
   tiles_.bind(6);
-  glBindSampler(6, smooth_.name());
   now.framebuffer.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
   gl::drawFullscreen();
-  glBindSampler(6, 0);
 }
 
 } // namespace lambent

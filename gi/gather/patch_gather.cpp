@@ -74,7 +74,7 @@ class PatchGather : public IndirectStage {
         areas.push_back({.origin = atlasOrigin(shape.base, level) + subset * sub,
                          .size = sub,
                          .subset = subset,
-                         .lightClass = lightClassOf(subset, in.picture),
+                         .lightClass = shape.grid > 1 ? lightClassOf(subset, in.picture) : 0,
                          .level = level});
       }
     }

@@ -8,6 +8,7 @@
 //   splat, splat_gather  lights into patches
 //   tree_gather     the draw of light trees
 //   near_light_pass what bounds take from near lights, added to any of these
+//   history         what pixels gathered, averaged over pictures
 //   filter          the subsets mixed
 #pragma once
 
@@ -42,8 +43,8 @@ struct FilterInputs {
   bool fresh = true; // of one picture; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
 
-/// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. Light that is in its place
-/// passes through.
+/// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. Light of every class, in its
+/// place, passes through.
 class FilterPass {
  public:
   explicit FilterPass(PassContext context) : context_(context) {}
@@ -67,8 +68,12 @@ struct HistoryInputs {
 class HistoryPass {
  public:
   explicit HistoryPass(PassContext context) : context_(context) {}
+  /// Before the gather: forgets pictures of another size or kind.
+  void fit(const GBuffer& surfaces);
   LightOnSurfaces run(const HistoryInputs& in);
   void forget() { pictures_ = 0; }
+  /// Pictures in it: which of those that are averaged the next one is.
+  uint32_t picture() const { return pictures_; }
 
  private:
   /// A picture's light, and the surfaces that it fell on.
@@ -76,7 +81,6 @@ class HistoryPass {
     gl::Texture irradiance, seen, glossy;
     gl::Framebuffer framebuffer;
   };
-  void fit(const GBuffer& surfaces);
   void find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes);
   void follow(const HistoryInputs& in, const Kept& now);
 
@@ -86,11 +90,10 @@ class HistoryPass {
   gl::Texture found_, change_; // where light changes: what is kept, and this picture's difference to it
   gl::Texture tiles_;          // by how much it changes
   gl::Framebuffer changing_, tilesFramebuffer_;
-  gl::Sampler smooth_;
   int now_ = 0;
-  int pictures_ = 0;   // since it was forgotten
-  int following_ = 0;  // pictures that are still to be followed
-  CameraBlock before_; // the last picture's
+  uint32_t pictures_ = 0; // since it was forgotten
+  int following_ = 0;     // pictures that are still to be followed
+  CameraBlock before_;    // the last picture's
   gl::Ring cameras_{"history/camera"};
 };
 

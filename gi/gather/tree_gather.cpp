@@ -74,7 +74,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
       program.set("firstLeaf", firstLeaf);
       program.set("endLeaf", std::min(leaves, firstLeaf + draws.leaves));
       for (const GatherArea& area : in.areas) {
-        program.set("firstRoot", first + area.subset.x + 4 * area.subset.y);
+        program.set("firstRoot", first + area.lightClass);
         drawArea(program, area, in.patches, true);
       }
     }

@@ -193,7 +193,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}
                                                      : Answer{true, "the view or the scene changed"});
-  const int historyFrames = plan.on(EffectId::History) ? settings.history.frames : 0;
+  const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History);
+  const int historyFrames = averages ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
   const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
   const bool waiting = indirect && facts.mapsWaiting > 0;

@@ -94,9 +94,10 @@ class Table {
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
-    number("gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays", PowersOfTwo}, Nothing,
-           "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; 0 "
-           "= lost");
+    number(
+        "gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays", PowersOfTwo}, Nothing,
+        "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; 0 "
+        "= lost");
     number(
         "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
@@ -146,7 +147,11 @@ class Table {
     number("filter.distance", &Settings::filter, &FilterSettings::distance, {1e-6, 10}, Nothing,
            "deviation from the pixel's plane, share of its view distance");
     number("image.exposure", &Settings::image, &ImageSettings::exposure, {0, kNoLimit}, Nothing,
-           "factor on radiance before Reinhard; 0 = measured at the first picture");
+           "factor on radiance before tone mapping; 0 = measured at the first picture");
+    choice(
+        "image.toneMapper", &Settings::image, &ImageSettings::toneMapper, {"reinhard", "neutral", "filmic"}, Nothing,
+        "reinhard: on luminance, as paper 1, bright colours are cut off; neutral: Khronos PBR Neutral, colours as they "
+        "are up to 0.76, then to white; filmic: a fit of ACES");
     flag("frame.overlap", &Settings::frame, &FrameSettings::overlap, Nothing,
          "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");
     for (size_t i = 0; i < kEffects; ++i) effect(EffectId(i));

@@ -139,6 +139,10 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const uint32_t stride = in.subsets ? 16 : 1; // paths of a pixel: every so many
   Rng rng(in.seed, Stream::NearLight, in.picture);
   const vec3 shift = rng.next3();
+  // Within a cycle each pixel casts once; the cycles begin anywhere, so that nothing that moves over the pixels keeps
+  // step with them.
+  const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock));
+  const uint32_t turn = (in.picture % cycle + Rng(in.seed, Stream::Turns, in.picture / cycle).below(cycle)) % cycle;
   RadianceUpdate update;
   update.paths = perBlock;
   update.bounces = in.bounces;
@@ -153,7 +157,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     std::vector<vec2> centres;
     for (size_t i = begin; i < end; ++i) {
       const uint32_t x = uint32_t(i % camera.width), y = uint32_t(i / camera.width);
-      const uint32_t path = (turnOf(x, y) + uint32_t(perBlock) * in.picture) % stride;
+      const uint32_t path = (turnOf(x, y) + uint32_t(perBlock) * turn) % stride;
       if (in.averaged && path >= uint32_t(perBlock)) continue;
       asked.push_back(uint32_t(i));
       paths.push_back(path);

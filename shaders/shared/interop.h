@@ -4,6 +4,7 @@
 #ifdef __cplusplus
 #include "engine/core/math.h"
 #define SHARED_INLINE inline
+#define SHARED_CONST inline constexpr
 #define SHARED_OUT(T) T&
 namespace lambent {
 using glm::atan;
@@ -11,6 +12,7 @@ using glm::dot;
 using glm::ivec2;
 using glm::max;
 using glm::min;
+using glm::mix;
 using glm::sqrt;
 using glm::uint;
 using glm::uvec2;
@@ -20,6 +22,7 @@ using glm::uvec4;
 #define SHARED_END }
 #else
 #define SHARED_INLINE
+#define SHARED_CONST const
 #define SHARED_OUT(T) out T
 #define SHARED_BEGIN
 #define SHARED_END

@@ -1,5 +1,6 @@
 // What is shown: exposure, tone mapping, markers, the views, and which way up they are.
 #include "gl_fixture.h"
+#include "shaders/shared/tone_map.h"
 
 namespace lambent::test {
 
@@ -36,7 +37,7 @@ TEST_F(DisplayTest, ReinhardOnLuminanceThenSrgb) {
   Image image(64, 48, vec3(0.5f));
   image.at(0, 0) = vec3(4, 1, 0.2f);
   const FrameResults frame = frameWith(image);
-  displayPass.run(Buffer::Beauty, frame, 2, true);
+  displayPass.run(Buffer::Beauty, frame, {2});
   const Image8 shown = displayPass.read();
   const auto encoded = [](const vec3& c) {
     const vec3 mapped = c / (1 + luminance(c));
@@ -46,13 +47,51 @@ TEST_F(DisplayTest, ReinhardOnLuminanceThenSrgb) {
   EXPECT_LT(maxComponent(glm::abs(pixel(shown, 0, 0) - encoded(vec3(8, 2, 0.4f)))), 1.01f) << "top left is first";
 }
 
+TEST_F(DisplayTest, ToneMappersAreThoseOfTheCpuAndKeepTheirPromises) {
+  Image image(64, 48);
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = vec3(0.003f * float(i), 0.02f, 0.001f * float(i));
+  const FrameResults frame = frameWith(image);
+  for (const ToneMapper mapper : {ToneMapper::Reinhard, ToneMapper::Neutral, ToneMapper::Filmic}) {
+    displayPass.run(Buffer::Beauty, frame, {1, mapper});
+    const Image8 shown = displayPass.read();
+    for (const int i : {0, 10, 100, 250, 300, 1000, 3000}) {
+      const vec3 c = glm::clamp(toneMapped(image.pixels[size_t(i)], int(mapper)), vec3(0), vec3(1));
+      const vec3 expected = 255.0f * vec3(srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z));
+      EXPECT_LT(maxComponent(glm::abs(pixel(shown, i % 64, i / 64) - expected)), 1.01f) << i << ' ' << int(mapper);
+    }
+  }
+  EXPECT_LT(maxComponent(glm::abs(pbrNeutral(vec3(0.6f, 0.3f, 0.2f)) - vec3(0.56f, 0.26f, 0.16f))), 1e-6f);
+  float before = 0;
+  for (float x = 0.01f; x < 100; x *= 1.1f) {
+    const vec3 red = pbrNeutral(x * vec3(1, 0.1f, 0.1f)), film = filmic(vec3(x));
+    EXPECT_GT(red.x, before) << "no two that differ become one";
+    EXPECT_LE(maxComponent(red), 1.0f);
+    EXPECT_LE(film.x, 1.04f);
+    before = red.x;
+  }
+  EXPECT_GT(pbrNeutral(vec3(100, 10, 10)).y, 0.8f) << "bright colours go over to white";
+}
+
+TEST_F(DisplayTest, DitherKeepsTheMeanOfWhatEightBitsCannotHold) {
+  const float value = 0.2f; // 0.16667 after Reinhard, 113.3 of 255
+  displayPass.run(Buffer::Beauty, frameWith(Image(64, 48, vec3(value))), {1});
+  const Image8 shown = displayPass.read();
+  double sum = 0;
+  for (const uint8_t byte : shown.rgb) sum += byte;
+  const double expected = 255 * double(srgbFromLinear(value / (1 + value)));
+  EXPECT_GT(std::abs(expected - std::round(expected)), 0.2) << "or there is nothing to dither";
+  EXPECT_NEAR(sum / double(shown.rgb.size()), expected, 0.02);
+  displayPass.run(Buffer::Beauty, frameWith(Image(64, 48, vec3(0))), {1});
+  for (const uint8_t byte : displayPass.read().rgb) ASSERT_EQ(byte, 0);
+}
+
 TEST_F(DisplayTest, MarksWhatIsNoNumber) {
   Image image(64, 48, vec3(0.5f));
   image.at(3, 4).y = std::nanf("");
   image.at(5, 6).z = kInfinity;
   const FrameResults frame = frameWith(image);
   for (const Buffer buffer : {Buffer::Beauty, Buffer::Nan}) {
-    displayPass.run(buffer, frame, 1, true);
+    displayPass.run(buffer, frame, {1});
     const Image8 shown = displayPass.read();
     EXPECT_EQ(pixel(shown, 3, 4), vec3(255, 0, 255));
     EXPECT_EQ(pixel(shown, 5, 6), vec3(0, 255, 255));
@@ -83,12 +122,12 @@ TEST_F(DisplayTest, EveryViewDraws) {
   set.slots[1].area = 1;
   frame.vpls = &set;
   for (int i = 0; i <= int(Buffer::Nan); ++i) {
-    displayPass.run(Buffer(i), frame, 1, true);
+    displayPass.run(Buffer(i), frame, {1});
     EXPECT_EQ(displayPass.read().rgb.size(), 64u * 48 * 3) << i;
   }
-  displayPass.run(Buffer::Beauty, frame, 1, true);
+  displayPass.run(Buffer::Beauty, frame, {1});
   const Image8 without = displayPass.read();
-  displayPass.run(Buffer::Vpls, frame, 1, true);
+  displayPass.run(Buffer::Vpls, frame, {1});
   const Image8 with = displayPass.read();
   EXPECT_NE(without.rgb, with.rgb) << "the VPL's sprite";
 }
@@ -100,7 +139,7 @@ TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   const FrameResults frame = frameWith(image);
   const gl::Texture target("window", {.format = GL_RGBA8, .width = 128, .height = 96});
   const gl::Framebuffer framebuffer("window", {&target});
-  displayPass.run(Buffer::Beauty, frame, 1, true);
+  displayPass.run(Buffer::Beauty, frame, {1});
   displayPass.present(framebuffer.name(), 128, 96);
   const std::vector<vec4> shown = readTexture(target); // row 0 at the bottom
   EXPECT_LT(shown[10 * 128 + 64].x, 0.01f);

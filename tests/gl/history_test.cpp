@@ -1,5 +1,6 @@
 // Light averaged over pictures: what it comes to in a still view, while the camera moves, and when light changes.
 #include "gi/frame/gi_frame.h"
+#include "gi/plan/techniques.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -135,20 +136,82 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
   }
 }
 
-TEST_F(HistoryTest, ForgetsWithOtherSettingsAndSizes) {
+/// After other settings, another size or another scene the next picture is that of a frame that begins.
+TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
+  const auto asNew = [&](GiFrame& gi, const Room& shown, const char* what) {
+    GiFrame fresh(gi.settings());
+    fresh.run(shown.scene.view());
+    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, fresh.read(Buffer::Irradiance).pixels) << what;
+  };
   GiFrame gi(settings);
   gi.run(room.scene.view());
-  for (int i = 1; i < 16; ++i) gi.run(still());
+  for (int i = 1; i < 5; ++i) gi.run(still());
+  gi.settings().image.exposure = 2;
+  gi.run(still());
+  EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), allLights()), 0.05) << "what does not gather otherwise";
   gi.settings().gather.disk = 0;
   gi.run(still());
-  GiFrame fresh(gi.settings());
-  fresh.run(room.scene.view());
-  // The class that a pixel gathers depends on how many pictures were drawn: not the same bytes, but the same noise.
-  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(fresh.read(Buffer::Irradiance)),
-              0.02 * meanLuminance(fresh.read(Buffer::Irradiance)));
+  asNew(gi, room, "settings");
+  for (int i = 1; i < 5; ++i) gi.run(still());
   room.scene.camera.width = 64;
+  room.scene.camera.height = 48;
   gi.run(view({false, true, false, false, false}));
-  EXPECT_EQ(gi.read(Buffer::Irradiance).width, 64);
+  asNew(gi, room, "size");
+  Room other;
+  other.scene.lights = room.scene.lights;
+  other.scene.lights[0].intensity *= 0.9f;
+  other.scene.camera = room.scene.camera;
+  gi.run(other.scene.view());
+  asNew(gi, other, "scene");
+}
+
+TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  room.scene.lights[0].intensity = vec3(kInfinity);
+  gi.run(view({false, false, true, false, false}));
+  room.scene.lights[0].intensity = vec3(1);
+  for (int i = 0; i < 8; ++i) gi.run(view({false, false, i == 0, false, false}));
+  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(allLights()),
+              0.05 * meanLuminance(allLights()));
+}
+
+/// Forced on without need it does no work; switched off, everything is as with a history of no pictures.
+TEST_F(HistoryTest, IsAnEffectOfThePlan) {
+  settings.effects[EffectId::History] = EffectMode::On;
+  settings.gather.mode = GatherMode::Full;
+  GiFrame full(settings);
+  full.run(room.scene.view());
+  EXPECT_EQ(full.run(still()).work[size_t(EffectId::History)], 0u);
+  EXPECT_FALSE(full.run(still()).plan.on(EffectId::Redraw)) << "it sleeps";
+  settings.effects[EffectId::History] = EffectMode::Off;
+  settings.gather.mode = GatherMode::Interleaved;
+  GiFrame off(settings), none(with(settings, GatherMode::Interleaved, 0));
+  off.run(room.scene.view());
+  none.run(room.scene.view());
+  EXPECT_EQ(off.read(Buffer::Irradiance).pixels, none.read(Buffer::Irradiance).pixels);
+}
+
+/// Every technique that gathers sixteenths comes to hold all of them.
+TEST_F(HistoryTest, TurnsTheClassesOfEveryGather) {
+  for (const char* technique : {"rsm", "hisr", "multires-gather"}) {
+    Settings all;
+    applyTechnique(all, technique);
+    all.image.exposure = 1;
+    all.rsm.resolution = 32;
+    all.rsm.coarsest = all.rsm.finest = 16;
+    all.multires.depth = 0;
+    all.gather.mode = technique == std::string("multires-gather") ? GatherMode::Multires : GatherMode::Full;
+    Settings part = all;
+    part.gather.mode =
+        technique == std::string("multires-gather") ? GatherMode::MultiresInterleaved : GatherMode::Interleaved;
+    part.history.frames = 16;
+    GiFrame whole(all), turned(part);
+    whole.run(room.scene.view());
+    turned.run(room.scene.view());
+    for (int i = 1; i < 16; ++i) turned.run(still());
+    EXPECT_LT(relativeRmse(turned.read(Buffer::Irradiance), whole.read(Buffer::Irradiance)), 2e-3) << technique;
+  }
 }
 
 } // namespace lambent::test

@@ -239,7 +239,8 @@ void accuracyPresets(const AccuracyOptions& options) {
       variants.push_back({preset, openStage(launch)->settings, launch.seed + uint32_t(k)});
   }
   nlohmann::json rows;
-  for (const Measured& m : study.draw(variants, Buffer::Irradiance, 4, 3)) {
+  const int frames = options.quick ? 4 : std::max(4, study.stage->settings.history.frames); // as many as are averaged
+  for (const Measured& m : study.draw(variants, Buffer::Irradiance, frames, frames - 1)) {
     rows.push_back(rowOf(pictureError(m.picture, truth)));
     rows.back().update({{"preset", m.variant.name}, {"seed", m.variant.seed}, {"ms", m.frames.back().wallMs}});
   }

@@ -1,6 +1,7 @@
 #include "tools/lambent/linear_picture.h"
 
 #include "engine/core/error.h"
+#include "shaders/shared/tone_map.h"
 #include "tools/lambent/commands.h"
 
 #include <algorithm>
@@ -11,12 +12,10 @@ namespace lambent {
 namespace {
 
 /// shaders/display.frag, MODE 0.
-vec3 displayed(const vec3& value, float factor) {
+vec3 displayed(const vec3& value, float factor, ToneMapper toneMapper) {
   if (glm::any(glm::isnan(value))) return {1, 0, 1};
   if (glm::any(glm::isinf(value))) return {0, 1, 1};
-  vec3 c = glm::max(value * factor, vec3(0));
-  c /= 1 + luminance(c);
-  c = glm::min(c, vec3(1));
+  const vec3 c = glm::clamp(toneMapped(glm::max(value * factor, vec3(0)), int(toneMapper)), vec3(0), vec3(1));
   return {srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)};
 }
 
@@ -29,13 +28,13 @@ Image readLinear(const std::string& file) {
   throw InputError(file, "not a linear picture (.exr or .pfm)");
 }
 
-void writePicture(const std::string& file, const Image& image, float factor) {
+void writePicture(const std::string& file, const Image& image, float factor, ToneMapper toneMapper) {
   checkPictureName(file);
   if (std::filesystem::path(file).extension() == ".exr") {
     writeExr(file, image);
     return;
   }
-  writeShown(file, shownImage(image, factor));
+  writeShown(file, shownImage(image, factor, toneMapper));
 }
 
 Image absoluteDifference(const Image& a, const Image& b, float factor) {
@@ -44,9 +43,9 @@ Image absoluteDifference(const Image& a, const Image& b, float factor) {
   return out;
 }
 
-Image shownImage(const Image& image, float factor) {
+Image shownImage(const Image& image, float factor, ToneMapper toneMapper) {
   Image out = image;
-  for (vec3& pixel : out.pixels) pixel = displayed(pixel, factor);
+  for (vec3& pixel : out.pixels) pixel = displayed(pixel, factor, toneMapper);
   return out;
 }
 

@@ -121,7 +121,7 @@ void reference(const ReferenceOptions& options) {
   if (traced.samples > 0) {
     const ReferencePicture& picture = traced.picture;
     const float factor = buffer == ReferenceBuffer::Irradiance ? traced.exposure / kPi : traced.exposure;
-    writePicture(out, picture.mean, factor);
+    writePicture(out, picture.mean, factor, settings.image.toneMapper);
     if (!options.errors.empty()) writePicture(options.errors, picture.error, factor);
     writeJson(options.output.json,
               {{"picture", out},
