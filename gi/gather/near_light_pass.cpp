@@ -23,7 +23,7 @@ void NearLightPass::add(const IndirectInputs& in, const LightTarget& target, int
                             .glossy = in.surfaces.finish != nullptr,
                             .seed = in.seed,
                             .picture = in.picture,
-                            .averaged = in.averaged},
+                            .pictures = in.averaged ? in.settings.history.frames : 1},
                            stats.raysNear);
     stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }

@@ -10,8 +10,8 @@
 // %.)
 //
 // Rays whose rest is small go on with a probability in proportion to it. The pixels of 4×4 cast the rays of one
-// stratified pattern, the same in every block and fixed in the surface's frame: each picture of those that are averaged
-// has another, and other pixels of the block cast it.
+// stratified pattern, the same in every block and fixed in the surface's frame. Over the pictures that are averaged
+// each pixel casts all rays of a longer one: all pixels then hold the same, and no noise between them.
 #include "gi/vpl/near_light.h"
 
 #include "engine/core/parallel.h"
@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 
 namespace lambent {
@@ -137,16 +138,19 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
   const int perBlock = in.casts;
   const uint32_t stride = in.subsets ? 16 : 1; // paths of a pixel: every so many
-  Rng rng(in.seed, Stream::NearLight, in.picture);
-  const vec3 shift = rng.next3();
+  const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
   // Within a cycle each pixel casts once; the cycles begin anywhere, so that nothing that moves over the pixels keeps
   // step with them.
-  const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock));
-  const uint32_t turn = (in.picture % cycle + Rng(in.seed, Stream::Turns, in.picture / cycle).below(cycle)) % cycle;
+  const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock)), casts = in.picture / cycle;
+  const uint32_t turn = (in.picture % cycle + Rng(in.seed, Stream::Turns, casts).below(cycle)) % cycle;
+  // The pattern has as many rays as a pixel casts in all pictures that are averaged, one after the other.
+  const bool averaged = in.pictures > 1;
+  const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.pictures) / cycle));
+  const uint32_t pattern = averaged ? std::max(steps, stride) : std::min(stride, uint32_t(perBlock));
   RadianceUpdate update;
-  update.paths = perBlock;
+  update.paths = int(pattern) * ((perBlock + int(stride) - 1) / int(stride));
   update.bounces = in.bounces;
-  update.seed = in.seed + 0x9e3779b9u * in.picture;
+  update.seed = in.seed;
 
   const size_t grain = size_t(std::clamp(4096 * int(stride) / perBlock, 16, 512)); // pixels
   std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
@@ -158,7 +162,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t x = uint32_t(i % camera.width), y = uint32_t(i / camera.width);
       const uint32_t path = (turnOf(x, y) + uint32_t(perBlock) * turn) % stride;
-      if (in.averaged && path >= uint32_t(perBlock)) continue;
+      if (averaged && path >= uint32_t(perBlock)) continue;
       asked.push_back(uint32_t(i));
       paths.push_back(path);
       centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
@@ -173,7 +177,8 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       if (!h.valid()) continue;
       positions[asked[s]] = h.position;
       normals[asked[s]] = h.normal;
-      for (uint32_t path = paths[s]; path < uint32_t(perBlock); path += stride) {
+      for (uint32_t p = paths[s]; p < uint32_t(perBlock); p += stride) {
+        const uint32_t path = (p % stride + 5 * casts) % pattern + pattern * (p / stride);
         const vec3 u = additiveRecurrence3(path, shift);
         const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
         if (glm::dot(direction, h.geometricNormal) <= 0) continue;
@@ -230,7 +235,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
   });
   for (const RayCounts& c : countsOf) counts += c;
-  if (in.subsets && !in.averaged) {
+  if (in.subsets && !averaged) {
     const float reach = std::sqrt(cells.meanArea());
     mixBlocks(out.irradiance, positions, normals, camera.width, reach);
     if (in.glossy) mixBlocks(out.glossy, positions, normals, camera.width, reach);

@@ -104,8 +104,8 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
                                              .bounces = kBounces,
                                              .subsets = subsets,
                                              .seed = set + 1,
-                                             .picture = set,
-                                             .averaged = set % 2 == 1},
+                                             .picture = set / 2,
+                                             .pictures = set % 2 == 0 ? 1 : 64},
                                             room.counts);
       means.push_back(bounded.back() + Room::meanOfPixels(near.irradiance));
     }
