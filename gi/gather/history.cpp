@@ -3,10 +3,9 @@
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //
 // Where light changes, means over many pictures lag. There means hold few pictures, and what is kept follows this one:
-// a quarter of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added,
-// so that a third of a coarse change is shown in its first picture and two thirds within three. Tiles of the picture
-// whose light changes by much more than its noise begin anew (history_follow.frag). Numbers:
-// docs/measurements/light.md.
+// half of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added, so
+// that half of a coarse change is shown in its first picture and nine tenths within three. Tiles of the picture whose
+// light changes by much more than its noise begin anew (history_follow.frag). Numbers: docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
 #include "gi/gather/stages.h"
 
@@ -17,7 +16,7 @@ namespace lambent {
 
 namespace {
 
-constexpr float kFollow = 0.25f;
+constexpr float kFollow = 0.5f;
 constexpr int kFollowOn = 4;    // pictures after the last change that still follow
 constexpr int kFewPictures = 8; // that means hold at most while light changes
 

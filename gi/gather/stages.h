@@ -71,7 +71,7 @@ class HistoryPass {
   /// Before the gather: forgets pictures of another size or kind.
   void fit(const GBuffer& surfaces);
   LightOnSurfaces run(const HistoryInputs& in);
-  void forget() { pictures_ = 0; }
+  void forget() { pictures_ = 0, following_ = 0; }
   /// Pictures in it: which of those that are averaged the next one is.
   uint32_t picture() const { return pictures_; }
 
