@@ -1,20 +1,25 @@
 #version 450
 // Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS
-// (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky); GLOSSY (the
-// receivers' lobes too).
+// (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky), EMITTER_MAPS
+// (samples of emissive surfaces); DOUBTS (no light where a map is in doubt, which is noted for rays) and LIT (the light
+// of such pairs that see one another: a point each); GLOSSY (the receivers' lobes too).
 #include "lib/gbuffer.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
 #include "shared/light_record.h"
+#ifdef EMITTER_MAPS
+#include "shared/shadow_lookup.h"
+#endif
 
 layout(std140, binding = 1) uniform Lights { LightRecord lights[kLightsPerBlock]; };
-#ifdef CUBE_MAPS
-layout(binding = 2) uniform samplerCubeArrayShadow maps;
+uniform float spread; // GLOSSY, EMITTER_MAPS: GatherSettings::spread
+#ifdef LIT
+layout(location = 0) flat in int litLight;
 #else
-layout(binding = 2) uniform sampler2DArrayShadow maps;
-#endif
 uniform int lightCount;
+uniform int firstLight; // DOUBTS: of the block, among the frame's direct lights
+#endif
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
@@ -27,24 +32,49 @@ float attenuation(LightRecord light, vec3 towardsLight, float distance2) {
   return window * cone * cone / distance2;
 }
 
-/// The receiver, moved along its normal by as much as `texels` of the map can differ in depth on its plane: the depth
-/// error is texels·tanθ along the ray, so the shift is texels·sinθ; half a texel more is for the rasteriser's rounding.
-vec3 liftedReceiver(vec3 position, vec3 normal, float cosine, float texel, float texels) {
-  return position + normal * (texel * (texels * sqrt(max(0.0, 1.0 - cosine * cosine)) + 0.5));
-}
+float tangentOf(float cosine) { return sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-4); }
+float axisDistance(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
-#ifndef CUBE_MAPS
-/// 3×3 texels through four bilinear comparisons.
-float filteredShadow(vec3 map, float layer) {
-  vec2 step = 0.5 / vec2(textureSize(maps, 0).xy);
-  return 0.25 * (texture(maps, vec4(map.xy + vec2(-step.x, -step.y), layer, map.z)) +
-                 texture(maps, vec4(map.xy + vec2(step.x, -step.y), layer, map.z)) +
-                 texture(maps, vec4(map.xy + vec2(-step.x, step.y), layer, map.z)) +
-                 texture(maps, vec4(map.xy + vec2(step.x, step.y), layer, map.z)));
-}
+#ifdef DOUBTS
+#include "lib/shadow_doubt.glsl"
+#elif !defined(LIT)
+#include "lib/filtered_shadow.glsl"
 #endif
 
-float axisDistance(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+/// Irradiance per intensity where nothing is between; 0 or less: none. Samples of emitters are disks of their area:
+/// E = L·a·cosx·cosy/(r² + a/π).
+float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towardsLight, out float cosine) {
+#ifdef SUN_MAPS
+  towardsLight = -light.directionTexel.xyz;
+  cosine = dot(normal, towardsLight);
+  return cosine;
+#else
+  vec3 toLight = light.positionRange.xyz - position;
+  float distance2 = max(dot(toLight, toLight), 1e-20);
+  towardsLight = toLight * inversesqrt(distance2);
+  cosine = dot(normal, towardsLight);
+#ifdef EMITTER_MAPS
+  float cosineLight = max(-dot(light.directionTexel.xyz, towardsLight), 0.0);
+  return max(cosine, 0.0) * cosineLight / (distance2 + light.positionRange.w * 0.318309886);
+#else
+  return cosine * attenuation(light, towardsLight, distance2);
+#endif
+#endif
+}
+
+#ifdef GLOSSY
+/// Of lobes, by the light's own size.
+float wideningOf(LightRecord light, vec3 position) {
+#ifdef EMITTER_MAPS
+  vec3 fromLight = position - light.positionRange.xyz;
+  float distance2 = max(dot(fromLight, fromLight), 1e-20);
+  float cosine = max(dot(light.directionTexel.xyz, fromLight) * inversesqrt(distance2), 0.0);
+  return lobeSpread(spread, light.positionRange.w, cosine, distance2);
+#else
+  return 0.0;
+#endif
+}
+#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -62,35 +92,26 @@ void main() {
   vec3 glossy = vec3(0.0);
 #endif
 
-  for (int i = 0; i < lightCount; ++i) {
-    LightRecord light = lights[i];
-    float layer = light.intensityLayer.w;
-#ifdef SUN_MAPS
-    vec3 towardsLight = -light.directionTexel.xyz;
-    float cosine = dot(normal, towardsLight);
-    if (!(cosine > 0.0)) continue;
-    vec3 lifted = liftedReceiver(position, normal, cosine, light.directionTexel.w, 2.0);
-    float weight = cosine * filteredShadow((light.mapFromWorld * vec4(lifted, 1.0)).xyz, layer);
+#ifdef LIT
+  const int first = litLight, end = litLight + 1;
 #else
-    vec3 toLight = light.positionRange.xyz - position;
-    float distance2 = max(dot(toLight, toLight), 1e-20);
-    vec3 towardsLight = toLight * inversesqrt(distance2);
-    float cosine = dot(normal, towardsLight);
-    float weight = cosine * attenuation(light, towardsLight, distance2);
-    if (!(weight > 0.0)) continue;
-#ifdef CUBE_MAPS
-    float texel = light.directionTexel.w * axisDistance(toLight);
-    vec3 fromLight = liftedReceiver(position, normal, cosine, texel, 1.5) - light.positionRange.xyz;
-    weight *= texture(maps, vec4(fromLight, layer), light.coneNear.z / axisDistance(fromLight));
-#else
-    float texel = light.directionTexel.w * dot(light.directionTexel.xyz, -toLight);
-    vec4 map = light.mapFromWorld * vec4(liftedReceiver(position, normal, cosine, texel, 2.0), 1.0);
-    weight *= filteredShadow(map.xyz / map.w, layer);
+  const int first = 0, end = lightCount;
 #endif
+  for (int i = first; i < end; ++i) {
+    LightRecord light = lights[i];
+    vec3 towardsLight;
+    float cosine, weight = unshadowed(light, position, normal, towardsLight, cosine);
+    if (!(weight > 0.0)) continue;
+#ifdef DOUBTS
+    int answer = answerOf(light, position, normal, cosine);
+    if (answer == kInDoubt) noteDoubt(pixel, position, normal, uint(firstLight + i));
+    if (answer != kLit) continue;
+#elif !defined(LIT)
+    weight *= shadowOf(light, position, normal, cosine);
 #endif
     irradiance += light.intensityLayer.rgb * weight;
 #ifdef GLOSSY
-    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight, 0.0));
+    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight, wideningOf(light, position)));
 #endif
   }
   outIrradiance = vec4(irradiance, 1.0);

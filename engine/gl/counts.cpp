@@ -30,14 +30,21 @@ void drawIndexed(const BufferSlice& draws, size_t first, size_t count) {
   ++detail::countsSoFar().draws;
 }
 
-void drawFullscreen() {
-  // The core profile wants a vertex array even for a draw without attributes. Names belong to a context, and making an
-  // empty one costs nothing next to the draw, so nothing is kept.
-  const VertexArray empty("fullscreen");
+namespace {
+
+/// The core profile wants a vertex array even for a draw without attributes. Names belong to a context, and making an
+/// empty one costs nothing next to the draw, so nothing is kept.
+void drawWithoutAttributes(GLenum mode, int count) {
+  const VertexArray empty("no attributes");
   glBindVertexArray(empty.name());
-  drawArrays(GL_TRIANGLES, 3);
+  drawArrays(mode, count);
   glBindVertexArray(0);
 }
+
+} // namespace
+
+void drawFullscreen() { drawWithoutAttributes(GL_TRIANGLES, 3); }
+void drawPoints(int count) { drawWithoutAttributes(GL_POINTS, count); }
 
 void finishToMeasure() { glFinish(); }
 

@@ -44,6 +44,8 @@ void drawIndexed(const BufferSlice& draws, size_t first, size_t count);
 
 /// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
 void drawFullscreen();
+/// Points that the bound program makes from gl_VertexID.
+void drawPoints(int count);
 
 /// Ends all that was asked of the GPU, so that a clock beside it tells the truth. For measuring only: a frame that is
 /// not measured never does this, so it is not counted.

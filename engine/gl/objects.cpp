@@ -215,6 +215,8 @@ void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
   glBindBufferRange(GL_UNIFORM_BUFFER, GLuint(binding), name(), GLintptr(offset), GLsizeiptr(size));
 }
 
+void Buffer::bindStorage(int binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name()); }
+
 Framebuffer::Framebuffer(const std::string& label)
     : Object(GL_FRAMEBUFFER, make([](GLsizei n, GLuint* names) { glCreateFramebuffers(n, names); }), label, 0) {}
 

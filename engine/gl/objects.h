@@ -120,6 +120,8 @@ class Buffer : public detail::Object {
   }
   void bindUniform(int binding) const;
   void bindUniform(int binding, uint64_t offset, uint64_t bytes) const;
+  /// For shaders to write into. What reads it next needs a barrier.
+  void bindStorage(int binding) const;
 
  private:
   void readBytes(uint64_t offset, uint64_t bytes, void* to) const;

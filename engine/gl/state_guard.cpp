@@ -110,9 +110,23 @@ struct Unit {
   GLint sampler = 0;
 };
 
-struct UniformBuffer {
+/// A part of a buffer, bound to an index.
+struct Range {
   GLint name = 0;
   GLint64 offset = 0, bytes = 0;
+
+  static Range of(GLenum binding, GLenum start, GLenum size, int index) {
+    Range r{.name = get(binding, index)};
+    glGetInteger64i_v(start, GLuint(index), &r.offset);
+    glGetInteger64i_v(size, GLuint(index), &r.bytes);
+    return r;
+  }
+  void bind(GLenum target, int index) const {
+    if (bytes > 0)
+      glBindBufferRange(target, GLuint(index), GLuint(name), GLintptr(offset), GLsizeiptr(bytes));
+    else
+      glBindBufferBase(target, GLuint(index), GLuint(name)); // none, or whole
+  }
 };
 
 Face stencilOf(bool front) {
@@ -139,11 +153,12 @@ struct StateGuard::Saved {
   std::array<Viewport, kMostViewports> viewports;
   std::array<Target, kTargets> targets;
   std::array<Unit, kUnits> units;
-  std::array<UniformBuffer, kUniformBuffers> uniformBuffers;
+  std::array<Range, kUniformBuffers> uniformBuffers;
+  Range storageBuffer; // of index 0
   int viewportCount = 0;
   GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
   GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, polygonMode[2] = {};
-  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, activeUnit = 0;
+  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffers = 0, activeUnit = 0;
   GLint transformFeedback = 0;
   bool feedbackRuns = false;
   GLboolean depthMask = GL_FALSE;
@@ -183,12 +198,12 @@ StateGuard::Saved::Saved() {
     units[size_t(i)].sampler = get(GL_SAMPLER_BINDING);
   }
   uniformBuffer = get(GL_UNIFORM_BUFFER_BINDING);
-  for (int i = 0; i < kUniformBuffers; ++i) {
-    UniformBuffer& u = uniformBuffers[size_t(i)];
-    u.name = get(GL_UNIFORM_BUFFER_BINDING, i);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(i), &u.offset);
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, GLuint(i), &u.bytes);
-  }
+  for (int i = 0; i < kUniformBuffers; ++i)
+    uniformBuffers[size_t(i)] =
+        Range::of(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, i);
+  storageBuffers = get(GL_SHADER_STORAGE_BUFFER_BINDING);
+  storageBuffer =
+      Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, 0);
   program = get(GL_CURRENT_PROGRAM);
   vertexArray = get(GL_VERTEX_ARRAY_BINDING);
   drawFramebuffer = get(GL_DRAW_FRAMEBUFFER_BINDING);
@@ -239,14 +254,10 @@ void StateGuard::Saved::restore() const {
     glBindSampler(GLuint(i), GLuint(u.sampler));
   }
   glActiveTexture(GLenum(activeUnit));
-  for (int i = 0; i < kUniformBuffers; ++i) {
-    const UniformBuffer& u = uniformBuffers[size_t(i)];
-    if (u.bytes > 0)
-      glBindBufferRange(GL_UNIFORM_BUFFER, GLuint(i), GLuint(u.name), GLintptr(u.offset), GLsizeiptr(u.bytes));
-    else
-      glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(i), GLuint(u.name)); // none, or whole
-  }
+  for (int i = 0; i < kUniformBuffers; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
   glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniformBuffer));
+  storageBuffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffers));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawFramebuffer));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(readFramebuffer));
   glBindVertexArray(GLuint(vertexArray));

@@ -1,7 +1,6 @@
 #include "gi/direct/direct_light.h"
 
 #include "gi/gather/draw_gather.h"
-#include "gi/visibility/map_keeper.h"
 #include "gi/vpl/disturbance.h"
 #include "gi/vpl/smc.h"
 
@@ -12,13 +11,18 @@ namespace lambent {
 
 namespace {
 
-/// Box of everything the camera sees. From a fixed grid of camera rays, so it is the same every time; grown by a tenth
-/// for what lies between the rays.
-Aabb visibleBounds(const World& world, RayCounts& counts) {
-  const Aabb& scene = world.view.boundsWorld;
-  Aabb box;
+/// The surfaces that the camera sees, at a fixed grid of rays, so that they are the same every time.
+std::vector<vec3> visiblePlaces(const World& world, RayCounts& counts) {
+  std::vector<vec3> places;
   for (const VisiblePoint& p : findVisiblePoints(world.rays, world.view.camera, 1024, 0, 0, counts))
-    box.add(p.position);
+    places.push_back(p.position);
+  return places;
+}
+
+/// Their box, grown by a tenth for what lies between the rays.
+Aabb boxOf(std::span<const vec3> places, const Aabb& scene) {
+  Aabb box;
+  for (const vec3& p : places) box.add(p);
   if (box.empty()) return scene;
   const vec3 margin = 0.05f * box.size() + 0.02f * box.diameter();
   box.lo = glm::max(box.lo - margin, scene.lo);
@@ -35,90 +39,163 @@ ShadowSettings resolved(ShadowSettings shadow, int pictureWidth) {
   return shadow;
 }
 
+/// Light of the sky comes from everywhere: its few maps are blurred instead.
+bool asksRays(const LightBlock& block) { return block.kind != MapKind::Sky; }
+
+const char* defineOf(MapKind kind) {
+  return kind == MapKind::Cube      ? "CUBE_MAPS"
+         : kind == MapKind::Spot    ? "SPOT_MAPS"
+         : kind == MapKind::Emitter ? "EMITTER_MAPS"
+                                    : "SUN_MAPS";
+}
+
+gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMode) {
+  gl::Sampler sampler(label);
+  const GLuint name = sampler.name();
+  glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GLint(filter));
+  glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GLint(filter));
+  glSamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(name, GL_TEXTURE_COMPARE_MODE, GLint(compareMode));
+  glSamplerParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL); // lit where reference ≤ stored
+  return sampler;
+}
+
 } // namespace
 
 DirectLight::DirectLight(PassContext context)
-    : context_(context), shadows_(context), emitters_(context, StageId::Emitters),
-      emitterMaps_(context, StageId::EmitterMaps), compare_("direct/compare") {
-  const GLuint sampler = compare_.name();
-  glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL); // lit where reference ≤ stored
-}
+    : context_(context), shadows_(context), emitters_(context),
+      depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
+      smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
-  const World& world = in.world;
-  const ShadowSettings shadow = resolved(in.shadow, world.view.camera.width);
-  fitReceivers(in, stats);
-  const LightShadows& shadows =
-      shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
-                    world.view.boundsWorld, world.view.changes.first, world.moved.boxes(), shadow});
-  stats.lightMapsDrawn = shadows_.mapsDrawn();
-  stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
-
-  VirtualLights lights;
-  ParaboloidMaps maps;
-  std::vector<VirtualLight> samples;
-  if (in.plan.on(EffectId::Emissive)) {
-    for (const EmitterPatch& p :
-         emitterPatches(world.lights, in.plan.on(EffectId::SoftShadows) ? shadow.emitterSamples : 1))
-      samples.push_back(lightOf(p));
-    lights.packed = emitters_.run(samples);
-    std::vector<MapPose> poses;
-    for (const VirtualLight& s : samples) poses.push_back(s.pose(in.world.rays.grain()));
-    const std::vector<MapJob> jobs = jobsAtOnce(poses, emitterPoses_, samples, world.moved.boxes(),
-                                                world.view.changes.first, shadow.emitterResolution);
-    emitterPoses_ = std::move(poses);
-    maps = emitterMaps_.run(
-        {world.gpu, &world.rays, emitterPoses_, jobs, world.reach, shadow.emitterResolution, shadow.maker});
-    stats.mapsDrawn += emitterMaps_.mapsDrawn();
-    stats.of(EffectId::Emissive) += emitterMaps_.mapsDrawn();
-    stats.of(EffectId::SoftShadows) = in.plan.on(EffectId::SoftShadows) ? samples.size() : 0;
-  }
-
-  const gl::PassScope scope = context_.scope(StageId::Direct);
+  if (in.keep) return target_.light();
+  const std::vector<LightBlock> blocks = shadowed(in, stats);
+  std::vector<const LightRecord*> lights; // of all blocks
+  std::vector<MapKind> kinds;
+  for (const LightBlock& block : blocks)
+    for (const LightRecord& light : block.held) {
+      lights.push_back(&light);
+      kinds.push_back(block.kind);
+    }
   target_.fit(in.surfaces);
-  target_.clear();
-  for (const LightBlock& block : shadows.blocks) {
-    const char* kind = block.kind == LightKind::Cube   ? "CUBE_MAPS"
-                       : block.kind == LightKind::Spot ? "SPOT_MAPS"
-                                                       : "SUN_MAPS";
-    std::vector<std::string> defines = bindSurfaces(in.surfaces);
-    defines.push_back(kind);
-    const gl::Program& program = context_.programs.get({.fragment = "direct.frag", .defines = std::move(defines)});
-    program.use();
-    program.set("lightCount", block.count);
-    block.lights.bindUniform(1);
-    block.maps.bind(2);
-    gl::PipelineState{.add = true, .width = in.surfaces.width, .height = in.surfaces.height}.apply();
-    gl::drawFullscreen();
+  const bool rays = in.shadow.rays && std::any_of(blocks.begin(), blocks.end(), asksRays);
+  const auto draw = [&] {
+    const gl::PassScope scope = context_.scope(StageId::Direct);
+    if (rays) doubts_.begin();
+    target_.clear();
+    uint32_t first = 0;
+    for (const LightBlock& block : blocks) {
+      drawBlock(in.surfaces, block, first, rays && asksRays(block));
+      first += uint32_t(block.held.size());
+    }
+  };
+  draw();
+  if (!rays) return target_.light();
+  {
+    const CpuScope scope(stats.stages, key(StageId::ShadowRays));
+    while (!doubts_.collect()) draw();
+    const auto towards = [&](const ShadowDoubt& doubt, const vec3& origin) -> Ray {
+      const LightRecord& light = *lights[doubt.light];
+      const vec3 position(light.positionRange), direction(light.directionTexel);
+      switch (kinds[doubt.light]) {
+      case MapKind::Sun:
+        return {origin, -direction};
+      case MapKind::Emitter:
+        return segment(origin, offsetPoint(position, direction, in.world.rays.grain()));
+      default:
+        return segment(origin, position);
+      }
+    };
+    doubts_.trace(in.world.rays, towards, stats.raysShadows);
   }
-  if (lights.packed.count > 0)
-    drawGather(context_.programs, target_.framebuffer(),
-               {.surfaces = in.surfaces,
-                .seen = {lights, &maps},
-                .smoothShadows = &compare_,
-                .areas = gatherAreas(in.surfaces, 1),
-                .addToTarget = true,
-                .biasTexels = 1.5f}); // bilinear comparison reaches half a texel farther than one
+  drawLit(in.surfaces, blocks);
   return target_.light();
 }
 
-/// Nothing needs the box where no map is fitted to it.
+/// All lights, with maps that are up to date.
+std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, FrameStats& stats) {
+  const World& world = in.world;
+  const ShadowSettings shadow = resolved(in.shadow, world.view.camera.width);
+  fitReceivers(in, stats);
+  std::vector<LightBlock> blocks =
+      shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
+                    shadow.rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first,
+                    world.moved.boxes(), shadow});
+  stats.lightMapsDrawn = shadows_.mapsDrawn();
+  stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
+  if (in.plan.on(EffectId::Emissive)) {
+    const bool soft = in.plan.on(EffectId::SoftShadows);
+    const uint32_t before = stats.mapsDrawn;
+    for (const LightBlock& block : emitters_.run(world, shadow, soft ? shadow.emitterSamples : 1, stats))
+      blocks.push_back(block);
+    stats.of(EffectId::Emissive) += stats.mapsDrawn - before;
+    stats.of(EffectId::SoftShadows) = soft ? emitters_.samples() : 0;
+  }
+  return blocks;
+}
+
+const gl::Program& DirectLight::programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
+                                           const char* variant) const {
+  std::vector<std::string> defines = bindSurfaces(surfaces);
+  defines.push_back(defineOf(block.kind));
+  if (variant) defines.push_back(variant);
+  const gl::Program& program =
+      context_.programs.get({.vertex = vertex, .fragment = "direct.frag", .defines = std::move(defines)});
+  program.use();
+  program.set("spread", GatherSettings{}.spread);
+  block.lights->bindUniform(1);
+  gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
+  return program;
+}
+
+/// `first`: of its lights, among all.
+void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, uint32_t first, bool rays) const {
+  const gl::Program& program = programFor(surfaces, block, "fullscreen.vert", rays ? "DOUBTS" : nullptr);
+  program.set("lightCount", int(block.held.size()));
+  program.set("firstLight", int(first));
+  block.maps->bind(2);
+  glBindSampler(2, rays ? depths_.name() : block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
+  gl::drawFullscreen();
+  glBindSampler(2, 0);
+}
+
+/// Adds the light of pairs that rays found to see one another.
+void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks) {
+  if (doubts_.lit().empty()) return;
+  const gl::PassScope scope = context_.scope(StageId::Direct);
+  doubts_.bindLit(3);
+  uint32_t light = 0;
+  size_t pair = 0;
+  for (const LightBlock& block : blocks) {
+    const uint32_t firstLight = light;
+    const size_t first = pair;
+    light += uint32_t(block.held.size());
+    while (pair < doubts_.lit().size() && doubts_.lit()[pair].y < light) ++pair;
+    if (pair == first) continue;
+    const gl::Program& program = programFor(surfaces, block, "direct_lit.vert", "LIT");
+    program.set("firstLight", int(firstLight));
+    program.set("firstPair", int(first));
+    program.set("pictureSize", vec2(surfaces.width, surfaces.height));
+    gl::drawPoints(int(pair - first));
+  }
+}
+
+/// Nothing needs the boxes where no map is fitted to them.
 void DirectLight::fitReceivers(const DirectInputs& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
   const bool fitted =
       in.plan.on(EffectId::Sky) || std::any_of(view.lights.begin(), view.lights.end(),
                                                [](const auto& l) { return l.type == LightType::Directional; });
   if (!fitted) {
-    receivers_ = {};
+    receivers_ = mostReceivers_ = {};
     return;
   }
-  if (receivers_.empty() || view.changes.camera || view.changes.geometry || view.changes.instances)
-    receivers_ = visibleBounds(in.world, stats.raysPoints);
+  if (receivers_.empty() || view.changes.camera || view.changes.geometry || view.changes.instances) {
+    const std::vector<vec3> places = visiblePlaces(in.world, stats.raysPoints);
+    receivers_ = boxOf(places, view.boundsWorld);
+    mostReceivers_ = boxOf(withoutOutliers(places), view.boundsWorld);
+  }
 }
 
 } // namespace lambent

@@ -1,12 +1,13 @@
-// Direct light: punctual lights and the sky with shadow maps of their own, emissive surfaces as shadowed samples.
+// Direct light: punctual lights and the sky with shadow maps of their own, emissive surfaces as shadowed samples. Where
+// a map is in doubt, which is along the edges of shadows, a ray decides (ShadowSettings::rays).
 #pragma once
 
 #include "gi/contract/figures.h"
 #include "gi/contract/light_on_surfaces.h"
 #include "gi/contract/world.h"
+#include "gi/direct/emitter_shadows.h"
 #include "gi/direct/light_shadows.h"
-#include "gi/lights/packed_lights.h"
-#include "gi/visibility/paraboloid_maps.h"
+#include "gi/direct/shadow_doubts.h"
 
 namespace lambent {
 
@@ -15,6 +16,7 @@ struct DirectInputs {
   const GBuffer& surfaces;
   const EffectPlan& plan;
   const ShadowSettings& shadow;
+  bool keep = false; // all of it is that of the last run
 };
 
 class DirectLight {
@@ -24,14 +26,19 @@ class DirectLight {
 
  private:
   void fitReceivers(const DirectInputs& in, FrameStats& stats);
+  std::vector<LightBlock> shadowed(const DirectInputs& in, FrameStats& stats);
+  const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
+                                const char* variant) const;
+  void drawBlock(const GBuffer& surfaces, const LightBlock& block, uint32_t first, bool rays) const;
+  void drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks);
 
   PassContext context_;
   LightShadowPass shadows_;
-  PackedLightBuffer emitters_;
-  ParaboloidMapPass emitterMaps_;
-  std::vector<MapPose> emitterPoses_; // as drawn
-  Aabb receivers_;                    // everything the camera sees: what maps of suns and sky must cover
-  gl::Sampler compare_;               // bilinear depth comparison for the emitters' maps
+  EmitterShadowPass emitters_;
+  ShadowDoubts doubts_;
+  Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
+  Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
+  gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
   LightTarget target_{"direct"};
 };
 

@@ -97,7 +97,23 @@ int affordableResolution(int wanted, size_t maps) {
   return resolution;
 }
 
+/// A block with its maps.
+struct KeptBlock {
+  MapKind kind = MapKind::Sun;
+  gl::Texture maps;
+  LightRecords lights;
+  std::vector<mat4> drawn; // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
+};
+
 } // namespace
+
+void LightRecords::hold(std::vector<LightRecord> lights, gl::Ring& uploads) {
+  const size_t bytes = lights.size() * sizeof(LightRecord);
+  if (lights.size() == held_.size() && std::memcmp(lights.data(), held_.data(), bytes) == 0) return;
+  if (!buffer_) buffer_ = gl::Buffer("light maps/lights", sizeof(LightRecord) * kLightsPerBlock, nullptr);
+  uploads.upload(buffer_, 0, bytes, lights.data());
+  held_ = std::move(lights);
+}
 
 struct LightShadowState {
   explicit LightShadowState(PassContext c) : context(c), framebuffer("light maps") {}
@@ -105,55 +121,49 @@ struct LightShadowState {
   PassContext context;
   gl::Framebuffer framebuffer;
   gl::Ring changedLights{"light maps/changed lights"};
-  LightShadows shadows;
+  std::vector<KeptBlock> blocks;
   std::vector<SunFit> sunFits, skyFits;
   uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
 
-  void fill(size_t& block, LightKind kind, int resolution, std::vector<LitMap>& maps, const LightShadowInputs& in);
-  void drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
+  void fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps, const LightShadowInputs& in);
+  void drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
 };
 
 /// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
-void LightShadowState::fill(size_t& block, LightKind kind, int resolution, std::vector<LitMap>& maps,
+void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps,
                             const LightShadowInputs& in) {
   for (size_t first = 0; first < maps.size(); first += kLightsPerBlock, ++block) {
     const int count = int(std::min<size_t>(kLightsPerBlock, maps.size() - first));
-    if (shadows.blocks.size() <= block) shadows.blocks.emplace_back();
-    LightBlock& target = shadows.blocks[block];
-    if (!target.maps || target.kind != kind || target.maps.desc().layers != count ||
+    if (blocks.size() <= block) blocks.emplace_back();
+    KeptBlock& target = blocks[block];
+    const gl::TextureKind shape = kind == MapKind::Cube ? gl::TextureKind::CubeArray : gl::TextureKind::Array;
+    if (!target.maps || target.maps.desc().kind != shape || target.maps.desc().layers != count ||
         target.maps.width() != resolution) {
-      target.kind = kind;
-      target.maps = gl::Texture("light maps/block " + std::to_string(block),
-                                {.kind = kind == LightKind::Cube ? gl::TextureKind::CubeArray : gl::TextureKind::Array,
-                                 .format = GL_DEPTH_COMPONENT32F,
-                                 .width = resolution,
-                                 .height = resolution,
-                                 .layers = count,
-                                 .linear = true,
-                                 .depthCompare = true,
-                                 .compareGreater = true});
+      target.maps = gl::Texture("light maps/block " + std::to_string(block), {.kind = shape,
+                                                                              .format = GL_DEPTH_COMPONENT32F,
+                                                                              .width = resolution,
+                                                                              .height = resolution,
+                                                                              .layers = count,
+                                                                              .linear = true,
+                                                                              .depthCompare = true,
+                                                                              .compareGreater = true});
       target.drawn.assign(size_t(count), mat4(0));
     }
-    if (!target.lights) target.lights = gl::Buffer("light maps/lights", sizeof(LightRecord) * kLightsPerBlock, nullptr);
-    target.count = count;
+    target.kind = kind;
     std::vector<LightRecord> lights;
     for (int i = 0; i < count; ++i) {
       lights.push_back(maps[first + i].light);
       lights.back().intensityLayer.w = float(i);
     }
-    if (lights.size() != target.held.size() ||
-        std::memcmp(lights.data(), target.held.data(), lights.size() * sizeof(LightRecord)) != 0) {
-      changedLights.upload(target.lights, 0, lights.size() * sizeof(LightRecord), lights.data());
-      target.held = std::move(lights);
-    }
+    target.lights.hold(std::move(lights), changedLights);
     drawMaps(target, maps, first, in);
   }
 }
 
-void LightShadowState::drawMaps(LightBlock& block, const std::vector<LitMap>& maps, size_t first,
+void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first,
                                 const LightShadowInputs& in) {
   const int resolution = block.maps.width();
-  for (int layer = 0; layer < block.count; ++layer) {
+  for (int layer = 0; layer < int(block.lights.held().size()); ++layer) {
     const LitMap& map = maps[first + layer];
     const bool whole = in.allChanged || block.drawn[layer] != map.clipFromWorld[0];
     block.drawn[layer] = map.clipFromWorld[0];
@@ -180,7 +190,7 @@ LightShadowPass::~LightShadowPass() = default;
 uint32_t LightShadowPass::mapsDrawn() const { return state_->mapsDrawn; }
 uint32_t LightShadowPass::skyMapsDrawn() const { return state_->skyMapsDrawn; }
 
-const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
+std::vector<LightBlock> LightShadowPass::run(const LightShadowInputs& in) {
   LightShadowState& s = *state_;
   const gl::PassScope scope = s.context.scope(StageId::LightMaps);
   s.mapsDrawn = 0;
@@ -197,40 +207,42 @@ const LightShadows& LightShadowPass::run(const LightShadowInputs& in) {
   size_t block = 0;
   int resolution = affordableResolution(in.shadow.pointResolution, cubes.size() * 6);
   for (const LightView* light : cubes) maps.push_back(cubeMap(*light, resolution, near));
-  s.fill(block, LightKind::Cube, resolution, maps, in);
+  s.fill(block, MapKind::Cube, resolution, maps, in);
 
   maps.clear();
   resolution = affordableResolution(in.shadow.spotResolution, spots.size());
   for (const LightView* light : spots) maps.push_back(spotMap(*light, resolution, near));
-  s.fill(block, LightKind::Spot, resolution, maps, in);
+  s.fill(block, MapKind::Spot, resolution, maps, in);
 
   // Directions of suns and sky are fitted to the receivers; nothing to fit or light in an empty scene.
   const auto fitted = [&](std::vector<SunFit>& fits, const std::vector<vec3>& directions,
-                          const std::vector<vec3>& irradiances, int wanted) {
+                          const std::vector<vec3>& irradiances, int wanted, MapKind kind, const Aabb& receivers) {
     maps.clear();
     fits.resize(directions.size());
     resolution = affordableResolution(wanted, directions.size());
     for (size_t i = 0; i < directions.size() && !in.casters.empty(); ++i) {
-      fits[i] = fitSun(directions[i], in.receivers, in.casters, fits[i]);
+      fits[i] = fitSun(directions[i], receivers, in.casters, fits[i]);
       maps.push_back(sunMap(fits[i], irradiances[i], resolution));
     }
-    s.fill(block, LightKind::Sun, resolution, maps, in);
+    s.fill(block, kind, resolution, maps, in);
   };
   std::vector<vec3> directions, irradiances;
   for (const LightView* light : suns) {
     directions.push_back(light->direction);
     irradiances.push_back(light->intensity);
   }
-  fitted(s.sunFits, directions, irradiances, in.shadow.sunResolution);
+  fitted(s.sunFits, directions, irradiances, in.shadow.sunResolution, MapKind::Sun, in.sunReceivers);
   const uint32_t punctualMaps = s.mapsDrawn;
   if (in.sky) {
     directions = skyDirections(in.shadow.skyMaps);
     irradiances.assign(directions.size(), in.skyRadiance * (4 * kPi / float(directions.size())));
-    fitted(s.skyFits, directions, irradiances, in.shadow.skyResolution);
+    fitted(s.skyFits, directions, irradiances, in.shadow.skyResolution, MapKind::Sky, in.receivers);
   }
   s.skyMapsDrawn = s.mapsDrawn - punctualMaps;
-  s.shadows.blocks.resize(block);
-  return s.shadows;
+  s.blocks.resize(block);
+  std::vector<LightBlock> blocks;
+  for (const KeptBlock& b : s.blocks) blocks.push_back({b.kind, &b.maps, &b.lights.buffer(), b.lights.held()});
+  return blocks;
 }
 
 } // namespace lambent

@@ -1,6 +1,7 @@
 // Shadow maps of punctual lights and sky directions, as the direct pass reads them.
 #pragma once
 
+#include "engine/gl/ring.h"
 #include "gi/contract/light_views.h"
 #include "gi/contract/pass_context.h"
 #include "gi/plan/settings.h"
@@ -12,18 +13,29 @@
 
 namespace lambent {
 
+/// How the map of a direct light is made: a cube of depths, one perspective, parallel rays (suns, and directions of the
+/// sky), distances over a hemisphere (samples of emissive surfaces).
+enum class MapKind { Cube, Spot, Sun, Sky, Emitter };
+
 /// Up to kLightsPerBlock lights of one kind, with their maps in one texture array.
 struct LightBlock {
-  LightKind kind = LightKind::Sun;
-  gl::Texture maps; // DEPTH32F, reversed
-  gl::Buffer lights;
-  int count = 0;
-  std::vector<LightRecord> held; // what `lights` holds
-  std::vector<mat4> drawn;       // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
+  MapKind kind = MapKind::Sun;
+  const gl::Texture* maps = nullptr;  // DEPTH32F reversed; of emitters as ParaboloidMaps
+  const gl::Buffer* lights = nullptr; // LightRecords
+  std::span<const LightRecord> held;  // what `lights` holds
 };
 
-struct LightShadows {
-  std::vector<LightBlock> blocks;
+/// Light records on the GPU: those that differ from what it has are uploaded.
+class LightRecords {
+ public:
+  /// At most kLightsPerBlock.
+  void hold(std::vector<LightRecord> lights, gl::Ring& uploads);
+  const gl::Buffer& buffer() const { return buffer_; }
+  std::span<const LightRecord> held() const { return held_; }
+
+ private:
+  gl::Buffer buffer_;
+  std::vector<LightRecord> held_;
 };
 
 /// Orthographic view along a light's direction, in its own frame: xy across, z towards the light.
@@ -39,6 +51,9 @@ struct SunFit {
 /// than twice as large as needed, so that a slow camera redraws nothing; a new fit has a tenth to spare on each side.
 SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous);
 
+/// Places without those, at most a thirtieth, that make their box much larger than the rest needs.
+std::vector<vec3> withoutOutliers(std::vector<vec3> places);
+
 /// `count` directions that light travels from a uniform sky, each standing for 4π/count of solid angle.
 std::vector<vec3> skyDirections(int count);
 
@@ -47,10 +62,10 @@ struct LightShadowInputs {
   std::span<const LightView> lights;
   bool sky = false; // draw the sky's maps
   vec3 skyRadiance{0};
-  Aabb receivers;              // everything the camera sees; sun and sky maps are fitted to it
-  Aabb casters;                // box of the whole scene
-  bool allChanged = false;     // draw every map
-  std::span<const Aabb> moved; // where geometry changed: maps that show none of it stay
+  Aabb receivers, sunReceivers; // what maps of the sky, and of suns, are fitted to
+  Aabb casters;                 // box of the whole scene
+  bool allChanged = false;      // draw every map
+  std::span<const Aabb> moved;  // where geometry changed: maps that show none of it stay
   const ShadowSettings& shadow;
 };
 
@@ -60,7 +75,7 @@ class LightShadowPass {
   explicit LightShadowPass(PassContext context);
   ~LightShadowPass();
   /// Draws only maps whose light, fit or casters changed, and of cubes only the faces.
-  const LightShadows& run(const LightShadowInputs& in);
+  std::vector<LightBlock> run(const LightShadowInputs& in);
   uint32_t mapsDrawn() const;    // in the last run
   uint32_t skyMapsDrawn() const; // of these
 

@@ -2,6 +2,7 @@
 #include "gi/direct/light_shadows.h"
 #include "shaders/shared/paraboloid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lambent {
@@ -51,6 +52,41 @@ SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters,
   fit.zLo = along.lo.z - room;
   fit.zHi = along.hi.z + room;
   return fit;
+}
+
+std::vector<vec3> withoutOutliers(std::vector<vec3> places) {
+  constexpr size_t kShare = 30;
+  constexpr float kWorth = 4; // the box shrinks by so many times the share of the places that go
+  size_t left = places.size() / kShare;
+  while (left > 0) {
+    // Of all cuts along an axis that take no more than may go, the one that shrinks the box most for each.
+    struct Cut {
+      int axis = 0;
+      bool high = false;
+      size_t count = 0;
+      float worth = 0;
+    } best;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto below = [&](const vec3& a, const vec3& b) { return a[axis] < b[axis]; };
+      std::sort(places.begin(), places.end(), below);
+      const float size = places.back()[axis] - places.front()[axis];
+      for (size_t count = 1; count <= left && size > 0; ++count)
+        for (const bool high : {false, true}) {
+          const float saved = high ? places.back()[axis] - places[places.size() - 1 - count][axis]
+                                   : places[count][axis] - places.front()[axis];
+          const float worth = saved / size * float(places.size()) / float(count);
+          if (worth > best.worth) best = {axis, high, count, worth};
+        }
+    }
+    if (best.worth < kWorth) break;
+    std::sort(places.begin(), places.end(), [&](const vec3& a, const vec3& b) { return a[best.axis] < b[best.axis]; });
+    if (best.high)
+      places.resize(places.size() - best.count);
+    else
+      places.erase(places.begin(), places.begin() + std::ptrdiff_t(best.count));
+    left -= best.count;
+  }
+  return places;
 }
 
 std::vector<vec3> skyDirections(int count) {

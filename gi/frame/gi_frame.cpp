@@ -105,9 +105,10 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     const DrawCount draws;
     k.results = {};
     const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
-    const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host});
+    const bool keep = !plan.seenChanges();
+    const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host, keep});
     Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
-    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings.shadow}, stats);
+    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings.shadow, keep}, stats);
     LightOnSurfaces gathered, indirect;
     if (plan.on(EffectId::Indirect)) {
       const DrawCount indirectDraws;

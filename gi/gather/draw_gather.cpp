@@ -4,7 +4,6 @@
 #include "gi/gather/draw_gather.h"
 
 #include "engine/core/error.h"
-
 #include "engine/core/rng.h"
 
 #include <algorithm>
@@ -82,7 +81,6 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (maps) desc.defines.push_back("SHADOWS");
-  if (maps && in.smoothShadows) desc.defines.push_back("SMOOTH_SHADOWS");
   const gl::Program& program = programs.get(desc);
   program.use();
   setShading(program, in);
@@ -91,7 +89,6 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
   program.set("scale", subsets ? float(kLightClasses) : 1.0f);
   target.bind();
-  glBindSampler(2, in.smoothShadows ? in.smoothShadows->name() : 0);
 
   constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
   constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
@@ -113,7 +110,6 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
       }
     }
   }
-  glBindSampler(2, 0);
 }
 
 } // namespace lambent

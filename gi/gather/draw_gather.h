@@ -1,4 +1,4 @@
-// The draw that all gathers of virtual lights and the direct pass's emissive samples share.
+// The draw that all gathers of virtual lights share.
 #pragma once
 
 #include "gi/contract/light_on_surfaces.h"
@@ -19,7 +19,6 @@ struct GatherArea {
 struct GatherDraw {
   const GBuffer& surfaces;
   SeenLights seen;
-  const gl::Sampler* smoothShadows = nullptr; // bilinear depth comparison; null: nearest texel
   std::span<const GatherArea> areas = {};
   int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn

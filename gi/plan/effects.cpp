@@ -199,6 +199,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
   const bool waiting = indirect && facts.mapsWaiting > 0;
   plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
+  plan.seenChanges_ = !still || facts.drawingChanged || facts.first;
   plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
   decide(EffectId::Redraw, !still                           ? Answer{true, "the view, the scene or settings changed"}
                            : facts.drawingChanged           ? Answer{true, "settings or shaders changed"}

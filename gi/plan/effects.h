@@ -47,6 +47,8 @@ class EffectPlan {
   const Effect& operator[](EffectId id) const { return effects_[size_t(id)]; }
   /// The picture would be drawn anew even if light were not averaged over pictures.
   bool changed() const { return changed_; }
+  /// Surfaces of the picture, or the light that they receive directly, may be other than in the picture before.
+  bool seenChanges() const { return seenChanges_; }
   /// Light in the scene may be other than in the picture before, not only what the camera sees of it.
   bool lightChanges() const { return lightChanges_; }
   /// Names of the effects that are on, separated by '+'; "none".
@@ -55,7 +57,7 @@ class EffectPlan {
  private:
   friend EffectPlan planEffects(const SceneView&, const Settings&, const FrameFacts&);
   std::array<Effect, kEffects> effects_;
-  bool changed_ = true, lightChanges_ = true;
+  bool changed_ = true, seenChanges_ = true, lightChanges_ = true;
 };
 
 /// `view.changes` counts: what nothing changed about needs no work.

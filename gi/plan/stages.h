@@ -32,6 +32,7 @@ enum class StageId : uint16_t {
   Emitters, // upload
   EmitterMaps,
   Direct,
+  ShadowRays, // where maps are in doubt
   // who sees whom
   VplMaps,
   MapComparison,
@@ -73,6 +74,7 @@ inline constexpr const char* kStageNames[] = {"scene",
                                               "emitters",
                                               "emitter maps",
                                               "direct",
+                                              "shadow rays",
                                               "vpl maps",
                                               "map comparison",
                                               "gather",

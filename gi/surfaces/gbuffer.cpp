@@ -57,13 +57,16 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &finish_}, &depth_)
                              : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
   }
+  const GBuffer out{&depth_,  &normal_, &albedo_, &emission_, in.glossy ? &finish_ : nullptr,
+                    &camera_, block,    width,    height};
+  if (in.keep) return out;
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
   const float zero[4] = {0, 0, 0, 0};
   for (int i = 0; i < (in.glossy ? 4 : 3); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.draw(in.glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
-  return {&depth_, &normal_, &albedo_, &emission_, in.glossy ? &finish_ : nullptr, &camera_, block, width, height};
+  return out;
 }
 
 void checkHost(const HostSurfaces& host, const CameraView& camera) {

@@ -18,6 +18,7 @@ struct SurfaceInputs {
   const CameraView& camera;
   bool glossy = false;                // with `finish`: the passes that follow then add glossy reflection
   const HostSurfaces* host = nullptr; // taken over instead of drawing
+  bool keep = false;                  // they are those of the last run
 };
 
 /// Throws InputError when a host's texture is missing or has not the camera's size.

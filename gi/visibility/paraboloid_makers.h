@@ -5,8 +5,6 @@
 
 namespace lambent {
 
-inline constexpr int kLayersPerArray = 2048; // what every OpenGL 4.5 offers
-
 /// Texels of a part of one map, row by row, cast on the CPU: distance / farDistance in 16 bits, 65535 where nothing is
 /// met. Coarse: a ray for every second texel of every second row; texels between have the mean of their neighbours on
 /// one surface, where these are nearly equal, else the nearest one's. Thread-safe.

@@ -1,5 +1,5 @@
 // What a VPL brings to a surface point, for gathering and for splatting. Variants: SHADOWS (paraboloid maps, unit 2),
-// SMOOTH_SHADOWS (bilinear comparison), GLOSSY (the receivers' lobes too).
+// GLOSSY (the receivers' lobes too).
 #include "gbuffer.glsl"
 #ifdef GLOSSY
 #include "receiver.glsl"
@@ -9,11 +9,7 @@
 
 // Half of the classes of a chunk of 2048 lights: see PackedLights in gi/contract/virtual_lights.h
 layout(std140, binding = 1) uniform Lights { VplLight lights[kClassesPerLightBlock * kLightsPerClass]; };
-#ifdef SMOOTH_SHADOWS
-layout(binding = 2) uniform sampler2DArrayShadow maps;
-#else
 layout(binding = 2) uniform sampler2DArray maps;
-#endif
 uniform float diskFactor;    // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;      // 1/m²
 uniform float spread;        // GLOSSY: GatherSettings::spread
@@ -62,16 +58,11 @@ Received receivedNothing() {
 /// in the light's frame.
 float visibility(int layer, vec3 d, vec3 n, float distance, float cosine) {
   vec2 uv = paraboloidFromDirection(d);
-#ifdef SMOOTH_SHADOWS
-  float reach = paraboloidReach(distance, cosine, d.z, biasTexels, mapResolution);
-  return texture(maps, vec4(uv, layer, reach / (max(cosine, 1e-4) * farDistance) - paraboloidRounding()));
-#else
   // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
   ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
   float met = (texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding()) * farDistance;
   vec2 centre = (vec2(texel) + 0.5) * (2.0 / mapResolution) - 1.0;
   return paraboloidLit(met, centre, n, distance, cosine, biasTexels, mapResolution) ? 1.0 : 0.0;
-#endif
 }
 #endif
 

@@ -22,16 +22,5 @@ SHARED_INLINE bool paraboloidLit(float met, vec2 centre, vec3 normal, float dist
   return met * max(cosineCentre, cosine) >= distanceMetres * cosine * (1.0f - biasTexels * 2.0f / resolution);
 }
 
-/// For lookups that blend texels, which have no one centre: distance that the map must hold at least for the receiver
-/// to be lit, times the cosine at the receiver. The bias is what the receiver's plane can rise within `biasTexels` map
-/// texels, distance · texelAngle · tanθ, and a tenth of a texel for round-off. `cosineLight` is that of the direction to
-/// the receiver at the light; the stereographic scale of the map grows with it.
-SHARED_INLINE float paraboloidReach(float distanceMetres, float cosineReceiver, float cosineLight, float biasTexels,
-                                    float resolution) {
-  float texelAngle = biasTexels * 2.0f / resolution * (1.0f + cosineLight);
-  float sine = sqrt(max(0.0f, 1.0f - cosineReceiver * cosineReceiver));
-  return distanceMetres * (cosineReceiver - texelAngle * (sine + 0.1f * cosineReceiver));
-}
-
 SHARED_END
 #endif

@@ -66,7 +66,7 @@ TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
 }
 
 /// What is said of techniques that wait (isr) is in counts_test.cpp; all others never stand still after the first
-/// frame, which measures the exposure.
+/// frame, which measures the exposure, but to ask which shadows are in doubt.
 TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
   HandScene scene;
   furnish(scene);
@@ -83,13 +83,17 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
       settings.vpl.visibility = source == VplSource::Smc ? VplVisibility::Maps : VplVisibility::None;
       settings.gather.mode = mode;
       if (!whyNot(settings).empty()) continue;
+      settings.shadow.rays = false;
       GiFrame gi(settings);
       const FrameStats first = gi.run(scene.view());
       EXPECT_EQ(first.readBacks, 1u);
-      const FrameStats second = gi.run(scene.view());
-      EXPECT_GT(second.draws, 3u);
-      EXPECT_EQ(second.waits, 0u);
-      EXPECT_EQ(second.readBacks, 0u);
+      for (const bool rays : {false, true}) {
+        gi.settings().shadow.rays = rays;
+        const FrameStats second = gi.run(scene.view());
+        EXPECT_GT(second.draws, 3u);
+        EXPECT_EQ(second.waits, 0u);
+        EXPECT_EQ(second.readBacks, rays ? 2u : 0u);
+      }
     }
 }
 

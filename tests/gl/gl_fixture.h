@@ -6,6 +6,7 @@
 #include "engine/gl/program.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
+#include "engine/trace/embree_query.h"
 #include "gi/frame/gi_frame.h"
 #include "gi/frame/picture.h"
 #include "gi/gather/stages.h"
@@ -103,8 +104,10 @@ inline LightSet emitterAt(const vec3& centre, const vec3& normal, const vec3& ra
 /// A scene as the stages of a frame see it when nothing moves.
 class PlacedScene {
  public:
-  PlacedScene(gl::ProgramCache& programs, const HandScene& scene) : gpu_(programs, scene.assets), view_(scene.view()) {
+  PlacedScene(gl::ProgramCache& programs, const HandScene& scene)
+      : gpu_(programs, scene.assets), rays_(scene.assets), view_(scene.view()) {
     gpu_.place(scene.instances);
+    rays_.update(view_, true);
   }
   const GpuScene& gpu() const { return gpu_; }
   World world(const LightSet& lights = {}) {
@@ -114,8 +117,8 @@ class PlacedScene {
 
  private:
   GpuScene gpu_;
+  EmbreeQuery rays_;
   SceneView view_;
-  AnalyticQuery rays_;
   LightSet lights_;
 };
 

@@ -1,0 +1,40 @@
+// Pairs of a pixel and a direct light about which the light's shadow map is in doubt, and what rays say of them.
+#pragma once
+
+#include "engine/gl/ring.h"
+#include "engine/trace/ray_query.h"
+#include "shaders/shared/shadow_doubt.h"
+
+#include <functional>
+
+namespace lambent {
+
+class ShadowDoubts {
+ public:
+  /// Empties the list and binds it for shaders (shaders/lib/shadow_doubt.glsl).
+  void begin();
+  /// Takes the list over from the GPU. False where it had not room enough: it has now, and all is to be drawn again.
+  bool collect();
+  /// Traces the rays that `towards` gives for each doubt. Afterwards `lit` holds the pairs that see one another, by
+  /// light and pixel.
+  void trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&, const vec3& origin)>& towards,
+             RayCounts& counts);
+
+  /// Pixel, as ShadowDoubt's, and light.
+  std::span<const uvec2> lit() const { return lit_; }
+  void bindLit(int unit);
+
+ private:
+  struct Header {
+    uint32_t count = 0, room = 0, pad[2] = {0, 0};
+  };
+
+  gl::Buffer list_, litBuffer_;
+  gl::Texture litView_;
+  gl::Ring uploads_{"direct/shadow rays"};
+  uint32_t room_ = 1 << 14;
+  std::vector<ShadowDoubt> doubts_;
+  std::vector<uvec2> lit_;
+};
+
+} // namespace lambent
