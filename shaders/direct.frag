@@ -1,7 +1,7 @@
 #version 450
 // Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS
 // (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky), EMITTER_MAPS
-// (samples of emissive surfaces); DOUBTS (no light where a map is in doubt, which is noted for rays) and LIT (the light
+// (samples of emissive surfaces), and of those SKY (directions of the sky); DOUBTS (no light where a map is in doubt, which is noted for rays) and LIT (the light
 // of such pairs that see one another: a point each); GLOSSY (the receivers' lobes too).
 #include "lib/gbuffer.glsl"
 #ifdef GLOSSY
@@ -37,7 +37,8 @@ float axisDistance(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
 #ifdef DOUBTS
 #include "lib/shadow_doubt.glsl"
-#elif !defined(LIT)
+#endif
+#if !defined(LIT) && (!defined(DOUBTS) || defined(SKY))
 #include "lib/filtered_shadow.glsl"
 #endif
 
@@ -61,6 +62,19 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
 #endif
 #endif
 }
+
+#if defined(DOUBTS) && defined(SKY)
+/// Whether any direction is lit without doubt. Its few directions stand for a sky that comes from everywhere, so their
+/// shadows are blurred; but a place that sees none of it must stay black, however thin the walls.
+bool seesSky(vec3 position, vec3 normal) {
+  for (int i = 0; i < lightCount; ++i) {
+    vec3 towardsLight;
+    float cosine, weight = unshadowed(lights[i], position, normal, towardsLight, cosine);
+    if (weight > 0.0 && answerOf(lights[i], position, normal, cosine) == kLit) return true;
+  }
+  return false;
+}
+#endif
 
 #ifdef GLOSSY
 /// Of lobes, by the light's own size.
@@ -97,15 +111,28 @@ void main() {
 #else
   const int first = 0, end = lightCount;
 #endif
+#ifdef DOUBTS
+  vec3 place = justBefore(position);
+#ifdef SKY
+  bool open = seesSky(place, normal);
+#endif
+#endif
   for (int i = first; i < end; ++i) {
     LightRecord light = lights[i];
     vec3 towardsLight;
     float cosine, weight = unshadowed(light, position, normal, towardsLight, cosine);
     if (!(weight > 0.0)) continue;
 #ifdef DOUBTS
-    int answer = answerOf(light, position, normal, cosine);
-    if (answer == kInDoubt) noteDoubt(pixel, position, normal, uint(firstLight + i));
-    if (answer != kLit) continue;
+#ifdef SKY
+    if (open) {
+      weight *= shadowOf(light, position, normal, cosine);
+    } else
+#endif
+    {
+      int answer = answerOf(light, place, normal, cosine);
+      if (answer == kInDoubt) noteDoubt(pixel, place, normal, uint(firstLight + i));
+      if (answer != kLit) continue;
+    }
 #elif !defined(LIT)
     weight *= shadowOf(light, position, normal, cosine);
 #endif

@@ -183,8 +183,10 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
   const Mesh& mesh = assets.meshes[meshIndex];
   if (mesh.triangles.empty()) return {};
   BottomLevel out{rtcNewScene(device)};
+  // Without it one ray of 700 at the joints of a closed box slips out. Path tracing takes 4 to 8 % longer.
+  rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_ROBUST);
   if (refits) { // without these two Embree builds anew whatever the geometries ask for
-    rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(out.scene, RTC_BUILD_QUALITY_LOW);
   }
   // Embree reads four floats per vertex, so one more follows the last: our own copies, shared by the primitives.
@@ -272,6 +274,7 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
     s.meshes.push_back(s.build(m, assets.meshes[m].positions, false).scene);
   }
   s.top = rtcNewScene(s.device);
+  rtcSetSceneFlags(s.top, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(s.top);
 }
 

@@ -39,9 +39,6 @@ ShadowSettings resolved(ShadowSettings shadow, int pictureWidth) {
   return shadow;
 }
 
-/// Light of the sky comes from everywhere: its few maps are blurred instead.
-bool asksRays(const LightBlock& block) { return block.kind != MapKind::Sky; }
-
 const char* defineOf(MapKind kind) {
   return kind == MapKind::Cube      ? "CUBE_MAPS"
          : kind == MapKind::Spot    ? "SPOT_MAPS"
@@ -79,14 +76,14 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
       kinds.push_back(block.kind);
     }
   target_.fit(in.surfaces);
-  const bool rays = in.shadow.rays && std::any_of(blocks.begin(), blocks.end(), asksRays);
+  const bool rays = in.shadow.rays && !blocks.empty();
   const auto draw = [&] {
     const gl::PassScope scope = context_.scope(StageId::Direct);
     if (rays) doubts_.begin();
     target_.clear();
     uint32_t first = 0;
     for (const LightBlock& block : blocks) {
-      drawBlock(in.surfaces, block, first, rays && asksRays(block));
+      drawBlock(in.surfaces, block, first, rays);
       first += uint32_t(block.held.size());
     }
   };
@@ -95,11 +92,13 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   {
     const CpuScope scope(stats.stages, key(StageId::ShadowRays));
     while (!doubts_.collect()) draw();
-    const auto towards = [&](const ShadowDoubt& doubt, const vec3& origin) -> Ray {
+    const auto towards = [&](const ShadowDoubt& doubt) -> Ray {
+      const vec3 origin = offsetPoint(doubt.position, doubt.normal, in.world.rays.grain());
       const LightRecord& light = *lights[doubt.light];
       const vec3 position(light.positionRange), direction(light.directionTexel);
       switch (kinds[doubt.light]) {
       case MapKind::Sun:
+      case MapKind::Sky:
         return {origin, -direction};
       case MapKind::Emitter:
         return segment(origin, offsetPoint(position, direction, in.world.rays.grain()));
@@ -139,6 +138,7 @@ const gl::Program& DirectLight::programFor(const GBuffer& surfaces, const LightB
                                            const char* variant) const {
   std::vector<std::string> defines = bindSurfaces(surfaces);
   defines.push_back(defineOf(block.kind));
+  if (block.kind == MapKind::Sky) defines.push_back("SKY");
   if (variant) defines.push_back(variant);
   const gl::Program& program =
       context_.programs.get({.vertex = vertex, .fragment = "direct.frag", .defines = std::move(defines)});
@@ -155,9 +155,12 @@ void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, ui
   program.set("lightCount", int(block.held.size()));
   program.set("firstLight", int(first));
   block.maps->bind(2);
-  glBindSampler(2, rays ? depths_.name() : block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
+  block.maps->bind(4);
+  glBindSampler(2, block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
+  glBindSampler(4, depths_.name());
   gl::drawFullscreen();
   glBindSampler(2, 0);
+  glBindSampler(4, 0);
 }
 
 /// Adds the light of pairs that rays found to see one another.

@@ -28,8 +28,8 @@ bool ShadowDoubts::collect() {
   return true;
 }
 
-void ShadowDoubts::trace(const RayQuery& rays,
-                         const std::function<Ray(const ShadowDoubt&, const vec3& origin)>& towards, RayCounts& counts) {
+void ShadowDoubts::trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&)>& towards,
+                         RayCounts& counts) {
   // In the order of lights and pixels, not that in which the GPU came by them: rays side by side are faster, and sums
   // the same every time.
   std::sort(doubts_.begin(), doubts_.end(), [](const ShadowDoubt& a, const ShadowDoubt& b) {
@@ -38,10 +38,7 @@ void ShadowDoubts::trace(const RayQuery& rays,
   std::vector<Ray> segments(doubts_.size());
   std::vector<uint8_t> blocked(doubts_.size());
   parallelFor(doubts_.size(), 512, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const ShadowDoubt& d = doubts_[i];
-      segments[i] = towards(d, offsetPoint(d.position, d.normal, rays.grain()));
-    }
+    for (size_t i = begin; i < end; ++i) segments[i] = towards(doubts_[i]);
     const size_t n = end - begin;
     rays.occluded(std::span(segments).subspan(begin, n), std::span(blocked).subspan(begin, n));
   });

@@ -17,8 +17,7 @@ class ShadowDoubts {
   bool collect();
   /// Traces the rays that `towards` gives for each doubt. Afterwards `lit` holds the pairs that see one another, by
   /// light and pixel.
-  void trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&, const vec3& origin)>& towards,
-             RayCounts& counts);
+  void trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&)>& towards, RayCounts& counts);
 
   /// Pixel, as ShadowDoubt's, and light.
   std::span<const uvec2> lit() const { return lit_; }

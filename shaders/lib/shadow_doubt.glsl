@@ -4,9 +4,9 @@
 #include "shared/shadow_doubt.h"
 
 #ifdef CUBE_MAPS
-layout(binding = 2) uniform samplerCubeArray maps;
+layout(binding = 4) uniform samplerCubeArray mapDepths;
 #else
-layout(binding = 2) uniform sampler2DArray maps;
+layout(binding = 4) uniform sampler2DArray mapDepths;
 #endif
 layout(std430, binding = 0) restrict buffer Doubts {
   uint doubtCount; // may pass the room
@@ -24,14 +24,34 @@ int verdictOf(vec4 met, vec4 plane, vec4 same, vec4 apart) {
   return all(greaterThan(met, plane + apart)) ? kShadowed : kInDoubt;
 }
 
+/// A 256th of a pixel nearer to the viewer: to so much corners are rasterised, and a place beside the joint of two walls
+/// may lie behind the other one. (A 64th takes too much from places in narrow gaps: relMSE of the citadel 0.04 instead
+/// of 0.012.)
+vec3 justBefore(vec3 position) {
+  float pixels = 2.0 * camera.lens.y * camera.size.w / 256.0;
+  vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : camera.worldFromView[3].xyz - position;
+  return position + towardsViewer * pixels;
+}
+
 void noteDoubt(ivec2 pixel, vec3 position, vec3 normal, uint light) {
   uint at = atomicAdd(doubtCount, 1u);
   if (at < doubtRoom) doubts[at] = ShadowDoubt(position, uint(pixel.x) | uint(pixel.y) << 16, normal, light);
 }
 
-// Depths of a receiver's plane that are its own surface: a texel's corners are snapped to 1/256, and what bends within
-// a texel is no other surface yet. In texels, times 1 + tanθ.
-const float kSame = 0.05, kApart = 1.0;
+/// Texels of depth by which a receiver's own surface may seem nearer to the light: corners are snapped to 1/256, and what
+/// bends a little is no other surface yet. No more at grazing light, for there all would be one surface. (Emitters have
+/// many samples, none of which decides alone: 0.2 in place of 0.05 asks a quarter fewer rays of living-room-2, relMSE
+/// 0.025 instead of 0.024.)
+float sameWithin(float cosine) {
+#ifdef EMITTER_MAPS
+  const float share = 0.2;
+#else
+  const float share = 0.05;
+#endif
+  return share * (1.0 + min(tangentOf(cosine), 8.0));
+}
+/// Texels of depth beyond which it is another surface.
+float apartBeyond(float cosine) { return 1.0 + tangentOf(cosine); }
 
 /// Of four texels in the order (0,0), (1,0), (0,1), (1,1) whose first is `base`.
 vec4 fourAt(vec2 base, float resolution, out vec4 t) {
@@ -48,8 +68,8 @@ bool inside(vec2 base, float resolution) {
 #ifndef CUBE_MAPS
 vec4 metAt(vec2 base, float layer) {
   ivec3 at = ivec3(base, layer);
-  return vec4(texelFetch(maps, at, 0).r, texelFetch(maps, at + ivec3(1, 0, 0), 0).r,
-              texelFetch(maps, at + ivec3(0, 1, 0), 0).r, texelFetch(maps, at + ivec3(1, 1, 0), 0).r);
+  return vec4(texelFetch(mapDepths, at, 0).r, texelFetch(mapDepths, at + ivec3(1, 0, 0), 0).r,
+              texelFetch(mapDepths, at + ivec3(0, 1, 0), 0).r, texelFetch(mapDepths, at + ivec3(1, 1, 0), 0).r);
 }
 #endif
 
@@ -57,7 +77,7 @@ vec4 metAt(vec2 base, float layer) {
 int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   mat4 m = light.mapFromWorld;
   vec3 x = vec3(m[0][0], m[1][0], m[2][0]), y = vec3(m[0][1], m[1][1], m[2][1]), z = vec3(m[0][2], m[1][2], m[2][2]);
-  float resolution = float(textureSize(maps, 0).x);
+  float resolution = float(textureSize(mapDepths, 0).x);
   vec3 map = (m * vec4(position, 1.0)).xyz;
   vec2 base = floor(map.xy * resolution - 0.5);
   if (!inside(base, resolution)) return kInDoubt;
@@ -66,30 +86,30 @@ int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec2 slope = -vec2(dot(x, normal) / dot(x, x), dot(y, normal) / dot(y, y)) / facing;
   vec4 t, s = fourAt(base, resolution, t);
   vec4 plane = map.z + ((s * 0.5 + 0.5) - map.x) * slope.x + ((t * 0.5 + 0.5) - map.y) * slope.y;
-  float texel = light.directionTexel.w * depthOfMetre * (1.0 + tangentOf(cosine));
+  float texel = light.directionTexel.w * depthOfMetre;
   float rounding = 1e-6 * (1.0 + depthOfMetre * axisDistance(position));
-  return verdictOf(metAt(base, light.intensityLayer.w), plane, vec4(kSame * texel + rounding), vec4(kApart * texel));
+  return verdictOf(metAt(base, light.intensityLayer.w), plane, vec4(sameWithin(cosine) * texel + rounding), vec4(apartBeyond(cosine) * texel));
 }
 #elif defined(EMITTER_MAPS)
 int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec3 fromLight = position - light.positionRange.xyz;
-  float distance = length(fromLight), resolution = float(textureSize(maps, 0).x);
+  float distance = length(fromLight), resolution = float(textureSize(mapDepths, 0).x);
   mat3 frame = mat3(light.mapFromWorld);
   vec3 d = frame * (fromLight / distance), n = frame * normal;
   vec2 base = clamp(floor(paraboloidFromDirection(d) * resolution - 0.5), 0.0, resolution - 2.0);
   vec4 t, s = fourAt(base, resolution, t);
   vec4 r2 = s * s + t * t;
   vec4 cosines = -(2.0 * (n.x * s + n.y * t) + n.z * (1.0 - r2)) / (1.0 + r2); // at the plane, in the texels' directions
-  vec4 inverse = cosines * (light.coneNear.z / (distance * cosine)); // far distance over the plane's
-  float texel = light.directionTexel.w * (1.0 + d.z) * (1.0 + tangentOf(cosine));
+  vec4 inverse = cosines * (light.coneNear.z / -dot(normal, fromLight)); // far distance over the plane's
+  float texel = light.directionTexel.w * (1.0 + d.z);
   vec4 met = (metAt(base, light.intensityLayer.w) + paraboloidRounding()) * inverse; // over the plane's distance
-  if (all(greaterThanEqual(met, vec4(1.0 - kSame * texel)))) return kLit;
-  return all(lessThan(met, vec4(1.0 - kApart * texel))) ? kShadowed : kInDoubt;
+  if (all(greaterThanEqual(met, vec4(1.0 - sameWithin(cosine) * texel)))) return kLit;
+  return all(lessThan(met, vec4(1.0 - apartBeyond(cosine) * texel))) ? kShadowed : kInDoubt;
 }
 #else
 int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec3 fromLight = position - light.positionRange.xyz;
-  float resolution = float(textureSize(maps, 0).x);
+  float resolution = float(textureSize(mapDepths, 0).x);
   vec3 right, up, forward; // unit `forward`; the others as long as half the map's width at distance 1
 #ifdef CUBE_MAPS
   const float halfWidth2 = 1.0;
@@ -112,15 +132,15 @@ int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   if (!(distance > 0.0) || !inside(base, resolution)) return kInDoubt;
 #ifdef CUBE_MAPS
   vec2 corner = (base + 1.0) * (2.0 / resolution) - 1.0; // the gather's order: (0,1), (1,1), (1,0), (0,0)
-  vec4 met = textureGather(maps, vec4(forward + right * corner.x + up * corner.y, light.intensityLayer.w)).wzxy;
+  vec4 met = textureGather(mapDepths, vec4(forward + right * corner.x + up * corner.y, light.intensityLayer.w)).wzxy;
 #else
   vec4 met = metAt(base, light.intensityLayer.w);
 #endif
   vec4 t, s = fourAt(base, resolution, t);
   vec4 towards = dot(normal, forward) + s * dot(normal, right) + t * dot(normal, up);
   vec4 plane = light.coneNear.z * towards / dot(normal, fromLight);
-  float texel = light.directionTexel.w * (1.0 + tangentOf(cosine));
+  float texel = light.directionTexel.w;
   float rounding = 1e-6 * (1.0 + axisDistance(position) / distance);
-  return verdictOf(met, plane, plane * (kSame * texel + rounding), plane * (kApart * texel));
+  return verdictOf(met, plane, plane * (sameWithin(cosine) * texel + rounding), plane * (apartBeyond(cosine) * texel));
 }
 #endif

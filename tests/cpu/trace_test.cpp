@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace lambent {
 namespace {
 
@@ -64,6 +66,38 @@ TEST(Trace, InstancesWithRotationScaleAndMirror) {
   EXPECT_NEAR(below.normal.y, -1, 1e-5);
   EXPECT_EQ(below.emission, vec3(0));
   EXPECT_FALSE(rays.closest(Ray{{2.1f, 7, 0}, {0, -1, 0}}).valid());
+}
+
+/// Faces of a box are meshes of their own that share corners and nothing else; the box is turned and far from round
+/// numbers. Rays at its joints and corners, and at the diagonals of its faces, must meet something.
+TEST(Trace, NoRaySlipsThroughTheJointsOfAClosedBox) {
+  test::HandScene scene;
+  scene.box(vec3(-1.37f, -0.71f, -2.13f), vec3(1.91f, 1.13f, 0.77f), scene.material(vec3(0.5f)), true);
+  const mat4 turned =
+      glm::rotate(glm::rotate(glm::translate(mat4(1), vec3(31.7f, -12.3f, 7.9f)), 0.83f, vec3(0.2f, 1, 0.1f)), 0.31f,
+                  vec3(1, 0, 0.3f));
+  for (InstanceView& i : scene.instances) {
+    i.worldFromObject = i.worldFromObjectBefore = turned;
+    i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, turned);
+  }
+  EmbreeQuery query(scene.assets);
+  query.update(scene.view(), true);
+  Rng rng(5, Stream::Test, 0);
+  std::vector<Ray> rays;
+  for (const Mesh& mesh : scene.assets.meshes)
+    for (int edge = 0; edge < 5; ++edge) // the sides and a diagonal
+      for (int k = 0; k < 4000; ++k) {
+        const vec3 a = mesh.positions[size_t(edge % 4)], b = mesh.positions[size_t(edge == 4 ? 2 : (edge + 1) % 4)];
+        const vec3 to = vec3(turned * vec4(a + (b - a) * rng.next(), 1));
+        const vec3 from = vec3(turned * vec4(vec3(-1, -0.5f, -1.8f) + rng.next3() * vec3(2.5f, 1.4f, 2.3f), 1));
+        rays.push_back({from, to - from});
+      }
+  std::vector<SurfaceHit> hits(rays.size());
+  std::vector<uint8_t> blocked(rays.size());
+  query.closest(rays, hits);
+  query.occluded(rays, blocked);
+  EXPECT_EQ(std::count_if(hits.begin(), hits.end(), [](const SurfaceHit& h) { return !h.valid(); }), 0);
+  EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 0), 0);
 }
 
 TEST(Trace, MovedInstancesAreFound) {

@@ -233,6 +233,27 @@ TEST_F(DoubtTest, MoreDoubtsThanTheListHolds) {
   EXPECT_NEAR(image.at(61, 24).x, wanted, kShare * wanted) << "each light once";
 }
 
+/// Walls, floor and ceiling are meshes of their own, without thickness: nothing of the sky may come in at their joints,
+/// whichever way they are turned.
+TEST_F(DirectTest, AClosedRoomUnderTheSkyIsBlack) {
+  for (const float turn : {0.0f, 0.3f, 0.8f}) {
+    Room room;
+    room.scene.sky = vec3(1);
+    const mat4 turned = glm::rotate(glm::rotate(mat4(1), turn, vec3(0, 1, 0)), 0.7f * turn, vec3(1, 0, 0));
+    for (size_t i = 0; i < room.scene.instances.size(); ++i) {
+      InstanceView& instance = room.scene.instances[i];
+      instance.worldFromObject = instance.worldFromObjectBefore = turned * instance.worldFromObject;
+      instance.boundsWorld =
+          transformed(room.scene.assets.meshes[instance.mesh].boundsObject, instance.worldFromObject);
+    }
+    room.scene.camera = cameraAt(vec3(0.3f, 0.1f, 0.2f), vec3(-0.4f, -0.9f, -0.6f), 1.5f);
+    const Image image = irradianceOf(room.scene);
+    float most = 0;
+    for (const vec3& p : image.pixels) most = std::max(most, maxComponent(p));
+    EXPECT_LT(most, 1e-4f) << "turned by " << turn;
+  }
+}
+
 TEST(SunFit, LeavesOutWhatIsFarOff) {
   std::vector<vec3> places;
   for (int i = 0; i < 1000; ++i) places.push_back(vec3(i % 10, i / 10 % 10, i / 100) * 0.1f);

@@ -74,6 +74,9 @@ void declareAccuracy(CLI::App& app) {
       "--light", options->light,
       "indirect light as set, averaged over pictures, against path tracing: bias, error, share of blocks that "
       "are right; beside it one picture, and every light at every pixel by rays");
+  forms->add_flag("--direct", options->direct,
+                  "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
+                  "samples of what is emissive");
   forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
   forms
       ->add_option("--figure", options->figure,
@@ -82,7 +85,7 @@ void declareAccuracy(CLI::App& app) {
       ->check(CLI::IsMember({8, 9, 10}));
   command
       ->add_option("--spp", options->samples,
-                   "paths per pixel of the truth (4096; --light 2048, --presets 8192, --figure 1024)")
+                   "paths per pixel of the truth (4096; --light 2048, --direct 256, --presets 8192, --figure 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--clamp", options->clamp,
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
@@ -102,6 +105,7 @@ void declareAccuracy(CLI::App& app) {
     if (o.convergence) return accuracyConvergence(o);
     if (o.gathers) return accuracyGathers(o);
     if (o.light) return accuracyLight(o);
+    if (o.direct) return accuracyDirect(o);
     if (o.presets) return accuracyPresets(o);
     if (o.figure > 0) return accuracyFigure(o);
     accuracy(o);

@@ -15,7 +15,7 @@ struct AccuracyOptions {
   std::string curve; // empty: none
   int figure = 0;    // 0: none
   int frame = 0;     // of a shot
-  bool convergence = false, light = false, gathers = false, presets = false, quick = false;
+  bool convergence = false, light = false, direct = false, gathers = false, presets = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 };
@@ -28,6 +28,8 @@ void accuracyConvergence(const AccuracyOptions& options);
 void accuracyGathers(const AccuracyOptions& options);
 /// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
 void accuracyLight(const AccuracyOptions& options);
+/// Bias and error of direct light against path tracing, as set, and by other means.
+void accuracyDirect(const AccuracyOptions& options);
 /// Error against time of the presets.
 void accuracyPresets(const AccuracyOptions& options);
 /// Paper 1's figures 8, 9 and 10 for any scene.

@@ -1,5 +1,5 @@
-// lambent accuracy SCENE --convergence, --gathers, --light, --presets, --figure 8|9|10: tables of pictures of one view
-// under changing settings, held to path tracing or to one among them.
+// lambent accuracy SCENE --convergence, --gathers, --light, --direct, --presets, --figure 8|9|10: tables of pictures of
+// one view under changing settings, held to path tracing or to one among them.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
@@ -223,6 +223,28 @@ void accuracyLight(const AccuracyOptions& options) {
                 kBias,
                 {"bias_most", "but the brightest 1 %", "%+.1f %%", 100},
                 {"blocks", "blocks within 6 %", "%.0f %%", 100},
+                kRelMse},
+               rows);
+}
+
+void accuracyDirect(const AccuracyOptions& options) {
+  Study study(options, "320x180", {{"effects.indirect", "off"}});
+  const Image truth = study.trace(256, ReferenceBuffer::Direct, false).picture.mean;
+  const Image most = allButBrightest(truth, 0.01);
+  nlohmann::json rows;
+  for (const Measured& m :
+       study.draw({study.variant("as set", {}), study.variant("maps alone", {{"shadow.rays", "off"}}),
+                   study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}})},
+                  Buffer::Direct)) {
+    rows.push_back(rowOf(pictureError(m.picture, truth)));
+    rows.back().update({{"shadows", m.variant.name},
+                        {"rays", m.frames.back().raysShadows.occlusion},
+                        {"bias_most", pictureError(m.picture, truth, most).bias}});
+  }
+  study.report({{"shadows", "shadows"},
+                {"rays", "rays", "%.0f"},
+                kBias,
+                {"bias_most", "but the brightest 1 %", "%+.1f %%", 100},
                 kRelMse},
                rows);
 }
