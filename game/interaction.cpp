@@ -68,7 +68,7 @@ Wishes Interaction::read(bool keysTaken, bool mouseTaken) {
   return w;
 }
 
-std::string ShotRecorder::addKey(const Player& player) {
+std::string ShotRecorder::addKey(const Player& player, const dvec3& origin) {
   if (shot_.file.empty()) {
     std::error_code failure;
     const fs::path folder = fs::absolute("out");
@@ -82,7 +82,8 @@ std::string ShotRecorder::addKey(const Player& player) {
   }
   constexpr double kSecondsBetweenKeys = 2;
   const double t = shot_.camera.empty() ? 0 : shot_.camera.back().t + kSecondsBetweenKeys;
-  shot_.camera.push_back({t, player.position(), player.position() + player.forward(), player.fovY()});
+  const dvec3 eye = origin + dvec3(player.position());
+  shot_.camera.push_back({t, eye, eye + dvec3(player.forward()), player.fovY()});
   shot_.seconds = glm::max(t, 1 / shot_.fps);
   saveShot(shot_, shot_.file);
   return "camera key " + std::to_string(shot_.camera.size()) + " at " + std::to_string(int(t)) + " s in " +

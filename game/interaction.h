@@ -43,7 +43,7 @@ class ShotRecorder {
   explicit ShotRecorder(std::filesystem::path scene) : scene_(std::move(scene)) {}
 
   /// Adds where the player is and writes the shot. Returns what to tell the person. Throws RunError.
-  std::string addKey(const Player& player);
+  std::string addKey(const Player& player, const dvec3& origin);
 
  private:
   std::filesystem::path scene_;

@@ -106,7 +106,7 @@ class Walkthrough {
     }
     const int width = std::max(1, int(float(windowWidth) * model_.scale));
     const int height = std::max(1, int(float(windowHeight) * model_.scale));
-    if (model_.followPath) player_.place(shotCamera(*shot_, model_.time));
+    if (model_.followPath) player_.place(shotCamera(*shot_, model_.time, scene_.origin));
     const SceneView view = extractor_.extract(scene_, player_.view(width, height), model_.time);
     const FrameStats& stats = gi_.run(view, [this](int done, int total) { showProgress(done, total); });
 
@@ -139,7 +139,7 @@ class Walkthrough {
     player_.setSpeed(model_.speed);
     player_.move(wishes.move, std::min(seconds, kLongestStep));
     screenshotWanted_ = wishes.screenshot;
-    if (wishes.recordKey) report([&] { return recorder_.addKey(player_); });
+    if (wishes.recordKey) report([&] { return recorder_.addKey(player_, scene_.origin); });
     if (wishes.reloadShaders) {
       const std::vector<std::string> messages = gi_.reloadShaders();
       for (const std::string& message : messages) hud_.say(message);
@@ -162,7 +162,7 @@ class Walkthrough {
       light.intensity = model_.lampIntensity;
       lamp_ = addLight(scene_, light, "carried lamp");
     }
-    scene_.registry.get<Transform>(*lamp_).translation = hand;
+    scene_.registry.get<Transform>(*lamp_).translation = scene_.origin + dvec3(hand);
     scene_.registry.get<PunctualLight>(*lamp_).intensity = model_.lampIntensity;
   }
 

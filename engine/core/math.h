@@ -9,6 +9,8 @@
 
 namespace lambent {
 
+using glm::dmat4;
+using glm::dvec3;
 using glm::mat3;
 using glm::mat4;
 using glm::quat;

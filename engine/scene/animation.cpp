@@ -31,7 +31,7 @@ void applyChannel(Transform& t, const AnimationChannel& channel, float time) {
   const vec4 v = sampleChannel(channel, time);
   switch (channel.path) {
   case ChannelPath::Translation:
-    t.translation = vec3(v);
+    t.translation = dvec3(v);
     break;
   case ChannelPath::Rotation:
     t.rotation = quatFromXyzw(v);
@@ -72,11 +72,11 @@ void applyMotion(Transform& t, const Motion& motion, double time) {
   const auto angle = float(std::fmod(double(motion.spinSpeed) * time, 2 * double(kPi)));
   const quat spin = glm::angleAxis(angle, motion.spinAxis);
   if (t.matrix) {
-    const vec3 origin = vec3((*t.matrix)[3]);
-    *t.matrix = glm::mat4_cast(spin) * *t.matrix;
-    (*t.matrix)[3] = vec4(origin + offset, 1);
+    const dvec3 origin((*t.matrix)[3]);
+    *t.matrix = dmat4(glm::mat4_cast(spin)) * *t.matrix;
+    (*t.matrix)[3] = glm::dvec4(origin + dvec3(offset), 1);
   } else {
-    t.translation += offset;
+    t.translation += dvec3(offset);
     t.rotation = spin * t.rotation;
   }
 }

@@ -67,7 +67,7 @@ std::vector<NamedCamera> sceneCameras(const Scene& scene) {
                               ? mat3(glm::cross(glm::normalize(up), back), glm::normalize(up), back)
                               : glm::mat3_cast(rotationTowards(-back));
     named.view.worldFromView = mat4(rotation);
-    named.view.worldFromView[3] = vec4(vec3(w.worldFromNode[3]), 1);
+    named.view.worldFromView[3] = vec4(scene.fromOrigin(dvec3(w.worldFromNode[3])), 1);
     named.view.fovY = lens.fovY;
     named.view.orthoHalfHeight = lens.orthoHalfHeight;
     named.view.near = lens.near;

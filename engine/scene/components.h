@@ -17,19 +17,19 @@ struct Name {
 /// Placement in the parent's space. `matrix`, when set, is used instead of the rest: only for nodes that a file gives
 /// as a matrix with shear, which translation, rotation and scale cannot express.
 struct Transform {
-  vec3 translation{0};
+  dvec3 translation{0}; // in double precision, for places far from the origin
   quat rotation{1, 0, 0, 0};
   vec3 scale{1};
-  std::optional<mat4> matrix;
+  std::optional<dmat4> matrix;
 
   /// parentFromNode.
-  mat4 local() const {
+  dmat4 local() const {
     if (matrix) return *matrix;
-    mat4 m = glm::mat4_cast(rotation);
+    dmat4 m(glm::mat4_cast(rotation));
     m[0] *= scale.x;
     m[1] *= scale.y;
     m[2] *= scale.z;
-    m[3] = vec4(translation, 1);
+    m[3] = glm::dvec4(translation, 1);
     return m;
   }
 };
@@ -39,9 +39,9 @@ struct Parent {
   Entity entity;
 };
 
-/// Written by updateWorldTransforms.
+/// Written by updateWorldTransforms. In coordinates of the file: see Scene::origin.
 struct WorldTransform {
-  mat4 worldFromNode{1};
+  dmat4 worldFromNode{1};
 };
 
 struct MeshInstance {

@@ -92,16 +92,17 @@ std::optional<PlacedPose> poseOf(const Scene& scene, Entity entity, const MeshIn
                                  const WorldTransform& world) {
   const Mesh& mesh = scene.assets.meshes[instance.mesh];
   PlacedPose out;
-  out.worldFromObject = world.worldFromNode;
+  const mat4 worldFromNode = scene.fromOrigin(world.worldFromNode);
+  out.worldFromObject = worldFromNode;
   const bool shown = makeInvertible(out.worldFromObject);
   const Skin* skin = mesh.jointSets.empty() ? nullptr : scene.registry.tryGet<Skin>(entity);
   if (!shown && !skin) return {};
   if (skin) {
-    if (!shown || out.worldFromObject != world.worldFromNode) out.worldFromObject = mat4(1);
+    if (!shown || out.worldFromObject != worldFromNode) out.worldFromObject = mat4(1);
     const mat4 objectFromWorld = glm::inverse(out.worldFromObject);
     for (size_t j = 0; j < skin->joints.size(); ++j) {
       const auto* joint = scene.registry.tryGet<WorldTransform>(skin->joints[j]);
-      mat4 matrix = joint ? objectFromWorld * joint->worldFromNode * skin->jointFromBind[j] : mat4(1);
+      mat4 matrix = joint ? objectFromWorld * scene.fromOrigin(joint->worldFromNode) * skin->jointFromBind[j] : mat4(1);
       // A joint that was destroyed, or flung beyond single precision, leaves its part where the node is.
       if (!allFinite(matrix)) matrix = mat4(1);
       out.pose.objectFromBind.push_back(matrix);

@@ -104,7 +104,7 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     LightView v;
     v.id = e.id();
     v.type = l.type;
-    v.position = vec3(w.worldFromNode[3]);
+    v.position = scene.fromOrigin(dvec3(w.worldFromNode[3]));
     const vec3 forward = -vec3(w.worldFromNode[2]);
     const float length = glm::length(forward);
     if (!isFinite(v.position) || !std::isfinite(length)) return;

@@ -78,17 +78,17 @@ template <class Info> TextureUse textureUse(const Info& info) {
 }
 
 /// `values` as numbers of exactly N components, the default when absent.
-template <int N>
-glm::vec<N, float> numbers(const Document& doc, const std::vector<double>& values, const std::string& place,
-                           const char* what, glm::vec<N, float> otherwise) {
+template <int N, class Number>
+glm::vec<N, Number> numbers(const Document& doc, const std::vector<double>& values, const std::string& place,
+                            const char* what, glm::vec<N, Number> otherwise) {
   if (values.empty()) return otherwise;
   if (values.size() != size_t(N))
     doc.fail(place, std::string(what) + " has " + std::to_string(values.size()) + " numbers (" + std::to_string(N) +
                         " expected)");
-  glm::vec<N, float> v;
+  glm::vec<N, Number> v;
   for (int i = 0; i < N; ++i) {
-    v[i] = float(values[size_t(i)]);
-    if (!std::isfinite(v[i])) doc.fail(place, std::string(what) + " holds a number beyond single precision");
+    v[i] = Number(values[size_t(i)]);
+    if (!std::isfinite(float(v[i]))) doc.fail(place, std::string(what) + " holds a number beyond single precision");
   }
   return v;
 }
@@ -180,7 +180,7 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
     out.light = int(number(l->second, "light", -1));
   out.weights = morphWeights(doc, n.weights, place);
   Transform& t = out.transform;
-  t.translation = numbers<3>(doc, n.translation, place, "translation", vec3(0));
+  t.translation = numbers<3>(doc, n.translation, place, "translation", dvec3(0));
   t.scale = numbers<3>(doc, n.scale, place, "scale", vec3(1));
   const vec4 q = numbers<4>(doc, n.rotation, place, "rotation", vec4(0, 0, 0, 1));
   if (const float length = glm::length(q); length > 1e-12f)
@@ -190,10 +190,10 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
   if (!n.matrix.empty()) {
     if (n.matrix.size() != 16)
       doc.fail(place, "matrix has " + std::to_string(n.matrix.size()) + " numbers (16 expected)");
-    mat4 m;
+    dmat4 m;
     for (int i = 0; i < 16; ++i) {
-      m[i / 4][i % 4] = float(n.matrix[size_t(i)]);
-      if (!std::isfinite(m[i / 4][i % 4])) doc.fail(place, "matrix holds a number beyond single precision");
+      m[i / 4][i % 4] = n.matrix[size_t(i)];
+      if (!std::isfinite(float(m[i / 4][i % 4]))) doc.fail(place, "matrix holds a number beyond single precision");
     }
     t.matrix = m;
   }

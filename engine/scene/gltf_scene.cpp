@@ -15,16 +15,16 @@ namespace {
 /// Replaces a matrix by translation, rotation and scale where these say the same; a sheared one stays.
 void decompose(Transform& t) {
   if (!t.matrix) return;
-  const mat4& m = *t.matrix;
+  const mat4 m(*t.matrix);
   if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return;
   Transform parts;
-  parts.translation = vec3(m[3]);
+  parts.translation = dvec3((*t.matrix)[3]);
   for (int c = 0; c < 3; ++c) parts.scale[c] = glm::length(vec3(m[c]));
   if (!(glm::min(parts.scale.x, glm::min(parts.scale.y, parts.scale.z)) > 0)) return;
   if (glm::determinant(mat3(m)) < 0) parts.scale.x = -parts.scale.x;
   parts.rotation = glm::normalize(
       glm::quat_cast(mat3(vec3(m[0]) / parts.scale.x, vec3(m[1]) / parts.scale.y, vec3(m[2]) / parts.scale.z)));
-  const mat4 again = parts.local();
+  const mat4 again(parts.local());
   for (int c = 0; c < 3; ++c)
     if (glm::length(again[c] - m[c]) > 1e-5f * glm::length(m[c])) return;
   t = parts;
@@ -132,6 +132,32 @@ void importNodes(Import& import, const std::string& sceneName) {
 
 } // namespace gltf
 
+namespace {
+
+/// See Scene::origin. Scenes that lie whole kilometres apart in their files get origins that lie as far apart, and are
+/// then the same to the bit.
+void findOrigin(Scene& scene) {
+  bool found = false; // a place in the scene first, in whose neighbourhood single precision will do
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
+    if (found) return;
+    const Skin* skin = scene.registry.tryGet<Skin>(e);
+    const auto* joint =
+        skin && !skin->joints.empty() ? scene.registry.tryGet<WorldTransform>(skin->joints[0]) : nullptr;
+    const dvec3 middle(scene.assets.meshes[m.mesh].boundsObject.centre());
+    scene.origin = joint ? dvec3(joint->worldFromNode[3]) : dvec3(w.worldFromNode * glm::dvec4(middle, 1));
+    found = true;
+  });
+  const Aabb bounds = worldBounds(scene);
+  const double diameter = bounds.diameter();
+  const dvec3 centre = scene.origin + dvec3(bounds.centre());
+  scene.origin = dvec3(0);
+  if (bounds.empty() || !(diameter > 0) || !(glm::length(centre) < 1e12)) return;
+  const double step = std::min(8.0, std::exp2(std::ceil(std::log2(16 * diameter))));
+  scene.origin = step * glm::floor(centre / step + 0.29); // not a half: middles of scenes often are whole numbers
+}
+
+} // namespace
+
 Scene loadScene(const std::filesystem::path& file, const std::string& sceneName) {
   gltf::Import import;
   try {
@@ -149,6 +175,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName)
   for (const auto& [text, count] : import.counted) scene.warnings.push_back(std::to_string(count) + " " + text);
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
+  findOrigin(scene);
   return scene;
 }
 

@@ -9,15 +9,15 @@
 namespace lambent {
 
 struct CameraKey {
-  double t = 0; // seconds
-  vec3 eye{0}, target{0};
-  float fovY = 1.0f; // radians (degrees in the file)
+  double t = 0;            // seconds
+  dvec3 eye{0}, target{0}; // in the file's coordinates: see Scene::origin
+  float fovY = 1.0f;       // radians (degrees in the file)
 };
 
 /// Any subset of a node's placement and a light's colour at time t; absent fields keep the node's own value.
 struct NodeKey {
   double t = 0;
-  std::optional<vec3> position;  // metres, in the parent's space
+  std::optional<dvec3> position; // metres, in the parent's space
   std::optional<vec3> rotation;  // degrees, Euler XYZ in the file; intrinsic Y·X·Z order
   std::optional<vec3> direction; // lights: the way the light travels, world space
   std::optional<vec3> intensity; // lights: per channel
@@ -42,8 +42,8 @@ Shot loadShot(const std::filesystem::path& file);
 void saveShot(const Shot& shot, const std::filesystem::path& file);
 
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
-/// after the last. Requires shot.camera not empty.
-CameraView shotCamera(const Shot& shot, double t);
+/// after the last, counted from `origin`: the scene's. Requires shot.camera not empty.
+CameraView shotCamera(const Shot& shot, double t, const dvec3& origin);
 
 /// animate(scene, t), then the shot's light and object keys (linear between keys), then world transforms.
 /// Throws InputError for a node that the scene lacks (nearest name given).

@@ -76,11 +76,12 @@ class Field {
     if (value_.is_number() || value_.is_boolean()) return value_.dump();
     fail("is not a text, number, true or false");
   }
-  template <int N> glm::vec<N, float> vector() const {
-    glm::vec<N, float> v(0);
+  template <int N, class Number = float> glm::vec<N, Number> vector() const {
+    glm::vec<N, Number> v(0);
     int n = 0;
     elements([&](const Field& f) {
-      if (n < N) v[n] = f.single();
+      f.single(); // larger numbers are refused
+      if (n < N) v[n] = Number(f.number());
       ++n;
     });
     if (n != N) fail("has " + std::to_string(n) + " numbers (" + std::to_string(N) + " expected)");
@@ -112,8 +113,8 @@ std::vector<CameraKey> readCamera(const Field& camera) {
     k.checkKeys({"t", "eye", "target", "fov"});
     CameraKey key;
     key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
-    key.eye = k["eye"].vector<3>();
-    key.target = k["target"].vector<3>();
+    key.eye = k["eye"].vector<3, double>();
+    key.target = k["target"].vector<3, double>();
     if (key.eye == key.target) k["target"].fail("is the same point as the eye");
     if (k.has("fov")) {
       const float degrees = k["fov"].single();
@@ -137,7 +138,7 @@ std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool l
                          : std::vector<std::string>{"t", "position", "rotation"});
       NodeKey key;
       key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
-      if (k.has("position")) key.position = k["position"].vector<3>();
+      if (k.has("position")) key.position = k["position"].vector<3, double>();
       if (k.has("rotation")) key.rotation = k["rotation"].vector<3>();
       if (k.has("direction")) {
         key.direction = k["direction"].vector<3>();
@@ -169,7 +170,7 @@ json parse(const fs::path& file) {
   }
 }
 
-template <int N> json toJson(const glm::vec<N, float>& v) {
+template <int N, class Number> json toJson(const glm::vec<N, Number>& v) {
   json list = json::array();
   for (int i = 0; i < N; ++i) list.push_back(v[i]);
   return list;

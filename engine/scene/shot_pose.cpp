@@ -11,11 +11,13 @@ namespace lambent {
 namespace {
 
 /// Linear, and to the bit what both share: what stands still between two keys must not seem to move.
-template <class Value> Value between(const Value& from, const Value& to, float u) { return from + (to - from) * u; }
+template <class Value, class Share> Value between(const Value& from, const Value& to, Share u) {
+  return from + (to - from) * u;
+}
 
 /// Catmull-Rom through keys at uneven times: cubic Hermite whose tangents are the slopes between the neighbours,
 /// one-sided at the ends, where it also holds.
-template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
+template <class Value> dvec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
   const auto after =
       std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
   if (after == keys.begin()) return value(keys.front());
@@ -23,10 +25,9 @@ template <class Value> vec3 spline(const std::vector<CameraKey>& keys, double t,
   const size_t i = size_t(after - keys.begin()) - 1;
   const auto slope = [&](size_t k) {
     const size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, keys.size() - 1);
-    return (value(keys[b]) - value(keys[a])) / float(keys[b].t - keys[a].t);
+    return (value(keys[b]) - value(keys[a])) / (keys[b].t - keys[a].t);
   };
-  const auto span = float(keys[i + 1].t - keys[i].t), u = float((t - keys[i].t) / (keys[i + 1].t - keys[i].t));
-  const float u2 = u * u, u3 = u2 * u;
+  const double span = keys[i + 1].t - keys[i].t, u = (t - keys[i].t) / span, u2 = u * u, u3 = u2 * u;
   return between(value(keys[i]), value(keys[i + 1]), 3 * u2 - 2 * u3) + (u3 - 2 * u2 + u) * span * slope(i) +
          (u3 - u2) * span * slope(i + 1);
 }
@@ -40,13 +41,14 @@ float linearFov(const std::vector<CameraKey>& keys, double t) {
   return between(before->fovY, after->fovY, float((t - before->t) / (after->t - before->t)));
 }
 
-struct Between {
-  vec3 from, to;
+template <class V> struct Between {
+  V from, to;
   float u;
 };
 
 /// The keys around t that set `field`; nothing where no key does.
-std::optional<Between> around(const std::vector<NodeKey>& keys, std::optional<vec3> NodeKey::*field, double t) {
+template <class V>
+std::optional<Between<V>> around(const std::vector<NodeKey>& keys, std::optional<V> NodeKey::*field, double t) {
   const NodeKey *before = nullptr, *after = nullptr;
   for (const NodeKey& k : keys) {
     if (!(k.*field)) continue;
@@ -54,14 +56,15 @@ std::optional<Between> around(const std::vector<NodeKey>& keys, std::optional<ve
     if (k.t > t && !after) after = &k;
   }
   if (!before && !after) return {};
-  if (!before) return Between{*(after->*field), *(after->*field), 0};
-  if (!after) return Between{*(before->*field), *(before->*field), 0};
-  return Between{*(before->*field), *(after->*field), float((t - before->t) / (after->t - before->t))};
+  if (!before) return Between<V>{*(after->*field), *(after->*field), 0};
+  if (!after) return Between<V>{*(before->*field), *(before->*field), 0};
+  return Between<V>{*(before->*field), *(after->*field), float((t - before->t) / (after->t - before->t))};
 }
 
-std::optional<vec3> linear(const std::vector<NodeKey>& keys, std::optional<vec3> NodeKey::*field, double t) {
+template <class V>
+std::optional<V> linear(const std::vector<NodeKey>& keys, std::optional<V> NodeKey::*field, double t) {
   const auto b = around(keys, field, t);
-  return b ? std::optional(between(b->from, b->to, b->u)) : std::nullopt;
+  return b ? std::optional(between(b->from, b->to, typename V::value_type(b->u))) : std::nullopt;
 }
 
 /// Angles are mixed, not orientations, so that a turn of 360 degrees between two keys is one.
@@ -70,7 +73,7 @@ quat rotationFromDegrees(const vec3& degrees) {
   return glm::angleAxis(r.y, vec3(0, 1, 0)) * glm::angleAxis(r.x, vec3(1, 0, 0)) * glm::angleAxis(r.z, vec3(0, 0, 1));
 }
 
-void place(Transform& t, std::optional<vec3> position, std::optional<quat> rotation) {
+void place(Transform& t, std::optional<dvec3> position, std::optional<quat> rotation) {
   if (!t.matrix) {
     if (position) t.translation = *position;
     if (rotation) t.rotation = *rotation;
@@ -78,9 +81,9 @@ void place(Transform& t, std::optional<vec3> position, std::optional<quat> rotat
   }
   if (rotation) { // of a sheared matrix only the lengths of its axes can be kept
     const mat3 r = glm::mat3_cast(*rotation);
-    for (int c = 0; c < 3; ++c) (*t.matrix)[c] = vec4(r[c] * glm::length(vec3((*t.matrix)[c])), 0);
+    for (int c = 0; c < 3; ++c) (*t.matrix)[c] = glm::dvec4(dvec3(r[c]) * glm::length(dvec3((*t.matrix)[c])), 0);
   }
-  if (position) (*t.matrix)[3] = vec4(*position, 1);
+  if (position) (*t.matrix)[3] = glm::dvec4(*position, 1);
 }
 
 /// The node called `name`, or an error that names the nearest of those that have a T.
@@ -115,7 +118,7 @@ void aimLight(Scene& scene, Entity e, const vec3& direction) {
 }
 
 /// Mixed along the great circle where the two differ by less than half a turn.
-vec3 mixDirections(const Between& b) {
+vec3 mixDirections(const Between<vec3>& b) {
   const vec3 from = glm::normalize(b.from), to = glm::normalize(b.to);
   const float angle = std::acos(glm::clamp(glm::dot(from, to), -1.0f, 1.0f));
   if (angle < 1e-3f || angle > kPi - 1e-3f) return b.u < 0.5f ? from : to;
@@ -126,11 +129,11 @@ vec3 mixDirections(const Between& b) {
 
 int Shot::frameCount() const { return std::max(1, int(std::lround(fps * seconds))); }
 
-CameraView shotCamera(const Shot& shot, double t) {
+CameraView shotCamera(const Shot& shot, double t, const dvec3& origin) {
   CHECK(!shot.camera.empty());
-  const vec3 eye = spline(shot.camera, t, [](const CameraKey& k) { return k.eye; });
-  const vec3 target = spline(shot.camera, t, [](const CameraKey& k) { return k.target; });
-  return lookAt(eye, target, linearFov(shot.camera, t));
+  const dvec3 eye = spline(shot.camera, t, [](const CameraKey& k) { return k.eye; });
+  const dvec3 target = spline(shot.camera, t, [](const CameraKey& k) { return k.target; });
+  return lookAt(vec3(eye - origin), vec3(target - origin), linearFov(shot.camera, t));
 }
 
 void poseShot(Scene& scene, const Shot& shot, double t) {

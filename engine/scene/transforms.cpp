@@ -29,7 +29,7 @@ void updateWorldTransforms(Scene& scene) {
     }
     for (auto it = path.rbegin(); it != path.rend(); ++it) {
       const Entity parent = parentOf(*it);
-      mat4 world = registry.get<Transform>(*it).local();
+      dmat4 world = registry.get<Transform>(*it).local();
       if (registry.valid(parent)) world = registry.get<WorldTransform>(parent).worldFromNode * world;
       registry.get<WorldTransform>(*it).worldFromNode = world;
       done[it->index()] = true;
@@ -41,7 +41,7 @@ Entity addLight(Scene& scene, const LightView& light, const std::string& name) {
   Registry& registry = scene.registry;
   const Entity e = registry.create();
   Transform t;
-  t.translation = light.position;
+  t.translation = scene.origin + dvec3(light.position);
   t.rotation = rotationTowards(light.direction);
   registry.emplace<Name>(e, name);
   registry.emplace<Transform>(e, t);

@@ -52,7 +52,7 @@ TEST_P(SpotScene, OneConeOf90DegreesMovesAndLightsSomeOfTheTrackedPixels) {
 
     // Both shapes of picture that the figures are made in.
     for (const glm::ivec2 size : {glm::ivec2(1024, 1024), glm::ivec2(480, 270)}) {
-      CameraView camera = shotCamera(shot, t);
+      CameraView camera = shotCamera(shot, t, scene.origin);
       camera.width = size.x;
       camera.height = size.y;
       int lit = 0;

@@ -52,7 +52,7 @@ TEST_P(Walks, KeepClearOfWalls) {
       if (light.type == LightType::Directional) continue;
       EXPECT_FALSE(placed.inSolid(light.position));
     }
-    const dvec3 eye = shotCamera(shot, t).position();
+    const dvec3 eye = shotCamera(shot, t, scene.origin).position();
     ASSERT_FALSE(placed.inSolid(eye));
     const double height = placed.distance(eye, dvec3(0, -1, 0));
     EXPECT_GT(height, 1.4);

@@ -278,7 +278,7 @@ class RandomWorld {
   }
   void relight() {
     const Entity e = lights_[random_.below(uint32_t(lights_.size()))];
-    mat4& pose = scene_.registry.get<WorldTransform>(e).worldFromNode;
+    dmat4& pose = scene_.registry.get<WorldTransform>(e).worldFromNode;
     const float what = number();
     if (what < 0.4f)
       pose = lightPose(vec3(pose[3]) + 0.3f * (number3() - 0.5f));

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Comma-separated finite numbers, exactly `count` of them.
-std::vector<float> numbers(const std::string& option, const std::string& text, size_t count) {
-  std::vector<float> out;
+std::vector<double> numbers(const std::string& option, const std::string& text, size_t count) {
+  std::vector<double> out;
   const char* at = text.data();
   const char* const end = at + text.size();
   while (at < end) {
-    float value = 0;
+    double value = 0;
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value) || (next != end && *next != ',')) break;
+    if (error != std::errc() || !std::isfinite(float(value)) || (next != end && *next != ',')) break;
     out.push_back(value);
     at = next == end ? end : next + 1;
     if (next != end && at == end) out.clear(); // a trailing comma
@@ -38,8 +38,8 @@ std::vector<float> numbers(const std::string& option, const std::string& text, s
   return out;
 }
 
-vec3 threeNumbers(const std::string& option, const std::string& text) {
-  const std::vector<float> n = numbers(option, text, 3);
+dvec3 threeNumbers(const std::string& option, const std::string& text) {
+  const std::vector<double> n = numbers(option, text, 3);
   return {n[0], n[1], n[2]};
 }
 
@@ -50,7 +50,7 @@ vec3 lightValue(const std::string& option, const std::string& text, const vec3& 
 }
 
 LightView sunLight(const std::string& text) {
-  const std::vector<float> n = numbers("--sun", text, 6);
+  const std::vector<double> n = numbers("--sun", text, 6);
   const vec3 direction(n[0], n[1], n[2]);
   if (!(glm::length(direction) > 0)) throw InputError("--sun " + text, "the direction has no length");
   LightView light;
@@ -60,10 +60,10 @@ LightView sunLight(const std::string& text) {
   return light;
 }
 
-LightView pointLight(const std::string& text) {
-  const std::vector<float> n = numbers("--point", text, 6);
+LightView pointLight(const std::string& text, const Scene& scene) {
+  const std::vector<double> n = numbers("--point", text, 6);
   LightView light;
-  light.position = {n[0], n[1], n[2]};
+  light.position = scene.fromOrigin(dvec3(n[0], n[1], n[2]));
   light.intensity = lightValue("--point", text, {n[3], n[4], n[5]});
   return light;
 }
@@ -102,14 +102,14 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
   const std::vector<NamedCamera> cameras = sceneCameras(stage.scene);
   stage.cameraGiven = eye || !options.camera.empty();
   if (eye) {
-    const vec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
+    const dvec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
     if (from == to) throw InputError("--target " + options.target, "is where --eye is");
     constexpr float kFarthest = 1e12f; // squares and cubes of distances must stay finite
-    if (maxComponent(glm::abs(from)) > kFarthest)
+    if (maxComponent(glm::abs(vec3(from))) > kFarthest)
       throw InputError("--eye " + options.eye, "is farther than 1e12 m away");
-    if (maxComponent(glm::abs(to)) > kFarthest)
+    if (maxComponent(glm::abs(vec3(to))) > kFarthest)
       throw InputError("--target " + options.target, "is farther than 1e12 m away");
-    stage.camera = lookAt(from, to, glm::radians(60.0f));
+    stage.camera = lookAt(stage.scene.fromOrigin(from), stage.scene.fromOrigin(to), glm::radians(60.0f));
     stage.camera.near = std::min(stage.camera.near, 1e-3f * worldBounds(stage.scene).diameter()); // of small scenes
   } else if (!options.camera.empty()) {
     stage.camera = namedCamera(stage.scene, options.camera);
@@ -216,7 +216,7 @@ SceneView Stage::at(double t) {
   if (shot) {
     poseShot(scene, *shot, t);
     if (!shot->camera.empty() && !cameraGiven) {
-      view = shotCamera(*shot, t);
+      view = shotCamera(*shot, t, scene.origin);
       view.width = camera.width;
       view.height = camera.height;
     }
@@ -239,9 +239,9 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   stage->settings = chosenSettings(options, stage->shot);
   stage->scene = loadScene(file, options.sceneName);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
-  for (const std::string& text : options.points) addLight(stage->scene, pointLight(text), "lamp");
+  for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())
-    stage->scene.skyRadiance = lightValue("--sky", options.sky, threeNumbers("--sky", options.sky));
+    stage->scene.skyRadiance = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
   animate(stage->scene, 0);
   chooseCamera(*stage, options);
   SceneExtractor probe;

@@ -113,7 +113,7 @@ TEST(Animate, ScriptedMotionSpinsAndSwingsFromWhereItStands) {
   scene.registry.emplace<Motion>(e, motion);
   for (int repeat = 0; repeat < 2; ++repeat) { // the same time gives the same pose
     animate(scene, 1);
-    const mat4& world = scene.registry.get<WorldTransform>(e).worldFromNode;
+    const dmat4 world = scene.registry.get<WorldTransform>(e).worldFromNode;
     expectNear(vec3(world[3]), {5, 3, 0});  // a quarter of the swing
     expectNear(vec3(world[0]), {0, 0, -1}); // a quarter turn about +Y takes +X to -Z
   }

@@ -175,7 +175,7 @@ TEST_F(BadInput, DeepHierarchyLoads) {
   b.json["scenes"][0]["nodes"] = {0, 1};
   const Scene scene = b.load(folder);
   EXPECT_EQ(scene.registry.size(), size_t(depth) + 2);
-  EXPECT_NEAR(worldBounds(scene).hi.z, 0.001f * depth, 0.05f);
+  EXPECT_NEAR(scene.origin.z + worldBounds(scene).hi.z, 0.001 * depth, 1e-5);
 }
 
 TEST_F(BadInput, DefectiveTrianglesAreDroppedAndCounted) {

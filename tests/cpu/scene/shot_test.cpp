@@ -113,18 +113,18 @@ TEST(ShotCamera, PassesThroughItsKeysAndHoldsOutside) {
   Shot shot;
   shot.camera = {{0, {0, 0, 0}, {0, 0, -1}, 1}, {1, {1, 2, 0}, {1, 0, -1}, 1}, {3, {5, 2, 1}, {5, 0, -1}, 2}};
   for (const CameraKey& key : shot.camera) {
-    const CameraView view = shotCamera(shot, key.t);
+    const CameraView view = shotCamera(shot, key.t, dvec3(0));
     expectNear(view.position(), key.eye);
     expectNear(-vec3(view.worldFromView[2]), glm::normalize(key.target - key.eye));
     EXPECT_FLOAT_EQ(view.fovY, key.fovY);
   }
-  expectNear(shotCamera(shot, -1).position(), {0, 0, 0});
-  expectNear(shotCamera(shot, 99).position(), {5, 2, 1});
-  EXPECT_FLOAT_EQ(shotCamera(shot, 2).fovY, 1.5f);
+  expectNear(shotCamera(shot, -1, dvec3(0)).position(), {0, 0, 0});
+  expectNear(shotCamera(shot, 99, dvec3(0)).position(), {5, 2, 1});
+  EXPECT_FLOAT_EQ(shotCamera(shot, 2, dvec3(0)).fovY, 1.5f);
   // The speed is the same on both sides of a key.
   const float h = 1e-3f;
-  const vec3 before = (shotCamera(shot, 1).position() - shotCamera(shot, 1 - h).position()) / h;
-  const vec3 after = (shotCamera(shot, 1 + h).position() - shotCamera(shot, 1).position()) / h;
+  const vec3 before = (shotCamera(shot, 1, dvec3(0)).position() - shotCamera(shot, 1 - h, dvec3(0)).position()) / h;
+  const vec3 after = (shotCamera(shot, 1 + h, dvec3(0)).position() - shotCamera(shot, 1, dvec3(0)).position()) / h;
   expectNear(before, after, 0.02f);
   expectNear(before, vec3(5, 2, 1) / 3.0f, 0.02f); // the slope between the neighbours
 }
@@ -174,13 +174,13 @@ TEST(PoseShot, WhatEqualKeysHoldDoesNotMove) {
   shot.objects["box"] = {{0, place, turn, {}, {}}, {1, place, turn, {}, {}}, {3, place, turn, {}, {}}};
   for (const double t : {0.0, 1.0, 3.0}) shot.camera.push_back({t, place, turn, 1.1f});
   poseShot(scene, shot, 0);
-  const mat4 before = registry.get<WorldTransform>(box).worldFromNode;
-  const CameraView camera = shotCamera(shot, 0);
+  const dmat4 before = registry.get<WorldTransform>(box).worldFromNode;
+  const CameraView camera = shotCamera(shot, 0, dvec3(0));
   for (int frame = 1; frame < 100; ++frame) {
     poseShot(scene, shot, frame / 30.0);
     EXPECT_EQ(registry.get<WorldTransform>(box).worldFromNode, before) << frame;
-    EXPECT_EQ(shotCamera(shot, frame / 30.0).worldFromView, camera.worldFromView) << frame;
-    EXPECT_EQ(shotCamera(shot, frame / 30.0).fovY, camera.fovY) << frame;
+    EXPECT_EQ(shotCamera(shot, frame / 30.0, dvec3(0)).worldFromView, camera.worldFromView) << frame;
+    EXPECT_EQ(shotCamera(shot, frame / 30.0, dvec3(0)).fovY, camera.fovY) << frame;
   }
 }
 
