@@ -1,8 +1,9 @@
 #version 450
 // Direct irradiance from one block of lights with their shadow maps. Variants by how the maps are made: CUBE_MAPS
 // (point lights and wide spots), SPOT_MAPS, SUN_MAPS (directional lights and directions of the sky), EMITTER_MAPS
-// (samples of emissive surfaces), and of those SKY (directions of the sky); DOUBTS (no light where a map is in doubt, which is noted for rays) and LIT (the light
-// of such pairs that see one another: a point each); GLOSSY (the receivers' lobes too).
+// (samples of emissive surfaces); with SUN_MAPS, SKY (directions of the sky); DOUBTS (no light where a map is in doubt,
+// which is noted for rays) and LIT (the light of such pairs that see one another: a point each); GLOSSY (the receivers'
+// lobes too).
 #include "lib/gbuffer.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"

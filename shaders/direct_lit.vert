@@ -10,6 +10,5 @@ void main() {
   uvec2 pair = texelFetch(litPairs, firstPair + gl_VertexID).rg;
   vec2 pixel = vec2(pair.r & 0xffffu, pair.r >> 16) + 0.5;
   gl_Position = vec4(pixel / pictureSize * 2.0 - 1.0, 0.0, 1.0);
-  gl_PointSize = 1.0;
   litLight = int(pair.g) - firstLight;
 }

@@ -303,7 +303,7 @@ void PipelineState::apply() const {
   glStencilFunc(stencil == Stencil::Mark ? GL_ALWAYS : GL_EQUAL, 1, 0xff);
   glStencilOp(GL_KEEP, GL_KEEP, stencil == Stencil::Mark ? GL_REPLACE : GL_KEEP);
   glDisable(GL_FRAMEBUFFER_SRGB);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glColorMask(colors, colors, colors, colors);
   glViewport(x, y, width, height);
   glEnable(GL_SCISSOR_TEST);
   glScissor(x, y, width, height);

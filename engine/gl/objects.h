@@ -189,6 +189,7 @@ struct PipelineState {
   bool add = false;        // destination + source
   bool blendAlpha = false; // source over
   Stencil stencil = Stencil::Off;
+  bool colors = true;                      // off: fragments are counted, or write to buffers
   bool depthClamp = false;                 // casters outside the depth range are kept at its ends
   int x = 0, y = 0, width = 0, height = 0; // viewport and scissor
   void apply() const;

@@ -5,6 +5,7 @@
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace lambent {
@@ -46,6 +47,12 @@ const char* defineOf(MapKind kind) {
                                     : "SUN_MAPS";
 }
 
+std::array<DirectLight::Area, 2> halves(const DirectLight::Area& a) {
+  if (a.width > a.height)
+    return {{{a.x, a.y, a.width / 2, a.height}, {a.x + a.width / 2, a.y, a.width - a.width / 2, a.height}}};
+  return {{{a.x, a.y, a.width, a.height / 2}, {a.x, a.y + a.height / 2, a.width, a.height - a.height / 2}}};
+}
+
 gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMode) {
   gl::Sampler sampler(label);
   const GLuint name = sampler.name();
@@ -60,56 +67,71 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 
 } // namespace
 
-DirectLight::DirectLight(PassContext context)
-    : context_(context), shadows_(context), emitters_(context),
+DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
+    : context_(context), shadows_(context), emitters_(context), doubts_(mostDoubts),
       depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   if (in.keep) return target_.light();
   const std::vector<LightBlock> blocks = shadowed(in, stats);
-  std::vector<const LightRecord*> lights; // of all blocks
-  std::vector<MapKind> kinds;
-  for (const LightBlock& block : blocks)
-    for (const LightRecord& light : block.held) {
-      lights.push_back(&light);
-      kinds.push_back(block.kind);
-    }
-  target_.fit(in.surfaces);
   const bool rays = in.shadow.rays && !blocks.empty();
-  const auto draw = [&] {
+  const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};
+  target_.fit(in.surfaces);
+  {
     const gl::PassScope scope = context_.scope(StageId::Direct);
     if (rays) doubts_.begin();
     target_.clear();
-    uint32_t first = 0;
-    for (const LightBlock& block : blocks) {
-      drawBlock(in.surfaces, block, first, rays);
-      first += uint32_t(block.held.size());
+    for (const LightBlock& block : blocks) drawBlock(in.surfaces, block, whole, rays ? Noting::AlsoLight : Noting::Off);
+  }
+  if (!rays || answer(in, blocks, stats)) return target_.light();
+
+  // There are more doubts than the list holds: block by block, and in parts of the picture so small that it does.
+  for (const LightBlock& block : blocks) {
+    std::vector<Area> areas{whole};
+    while (!areas.empty()) {
+      const Area area = areas.back();
+      areas.pop_back();
+      {
+        const gl::PassScope scope = context_.scope(StageId::Direct);
+        doubts_.begin();
+        target_.bind();
+        drawBlock(in.surfaces, block, area, Noting::Only);
+      }
+      if (!answer(in, blocks, stats))
+        for (const Area& half : halves(area)) areas.push_back(half);
     }
-  };
-  draw();
-  if (!rays) return target_.light();
+  }
+  return target_.light();
+}
+
+/// Asks rays about what was noted, and adds the light that they let through. False where the list had not room enough.
+bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blocks, FrameStats& stats) {
   {
     const CpuScope scope(stats.stages, key(StageId::ShadowRays));
-    while (!doubts_.collect()) draw();
+    if (!doubts_.collect()) return false;
+    const RayQuery& rays = in.world.rays;
     const auto towards = [&](const ShadowDoubt& doubt) -> Ray {
-      const vec3 origin = offsetPoint(doubt.position, doubt.normal, in.world.rays.grain());
-      const LightRecord& light = *lights[doubt.light];
+      const auto after = std::upper_bound(blocks.begin(), blocks.end(), doubt.light,
+                                          [](uint32_t light, const LightBlock& b) { return light < b.first; });
+      const LightBlock& block = *(after - 1);
+      const LightRecord& light = block.held[doubt.light - block.first];
+      const vec3 origin = offsetPoint(doubt.position, doubt.normal, rays.grain());
       const vec3 position(light.positionRange), direction(light.directionTexel);
-      switch (kinds[doubt.light]) {
+      switch (block.kind) {
       case MapKind::Sun:
       case MapKind::Sky:
         return {origin, -direction};
       case MapKind::Emitter:
-        return segment(origin, offsetPoint(position, direction, in.world.rays.grain()));
+        return segment(origin, offsetPoint(position, direction, rays.grain()));
       default:
         return segment(origin, position);
       }
     };
-    doubts_.trace(in.world.rays, towards, stats.raysShadows);
+    doubts_.trace(rays, towards, stats.raysShadows);
   }
   drawLit(in.surfaces, blocks);
-  return target_.light();
+  return true;
 }
 
 /// All lights, with maps that are up to date.
@@ -131,6 +153,8 @@ std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, FrameStats
     stats.of(EffectId::Emissive) += stats.mapsDrawn - before;
     stats.of(EffectId::SoftShadows) = soft ? emitters_.samples() : 0;
   }
+  for (size_t i = 1; i < blocks.size(); ++i)
+    blocks[i].first = blocks[i - 1].first + uint32_t(blocks[i - 1].held.size());
   return blocks;
 }
 
@@ -145,15 +169,21 @@ const gl::Program& DirectLight::programFor(const GBuffer& surfaces, const LightB
   program.use();
   program.set("spread", GatherSettings{}.spread);
   block.lights->bindUniform(1);
-  gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
   return program;
 }
 
-/// `first`: of its lights, among all.
-void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, uint32_t first, bool rays) const {
-  const gl::Program& program = programFor(surfaces, block, "fullscreen.vert", rays ? "DOUBTS" : nullptr);
+void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, const Area& area, Noting noting) const {
+  const gl::Program& program =
+      programFor(surfaces, block, "fullscreen.vert", noting == Noting::Off ? nullptr : "DOUBTS");
+  gl::PipelineState{.add = true,
+                    .colors = noting != Noting::Only,
+                    .x = area.x,
+                    .y = area.y,
+                    .width = area.width,
+                    .height = area.height}
+      .apply();
   program.set("lightCount", int(block.held.size()));
-  program.set("firstLight", int(first));
+  program.set("firstLight", int(block.first));
   block.maps->bind(2);
   block.maps->bind(4);
   glBindSampler(2, block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
@@ -167,17 +197,16 @@ void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, ui
 void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks) {
   if (doubts_.lit().empty()) return;
   const gl::PassScope scope = context_.scope(StageId::Direct);
+  gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
   doubts_.bindLit(3);
-  uint32_t light = 0;
   size_t pair = 0;
   for (const LightBlock& block : blocks) {
-    const uint32_t firstLight = light;
     const size_t first = pair;
-    light += uint32_t(block.held.size());
-    while (pair < doubts_.lit().size() && doubts_.lit()[pair].y < light) ++pair;
+    const uint32_t end = block.first + uint32_t(block.held.size());
+    while (pair < doubts_.lit().size() && doubts_.lit()[pair].y < end) ++pair;
     if (pair == first) continue;
     const gl::Program& program = programFor(surfaces, block, "direct_lit.vert", "LIT");
-    program.set("firstLight", int(firstLight));
+    program.set("firstLight", int(block.first));
     program.set("firstPair", int(first));
     program.set("pictureSize", vec2(surfaces.width, surfaces.height));
     gl::drawPoints(int(pair - first));

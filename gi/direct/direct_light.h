@@ -21,15 +21,23 @@ struct DirectInputs {
 
 class DirectLight {
  public:
-  explicit DirectLight(PassContext context);
+  explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowDoubts::kMost);
   LightOnSurfaces run(const DirectInputs& in, FrameStats& stats);
 
+  struct Area {
+    int x = 0, y = 0, width = 0, height = 0; // pixels, from the lower left
+  };
+
  private:
+  /// Whether doubts are noted, and light is drawn.
+  enum class Noting { Off, AlsoLight, Only };
+
   void fitReceivers(const DirectInputs& in, FrameStats& stats);
   std::vector<LightBlock> shadowed(const DirectInputs& in, FrameStats& stats);
   const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
                                 const char* variant) const;
-  void drawBlock(const GBuffer& surfaces, const LightBlock& block, uint32_t first, bool rays) const;
+  void drawBlock(const GBuffer& surfaces, const LightBlock& block, const Area& area, Noting noting) const;
+  bool answer(const DirectInputs& in, std::span<const LightBlock> blocks, FrameStats& stats);
   void drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks);
 
   PassContext context_;

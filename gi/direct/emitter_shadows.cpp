@@ -43,11 +43,12 @@ std::vector<LightBlock> EmitterShadowPass::run(const World& world, const ShadowS
 
   const gl::PassScope scope = context_.scope(StageId::Emitters);
   std::vector<LightBlock> out;
+  if (const size_t needed = (lights.size() + kLightsPerBlock - 1) / kLightsPerBlock; blocks_.size() < needed)
+    blocks_.resize(needed); // at once: `out` points into it
   for (size_t first = 0; first < lights.size(); first += kLightsPerBlock) {
     std::vector<LightRecord> records;
     for (size_t i = first; i < std::min(first + kLightsPerBlock, lights.size()); ++i)
       records.push_back(recordOf(lights[i], int(i) % kLayersPerArray, maps));
-    if (blocks_.size() <= out.size()) blocks_.emplace_back();
     LightRecords& block = blocks_[out.size()];
     block.hold(std::move(records), changedLights_);
     out.push_back({MapKind::Emitter, &maps.arrays[first / kLayersPerArray], &block.buffer(), block.held()});

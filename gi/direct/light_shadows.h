@@ -23,6 +23,7 @@ struct LightBlock {
   const gl::Texture* maps = nullptr;  // DEPTH32F reversed; of emitters as ParaboloidMaps
   const gl::Buffer* lights = nullptr; // LightRecords
   std::span<const LightRecord> held;  // what `lights` holds
+  uint32_t first = 0;                 // of its lights, among all of the frame
 };
 
 /// Light records on the GPU: those that differ from what it has are uploaded.

@@ -20,7 +20,7 @@ bool ShadowDoubts::collect() {
   Header header;
   list_.read(0, std::span(&header, 1));
   if (header.count > room_) {
-    room_ = std::bit_ceil(header.count);
+    room_ = std::max(room_, std::min(header.count, most_ / 2) * 2);
     return false;
   }
   doubts_.resize(header.count);

@@ -5,15 +5,20 @@
 #include "engine/trace/ray_query.h"
 #include "shaders/shared/shadow_doubt.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace lambent {
 
 class ShadowDoubts {
  public:
+  static constexpr uint32_t kMost = 524287; // 16 MiB: what every OpenGL lets shaders write into
+  /// `most`: doubts that the list may come to hold.
+  explicit ShadowDoubts(uint32_t most = kMost) : most_(most), room_(std::min(most, 1u << 14)) {}
   /// Empties the list and binds it for shaders (shaders/lib/shadow_doubt.glsl).
   void begin();
-  /// Takes the list over from the GPU. False where it had not room enough: it has now, and all is to be drawn again.
+  /// Takes the list over from the GPU. False where there were more doubts than it has room for: then what is noted is
+  /// to be noted again in parts. It has grown then, as far as it may.
   bool collect();
   /// Traces the rays that `towards` gives for each doubt. Afterwards `lit` holds the pairs that see one another, by
   /// light and pixel.
@@ -31,7 +36,7 @@ class ShadowDoubts {
   gl::Buffer list_, litBuffer_;
   gl::Texture litView_;
   gl::Ring uploads_{"direct/shadow rays"};
-  uint32_t room_ = 1 << 14;
+  uint32_t most_, room_; // of list_
   std::vector<ShadowDoubt> doubts_;
   std::vector<uvec2> lit_;
 };

@@ -88,7 +88,8 @@ int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec4 plane = map.z + ((s * 0.5 + 0.5) - map.x) * slope.x + ((t * 0.5 + 0.5) - map.y) * slope.y;
   float texel = light.directionTexel.w * depthOfMetre;
   float rounding = 1e-6 * (1.0 + depthOfMetre * axisDistance(position));
-  return verdictOf(metAt(base, light.intensityLayer.w), plane, vec4(sameWithin(cosine) * texel + rounding), vec4(apartBeyond(cosine) * texel));
+  return verdictOf(metAt(base, light.intensityLayer.w), plane, vec4(sameWithin(cosine) * texel + rounding),
+                   vec4(apartBeyond(cosine) * texel));
 }
 #elif defined(EMITTER_MAPS)
 int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
