@@ -65,7 +65,7 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
 }
 
 #if defined(DOUBTS) && defined(SKY)
-/// Whether any direction is lit without doubt. Its few directions stand for a sky that comes from everywhere, so their
+/// Whether any direction of this block (of 128) is lit without doubt. Its few directions stand for a sky that comes from everywhere, so their
 /// shadows are blurred; but a place that sees none of it must stay black, however thin the walls.
 bool seesSky(vec3 position, vec3 normal) {
   for (int i = 0; i < lightCount; ++i) {

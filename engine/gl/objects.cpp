@@ -174,6 +174,19 @@ bool Texture::readsAsFlat() const {
   return target == GL_TEXTURE_2D && compare == GL_NONE;
 }
 
+bool Texture::holdsSinglePrecision() const {
+  GLint depth = 0, red = 0;
+  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_DEPTH_SIZE, &depth);
+  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_RED_SIZE, &red);
+  return depth == 32 || red == 32;
+}
+
+uint32_t mostBufferTexels() {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  return uint32_t(most);
+}
+
 Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer& buffer) {
   Texture texture(GL_TEXTURE, make([](GLsizei n, GLuint* names) { glCreateTextures(GL_TEXTURE_BUFFER, n, names); }),
                   label);

@@ -71,6 +71,8 @@ class Texture : public detail::Object {
   static Texture borrowed(GLuint name);
   /// Whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
   bool readsAsFlat() const;
+  /// Whether its depths, or its red, are numbers of 32 bits.
+  bool holdsSinglePrecision() const;
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 
@@ -101,6 +103,9 @@ class Texture : public detail::Object {
 
   TextureDesc desc_;
 };
+
+/// Texels that a texture of a buffer may have.
+uint32_t mostBufferTexels();
 
 /// Bytes of one texel of a sized format. Only formats that this project uses.
 int texelBytes(GLenum format);

@@ -134,26 +134,33 @@ void importNodes(Import& import, const std::string& sceneName) {
 
 namespace {
 
-/// See Scene::origin. Scenes that lie whole kilometres apart in their files get origins that lie as far apart, and are
-/// then the same to the bit.
+/// See Scene::origin. The middle is where half of the instances lie on either side, so that a few far off do not
+/// matter. Scenes that lie whole kilometres apart in their files get origins that lie as far apart, and are then the
+/// same to the bit.
 void findOrigin(Scene& scene) {
-  bool found = false; // a place in the scene first, in whose neighbourhood single precision will do
+  std::vector<double> places[3];
   scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
-    if (found) return;
     const Skin* skin = scene.registry.tryGet<Skin>(e);
     const auto* joint =
         skin && !skin->joints.empty() ? scene.registry.tryGet<WorldTransform>(skin->joints[0]) : nullptr;
-    const dvec3 middle(scene.assets.meshes[m.mesh].boundsObject.centre());
-    scene.origin = joint ? dvec3(joint->worldFromNode[3]) : dvec3(w.worldFromNode * glm::dvec4(middle, 1));
-    found = true;
+    const dvec3 centre(scene.assets.meshes[m.mesh].boundsObject.centre());
+    const dvec3 place = joint ? dvec3(joint->worldFromNode[3]) : dvec3(w.worldFromNode * glm::dvec4(centre, 1));
+    if (!(glm::length(place) < 1e12)) return; // not finite, or left out
+    for (int axis = 0; axis < 3; ++axis) places[axis].push_back(place[axis]);
   });
-  const Aabb bounds = worldBounds(scene);
-  const double diameter = bounds.diameter();
-  const dvec3 centre = scene.origin + dvec3(bounds.centre());
+  if (places[0].empty()) return;
+  dvec3 middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto half = places[axis].begin() + std::ptrdiff_t(places[axis].size() / 2);
+    std::nth_element(places[axis].begin(), half, places[axis].end());
+    middle[axis] = *half;
+  }
+  scene.origin = middle; // the scene's size is right from here
+  const double diameter = worldBounds(scene).diameter();
   scene.origin = dvec3(0);
-  if (bounds.empty() || !(diameter > 0) || !(glm::length(centre) < 1e12)) return;
+  if (!(diameter > 0) || !std::isfinite(diameter)) return;
   const double step = std::min(8.0, std::exp2(std::ceil(std::log2(16 * diameter))));
-  scene.origin = step * glm::floor(centre / step + 0.29); // not a half: middles of scenes often are whole numbers
+  scene.origin = step * glm::floor(middle / step + 0.29); // not a half: middles of scenes often are whole numbers
 }
 
 } // namespace

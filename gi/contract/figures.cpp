@@ -17,7 +17,7 @@ constexpr FigureRow kRows[] = {
     {"rays.radiosity", "of light paths", [](const S& s) -> Figure { return s.raysRadiosity; }, true},
     {"rays.cells", "that found the surface around VPLs", [](const S& s) -> Figure { return s.raysCells; }},
     {"rays.map_tests", "from VPLs to objects that moved", [](const S& s) -> Figure { return s.raysMapTests; }},
-    {"rays.shadows", "where maps of lamps and suns are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
+    {"rays.shadows", "where maps of direct light are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
     {"rays.near", "for the light that bounds take from near VPLs", [](const S& s) -> Figure { return s.raysNear; }},
     {"rays.gather", "between pixels and VPLs", [](const S& s) -> Figure { return s.raysGather; }},
     {"vpls.alive", "virtual lights that bring light", [](const S& s) -> Figure { return uint64_t(s.vplsAlive); }},

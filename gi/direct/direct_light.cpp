@@ -68,14 +68,14 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 } // namespace
 
 DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
-    : context_(context), shadows_(context), emitters_(context), doubts_(mostDoubts),
+    : context_(context), shadows_(context), emitters_(context), doubts_(std::min(mostDoubts, gl::mostBufferTexels())),
       depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   if (in.keep) return target_.light();
   const std::vector<LightBlock> blocks = shadowed(in, stats);
-  const bool rays = in.shadow.rays && !blocks.empty();
+  const bool rays = in.shadow.rays && !blocks.empty() && in.surfaces.depth->holdsSinglePrecision();
   const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};
   target_.fit(in.surfaces);
   {
@@ -108,8 +108,8 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
 /// Asks rays about what was noted, and adds the light that they let through. False where the list had not room enough.
 bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blocks, FrameStats& stats) {
   {
+    if (!doubts_.collect()) return false; // waits for the GPU
     const CpuScope scope(stats.stages, key(StageId::ShadowRays));
-    if (!doubts_.collect()) return false;
     const RayQuery& rays = in.world.rays;
     const auto towards = [&](const ShadowDoubt& doubt) -> Ray {
       const auto after = std::upper_bound(blocks.begin(), blocks.end(), doubt.light,
@@ -124,8 +124,11 @@ bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blo
         return {origin, -direction};
       case MapKind::Emitter:
         return segment(origin, offsetPoint(position, direction, rays.grain()));
-      default:
-        return segment(origin, position);
+      default: { // not to what is nearer to the lamp than its map shows
+        Ray ray = segment(origin, position);
+        ray.tMax = std::min(ray.tMax, 1 - light.coneNear.z / glm::length(ray.direction));
+        return ray;
+      }
       }
     };
     doubts_.trace(rays, towards, stats.raysShadows);
@@ -152,6 +155,8 @@ std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, FrameStats
       blocks.push_back(block);
     stats.of(EffectId::Emissive) += stats.mapsDrawn - before;
     stats.of(EffectId::SoftShadows) = soft ? emitters_.samples() : 0;
+  } else {
+    emitters_.forget();
   }
   for (size_t i = 1; i < blocks.size(); ++i)
     blocks[i].first = blocks[i - 1].first + uint32_t(blocks[i - 1].held.size());
@@ -167,7 +172,7 @@ const gl::Program& DirectLight::programFor(const GBuffer& surfaces, const LightB
   const gl::Program& program =
       context_.programs.get({.vertex = vertex, .fragment = "direct.frag", .defines = std::move(defines)});
   program.use();
-  program.set("spread", GatherSettings{}.spread);
+  program.set("spread", GatherSettings{}.spread); // that of virtual lights is tuned to their gaps
   block.lights->bindUniform(1);
   return program;
 }

@@ -28,13 +28,15 @@ bool WorldKeeper::open(const SceneAssets& assets, FrameStats& stats) {
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
   frozen_ = false;
-  untold_ = true;
+  untold_ = unseen_ = true;
   testedDraws_ = 0;
   return true;
 }
 
 EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
-  untold_ |= before_.effects != settings.effects || in.first;
+  const bool anew = before_.effects != settings.effects || in.first;
+  untold_ |= anew;
+  unseen_ |= anew;
   Settings gather = settings; // but for what does not touch what pixels gather
   gather.history = before_.history;
   gather.filter = before_.filter;
@@ -50,7 +52,7 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
   hosted_ = in.host;
   const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !view_.view().instances.empty();
   view_.take(given, freeze);
-  if (frozen_ && !freeze) untold_ = true;
+  if (frozen_ && !freeze) untold_ = unseen_ = true;
   frozen_ = freeze;
 
   const FrameFacts facts{.first = in.first,
@@ -63,11 +65,13 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
   const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
-  if (untold_ && everything()) {
+  if ((untold_ && everything()) || (unseen_ && plan.on(EffectId::Redraw))) {
     view.changes = kAllChanged;
     plan = planEffects(view, settings, facts);
   }
-  untold_ = !everything() && (untold_ || anyChange(view.changes));
+  const bool changed = anyChange(view.changes);
+  untold_ = !everything() && (untold_ || changed);
+  unseen_ = !plan.on(EffectId::Redraw) && (unseen_ || changed);
   return plan;
 }
 

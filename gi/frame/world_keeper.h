@@ -57,6 +57,7 @@ class WorldKeeper {
   bool hosted_ = false; // the last surfaces were a host's
   bool frozen_ = false; // objects stand where they stood
   bool untold_ = false; // something changed that not all stages were told of
+  bool unseen_ = false; // nor those of surfaces and direct light
 };
 
 } // namespace lambent

@@ -79,8 +79,10 @@ class Table {
            {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a point light's cube face; 0 = w/2");
     number("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution,
            {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a spot light's map; 0 = w");
-    flag("shadow.rays", &Settings::shadow, &ShadowSettings::rays, Nothing,
-         "a ray for each pixel and punctual light whose map is in doubt; off: maps are filtered");
+    flag(
+        "shadow.rays", &Settings::shadow, &ShadowSettings::rays, Nothing,
+        "a ray for each pixel and light (lamps, suns, spots, emissive samples; the sky where none of it is seen) whose "
+        "map is in doubt; off, or a host's depth of less than 32 bits: maps are filtered");
     number("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples,
            {1, 1024, "samples", PowersOfTwo}, Maps, "shadowed samples for all emissive surfaces in direct light");
     number("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution,

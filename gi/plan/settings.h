@@ -83,7 +83,7 @@ struct ShadowSettings {
   int spotResolution = 0;  // w
   int emitterSamples = 16; // shadowed samples that stand for all emissive surfaces in direct light
   int emitterResolution = 256;
-  bool rays = true; // ask a ray where the maps of suns, lamps and spots are in doubt
+  bool rays = true; // ask rays where maps of direct light are in doubt
   int skyMaps = 32; // directions that stand for the sky in direct light
   int skyResolution = 256;
   bool operator==(const ShadowSettings&) const = default;

@@ -115,7 +115,8 @@ TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
     ReflectiveLightPass lightPass{passes};
     const RsmSettings rsm{.resolution = 32};
     const uint64_t begin = gl::counts().waits;
-    const ReflectiveMaps maps = mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, {clusters, clusters}});
+    const ReflectiveMaps maps =
+        mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, {clusters, clusters}});
     clusters ? lightPass.runClusters(maps, rsm) : lightPass.runGrid(maps, rsm);
     return gl::counts().waits - begin;
   };

@@ -80,6 +80,8 @@ Snapshot snapshot() {
   indexed("color mask", GL_COLOR_WRITEMASK, 8, 4), indexed("uniform buffer", GL_UNIFORM_BUFFER_BINDING, 16);
   indexed("uniform buffer start", GL_UNIFORM_BUFFER_START, 16);
   indexed("uniform buffer size", GL_UNIFORM_BUFFER_SIZE, 16);
+  indexed("storage buffer", GL_SHADER_STORAGE_BUFFER_BINDING, 8);
+  indexed("storage buffer start", GL_SHADER_STORAGE_BUFFER_START, 8);
   for (GLuint i = 0; i < 16; ++i) s["scissor test " + std::to_string(i)] = {double(glIsEnabledi(GL_SCISSOR_TEST, i))};
   for (GLuint i = 0; i < 8; ++i) s["blend " + std::to_string(i)] = {double(glIsEnabledi(GL_BLEND, i))};
   GLint active = 0;
@@ -160,6 +162,7 @@ struct OddHost {
       glBindBuffer(what, buffer.name());
     for (GLuint i = 0; i < 6; ++i) glBindBufferRange(GL_UNIFORM_BUFFER, i, buffer.name(), 256 * i, 256);
     glBindBufferBase(GL_UNIFORM_BUFFER, 2, buffer.name());
+    for (GLuint i = 0; i < 3; ++i) glBindBufferRange(GL_SHADER_STORAGE_BUFFER, i, buffer.name(), 256 * (i + 1), 256);
     for (GLuint unit = 0; unit < 16; ++unit) {
       glBindTextureUnit(unit, flat.name());
       glBindTextureUnit(unit, array.name());
@@ -173,6 +176,7 @@ struct OddHost {
     for (const GLenum what : {GL_ARRAY_BUFFER, GL_COPY_READ_BUFFER, GL_SHADER_STORAGE_BUFFER, GL_DRAW_INDIRECT_BUFFER})
       glBindBuffer(what, 0);
     for (GLuint i = 0; i < 6; ++i) glBindBufferBase(GL_UNIFORM_BUFFER, i, 0);
+    for (GLuint i = 0; i < 3; ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, 0);
     for (GLuint unit = 0; unit < 16; ++unit) {
       glBindTextureUnit(unit, 0);
       glBindSampler(unit, 0);

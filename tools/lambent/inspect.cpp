@@ -43,11 +43,13 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   j["size_m"] = {size.x, size.y, size.z};
   j["animations"] = stage->scene.animations.size();
   j["lights"] = nlohmann::json::array();
-  for (const LightView& l : view.lights)
+  for (const LightView& l : view.lights) {
+    const dvec3 position = stage->scene.origin + dvec3(l.position); // as --point takes it
     j["lights"].push_back({{"type", typeName(l.type)},
-                           {"position", {l.position.x, l.position.y, l.position.z}},
+                           {"position", {position.x, position.y, position.z}},
                            {"direction", {l.direction.x, l.direction.y, l.direction.z}},
                            {"intensity", {l.intensity.x, l.intensity.y, l.intensity.z}}});
+  }
   j["emitters"] = nlohmann::json::array();
   for (const Emitter& e : lights.emitters)
     j["emitters"].push_back(
