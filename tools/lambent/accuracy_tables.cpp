@@ -202,6 +202,7 @@ void accuracyLight(const AccuracyOptions& options) {
   std::vector<Way> ways{{"as set", {}, std::max(1, averaged)}, {"one picture", {{"history.frames", "0"}}, 1}};
   if (options.frame == 0) // as many near rays as averaged pictures have
     ways.push_back({"all, rays", {{"gather.mode", "full"}, {"vpl.visibility", "rays"}, {"gather.near", "32"}}, 1});
+  if (options.alone) ways.resize(1);
   nlohmann::json rows;
   for (const Way& way : ways) {
     std::vector<Variant> variants;
@@ -231,11 +232,13 @@ void accuracyDirect(const AccuracyOptions& options) {
   Study study(options, "320x180", {{"effects.indirect", "off"}});
   const Image truth = study.trace(256, ReferenceBuffer::Direct, false).picture.mean;
   const Image most = allButBrightest(truth, 0.01);
+  std::vector<Variant> variants{study.variant("as set", {})};
+  if (!options.alone) {
+    variants.push_back(study.variant("maps alone", {{"shadow.rays", "off"}}));
+    variants.push_back(study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}}));
+  }
   nlohmann::json rows;
-  for (const Measured& m :
-       study.draw({study.variant("as set", {}), study.variant("maps alone", {{"shadow.rays", "off"}}),
-                   study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}})},
-                  Buffer::Direct)) {
+  for (const Measured& m : study.draw(variants, Buffer::Direct)) {
     rows.push_back(rowOf(pictureError(m.picture, truth)));
     rows.back().update({{"shadows", m.variant.name},
                         {"rays", m.frames.back().raysShadows.occlusion},
