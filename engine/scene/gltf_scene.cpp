@@ -158,8 +158,9 @@ void findOrigin(Scene& scene) {
   scene.origin = middle; // the scene's size is right from here
   const double diameter = worldBounds(scene).diameter();
   scene.origin = dvec3(0);
-  if (!(diameter > 0) || !std::isfinite(diameter)) return;
-  const double step = std::min(8.0, std::exp2(std::ceil(std::log2(16 * diameter))));
+  const double near = 16 * diameter; // as far off, single precision does, and places stay what the file says
+  if (!(diameter > 0) || !(maxComponent(vec3(glm::abs(middle))) > near)) return;
+  const double step = near >= 1000 ? 1000 : std::min(8.0, std::exp2(std::ceil(std::log2(near))));
   scene.origin = step * glm::floor(middle / step + 0.29); // not a half: middles of scenes often are whole numbers
 }
 
