@@ -13,9 +13,9 @@ void setConventions();
 /// Saves all state of the context that Lambent's passes set or depend on, sets the conventions, and puts everything
 /// back at its end: program, vertex array, framebuffers, viewports and scissors, depth, stencil, blending, masks, clip
 /// control, polygons, points, multisampling, pixel store and its buffers, texture units and samplers 0 to 9, uniform
-/// buffers 0 to 3, shader storage buffer 0, indirect buffer, transform feedback (paused meanwhile if it runs), and the one vertex attribute that
-/// is set. What it cannot save must have ended: queries, conditional rendering, and transform feedback of the default
-/// object.
+/// buffers 0 to 3, shader storage buffer 0, indirect buffer, transform feedback (paused meanwhile if it runs), and the
+/// one vertex attribute that is set. What it cannot save must have ended: queries, conditional rendering, and transform
+/// feedback of the default object.
 class StateGuard {
  public:
   StateGuard();

@@ -15,7 +15,7 @@ namespace lambent {
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
-enum class FilterKernel : int { Separable, Whole };    // rows then columns | all 49 taps at once
+enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class EffectMode : int { Auto, On, Off };         // as the plan says (gi/plan/effects.h) | forced, for comparison
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass

@@ -15,7 +15,8 @@ struct AccuracyOptions {
   std::string curve; // empty: none
   int figure = 0;    // 0: none
   int frame = 0;     // of a shot
-  bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false, quick = false;
+  bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false,
+       quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 };
