@@ -74,8 +74,9 @@ DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   if (in.keep) return target_.light();
-  const std::vector<LightBlock> blocks = shadowed(in, stats);
-  const bool rays = in.shadow.rays && !blocks.empty() && in.surfaces.depth->holdsSinglePrecision();
+  const bool allowed = in.shadow.rays && in.surfaces.depth->holdsSinglePrecision();
+  const std::vector<LightBlock> blocks = shadowed(in, allowed, stats);
+  const bool rays = allowed && !blocks.empty();
   const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};
   target_.fit(in.surfaces);
   {
@@ -137,14 +138,14 @@ bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blo
   return true;
 }
 
-/// All lights, with maps that are up to date.
-std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, FrameStats& stats) {
+/// All lights, with maps that are up to date. Without `rays` those of suns cover all that is seen.
+std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, bool rays, FrameStats& stats) {
   const World& world = in.world;
   const ShadowSettings shadow = resolved(in.shadow, world.view.camera.width);
   fitReceivers(in, stats);
   std::vector<LightBlock> blocks =
       shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
-                    shadow.rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first,
+                    rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first,
                     world.moved.boxes(), shadow});
   stats.lightMapsDrawn = shadows_.mapsDrawn();
   stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();

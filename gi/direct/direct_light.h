@@ -33,7 +33,7 @@ class DirectLight {
   enum class Noting { Off, AlsoLight, Only };
 
   void fitReceivers(const DirectInputs& in, FrameStats& stats);
-  std::vector<LightBlock> shadowed(const DirectInputs& in, FrameStats& stats);
+  std::vector<LightBlock> shadowed(const DirectInputs& in, bool rays, FrameStats& stats);
   const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
                                 const char* variant) const;
   void drawBlock(const GBuffer& surfaces, const LightBlock& block, const Area& area, Noting noting) const;

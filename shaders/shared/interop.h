@@ -4,7 +4,6 @@
 #ifdef __cplusplus
 #include "engine/core/math.h"
 #define SHARED_INLINE inline
-#define SHARED_CONST inline constexpr
 #define SHARED_OUT(T) T&
 namespace lambent {
 using glm::atan;
@@ -22,7 +21,6 @@ using glm::uvec4;
 #define SHARED_END }
 #else
 #define SHARED_INLINE
-#define SHARED_CONST const
 #define SHARED_OUT(T) out T
 #define SHARED_BEGIN
 #define SHARED_END
