@@ -1,18 +1,21 @@
 #version 450
 // Radiance towards the camera: emission + albedo/π · (direct + indirect irradiance), the sky where nothing is seen.
-// Variant GLOSSY: with the receivers' lobes.
+// Variants GLOSSY: with the receivers' lobes; DAYLIGHT: of the sky.
+#if defined(GLOSSY) || defined(DAYLIGHT)
+#include "lib/gbuffer.glsl"
+#else
+layout(binding = 0) uniform sampler2D gbufferDepth;
+#endif
+#include "lib/background.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 layout(binding = 8) uniform sampler2D directGlossy; // radiance over glossyTint
 layout(binding = 9) uniform sampler2D indirectGlossy;
-#else
-layout(binding = 0) uniform sampler2D gbufferDepth;
 #endif
 layout(binding = 2) uniform sampler2D albedo;
 layout(binding = 3) uniform sampler2D emission;
 layout(binding = 4) uniform sampler2D direct;
 layout(binding = 5) uniform sampler2D indirect;
-uniform vec3 skyRadiance;
 layout(location = 0) out vec4 outRadiance;
 
 const float kInversePi = 0.318309886;
@@ -21,7 +24,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) {
-    outRadiance = vec4(skyRadiance, 0.0);
+    outRadiance = vec4(backgroundAt(pixel), 0.0);
     return;
   }
   // Textures of one texel stand for a constant (black where a stage did not run).

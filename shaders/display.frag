@@ -2,20 +2,24 @@
 // One buffer as a display shows it. MODE 0: radiance (exposure, tone mapper, sRGB, dither); 1: colour in [0,1]
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
 // and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
-// patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes).
+// patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes), DAYLIGHT (EMITTED: of
+// the sky).
 #include "shared/tone_map.h"
+#if defined(GLOSSY) || defined(DAYLIGHT)
+#include "lib/gbuffer.glsl"
+#else
+layout(binding = 0) uniform sampler2D gbufferDepth;
+#endif
+#include "lib/background.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 layout(binding = 8) uniform sampler2D glossy; // radiance over glossyTint
-#else
-layout(binding = 0) uniform sampler2D gbufferDepth;
 #endif
 layout(binding = 2) uniform sampler2D source;
 layout(binding = 3) uniform sampler2D albedo;
 layout(binding = 4) uniform sampler2D emission;
 uniform float factor;     // exposure (mode 0); metres shown as mid grey (mode 3)
 uniform vec2 lens;        // near, far (0: perspective), metres (mode 3)
-uniform vec3 skyRadiance; // EMITTED
 uniform ivec2 tileSize;   // DEINTERLEAVED
 uniform int toneMapper;
 uniform int markNan;
@@ -58,7 +62,7 @@ void main() {
   value *= texelFetch(albedo, pixel, 0).rgb * kInversePi;
 #endif
 #ifdef EMITTED
-  value = depth == 0.0 ? skyRadiance : value + texelFetch(emission, pixel, 0).rgb;
+  value = depth == 0.0 ? backgroundAt(pixel) : value + texelFetch(emission, pixel, 0).rgb;
 #endif
   if (markNan != 0 && any(isnan(value))) {
     outColor = vec4(1.0, 0.0, 1.0, 1.0);

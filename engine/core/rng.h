@@ -29,7 +29,9 @@ enum class Stream : uint32_t {
   Acceptance,
   MapTests,
   NearLight,
-  Turns
+  Turns,
+  SkyLight,
+  SamplerSkyLight
 };
 
 /// A sequence of numbers addressed by what they are for.

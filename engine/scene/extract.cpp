@@ -118,20 +118,20 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     changes.lights |= v.changed;
     lights.push_back(v);
   });
-  changes.lights |= lights.size() != lights_.size() || sky_ != scene.skyRadiance;
+  changes.lights |= lights.size() != lights_.size() || sky_ != scene.sky;
   changes.camera |= !sameCamera(camera_, camera);
 
   instances_ = std::move(instances);
   lights_ = std::move(lights);
   camera_ = camera;
-  sky_ = scene.skyRadiance;
+  sky_ = scene.sky;
   first_ = false;
 
   view.assets = &scene.assets;
   view.instances = instances_;
   view.lights = lights_;
   view.addedOrRemoved = addedOrRemoved_;
-  view.skyRadiance = scene.skyRadiance;
+  view.sky = scene.sky;
   view.camera = camera;
   view.changes = changes;
   view.time = time;

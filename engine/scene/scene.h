@@ -20,7 +20,7 @@ struct Scene {
   Registry registry;
   SceneAssets assets;
   std::vector<AnimationClip> animations; // from the file; all play, looped
-  vec3 skyRadiance{0};
+  Sky sky;
   /// Of a scene that lies farther from its file's origin than 16 times its size: where its middle is, roughly; else
   /// zero. Transforms and what a person types are in the file's coordinates and double precision; cameras, views, boxes
   /// and all that follows count from here, so that single precision is as good there as at home. Whole steps of 8 m, of
@@ -93,7 +93,7 @@ class SceneExtractor {
   std::vector<Aabb> addedOrRemoved_;
   std::vector<LightView> lights_;
   CameraView camera_;
-  vec3 sky_{0};
+  Sky sky_;
   bool first_ = true;
 };
 

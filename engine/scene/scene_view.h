@@ -3,6 +3,7 @@
 
 #include "engine/core/math.h"
 #include "engine/scene/assets.h"
+#include "engine/scene/sky.h"
 
 #include <memory>
 #include <span>
@@ -72,7 +73,7 @@ struct SceneView {
   std::span<const InstanceView> instances;
   std::span<const LightView> lights;
   std::span<const Aabb> addedOrRemoved; // world bounds of instances that came or went since the previous extraction
-  vec3 skyRadiance{0};                  // constant over the sphere
+  Sky sky;
   CameraView camera;
   Aabb boundsWorld; // of all instances
   SceneChanges changes;

@@ -233,9 +233,13 @@ std::vector<LightBlock> LightShadowPass::run(const LightShadowInputs& in) {
   }
   fitted(s.sunFits, directions, irradiances, in.shadow.sunResolution, MapKind::Sun, in.sunReceivers);
   const uint32_t punctualMaps = s.mapsDrawn;
-  if (in.sky) {
-    directions = skyDirections(in.shadow.skyMaps);
-    irradiances.assign(directions.size(), in.skyRadiance * (4 * kPi / float(directions.size())));
+  if (in.drawSky) {
+    directions.clear();
+    irradiances.clear();
+    for (const SkyDirection& d : skyDirections(in.sky, in.shadow.skyMaps)) {
+      directions.push_back(d.direction);
+      irradiances.push_back(d.irradiance);
+    }
     fitted(s.skyFits, directions, irradiances, in.shadow.skyResolution, MapKind::Sky, in.receivers);
   }
   s.skyMapsDrawn = s.mapsDrawn - punctualMaps;

@@ -55,14 +55,20 @@ SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters,
 /// Places without those, at most a thirtieth, that make their box much larger than the rest needs.
 std::vector<vec3> withoutOutliers(std::vector<vec3> places);
 
-/// `count` directions that light travels from a uniform sky, each standing for 4π/count of solid angle.
-std::vector<vec3> skyDirections(int count);
+/// `count` directions that stand for the sky, each with the irradiance that it brings to a surface facing it. Of a
+/// constant sky they are spread evenly, else in proportion to luminance; what a plane without obstacles gets from above
+/// and from below is exact.
+struct SkyDirection {
+  vec3 direction; // unit, the way the light travels
+  vec3 irradiance;
+};
+std::vector<SkyDirection> skyDirections(const Sky& sky, int count);
 
 struct LightShadowInputs {
   const GpuScene& scene;
   std::span<const LightView> lights;
-  bool sky = false; // draw the sky's maps
-  vec3 skyRadiance{0};
+  bool drawSky = false;
+  Sky sky;
   Aabb receivers, sunReceivers; // what maps of the sky, and of suns, are fitted to
   Aabb casters;                 // box of the whole scene
   bool allChanged = false;      // draw every map

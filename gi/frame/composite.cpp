@@ -17,10 +17,11 @@ Picture CompositePass::run(const CompositeInputs& in) {
     radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});
   }
-  const gl::Program& program =
-      context_.programs.get({.fragment = "composite.frag", .defines = bindSurfaces(in.surfaces)});
+  std::vector<std::string> defines = bindSurfaces(in.surfaces);
+  for (const std::string& variant : backgroundVariants(in.sky)) defines.push_back(variant);
+  const gl::Program& program = context_.programs.get({.fragment = "composite.frag", .defines = std::move(defines)});
   program.use();
-  program.set("skyRadiance", in.skyRadiance);
+  setBackground(program, in.sky, in.surfaces);
   in.surfaces.albedo->bind(2);
   in.surfaces.emission->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);

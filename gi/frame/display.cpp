@@ -112,12 +112,13 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, co
     const std::vector<std::string> glossy = bindSurfaces(frame.surfaces);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
     (view.glossy ? view.glossy : &black_)->bind(8);
+    for (const std::string& variant : backgroundVariants(frame.sky)) view.defines.push_back(variant);
   }
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
   program.use();
   program.set("factor", view.factor);
   program.set("lens", vec2(frame.surfaces.block.lens.z, frame.surfaces.block.lens.w));
-  program.set("skyRadiance", frame.skyRadiance);
+  setBackground(program, frame.sky, frame.surfaces);
   program.set("tileSize", tileSize(frame.surfaces));
   program.set("toneMapper", int(look.toneMapper));
   program.set("markNan", look.markNan || buffer == Buffer::Nan ? 1 : 0);

@@ -134,20 +134,13 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       if (filter.on) stats.of(EffectId::Filter) = filterDraws();
       stats.of(EffectId::Indirect) += indirectDraws();
     }
-    const Picture picture = k.composite.run({surfaces, direct, indirect, world.view.skyRadiance});
+    const Picture picture = k.composite.run({surfaces, direct, indirect, world.view.sky});
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
     k.expose(picture);
-    k.results = {surfaces,
-                 direct,
-                 gathered,
-                 indirect,
-                 picture,
-                 k.keeper.maps(),
-                 patches.made(),
-                 source ? source->set() : nullptr,
-                 world.view.skyRadiance,
-                 world.reach};
+    k.results = {surfaces,       direct,          gathered,       indirect,
+                 picture,        k.keeper.maps(), patches.made(), source ? source->set() : nullptr,
+                 world.view.sky, world.reach};
   }
 
   k.end(begin, before);

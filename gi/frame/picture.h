@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/image.h"
+#include "engine/scene/sky.h"
 #include "gi/contract/light_on_surfaces.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
@@ -11,6 +12,11 @@
 #include <optional>
 
 namespace lambent {
+
+/// The sky as what is seen where no surface is (shaders/lib/background.glsl): its variants, and its uniforms. It is
+/// seen by the camera of `surfaces`.
+std::vector<std::string> backgroundVariants(const Sky& sky);
+void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& surfaces);
 
 enum class Buffer : int; // gi/frame/gi_frame.h
 struct VplSet;
@@ -24,7 +30,7 @@ struct CompositeInputs {
   const GBuffer& surfaces;
   const LightOnSurfaces& direct;
   const LightOnSurfaces& indirect;
-  vec3 skyRadiance{0};
+  Sky sky;
 };
 
 class CompositePass {
@@ -55,7 +61,7 @@ struct FrameResults {
   ParaboloidMaps vplMaps;
   std::optional<PatchPyramid> patches; // where somebody asked for them
   const VplSet* vpls = nullptr;
-  vec3 skyRadiance{0};
+  Sky sky;
   float sceneDiameter = 1; // metres; scales the depth view
 };
 

@@ -35,6 +35,13 @@ Image rawOf(const FrameResults& frame, int width, int height) {
   return image;
 }
 
+/// `y` counts from the top.
+vec3 backgroundAt(const FrameResults& frame, int x, int y) {
+  const CameraBlock& camera = frame.surfaces.block;
+  const vec3 direction = viewDirectionFromPixel(camera, vec2(x, frame.surfaces.height - 1 - y) + 0.5f);
+  return frame.sky.radiance(glm::normalize(mat3(camera.worldFromView) * direction));
+}
+
 Image depthOf(const FrameResults& frame) {
   const GBuffer& g = frame.surfaces;
   std::vector<float> bottomUp(size_t(g.width) * g.height);
@@ -80,8 +87,9 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   case Buffer::Direct: {
     Image image = reflected(frame, frame.direct.irradiance, frame.direct.glossy);
     const Image emission = rgbOf(frame.surfaces.emission, width, height), depth = depthOf(frame);
-    for (size_t i = 0; i < image.pixels.size(); ++i)
-      image.pixels[i] = depth.pixels[i].x > 0 ? image.pixels[i] + emission.pixels[i] : frame.skyRadiance;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        image.at(x, y) = depth.at(x, y).x > 0 ? image.at(x, y) + emission.at(x, y) : backgroundAt(frame, x, y);
     return image;
   }
   case Buffer::Indirect:

@@ -92,7 +92,7 @@ World WorldKeeper::place(const EffectPlan& plan, FrameStats& stats) {
     lights_.triangles.clear();
     lights_.emission = false;
   }
-  if (!plan.on(Sky)) lights_.sky = vec3(0);
+  if (!plan.on(Sky)) lights_.sky = {};
   if (plan.on(Redraw)) reach_ = reachOf(view, reach_);
   return again();
 }

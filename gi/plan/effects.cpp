@@ -122,7 +122,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool emissive =
       decide(EffectId::Emissive, {scene.emissive > 0, scene.emissive > 0 ? count(scene.emissive, "emissive surface")
                                                                          : "no material emits"});
-  const bool sky = luminance(view.skyRadiance) > 0;
+  const bool sky = !view.sky.black();
   const bool skyLight = decide(EffectId::Sky, {sky, sky ? "the sky has radiance" : "the sky is black"});
   decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked surface")
                                                               : "no material has an alpha mask"});

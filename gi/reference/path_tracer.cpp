@@ -60,9 +60,10 @@ class BlockTracer {
                           i,
                           Rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index)});
     }
-    const bool raysMeetLight = !in_.lights.emitters.empty() || luminance(in_.lights.sky) > 0;
+    const bool raysMeetLight = !in_.lights.emitters.empty() || !in_.lights.sky.black();
     for (int vertex = 0; vertex <= in_.bounces && !paths_.empty(); ++vertex) {
       connect(vertex, counts);
+      if (!in_.lights.sky.constant()) connectSky(vertex, counts);
       // The last vertex needs its cosine ray only to meet sky and emitters.
       if (vertex < in_.bounces || raysMeetLight) extend(vertex, counts);
     }
@@ -77,15 +78,26 @@ class BlockTracer {
 
   void connect(int vertex, RayCounts& counts) {
     if (in_.lights.lightCount() == 0) return;
+    connectBy(vertex, counts, [&](Path& p) {
+      const float uLight = p.rng.next();
+      const vec2 a = p.rng.next2();
+      return connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain(), lightWeights_);
+    });
+  }
+
+  void connectSky(int vertex, RayCounts& counts) {
+    connectBy(vertex, counts,
+              [&](Path& p) { return connectToSky(in_.lights, p.vertex, p.weight, p.rng.next2(), in_.rays.grain()); });
+  }
+
+  /// `connection(path)` gives what is to be tested.
+  template <class Connection> void connectBy(int vertex, RayCounts& counts, const Connection& connection) {
     segments_.clear();
     pending_.clear();
     owners_.clear();
     for (uint32_t i = 0; i < paths_.size(); ++i) {
       Path& p = paths_[i];
-      const float uLight = p.rng.next();
-      const vec2 a = p.rng.next2();
-      LightConnection c =
-          connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain(), lightWeights_);
+      LightConnection c = connection(p);
       if (glossyAt(vertex)) c.value *= kPi * reflectanceOf(receivers_[p.pixel], glm::normalize(c.segment.direction));
       if (maxComponent(c.value) <= 0) continue;
       segments_.push_back(c.segment);
@@ -119,7 +131,7 @@ class BlockTracer {
       const SurfaceHit& h = hits_[j];
       if (ray.tMax == 0) continue;
       if (!h.valid()) {
-        sumOf(p, vertex) += p.weight * in_.lights.sky;
+        sumOf(p, vertex) += p.weight * skyByRay(in_.lights, p.vertex, ray.direction);
         continue;
       }
       if (luminance(h.emission) > 0)
@@ -261,7 +273,8 @@ ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs&
           row.variance[c] += variance;
         }
       } else if (direct) {
-        mean = in.lights.sky;
+        const vec2 at = (vec2(i % sums.width, i / sums.width) + 0.5f) / vec2(sums.width, sums.height);
+        mean = in.lights.sky.radiance(cameraRay(in.camera, at.x, at.y).direction);
       }
       row.total += glm::dvec3(mean);
     }

@@ -1,6 +1,7 @@
 // The truth that pictures are held to: a path tracer over the same scene data, albedos and light units as the VPLs.
 // Paths have exactly B indirect bounces (B = 1: light → y → x), next-event estimation at every vertex and multiple
-// importance sampling for emissive surfaces; the sky is met by the cosine-distributed rays. Pixel rays go through pixel
+// importance sampling for emissive surfaces and for a sky that is not constant; a constant one is met by the
+// cosine-distributed rays. Pixel rays go through pixel
 // centres, as the rasteriser's. Sample s of pixel p has its own random numbers, so sums do not depend on the number of
 // threads, on how a run is cut into passes, or on being continued later.
 #pragma once

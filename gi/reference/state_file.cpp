@@ -123,7 +123,7 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
     hash.values(i.deformed->normals);
   }
   for (const LightView& light : view.lights) add(hash, light);
-  hash.value(view.skyRadiance);
+  for (const float number : view.sky.numbers()) hash.value(number);
   hash.bytes(&in.camera.worldFromView, sizeof in.camera.worldFromView);
   hash.value(in.camera.fovY);
   hash.value(in.camera.orthoHalfHeight);

@@ -10,16 +10,20 @@
 
 namespace lambent {
 
+/// The last segment that was tested for something in between.
+struct KeptConnection {
+  vec3 direction{0}; // as of LightConnection::segment
+  float reach = 0;   // its tMax; 0: none was tested
+  bool blocked = false;
+};
+
 struct KeptVertex {
   PathVertex at;
   vec3 weight{0}; // turns irradiance/π here into radiance leaving the VPL
   // The ray that looked for the next vertex.
   vec3 direction{0};  // unit
   float distance = 0; // to what it met, m; kInfinity: nothing; 0: no ray
-  // The last connection to a light.
-  vec3 lightDirection{0}; // as of LightConnection::segment
-  float lightReach = 0;   // its tMax; 0: none was tested
-  bool blocked = false;
+  KeptConnection light = {}, sky = {};
   bool metEmitter = false; // the ray did; see KeptPaths::emitters
 };
 

@@ -55,6 +55,23 @@ LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex,
                           grain);
 }
 
+LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u,
+                             float grain) {
+  const SkySample s = lights.sky.sampleFacing(vertex.normal, u);
+  const float cosine = glm::dot(s.direction, vertex.normal);
+  if (cosine <= 0 || glm::dot(s.direction, vertex.geometricNormal) <= 0) return {};
+  const float mis = powerHeuristic(s.pdf, pdfCosineHemisphere(cosine));
+  return {{offsetPoint(vertex.position, vertex.geometricNormal, grain), s.direction},
+          weight * s.radiance * (cosine * mis / (kPi * s.pdf))};
+}
+
+vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction) {
+  const vec3 radiance = lights.sky.radiance(direction);
+  if (lights.sky.constant()) return radiance;
+  const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, vertex.normal));
+  return radiance * powerHeuristic(pdfCosine, lights.sky.pdfFacing(vertex.normal, direction));
+}
+
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,
                    std::vector<float>& weightScratch) {
   const uint32_t e = lights.emitterOf(hit);

@@ -1,6 +1,6 @@
 // What a light path does at a vertex, shared by the VPLs' radiosity and the reference: one connection to a chosen
-// light, and the share of an emitter that a cosine-distributed ray met. The two split emitters' light between them by
-// multiple importance sampling (power heuristic, Veach 1997).
+// light, one to the sky where it is not constant, and the share of an emitter or of the sky that a cosine-distributed
+// ray met. The two split their light between them by multiple importance sampling (power heuristic, Veach 1997).
 #pragma once
 
 #include "gi/vpl/light_set.h"
@@ -22,6 +22,13 @@ struct LightConnection {
 /// in [0, 1) for the choice and for the point; `grain` is the ray query's.
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
                                const vec3& uPoint, float grain, std::vector<float>& weightScratch);
+
+/// Light of a sky that is not constant, from a direction drawn by what the sky brings to the vertex; numbers in [0, 1).
+LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u, float grain);
+
+/// Radiance that a cosine-distributed ray from `vertex` brings when it meets the sky: all where the sky is constant,
+/// else its share; connections bring the rest.
+vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction);
 
 /// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,

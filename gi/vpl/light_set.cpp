@@ -56,7 +56,7 @@ void addEmitter(LightSet& lights, uint32_t instance, uint32_t primitive, std::ve
 LightSet collectLights(const SceneView& view) {
   LightSet lights;
   lights.view = &view;
-  lights.sky = view.skyRadiance;
+  lights.sky = view.sky;
   for (const LightView& l : view.lights)
     if (luminance(l.intensity) > 0) lights.punctual.push_back(l);
   for (uint32_t i = 0; i < view.instances.size(); ++i) {

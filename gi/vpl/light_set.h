@@ -33,11 +33,11 @@ struct LightSet {
   std::vector<LightView> punctual;
   std::vector<Emitter> emitters;
   std::vector<EmitterTriangle> triangles;
-  vec3 sky{0};
+  Sky sky;
   bool emission = true;            // false: what glows is not a light, and has no emitters
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
-  bool empty() const { return punctual.empty() && emitters.empty() && luminance(sky) <= 0; }
+  bool empty() const { return punctual.empty() && emitters.empty() && sky.black(); }
   size_t lightCount() const { return punctual.size() + emitters.size(); } // the sky is met by path rays instead
   /// Emitter that a hit lies on, or kNone.
   uint32_t emitterOf(const SurfaceHit& hit) const;

@@ -84,7 +84,7 @@ PhotonSource::PhotonSource(const LightSet& lights, const Aabb& boundsWorld, floa
   }
   for (const Emitter& e : lights.emitters) powers.push_back((e.doubleSided ? 2 : 1) * kPi * e.power);
   const float radius = 0.5f * bounds_.diameter();
-  powers.push_back(4 * kPi * kPi * radius * radius * luminance(lights.sky));
+  powers.push_back(4 * kPi * kPi * radius * radius * lights.sky.meanLuminance());
   choice_ = Distribution(powers);
 }
 
@@ -144,8 +144,10 @@ Photon PhotonSource::emitSurface(const Emitter& emitter, float uTriangle, const 
 
 Photon PhotonSource::emitSky(const PhotonNumbers& u) const {
   const float radius = 0.5f * bounds_.diameter();
-  Photon p = fromDisk(sampleSphere(u.direction), radius, u.position);
-  p.flux = lights_.sky * (4 * kPi * kPi * radius * radius);
+  const SkySample s = lights_.sky.sample(u.direction);
+  const bool constant = lights_.sky.constant(); // then any direction is as good as its opposite
+  Photon p = fromDisk(constant ? s.direction : -s.direction, radius, u.position);
+  p.flux = s.radiance * (constant ? 4 * kPi * kPi * radius * radius : kPi * radius * radius / s.pdf);
   return p;
 }
 

@@ -2,12 +2,12 @@
 // the VPL's own id, so a VPL that stays gives the same estimate until the light or the geometry that it sees changes.
 //
 // At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed
-// ray. The cosine ray meets the sky directly (that is the sky's whole estimator) and emitters by multiple importance
-// sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in variance. Noise
-// of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13 % and 24 %. The
-// paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from the middle to
-// the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order for all, the
-// first light shone on the middle of every cell only, the last on its rim.
+// ray. The cosine ray meets a constant sky directly (that is its whole estimator); emitters, and a sky that is not, by
+// multiple importance sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in
+// variance. Noise of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13
+// % and 24 %. The paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from
+// the middle to the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order
+// for all, the first light shone on the middle of every cell only, the last on its rim.
 //
 // In two steps. Tracing finds the vertices, which depend on geometry alone; lighting connects them to the lights and
 // adds up. What is traced is kept (gi/vpl/kept_paths.h), and each step is done again only for paths that need it. The
@@ -32,9 +32,11 @@ class VplEstimator {
  public:
   VplEstimator(const RayQuery& rays, const LightSet& lights, const RadianceUpdate& update)
       : rays_(rays), lights_(lights), update_(update), paths_(update.paths),
-        stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths), starts_(paths_),
+        stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths),
+        skyStream_(update.use == RadianceUse::Rendering ? Stream::SkyLight : Stream::SamplerSkyLight), starts_(paths_),
         lightOrder_(spreadOrder(uint32_t(paths_), 0.6180339887498949)),
-        stratumOrder_(spreadOrder(uint32_t(paths_), 0.7548776662466927)) {}
+        stratumOrder_(spreadOrder(uint32_t(paths_), 0.7548776662466927)),
+        skyOrder_(spreadOrder(uint32_t(paths_), 0.5698402909980532)) {}
 
   /// The estimate of one path from the VPL itself, with the numbers that it has among all of them.
   vec3 estimateOne(const Vpl& vpl, int path, KeptPaths& scratch, PathCounts& counts) {
@@ -93,10 +95,11 @@ class VplEstimator {
     lightTurn_ = first.below(uint32_t(paths_));
     stratumTurn_ = first.below(uint32_t(paths_));
     uStart_ = first.next();
+    skyTurn_ = first.below(uint32_t(paths_));
     for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
     return id;
   }
-  bool lastRays() const { return update_.lastRays || !lights_.emitters.empty() || luminance(lights_.sky) > 0; }
+  bool lastRays() const { return update_.lastRays || !lights_.emitters.empty() || !lights_.sky.black(); }
 
   /// Starts the paths at points of the cell, in proportion to their areas (systematic sampling). False when it is
   /// empty.
@@ -130,10 +133,11 @@ class VplEstimator {
         KeptVertex& v = kept.vertices[depth * paths_ + i];
         const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal, rays_.grain());
         stale = v.distance > 0 && moved.touches(Ray{origin, v.direction, v.distance});
-        if (!stale && v.lightReach > 0 && moved.touches(Ray{origin, v.lightDirection, v.lightReach})) {
-          v.lightReach = 0;
-          doubtful = true;
-        }
+        for (KeptConnection* c : {&v.light, &v.sky})
+          if (!stale && c->reach > 0 && moved.touches(Ray{origin, c->direction, c->reach})) {
+            c->reach = 0;
+            doubtful = true;
+          }
       }
       if (stale) stale_.push_back(i);
     }
@@ -206,10 +210,11 @@ class VplEstimator {
     auto emitter = kept.emitters.begin();
     for (int depth = 0; depth < kept.bounces; ++depth) {
       sum += connections(kept, depth, id, counts);
+      if (!lights_.sky.constant()) sum += skyConnections(kept, depth, id, counts);
       for (int path = 0; path < paths_; ++path) {
         if (kept.lengths[path] <= depth) continue;
         const KeptVertex& v = kept.vertices[depth * paths_ + path];
-        if (v.distance == kInfinity) sum += v.weight * lights_.sky;
+        if (v.distance == kInfinity) sum += v.weight * skyByRay(lights_, v.at, v.direction);
         if (!v.metEmitter) continue;
         if (lights_.emission)
           sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
@@ -221,11 +226,7 @@ class VplEstimator {
 
   /// Light that reaches the vertices of one depth. Rays are cast only for connections that are not those of last time.
   vec3 connections(KeptPaths& kept, int depth, uint32_t id, PathCounts& counts) {
-    vec3 sum(0);
-    if (lights_.lightCount() == 0) return sum;
-    segments_.clear();
-    owners_.clear();
-    pending_.clear();
+    if (lights_.lightCount() == 0) return vec3(0);
     for (int path = 0; path < paths_; ++path) {
       if (kept.lengths[path] <= depth) continue;
       KeptVertex& v = kept.vertices[depth * paths_ + path];
@@ -238,25 +239,56 @@ class VplEstimator {
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
       const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain(), weights_);
-      if (maxComponent(c.value) <= 0) continue;
-      pending_.push_back({&v, c.value});
-      if (v.lightReach == c.segment.tMax && v.lightDirection == c.segment.direction) continue;
-      v.lightReach = c.segment.tMax;
-      v.lightDirection = c.segment.direction;
-      segments_.push_back(c.segment);
-      owners_.push_back(depth * paths_ + path);
+      add(v.light, c);
     }
-    blocked_.resize(segments_.size());
-    rays_.occluded(segments_, blocked_);
-    counts.rays.occlusion += segments_.size();
-    for (size_t j = 0; j < owners_.size(); ++j) kept.vertices[owners_[j]].blocked = blocked_[j];
-    for (const auto& [vertex, value] : pending_)
-      if (!vertex->blocked) sum += value;
+    return addedLight(counts);
+  }
+
+  /// The same of the sky.
+  vec3 skyConnections(KeptPaths& kept, int depth, uint32_t id, PathCounts& counts) {
+    const int side = int(std::sqrt(float(paths_)));
+    for (int path = 0; path < paths_; ++path) {
+      if (kept.lengths[path] <= depth) continue;
+      KeptVertex& v = kept.vertices[depth * paths_ + path];
+      Rng rng(update_.seed, skyStream_, id, uint32_t(path) + 1);
+      rng.skip(2 * uint32_t(depth));
+      vec2 u = rng.next2();
+      const int stratum = int(skyOrder_[(uint32_t(path) + skyTurn_) % uint32_t(paths_)]);
+      if (depth == 0 && stratum < side * side) u = (vec2(stratum % side, stratum / side) + u) / float(side);
+      add(v.sky, connectToSky(lights_, v.at, v.weight, u, rays_.grain()));
+    }
+    return addedLight(counts);
+  }
+
+  /// Adds light that comes if the connection is clear, which is tested unless it is the `kept` one.
+  void add(KeptConnection& kept, const LightConnection& connection) {
+    if (maxComponent(connection.value) <= 0) return;
+    pending_.push_back({&kept, connection.value});
+    const Ray& segment = connection.segment;
+    if (kept.reach == segment.tMax && kept.direction == segment.direction) return;
+    kept.reach = segment.tMax;
+    kept.direction = segment.direction;
+    tested_.push_back(segment);
+    asked_.push_back(&kept);
+  }
+
+  /// The light of all that was added since the last call.
+  vec3 addedLight(PathCounts& counts) {
+    blocked_.resize(tested_.size());
+    rays_.occluded(tested_, blocked_);
+    counts.rays.occlusion += tested_.size();
+    for (size_t j = 0; j < asked_.size(); ++j) asked_[j]->blocked = blocked_[j];
+    vec3 sum(0);
+    for (const Pending& p : pending_)
+      if (!p.connection->blocked) sum += p.value;
+    tested_.clear();
+    asked_.clear();
+    pending_.clear();
     return sum;
   }
 
   struct Pending {
-    const KeptVertex* vertex;
+    const KeptConnection* connection;
     vec3 value; // radiance added to the VPL if the connection is clear
   };
 
@@ -264,16 +296,18 @@ class VplEstimator {
   const LightSet& lights_;
   const RadianceUpdate& update_;
   const int paths_;
-  const Stream stream_;
+  const Stream stream_, skyStream_;
   vec3 shift_{0};
   float lightShift_ = 0, uStart_ = 0;
-  uint32_t lightTurn_ = 0, stratumTurn_ = 0; // where the orders begin
+  uint32_t lightTurn_ = 0, stratumTurn_ = 0, skyTurn_ = 0; // where the orders begin
   std::vector<KeptVertex> starts_;
-  const std::vector<uint32_t> lightOrder_, stratumOrder_; // slice of the lights and stratum of directions, by path
-  std::vector<int> stale_;                                // paths to be traced, ascending
-  std::vector<Ray> segments_;
+  const std::vector<uint32_t> lightOrder_, stratumOrder_,
+      skyOrder_;           // slice of the lights, strata of directions, by path
+  std::vector<int> stale_; // paths to be traced, ascending
+  std::vector<Ray> segments_, tested_;
   std::vector<Pending> pending_;
   std::vector<int> owners_;
+  std::vector<KeptConnection*> asked_;
   std::vector<uint8_t> blocked_;
   std::vector<SurfaceHit> hits_;
   std::vector<float> weights_;

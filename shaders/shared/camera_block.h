@@ -26,6 +26,12 @@ SHARED_INLINE vec3 positionViewFromDepth(CameraBlock c, vec2 pixel, float depth)
   return vec3(xy.x, xy.y, -distance);
 }
 
+/// View-space direction from the camera through `pixel` (as above), not of unit length.
+SHARED_INLINE vec3 viewDirectionFromPixel(CameraBlock c, vec2 pixel) {
+  vec2 ndc = pixel * vec2(c.size.z, c.size.w) * 2.0f - vec2(1.0f, 1.0f);
+  return c.lens.w > 0.0f ? vec3(0.0f, 0.0f, -1.0f) : vec3(ndc.x * c.lens.x, ndc.y * c.lens.y, -1.0f);
+}
+
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::CameraBlock) == 160);

@@ -6,8 +6,11 @@
 #define SHARED_INLINE inline
 #define SHARED_OUT(T) T&
 namespace lambent {
+using glm::acos;
 using glm::atan;
+using glm::clamp;
 using glm::dot;
+using glm::exp;
 using glm::ivec2;
 using glm::max;
 using glm::min;

@@ -120,8 +120,8 @@ TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
   }
 }
 
-/// A wall parts a cell and two lamps: each point sees one of them. Points come in order, lights come in order, directions
-/// come in order; paths must not take the first of all together.
+/// A wall parts a cell and two lamps: each point sees one of them. Points come in order, lights come in order,
+/// directions come in order; paths must not take the first of all together.
 TEST(Radiosity, PointsOfACellMeetEveryLight) {
   AnalyticQuery rays;
   rays.addPlane({0, 0, 0}, {0, 1, 0}, {});
@@ -191,7 +191,7 @@ TEST(Radiosity, SkyOverAConvexBody) {
   AnalyticQuery sphere;
   sphere.addSphere({0, 0, 0}, 1, {vec3(0.7f)});
   LightSet lights;
-  lights.sky = {1, 2, 3};
+  lights.sky = vec3(1, 2, 3);
   for (int bounces : {1, 3}) {
     const vec3 r = radianceOf(vplAt({0, 1, 0}, {0, 1, 0}, 0.7f), sphere, lights, bounces);
     EXPECT_NEAR(r.z, 0.7f * 3, 1e-3f * 2.1f);

@@ -400,17 +400,17 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
 }
 
 TEST(SkyDirections, CoverTheSphereEvenly) {
-  const std::vector<vec3> directions = skyDirections(32);
+  const std::vector<SkyDirection> directions = skyDirections(vec3(1), 32);
   vec3 sum(0);
-  for (const vec3& d : directions) {
-    EXPECT_NEAR(glm::length(d), 1, 1e-5f);
-    sum += d;
+  for (const SkyDirection& d : directions) {
+    EXPECT_NEAR(glm::length(d.direction), 1, 1e-5f);
+    sum += d.direction;
   }
   EXPECT_LT(glm::length(sum) / 32, 0.01f);
   // Irradiance of a plane at any tilt: Σ cos · 4π/32 ≈ π.
   for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, 0, 1), glm::normalize(vec3(1, 1, 1))}) {
     float e = 0;
-    for (const vec3& d : directions) e += std::max(0.0f, -glm::dot(n, d)) * 4 * kPi / 32;
+    for (const SkyDirection& d : directions) e += std::max(0.0f, -glm::dot(n, d.direction)) * d.irradiance.y;
     EXPECT_NEAR(e, kPi, 0.03f * kPi);
   }
 }

@@ -166,11 +166,11 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   results.surfaces = gbuffer;
   results.direct = direct;
   results.indirect = indirect;
-  results.skyRadiance = vec3(0.1f, 0.2f, 0.3f);
-  results.picture = composite.run({gbuffer, direct, indirect, results.skyRadiance});
+  results.sky = vec3(0.1f, 0.2f, 0.3f);
+  results.picture = composite.run({gbuffer, direct, indirect, results.sky});
   const Image beauty = readBuffer(Buffer::Beauty, results),
               parts[2] = {readBuffer(Buffer::Direct, results), readBuffer(Buffer::Indirect, results)};
-  EXPECT_LT(glm::length(beauty.at(0, 10) - results.skyRadiance), 1e-6f);
+  EXPECT_LT(glm::length(beauty.at(0, 10) - vec3(0.1f, 0.2f, 0.3f)), 1e-6f);
   for (int y : {0, 20, 47}) {
     const float e = float(y + 1);
     EXPECT_NEAR(beauty.at(32, y).x, 0.5f / kPi * 2 * e, 1e-3f * e);

@@ -7,7 +7,8 @@ class ScaleTest : public GlTest {
  protected:
   /// A room of `unit` times 4×3×5 m with a block, a ball of faces, a lamp that glows, a point light and a way out to a
   /// sky and a sun. Frames of it standing still and with the block moving.
-  static std::vector<Image> pictures(float unit, const std::string& technique) {
+  static std::vector<Image> pictures(float unit, const std::string& technique,
+                                     const Sky& sky = vec3(0.1f, 0.2f, 0.3f)) {
     HandScene scene;
     const uint32_t white = scene.material(vec3(0.7f)), red = scene.material(vec3(0.6f, 0.1f, 0.1f)),
                    lamp = scene.material(vec3(0.2f), vec3(9, 8, 7), true);
@@ -27,7 +28,7 @@ class ScaleTest : public GlTest {
     sun.direction = glm::normalize(vec3(0.3f, -1, -0.4f));
     sun.intensity = vec3(2);
     scene.lights = {point, sun};
-    scene.sky = vec3(0.1f, 0.2f, 0.3f);
+    scene.sky = sky;
     scene.camera = cameraAt(at(0.3f, 1.6f, 2.2f), at(-0.2f, 1, -1), 1.1f, 64, 36);
     scene.camera.near = 0.01f * unit;
 
@@ -60,6 +61,16 @@ class ScaleTest : public GlTest {
     return images;
   }
 };
+
+TEST_F(ScaleTest, PowersOfTwoGiveTheSameBytesByDay) {
+  const Sky sky = Sky::daylight(glm::normalize(vec3(-0.3f, 1, 0.4f)), 3);
+  for (const char* technique : {"smc", "ir"}) {
+    const std::vector<Image> usual = pictures(1, technique, sky), scaled = pictures(0x1p-13f, technique, sky);
+    for (size_t i = 0; i < usual.size(); ++i)
+      for (size_t p = 0; p < usual[i].pixels.size(); ++p)
+        ASSERT_EQ(usual[i].pixels[p], scaled[i].pixels[p]) << technique << ", picture " << i;
+  }
+}
 
 TEST_F(ScaleTest, PowersOfTwoGiveTheSameBytes) {
   for (const char* technique : {"smc", "ir", "mir", "tcas", "rsm", "isr", "hisr", "multires-splat"}) {

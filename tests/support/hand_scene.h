@@ -92,7 +92,7 @@ class HandScene {
     v.assets = &assets;
     v.instances = instances;
     v.lights = lights;
-    v.skyRadiance = sky;
+    v.sky = sky;
     v.camera = camera;
     for (const InstanceView& i : instances) v.boundsWorld.add(i.boundsWorld);
     return v;
@@ -101,7 +101,7 @@ class HandScene {
   SceneAssets assets;
   std::vector<InstanceView> instances;
   std::vector<LightView> lights;
-  vec3 sky{0};
+  Sky sky;
   CameraView camera;
 
  private:

@@ -120,6 +120,12 @@ class RandomWorld {
     const float x = number(), y = number();
     return {x, y, number()};
   }
+  Sky randomSky() {
+    const float what = number();
+    if (what < 0.4f) return {};
+    if (what < 0.7f) return number3();
+    return Sky::daylight(glm::normalize(number3() - vec3(0.5f, 0.1f, 0.5f)), 2 + 6 * number());
+  }
   vec3 place() { return glm::mix(kRoomLo + 0.3f, kRoomHi - 0.3f, number3()); }
   quat turned(float most) { return glm::angleAxis(most * (2 * number() - 1), glm::normalize(number3() + 0.01f)); }
   Object& anyObject() { return objects_[random_.below(uint32_t(objects_.size()))]; }
@@ -209,7 +215,7 @@ class RandomWorld {
     if (what < 0.50f) return swapMesh(objects_[1 + random_.below(kBoxes - 2)]);
     if (what < 0.58f) return deformOne();
     if (what < 0.70f) return relight();
-    if (what < 0.73f) return void(scene_.skyRadiance = number() < 0.5f ? vec3(0) : number3());
+    if (what < 0.73f) return void(scene_.sky = randomSky());
     if (what < 0.86f) return moveCamera();
     Object& o = anyObject();
     if (what < 0.89f && o.shown) hide(o);

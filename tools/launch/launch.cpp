@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Comma-separated finite numbers, exactly `count` of them.
-std::vector<double> numbers(const std::string& option, const std::string& text, size_t count) {
+/// Comma-separated finite numbers, `least` to `most` of them.
+std::vector<double> numbers(const std::string& option, const std::string& text, size_t least, size_t most) {
   std::vector<double> out;
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -33,13 +33,14 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
     at = next == end ? end : next + 1;
     if (next != end && at == end) out.clear(); // a trailing comma
   }
-  if (out.size() != count || at != end)
-    throw InputError(option + " " + text, "needs " + std::to_string(count) + " numbers separated by commas");
+  if (out.size() < least || out.size() > most || at != end)
+    throw InputError(option + " " + text, "needs " + (least < most ? std::to_string(least) + " to " : std::string()) +
+                                              std::to_string(most) + " numbers separated by commas");
   return out;
 }
 
 dvec3 threeNumbers(const std::string& option, const std::string& text) {
-  const std::vector<double> n = numbers(option, text, 3);
+  const std::vector<double> n = numbers(option, text, 3, 3);
   return {n[0], n[1], n[2]};
 }
 
@@ -50,7 +51,7 @@ vec3 lightValue(const std::string& option, const std::string& text, const vec3& 
 }
 
 LightView sunLight(const std::string& text) {
-  const std::vector<double> n = numbers("--sun", text, 6);
+  const std::vector<double> n = numbers("--sun", text, 6, 6);
   const vec3 direction(n[0], n[1], n[2]);
   if (!(glm::length(direction) > 0)) throw InputError("--sun " + text, "the direction has no length");
   LightView light;
@@ -61,11 +62,40 @@ LightView sunLight(const std::string& text) {
 }
 
 LightView pointLight(const std::string& text, const Scene& scene) {
-  const std::vector<double> n = numbers("--point", text, 6);
+  const std::vector<double> n = numbers("--point", text, 6, 6);
   LightView light;
   light.position = scene.fromOrigin(dvec3(n[0], n[1], n[2]));
   light.intensity = lightValue("--point", text, {n[3], n[4], n[5]});
   return light;
+}
+
+/// A sky, and while it is up a sun that goes with it, in place of the scene's own.
+void addDaylight(Stage& stage, const LaunchOptions& options) {
+  const std::string given = "--daylight " + options.daylight;
+  if (!options.sky.empty() || !options.suns.empty())
+    throw InputError(given, std::string("is a sky and a sun of its own (leave out ") +
+                                (options.sky.empty() ? "--sun)" : "--sky)"));
+  const std::vector<double> n = numbers("--daylight", options.daylight, 1, 3);
+  const double elevation = n[0], azimuth = n.size() > 1 ? n[1] : 50, turbidity = n.size() > 2 ? n[2] : 3;
+  if (!(std::abs(elevation) <= 90)) throw InputError(given, "elevation is out of range (-90 to 90 degrees)");
+  if (!(std::abs(azimuth) <= 360)) throw InputError(given, "azimuth is out of range (-360 to 360 degrees)");
+  if (!(turbidity >= 2 && turbidity <= 10)) throw InputError(given, "turbidity is out of range (2 to 10)");
+  int suns = 0;
+  const double up = glm::radians(elevation), around = glm::radians(azimuth);
+  const vec3 towardsSun =
+      glm::normalize(vec3(std::cos(up) * std::sin(around), std::sin(up), std::cos(up) * std::cos(around)));
+  stage.scene.registry.each<PunctualLight>([&](Entity, PunctualLight& light) {
+    if (light.type != LightType::Directional || !(maxComponent(light.intensity) > 0)) return;
+    light.intensity = vec3(0);
+    ++suns;
+  });
+  if (suns > 0) stage.notes.push_back("the scene's own sun gives way to that of --daylight");
+  stage.scene.sky = Sky::daylight(towardsSun, float(turbidity));
+  LightView sun;
+  sun.type = LightType::Directional;
+  sun.direction = -towardsSun;
+  sun.intensity = daylightSun(towardsSun, float(turbidity));
+  if (maxComponent(sun.intensity) > 0) addLight(stage.scene, sun, "sun");
 }
 
 void readSize(const std::string& text, CameraView& camera) {
@@ -163,10 +193,10 @@ void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lac
 /// Reflective shadow maps see light of some kinds only.
 void tellWhatIsLeftOut(Stage& stage, const SceneView& view) {
   const std::string technique = "technique " + std::string(techniqueOf(stage.settings).name);
-  if (view.lights.empty() && (hasEmitters(stage.scene) || luminance(view.skyRadiance) > 0))
+  if (view.lights.empty() && (hasEmitters(stage.scene) || !view.sky.black()))
     stage.notes.push_back(technique +
                           " reflects punctual lights only, and there is none: no indirect light (--point, --sun)");
-  else if (hasEmitters(stage.scene) || luminance(view.skyRadiance) > 0)
+  else if (hasEmitters(stage.scene) || !view.sky.black())
     stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
 }
 
@@ -207,6 +237,10 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
   command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
+  command.add_option("--daylight", options.daylight,
+                     "clear sky and its sun, in place of the scene's own: ELEVATION[,AZIMUTH[,TURBIDITY]], degrees; "
+                     "azimuth from +Z towards +X "
+                     "(default 50), turbidity 2 (very clear) to 10 (default 3)");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
 }
@@ -241,12 +275,13 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())
-    stage->scene.skyRadiance = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
+    stage->scene.sky = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
+  if (!options.daylight.empty()) addDaylight(*stage, options);
   animate(stage->scene, 0);
   chooseCamera(*stage, options);
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
-  const bool lit = !view.lights.empty() || luminance(view.skyRadiance) > 0 || hasEmitters(stage->scene);
+  const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
   if (rowOf(stage->settings.vpl.source).reflective) tellWhatIsLeftOut(*stage, view);
   return stage;

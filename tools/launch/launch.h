@@ -20,7 +20,7 @@ namespace lambent {
 struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
   std::string sceneName; // of several in the file
-  std::string camera, eye, target, size, sky, technique, preset;
+  std::string camera, eye, target, size, sky, daylight, technique, preset;
   std::optional<float> fovDegrees;
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;

@@ -99,10 +99,17 @@ TEST_F(SmallScene, LightsSkyAndCameraAreToldApart) {
   SceneView view = extract();
   EXPECT_TRUE(view.changes.lights && view.lights[0].changed);
   EXPECT_FALSE(view.changes.camera || view.changes.geometry);
-  scene.skyRadiance = vec3(1);
+  scene.sky = vec3(1);
   view = extract();
   EXPECT_TRUE(view.changes.lights);
   EXPECT_FALSE(view.lights[0].changed);
+  EXPECT_FALSE(extract().changes.lights);
+  scene.sky = Sky::daylight({0, 1, 0}, 3);
+  EXPECT_TRUE(extract().changes.lights);
+  scene.sky = Sky::daylight({0, 1, 0}, 3);
+  EXPECT_FALSE(extract().changes.lights);
+  scene.sky = Sky::daylight({0, 1, 0}, 4);
+  EXPECT_TRUE(extract().changes.lights);
   camera.width = 640;
   EXPECT_TRUE(extract().changes.camera);
   scene.registry.destroy(light);

@@ -1,0 +1,131 @@
+// A sky by day: seen behind surfaces, and as direct light.
+#include "gi/direct/direct_light.h"
+#include "gl_fixture.h"
+#include "tests/support/daylight.h"
+
+namespace lambent::test {
+
+class SkyTest : public GlTest {
+ protected:
+  /// Direct irradiance of the picture, row 0 at the top.
+  Image irradianceOf(const HandScene& scene) {
+    Settings all;
+    all.shadow.skyMaps = maps;
+    LightSet lights;
+    lights.sky = scene.sky;
+    PlacedScene placed(programs, scene);
+    const World world = placed.world(lights);
+    SurfacePass surfaces(passes);
+    DirectLight direct(passes);
+    FrameStats stats;
+    FrameResults results;
+    results.surfaces = surfaces.run({world.gpu, world.view.camera});
+    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all.shadow}, stats);
+    return readBuffer(Buffer::Irradiance, results); // reads without albedo
+  }
+  /// Irradiance of a lone plate in the middle of the picture.
+  vec3 plate(const Sky& sky, const vec3& normal) {
+    HandScene scene;
+    vec3 s, t;
+    basisAround(normal, s, t);
+    scene.quad(-2.0f * (s + t), 4.0f * s, 4.0f * t, scene.material(vec3(0.5f)));
+    scene.camera = cameraAt(3.0f * normal + 0.2f * s, vec3(0), 0.8f);
+    scene.sky = sky;
+    return irradianceOf(scene).at(32, 24);
+  }
+  int maps = 32;
+};
+
+TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
+  for (const bool orthographic : {false, true})
+    for (const float elevation : {-4.0f, 8.0f, 60.0f})
+      for (const bool glossy : {false, true}) {
+        HandScene scene;
+        const uint32_t m = scene.material(vec3(0.5f));
+        if (glossy) scene.assets.materials[m].roughness = 0.4f;
+        scene.quad(vec3(-0.3f, 0, -1), vec3(0.6f, 0, 0), vec3(0, 0.3f, 0), m);
+        scene.sky = Sky::daylight(directionAt(elevation, 185), 3);
+        scene.camera = cameraAt(vec3(0, 0.1f, 0.4f), vec3(0.1f, 0.25f, -1), 1.9f);
+        if (orthographic) scene.camera.orthoHalfHeight = 2;
+        Settings settings;
+        settings.gather.glossy = glossy;
+        settings.effects[EffectId::Indirect] = EffectMode::Off;
+        GiFrame gi(settings);
+        gi.run(scene.view());
+        const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), depth = gi.read(Buffer::Depth);
+        int seen = 0;
+        for (int y = 0; y < 48; ++y)
+          for (int x = 0; x < 64; ++x) {
+            if (depth.at(x, y).x > 0) continue;
+            ++seen;
+            const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
+            const vec3 wanted = scene.sky.radiance(ray.direction);
+            const float tolerance = 1e-3f * maxComponent(wanted);
+            ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+            ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+          }
+        EXPECT_GT(seen, 1000);
+      }
+}
+
+TEST_F(SkyTest, DisplayShowsItToo) {
+  HandScene scene;
+  scene.quad(vec3(-0.3f, -0.3f, -50), vec3(0.6f, 0, 0), vec3(0, 0.3f, 0), scene.material(vec3(0.5f)));
+  scene.sky = Sky::daylight(directionAt(20, 150), 3);
+  scene.camera = cameraAt(vec3(0), vec3(0, 0.3f, -1), 1.9f);
+  Settings settings;
+  settings.image.exposure = 1;
+  GiFrame gi(settings);
+  gi.run(scene.view());
+  const Image8 beauty = gi.readDisplay(Buffer::Beauty), direct = gi.readDisplay(Buffer::Direct);
+  for (size_t i = 0; i < beauty.rgb.size(); ++i) ASSERT_NEAR(beauty.rgb[i], direct.rgb[i], 1) << i;
+  EXPECT_GT(beauty.rgb[2], beauty.rgb[0]) << "blue above";
+  EXPECT_NE(beauty.rgb[2], beauty.rgb[beauty.rgb.size() - 1]) << "another colour below";
+}
+
+TEST_F(SkyTest, DirectLightOfOpenPlates) {
+  for (const float elevation : {5.0f, 30.0f, 70.0f}) {
+    const Sky sky = Sky::daylight(directionAt(elevation, 65), 3);
+    for (const vec3& n : {vec3(0, 1, 0), vec3(0, -1, 0)}) {
+      const dvec3 wanted = openIrradiance(sky, n);
+      const vec3 light = plate(sky, n);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], wanted[c], 3e-3 * wanted[c]) << elevation << ' ' << n.y;
+    }
+    double squares = 0;
+    int count = 0;
+    for (const vec3& n : {directionAt(0, 65), directionAt(0, 245), directionAt(30, 150), directionAt(60, 0),
+                          directionAt(-20, 90), directionAt(10, 300)}) {
+      const double wanted = double(luminance(vec3(openIrradiance(sky, n)))), light = double(luminance(plate(sky, n)));
+      EXPECT_NEAR(light, wanted, 0.12 * wanted) << elevation << ' ' << n.x << ' ' << n.y;
+      squares += (light / wanted - 1) * (light / wanted - 1);
+      ++count;
+    }
+    std::printf("sun %g degrees high: RMS error of tilted plates %.3f\n", double(elevation),
+                std::sqrt(squares / count));
+    EXPECT_LT(std::sqrt(squares / count), 0.06) << elevation;
+  }
+}
+
+TEST_F(SkyTest, AChangeIsNoticed) {
+  Floor floor;
+  floor.scene.sky = Sky::daylight(directionAt(60, 0), 3);
+  Settings settings;
+  GiFrame gi(settings);
+  SceneView view = floor.scene.view();
+  view.changes = {true, true, true, true, true};
+  gi.run(view);
+  const Image before = gi.read(Buffer::Beauty);
+  floor.scene.sky = Sky::daylight(directionAt(10, 0), 3);
+  view = floor.scene.view();
+  view.changes = {false, false, true, false, false};
+  gi.run(view);
+  const Image after = gi.read(Buffer::Beauty);
+  GiFrame other(settings);
+  view.changes = {true, true, true, true, true};
+  other.run(view);
+  const Image anew = other.read(Buffer::Beauty);
+  EXPECT_LT(luminance(after.at(32, 24)), 0.8f * luminance(before.at(32, 24)));
+  for (size_t i = 0; i < after.pixels.size(); ++i) ASSERT_EQ(after.pixels[i], anew.pixels[i]) << i;
+}
+
+} // namespace lambent::test
