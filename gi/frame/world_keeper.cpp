@@ -91,6 +91,7 @@ World WorldKeeper::place(const EffectPlan& plan, FrameStats& stats) {
     lights_.emitters.clear();
     lights_.triangles.clear();
     lights_.emission = false;
+    lights_.tree = LightTree(lights_);
   }
   if (!plan.on(Sky)) lights_.sky = {};
   if (plan.on(Redraw)) reach_ = reachOf(view, reach_);

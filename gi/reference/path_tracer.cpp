@@ -81,7 +81,7 @@ class BlockTracer {
     connectBy(vertex, counts, [&](Path& p) {
       const float uLight = p.rng.next();
       const vec2 a = p.rng.next2();
-      return connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain(), lightWeights_);
+      return connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain());
     });
   }
 
@@ -135,7 +135,7 @@ class BlockTracer {
         continue;
       }
       if (luminance(h.emission) > 0)
-        sumOf(p, vertex) += p.weight * h.emission * emitterShare(in_.lights, p.vertex, ray.direction, h, lightWeights_);
+        sumOf(p, vertex) += p.weight * h.emission * emitterShare(in_.lights, p.vertex, ray.direction, h);
       p.weight *= h.albedo;
       if (vertex == 0) p.weight *= clampFactor(p.vertex, ray.direction, h);
       p.vertex = {h.position, h.normal, h.geometricNormal};
@@ -178,7 +178,6 @@ class BlockTracer {
   std::vector<uint32_t> owners_;
   std::vector<uint8_t> blocked_;
   std::vector<SurfaceHit> hits_;
-  std::vector<float> lightWeights_;
 };
 
 void addTo(PixelSums& p, const Sample& s) {

@@ -44,11 +44,9 @@ LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter,
 } // namespace
 
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
-                               const vec3& uPoint, float grain, std::vector<float>& weightScratch) {
-  const LightChoice choice(lights, vertex.position, vertex.normal, weightScratch);
-  if (choice.empty()) return {};
-  const uint32_t light = choice.sample(uLight);
-  const float probability = choice.probability(light);
+                               const vec3& uPoint, float grain) {
+  const auto [light, probability] = LightChoice(lights, vertex.position, vertex.normal).sample(uLight);
+  if (light == kNone) return {};
   if (light < lights.punctual.size())
     return connectToPunctual(lights.punctual[light], probability, vertex, weight, grain);
   return connectToEmitter(lights, lights.emitters[light - lights.punctual.size()], probability, vertex, weight, uPoint,
@@ -72,11 +70,10 @@ vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& dire
   return radiance * powerHeuristic(pdfCosine, lights.sky.pdfFacing(vertex.normal, direction));
 }
 
-float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,
-                   std::vector<float>& weightScratch) {
+float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit) {
   const uint32_t e = lights.emitterOf(hit);
   if (e == kNone) return 1;
-  const LightChoice choice(lights, vertex.position, vertex.normal, weightScratch);
+  const LightChoice choice(lights, vertex.position, vertex.normal);
   const float cosEmitter = std::abs(glm::dot(direction, hit.geometricNormal));
   const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, vertex.normal));
   const float pdfLight = choice.probability(uint32_t(lights.punctual.size()) + e) *

@@ -21,7 +21,7 @@ struct LightConnection {
 /// Chooses one light and a point on it. `weight` turns irradiance/π at the vertex into what the caller wants; numbers
 /// in [0, 1) for the choice and for the point; `grain` is the ray query's.
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
-                               const vec3& uPoint, float grain, std::vector<float>& weightScratch);
+                               const vec3& uPoint, float grain);
 
 /// Light of a sky that is not constant, from a direction drawn by what the sky brings to the vertex; numbers in [0, 1).
 LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u, float grain);
@@ -31,7 +31,6 @@ LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, c
 vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction);
 
 /// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
-float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit,
-                   std::vector<float>& weightScratch);
+float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit);
 
 } // namespace lambent

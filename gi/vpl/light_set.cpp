@@ -40,14 +40,25 @@ void addEmitter(LightSet& lights, uint32_t instance, uint32_t primitive, std::ve
   e.doubleSided = doubleSided;
   Aabb box;
   std::vector<float> powers;
+  vec3 normals(0);
   for (const EmitterTriangle& t : triangles) {
+    normals += t.normal * t.area;
     box.add(t.p0), box.add(t.p0 + t.e1), box.add(t.p0 + t.e2);
     powers.push_back(luminance(t.radiance) * t.area);
     e.power += powers.back();
   }
   if (!(e.power > 0)) return;
-  e.centre = box.centre();
-  e.radius = 0.5f * box.diameter();
+  e.bounds = {.centre = box.centre(),
+              .half = 0.5f * box.size(),
+              .power = e.power,
+              .range = kInfinity,
+              .bothSides = doubleSided};
+  if (const float length = glm::length(normals); length > 0) {
+    e.bounds.axis = normals / length;
+    e.bounds.cosAxes = 1;
+    for (const EmitterTriangle& t : triangles)
+      if (t.area > 0) e.bounds.cosAxes = std::min(e.bounds.cosAxes, glm::dot(t.normal, e.bounds.axis));
+  }
   e.byPower = Distribution(powers);
   lights.triangles.insert(lights.triangles.end(), triangles.begin(), triangles.end());
   lights.emitters.push_back(std::move(e));
@@ -85,6 +96,7 @@ LightSet collectLights(const SceneView& view) {
       addEmitter(lights, i, p, std::move(triangles), material.doubleSided);
     }
   }
+  lights.tree = LightTree(lights);
   return lights;
 }
 
@@ -122,38 +134,6 @@ PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const v
   }
   s.irradiance = light.intensity * (falloff * glm::max(0.0f, glm::dot(n, s.towards)));
   return s;
-}
-
-LightChoice::LightChoice(const LightSet& lights, const vec3& x, const vec3& n, std::vector<float>& weightScratch)
-    : weights_(weightScratch) {
-  weights_.resize(lights.lightCount());
-  size_t i = 0;
-  for (const LightView& l : lights.punctual)
-    total_ += weights_[i++] = luminance(punctualIrradiance(l, x, n).irradiance);
-  for (const Emitter& e : lights.emitters) {
-    const vec3 d = e.centre - x;
-    const float height = glm::dot(d, n); // of the centre above the tangent plane
-    float w = 0;
-    if (height > -e.radius) { // else all of it lies below the horizon
-      const float r2 = glm::dot(d, d), radius2 = e.radius * e.radius;
-      // cosine bound: highest point of the sphere above the plane, over the distance.
-      const float cosine = glm::min(1.0f, (height + e.radius) / std::sqrt(glm::max(r2, 1e-20f)));
-      w = e.power * glm::max(cosine, 0.05f) / glm::max(r2, glm::max(radius2, 1e-20f));
-    }
-    total_ += weights_[i++] = w;
-  }
-}
-
-uint32_t LightChoice::sample(float u) const {
-  float rest = u * total_;
-  uint32_t last = 0;
-  for (uint32_t i = 0; i < weights_.size(); ++i) {
-    if (!(weights_[i] > 0)) continue;
-    last = i;
-    rest -= weights_[i];
-    if (rest < 0) return i;
-  }
-  return last; // rounding left a remainder
 }
 
 EmitterPoint sampleEmitter(const LightSet& lights, const Emitter& emitter, const vec3& u) {

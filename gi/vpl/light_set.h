@@ -5,6 +5,7 @@
 #include "engine/core/sampling.h"
 #include "engine/trace/ray_query.h"
 #include "gi/contract/virtual_lights.h"
+#include "gi/vpl/light_tree.h"
 
 namespace lambent {
 
@@ -23,8 +24,7 @@ struct Emitter {
   uint32_t instance = 0, primitive = 0;
   uint32_t firstTriangle = 0, triangleCount = 0; // run of LightSet::triangles
   bool doubleSided = false;
-  vec3 centre{0};
-  float radius = 0;     // of a sphere that holds all of it
+  LightBounds bounds;
   float power = 0;      // Σ luminance(radiance) · area, W/sr
   Distribution byPower; // over its triangles
 };
@@ -34,6 +34,7 @@ struct LightSet {
   std::vector<Emitter> emitters;
   std::vector<EmitterTriangle> triangles;
   Sky sky;
+  LightTree tree;                  // over the lights above, made after them; few need none (LightChoice)
   bool emission = true;            // false: what glows is not a light, and has no emitters
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
@@ -60,22 +61,6 @@ struct PunctualSample {
   float distance = 0; // metres; kInfinity for a directional light
 };
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n);
-
-/// Chooses one light for a surface point with probability proportional to a bound of what it can bring there. The sum
-/// of weights costs one pass over all lights per vertex, fine for the some dozen lights of a game scene.
-class LightChoice {
- public:
-  LightChoice(const LightSet& lights, const vec3& x, const vec3& n, std::vector<float>& weightScratch);
-
-  bool empty() const { return total_ <= 0; }
-  /// Index < lights.lightCount() (punctual first, then emitters). Never one of weight zero.
-  uint32_t sample(float u) const;
-  float probability(uint32_t light) const { return total_ > 0 ? weights_[light] / total_ : 0; }
-
- private:
-  std::vector<float>& weights_;
-  float total_ = 0;
-};
 
 /// A point on an emitter with its density.
 struct EmitterPoint {

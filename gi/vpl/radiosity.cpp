@@ -217,7 +217,7 @@ class VplEstimator {
         if (v.distance == kInfinity) sum += v.weight * skyByRay(lights_, v.at, v.direction);
         if (!v.metEmitter) continue;
         if (lights_.emission)
-          sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit, weights_);
+          sum += v.weight * emitter->hit.emission * emitterShare(lights_, v.at, v.direction, emitter->hit);
         ++emitter;
       }
     }
@@ -238,7 +238,7 @@ class VplEstimator {
         uLight = std::min((float(slice) + lightShift_) / float(paths_), 0x1.fffffep-1f);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
-      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain(), weights_);
+      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain());
       add(v.light, c);
     }
     return addedLight(counts);
@@ -310,7 +310,6 @@ class VplEstimator {
   std::vector<KeptConnection*> asked_;
   std::vector<uint8_t> blocked_;
   std::vector<SurfaceHit> hits_;
-  std::vector<float> weights_;
 };
 
 } // namespace

@@ -227,8 +227,8 @@ TEST(DeformedEmitter, ShinesFromItsVertices) {
   const LightSet lights = collectLights(sheets.scene.view());
   ASSERT_EQ(lights.emitters.size(), 2u);
   EXPECT_NEAR(lights.emitters[0].power, 2 * lights.emitters[1].power, 1e-3f);
-  EXPECT_NEAR(lights.emitters[0].centre.z, 1, 1e-5f);
-  EXPECT_NEAR(lights.emitters[1].centre.z, -1, 1e-5f);
+  EXPECT_NEAR(lights.emitters[0].bounds.centre.z, 1, 1e-5f);
+  EXPECT_NEAR(lights.emitters[1].bounds.centre.z, -1, 1e-5f);
 }
 
 } // namespace

@@ -157,11 +157,10 @@ TEST(Lights, ChoiceFollowsItsProbabilities) {
   lights.punctual[1].position = {0, -2, 0}; // behind the surface
   lights.punctual[2] = {0, LightType::Directional, vec3(0), {0, -1, 0}, vec3(0.1f)};
   addEmitter(lights, 0, 0, {makeEmitterTriangle({1, 1, 0}, {2, 1, 0}, {1, 1, 1}, vec3(1))}, false);
-  std::vector<float> scratch;
-  const LightChoice choice(lights, vec3(0), vec3(0, 1, 0), scratch);
+  const LightChoice choice(lights, vec3(0), vec3(0, 1, 0));
   std::vector<double> counts(4, 0), expected(4);
   Rng rng(7, Stream::Test, 5);
-  for (int i = 0; i < 40000; ++i) counts[choice.sample(rng.next())] += 1;
+  for (int i = 0; i < 40000; ++i) counts[choice.sample(rng.next()).light] += 1;
   double sum = 0;
   for (uint32_t i = 0; i < 4; ++i) sum += choice.probability(i), expected[i] = 40000 * choice.probability(i);
   EXPECT_NEAR(sum, 1, 1e-5);
