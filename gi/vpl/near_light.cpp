@@ -11,7 +11,9 @@
 //
 // Rays whose rest is small go on with a probability in proportion to it. The pixels of 4×4 cast the rays of one
 // stratified pattern, the same in every block and fixed in the surface's frame. Over the pictures that are averaged
-// each pixel casts all rays of a longer one: all pixels then hold the same, and no noise between them.
+// each pixel casts all rays of one of four longer patterns, and takes its neighbours' in. (With one pattern for all
+// there is no noise between pixels to mix, but its few dozen directions are seen as streaks and specks on folded
+// cloth.)
 #include "gi/vpl/near_light.h"
 
 #include "engine/core/parallel.h"
@@ -87,11 +89,26 @@ uint32_t turnOf(size_t x, size_t y) {
   return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
 }
 
-/// Mixes the 16 parts of the pattern: a tent of 5×5 in which each has the same weight, over pixels that see surfaces no
-/// farther than `reach` apart and turned roughly alike. The filter over the subsets, which tells normals apart, finds
-/// too few pixels to mix on mouldings and leaves.
-void mixBlocks(std::vector<vec3>& light, std::span<const vec3> positions, std::span<const vec3> normals, int width,
-               float reach) {
+/// Which neighbours a pixel's light is mixed with.
+struct Mixture {
+  std::array<std::array<float, 3>, 3> weights; // by how many columns and rows apart
+  float reach = 0;                             // m: between the surfaces that they see
+  float slope = 1;                             // sine: how far a neighbour may be off the plane, over its distance
+};
+
+/// A tent of 5×5 in which each of the 16 parts of a block's pattern has the same weight. The filter over the subsets,
+/// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
+constexpr std::array<std::array<float, 3>, 3> kTent{{{1, 1, 0.5f}, {1, 1, 0.5f}, {0.5f, 0.5f, 0.25f}}};
+/// A tent of 3×3 over one colour of a chessboard, in which each of kPatterns has the same weight.
+constexpr std::array<std::array<float, 3>, 3> kQuincunx{{{4, 0, 1}, {0, 2, 0}, {1, 0, 0}}};
+constexpr uint32_t kPatterns = 4;
+
+/// The pattern of a pixel: columns and rows of the chessboard's diagonals take turns.
+uint32_t patternOf(uint32_t x, uint32_t y) { return ((x + y) >> 1 & 1) | ((x + ~y) >> 1 & 1) << 1; }
+
+/// Over pixels that cast rays and see surfaces turned roughly alike; others keep what they have.
+void mix(std::vector<vec3>& light, std::span<const vec3> positions, std::span<const vec3> normals, int width,
+         const Mixture& mixture) {
   constexpr float kAlike = 0.3f; // cosine between normals
   const std::vector<vec3> traced = light;
   const int height = int(light.size()) / width;
@@ -103,10 +120,14 @@ void mixBlocks(std::vector<vec3>& light, std::span<const vec3> positions, std::s
         float weights = 0;
         for (int v = std::max(y - 2, 0); v <= std::min(y + 2, height - 1); ++v)
           for (int u = std::max(x - 2, 0); u <= std::min(x + 2, width - 1); ++u) {
+            const float weight = mixture.weights[std::abs(u - x)][std::abs(v - y)];
             const size_t other = size_t(v) * width + u;
             const vec3 d = positions[other] - positions[at];
-            if (!(glm::dot(d, d) <= reach * reach) || glm::dot(normals[other], normals[at]) < kAlike) continue;
-            const float weight = (std::abs(u - x) == 2 ? 0.5f : 1.0f) * (std::abs(v - y) == 2 ? 0.5f : 1.0f);
+            const float apart2 = glm::dot(d, d), off = glm::dot(normals[at], d), offThere = glm::dot(normals[other], d);
+            if (weight == 0 || !(apart2 <= mixture.reach * mixture.reach) ||
+                glm::dot(normals[other], normals[at]) < kAlike ||
+                std::max(off * off, offThere * offThere) > mixture.slope * mixture.slope * apart2)
+              continue;
             sum += weight * traced[other];
             weights += weight;
           }
@@ -148,7 +169,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.pictures) / cycle));
   const uint32_t pattern = averaged ? std::max(steps, stride) : std::min(stride, uint32_t(perBlock));
   RadianceUpdate update;
-  update.paths = int(pattern) * ((perBlock + int(stride) - 1) / int(stride));
+  update.paths = int(averaged ? kPatterns * pattern : pattern) * ((perBlock + int(stride) - 1) / int(stride));
   update.bounces = in.bounces;
   update.seed = in.seed;
 
@@ -178,7 +199,8 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       positions[asked[s]] = h.position;
       normals[asked[s]] = h.normal;
       for (uint32_t p = paths[s]; p < uint32_t(perBlock); p += stride) {
-        const uint32_t path = (p % stride + 5 * casts) % pattern + pattern * (p / stride);
+        uint32_t path = (p % stride + 5 * casts) % pattern + pattern * (p / stride);
+        if (averaged) path = path * kPatterns + patternOf(asked[s] % camera.width, asked[s] / camera.width);
         const vec3 u = additiveRecurrence3(path, shift);
         const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
         if (glm::dot(direction, h.geometricNormal) <= 0) continue;
@@ -235,10 +257,11 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
   });
   for (const RayCounts& c : countsOf) counts += c;
-  if (in.subsets && !averaged) {
-    const float reach = std::sqrt(cells.meanArea());
-    mixBlocks(out.irradiance, positions, normals, camera.width, reach);
-    if (in.glossy) mixBlocks(out.glossy, positions, normals, camera.width, reach);
+  if (in.subsets) {
+    const float cell = std::sqrt(cells.meanArea());
+    const Mixture mixture = averaged ? Mixture{kQuincunx, 0.2f * cell, 0.4f} : Mixture{kTent, cell};
+    mix(out.irradiance, positions, normals, camera.width, mixture);
+    if (in.glossy) mix(out.glossy, positions, normals, camera.width, mixture);
   }
   return out;
 }

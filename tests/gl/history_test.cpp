@@ -75,7 +75,8 @@ TEST_F(HistoryTest, NearLightIsAveragedToo) {
   gi.run(room.scene.view());
   for (int i = 1; i < 64; ++i) gi.run(still());
   const Image expected = truth.read(Buffer::Irradiance), averaged = gi.read(Buffer::Irradiance);
-  EXPECT_LT(relativeRmse(averaged, expected), 0.6 * relativeRmse(one.read(Buffer::Irradiance), expected));
+  // One pattern for all pixels, unmixed: 0.52.
+  EXPECT_LT(relativeRmse(averaged, expected), 0.48 * relativeRmse(one.read(Buffer::Irradiance), expected));
   EXPECT_NEAR(meanLuminance(averaged), meanLuminance(expected), 0.01 * meanLuminance(expected));
 }
 
