@@ -3,7 +3,7 @@
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
 // and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
 // patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes), DAYLIGHT (EMITTED: of
-// the sky).
+// the sky), LUMA (alpha: see antialias.frag).
 #include "shared/tone_map.h"
 #if defined(GLOSSY) || defined(DAYLIGHT)
 #include "lib/gbuffer.glsl"
@@ -31,6 +31,11 @@ uniform int patchLevels;
 uniform int finestPatch; // level
 #endif
 
+#ifdef LUMA
+const float kMark = 0.0;
+#else
+const float kMark = 1.0;
+#endif
 const float kInversePi = 0.318309886;
 
 vec3 srgbFromLinear(vec3 c) {
@@ -65,11 +70,11 @@ void main() {
   value = depth == 0.0 ? backgroundAt(pixel) : value + texelFetch(emission, pixel, 0).rgb;
 #endif
   if (markNan != 0 && any(isnan(value))) {
-    outColor = vec4(1.0, 0.0, 1.0, 1.0);
+    outColor = vec4(1.0, 0.0, 1.0, kMark);
     return;
   }
   if (markNan != 0 && any(isinf(value))) {
-    outColor = vec4(0.0, 1.0, 1.0, 1.0);
+    outColor = vec4(0.0, 1.0, 1.0, kMark);
     return;
   }
   value = max(value * factor, 0.0);
@@ -87,7 +92,13 @@ void main() {
 #ifdef GREY
   value = vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)));
 #endif
-  outColor = vec4(srgbFromLinear(value) + (ditherAt(pixel) - 0.5) / 255.0, 1.0);
+  value = srgbFromLinear(value);
+#ifdef LUMA
+  outColor.a = max(dot(value, vec3(0.2126, 0.7152, 0.0722)), 1.0 / 255.0);
+#else
+  outColor.a = 1.0;
+#endif
+  outColor.rgb = value + (ditherAt(pixel) - 0.5) / 255.0;
 #else
   outColor = vec4(0.0, 0.0, 0.0, 1.0);
   if (depth == 0.0) return;

@@ -53,6 +53,11 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   return {{"MODE 0"}, frame.picture.radiance, exposure};
 }
 
+/// Pictures of light have edges to smooth; figures shown as colours must stay what they are.
+bool hasEdgesToSmooth(Buffer buffer) {
+  return buffer == Buffer::Beauty || buffer == Buffer::Direct || buffer == Buffer::Indirect;
+}
+
 struct Sprite {
   vec3 position;
   float heat; // rank of the intensity, 0..1
@@ -81,6 +86,13 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
 } // namespace
 
 const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, const Look& look) {
+  const bool smooth = look.antiAliasing == AntiAliasing::Edges && hasEdgesToSmooth(buffer);
+  draw(buffer, frame, look, smooth);
+  if (smooth) antiAlias();
+  return display_;
+}
+
+void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& look, bool smooth) {
   const gl::PassScope scope = context_.scope(StageId::Display);
   const int width = frame.surfaces.width, height = frame.surfaces.height;
   if (!black_) {
@@ -104,7 +116,7 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, co
     program.set("count", std::min(columns * rows, frame.vplMaps.arrays[0].desc().layers));
     frame.vplMaps.arrays[0].bind(0);
     gl::drawFullscreen();
-    return display_;
+    return;
   }
 
   View view = viewOf(buffer, frame, look.exposure);
@@ -114,6 +126,7 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, co
     (view.glossy ? view.glossy : &black_)->bind(8);
     for (const std::string& variant : backgroundVariants(frame.sky)) view.defines.push_back(variant);
   }
+  if (smooth) view.defines.push_back("LUMA");
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
   program.use();
   program.set("factor", view.factor);
@@ -132,7 +145,21 @@ const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, co
   frame.surfaces.emission->bind(4);
   gl::drawFullscreen();
   if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
-  return display_;
+}
+
+void DisplayPass::antiAlias() {
+  const gl::PassScope scope = context_.scope(StageId::AntiAliasing);
+  const int width = display_.width(), height = display_.height();
+  if (!aliased_ || aliased_.width() != width || aliased_.height() != height)
+    aliased_ = gl::Texture("display/aliased", {.format = GL_RGBA8, .width = width, .height = height});
+  glCopyImageSubData(display_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, aliased_.name(), GL_TEXTURE_2D, 0, 0, 0, 0, width,
+                     height, 1);
+  const gl::Program& program = context_.programs.get({.fragment = "antialias.frag"});
+  program.use();
+  aliased_.bind(0);
+  framebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
 }
 
 void DisplayPass::drawVpls(const FrameResults& frame) {

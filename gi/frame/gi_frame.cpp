@@ -63,7 +63,7 @@ struct GiFrame::Kept {
   LightSource* sourceFor(VplSource wanted);
   FilterSettings filterFor(const EffectPlan& plan) const;
   void expose(const Picture& picture);
-  Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan}; }
+  Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan, settings.image.antiAliasing}; }
 };
 
 GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}

@@ -68,14 +68,16 @@ struct FrameResults {
 struct Look {
   float exposure = 1; // factor on radiance
   ToneMapper toneMapper = ToneMapper::Reinhard;
-  bool markNan = true; // NaN magenta and infinity cyan in every radiometric view
+  bool markNan = true;                           // NaN magenta and infinity cyan in every radiometric view
+  AntiAliasing antiAliasing = AntiAliasing::Off; // of beauty, direct and indirect
 };
 
 class DisplayPass {
  public:
   explicit DisplayPass(PassContext context) : context_(context) {}
 
-  /// Draws `buffer` as a display shows it into a texture (RGBA8, sRGB-encoded, dithered) of the picture's size.
+  /// Draws `buffer` as a display shows it into a texture (RGB8, sRGB-encoded, dithered; alpha means nothing) of the
+  /// picture's size.
   const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
   /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height.
   void present(uint32_t framebuffer, int width, int height);
@@ -83,10 +85,12 @@ class DisplayPass {
   Image8 read() const;
 
  private:
+  void draw(Buffer buffer, const FrameResults& frame, const Look& look, bool smooth);
+  void antiAlias();
   void drawVpls(const FrameResults& frame);
 
   PassContext context_;
-  gl::Texture display_, black_;
+  gl::Texture display_, aliased_, black_; // aliased_: a copy of display_ before anti-aliasing
   gl::Framebuffer framebuffer_;
   gl::Ring sprites_{"display/vpls"};
   gl::VertexArray spriteArray_;

@@ -156,6 +156,9 @@ class Table {
         "image.toneMapper", &Settings::image, &ImageSettings::toneMapper, {"reinhard", "neutral", "filmic"}, Nothing,
         "reinhard: on luminance, as paper 1, bright colours are cut off; neutral: Khronos PBR Neutral, colours as they "
         "are up to 0.76, then to white; filmic: a fit of ACES");
+    choice("image.antiAliasing", &Settings::image, &ImageSettings::antiAliasing, {"off", "edges"}, Nothing,
+           "edges: no stairs along them in what is shown of beauty, direct and indirect; each picture by itself, so "
+           "nothing lags; .exr stays as it is");
     flag("frame.overlap", &Settings::frame, &FrameSettings::overlap, Nothing,
          "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");
     for (size_t i = 0; i < kEffects; ++i) effect(EffectId(i));

@@ -17,6 +17,7 @@ enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid map
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
+enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
 enum class EffectMode : int { Auto, On, Off };         // as the plan says (gi/plan/effects.h) | forced, for comparison
 enum class TimingMode : int { Auto, Queries, Finish }; // GPU timer queries | glFinish around each pass
 
@@ -142,6 +143,7 @@ struct HistorySettings {
 struct ImageSettings {
   float exposure = 0; // factor on radiance before tone mapping; 0 = measured once when the first picture is drawn
   ToneMapper toneMapper = ToneMapper::Reinhard;
+  AntiAliasing antiAliasing = AntiAliasing::Edges;
   bool operator==(const ImageSettings&) const = default;
 };
 

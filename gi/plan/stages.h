@@ -51,6 +51,7 @@ enum class StageId : uint16_t {
   // picture
   Composite,
   Display,
+  AntiAliasing,
   Present,
 };
 
@@ -90,6 +91,7 @@ inline constexpr const char* kStageNames[] = {"scene",
                                               "filter",
                                               "composite",
                                               "display",
+                                              "antialiasing",
                                               "present"};
 inline constexpr size_t kStages = std::size(kStageNames);
 static_assert(kStages == size_t(StageId::Present) + 1);
