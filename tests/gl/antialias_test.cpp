@@ -101,7 +101,7 @@ class AntiAliasTest : public GlTest {
   DisplayPass display_{passes};
 };
 
-/// Measured on paper (double precision) 0.032, 0.019, 0.010, 0.012, 0.026, 0.031, 0.052, 0.085, 0.076, 0.096, 0.129;
+/// Measured 0.032, 0.019, 0.010, 0.012, 0.026, 0.031, 0.052, 0.085, 0.076, 0.096, 0.129;
 /// without 0.205 to 0.187. At 45° no picture tells where in its pixels the edge lies.
 TEST_F(AntiAliasTest, EdgesCoverAsMuchOfTheirPixelsAsTheyDo) {
   const std::pair<float, double> bounds[] = {{1, 0.04},   {2, 0.03},   {3, 0.02},  {5, 0.02},
