@@ -1,11 +1,11 @@
 #version 450
-// The picture without stairs along its edges. An edge that is seen at pixel centres only is made of straight runs, each a
-// pixel beside the next; the line through the middles of their ends is near the edge that made them, and what it cuts off
-// a pixel takes the colour of the pixel beyond (morphological antialiasing: Reshetov 2009; which way the edge runs, as
-// FXAA: Lottes 2009). Ours: both sides of a line at once, so that thin ones stay as bright as they are; runs whose end
-// is out of reach. Pixels beside no edge are discarded, which keeps their bytes and, on software Mesa, saves the time that a
-// branch does not.
-layout(binding = 0) uniform sampler2D shown; // display-encoded; a: luma of these values, 0: a mark, which is no colour
+// The picture without stairs along its edges. An edge that is seen at pixel centres only is made of straight runs, each
+// a pixel beside the next; the line through the middles of their ends is near the edge that made them, and what it cuts
+// off a pixel takes the colour of the pixel beyond (morphological antialiasing: Reshetov 2009; which way the edge runs,
+// as FXAA: Lottes 2009). Ours: both sides of a line at once, so that thin ones stay as bright as they are; runs whose
+// end is out of reach. Pixels beside no edge are discarded, which keeps their bytes and, on software Mesa, saves the
+// time that a branch does not.
+layout(binding = 0) uniform sampler2D shown; // display-encoded; a: luma before clipping, 0: a mark, no colour
 layout(location = 0) out vec4 outColor;
 
 const float kLeastStep = 0.06; // of luma; what is less is no edge
@@ -35,7 +35,7 @@ float coverage(ivec2 pixel, ivec2 across, ivec2 along) {
   bool thinBeyond = abs(lumaAt(pixel + 2 * across) - here) < 0.5 * abs(difference);
 
   vec2 pixels = vec2(kReach); // of the run, before and after this one
-  vec2 end = vec2(0.0);       // height of the line there, towards this pixel; 0: the edge fades, or its end is out of reach
+  vec2 end = vec2(0.0);       // height of the line there, towards this pixel; 0: the edge fades or goes on
   for (int side = 0; side < 2; ++side) {
     ivec2 forward = side == 0 ? -along : along;
     float lastHere = here, lastBeyond = beyond;

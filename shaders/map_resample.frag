@@ -1,6 +1,6 @@
 #version 450
-// Three cube faces around a light's normal, seen from it, to one paraboloid map: distance over farDistance.
-#include "shared/paraboloid.h"
+// Three cube faces around a light's normal, seen from it, to one paraboloid map: paraboloidValue(distance over farDistance).
+#include "shared/shadow_lookup.h"
 
 layout(binding = 0) uniform sampler2DArray faces; // reversed depth, near / distance along the face's axis; 0 = nothing
 uniform float resolution;   // of the paraboloid map, texels
@@ -44,5 +44,5 @@ void main() {
   vec3 local = face == 0 ? cube.yzx : (face == 1 ? cube.zxy : cube); // right, up, forward of the face
   vec2 uv = (local.xy / local.z + 2.0) / 3.0;
   float depth = depthAt(uv * vec2(textureSize(faces, 0).xy), face);
-  if (depth > 0.0) gl_FragDepth = min(nearDistance / depth / local.z / farDistance, 1.0);
+  if (depth > 0.0) gl_FragDepth = paraboloidValue(min(nearDistance / depth / local.z / farDistance, 1.0));
 }

@@ -51,7 +51,7 @@ struct VirtualLights {
 inline constexpr int kLayersPerArray = 2048; // what every OpenGL 4.5 offers
 
 /// Distance maps of one set of lights: DEPTH16 texture arrays of up to so many layers, layer = slot mod 2048 of array
-/// slot / 2048; texels hold distance / farDistance along the ray, 1 where nothing is met.
+/// slot / 2048; texels hold paraboloidValue(distance / farDistance) along the ray, 1 where nothing is met.
 struct ParaboloidMaps {
   std::span<const gl::Texture> arrays;
   int resolution = 0;

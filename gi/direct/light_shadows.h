@@ -57,7 +57,7 @@ std::vector<vec3> withoutOutliers(std::vector<vec3> places);
 
 /// `count` directions that stand for the sky, each with the irradiance that it brings to a surface facing it. Of a
 /// constant sky they are spread evenly, else in proportion to luminance; what a plane without obstacles gets from above
-/// and from below is exact.
+/// and from below is exact where any of them come from there.
 struct SkyDirection {
   vec3 direction; // unit, the way the light travels
   vec3 irradiance;

@@ -2,7 +2,7 @@
 #include "gi/visibility/paraboloid_makers.h"
 #include "engine/core/parallel.h"
 #include "engine/trace/ray_query.h"
-#include "shaders/shared/paraboloid.h"
+#include "shaders/shared/shadow_lookup.h"
 
 #include <cmath>
 
@@ -135,7 +135,8 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
   if (coarse) fillBetween(distances, width, texels.y1 - texels.y0);
   std::vector<uint16_t> values(distances.size(), 65535);
   for (size_t i = 0; i < distances.size(); ++i)
-    if (distances[i] < in.farDistance) values[i] = uint16_t(distances[i] / in.farDistance * 65535.0f + 0.5f);
+    if (distances[i] < in.farDistance)
+      values[i] = uint16_t(paraboloidValue(distances[i] / in.farDistance) * 65535.0f + 0.5f);
   return values;
 }
 

@@ -5,9 +5,9 @@
 
 namespace lambent {
 
-/// Texels of a part of one map, row by row, cast on the CPU: distance / farDistance in 16 bits, 65535 where nothing is
-/// met. Coarse: a ray for every second texel of every second row; texels between have the mean of their neighbours on
-/// one surface, where these are nearly equal, else the nearest one's. Thread-safe.
+/// Texels of a part of one map, row by row, cast on the CPU: paraboloidValue(distance / farDistance) in 16 bits, 65535
+/// where nothing is met. Coarse: a ray for every second texel of every second row; texels between have the mean of
+/// their neighbours on one surface, where these are nearly equal, else the nearest one's. Thread-safe.
 std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels,
                               bool coarse = false);
 /// A layer as distances in metres, kInfinity where nothing is met.

@@ -103,7 +103,8 @@ std::vector<float> readMap(const gl::Texture& array, int layer, float farDistanc
   array.readLayer(layer, std::span(values), GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT);
   std::vector<float> distances(values.size());
   for (size_t i = 0; i < values.size(); ++i)
-    distances[i] = values[i] == 65535 ? kInfinity : float(values[i]) / 65535.0f * farDistance;
+    distances[i] =
+        values[i] == 65535 ? kInfinity : float(values[i]) * float(values[i]) / (65535.0f * 65535.0f) * farDistance;
   return distances;
 }
 

@@ -31,10 +31,10 @@ bool lit(const std::vector<float>& map, const ParaboloidMapInputs& maps, const v
   const vec2 uv = paraboloidFromDirection(d);
   const int x = std::clamp(int(uv.x * float(maps.resolution)), 0, maps.resolution - 1);
   const int y = std::clamp(int(uv.y * float(maps.resolution)), 0, maps.resolution - 1);
-  const float met = std::min(map[size_t(y) * maps.resolution + x], maps.farDistance);
+  const float share = std::min(map[size_t(y) * maps.resolution + x] / maps.farDistance, 1.0f);
   const vec2 centre = (vec2(x, y) + 0.5f) * (2.0f / float(maps.resolution)) - 1.0f;
-  return paraboloidLit(met + paraboloidRounding() * maps.farDistance, centre, normal, distance, cosReceiver, bias,
-                       float(maps.resolution));
+  return paraboloidLit(paraboloidShare(paraboloidValue(share)) * maps.farDistance, centre, normal, distance,
+                       cosReceiver, bias, float(maps.resolution));
 }
 
 } // namespace

@@ -7,8 +7,10 @@ namespace lambent {
 
 namespace {
 
-/// Share of a sample drawn with density `own` when `other` could have drawn it too. Ratio first: squares overflow.
+/// Share of a sample drawn with density `own` when `other` could have drawn it too; none of one that could not have
+/// been drawn. Ratio first: squares overflow.
 float powerHeuristic(float own, float other) {
+  if (!(own > 0)) return 0;
   const float ratio = other / own;
   return 1 / (1 + ratio * ratio);
 }
@@ -57,7 +59,8 @@ LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, c
                              float grain) {
   const SkySample s = lights.sky.sampleFacing(vertex.normal, u);
   const float cosine = glm::dot(s.direction, vertex.normal);
-  if (cosine <= 0 || glm::dot(s.direction, vertex.geometricNormal) <= 0) return {};
+  // Rounded into the next cell of the table, a direction may have no density there.
+  if (cosine <= 0 || glm::dot(s.direction, vertex.geometricNormal) <= 0 || !(s.pdf > 0)) return {};
   const float mis = powerHeuristic(s.pdf, pdfCosineHemisphere(cosine));
   return {{offsetPoint(vertex.position, vertex.geometricNormal, grain), s.direction},
           weight * s.radiance * (cosine * mis / (kPi * s.pdf))};

@@ -34,12 +34,12 @@ struct LightSet {
   std::vector<Emitter> emitters;
   std::vector<EmitterTriangle> triangles;
   Sky sky;
-  LightTree tree;                  // over the lights above, made after them; few need none (LightChoice)
-  bool emission = true;            // false: what glows is not a light, and has no emitters
+  LightTree tree;       // over the lights above, made anew when any of them changes; few need none (LightChoice)
+  bool emission = true; // false: what glows is not a light, and has no emitters
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
   bool empty() const { return punctual.empty() && emitters.empty() && sky.black(); }
-  size_t lightCount() const { return punctual.size() + emitters.size(); } // the sky is met by path rays instead
+  size_t lightCount() const { return punctual.size() + emitters.size(); } // the sky is sampled by itself
   /// Emitter that a hit lies on, or kNone.
   uint32_t emitterOf(const SurfaceHit& hit) const;
 };

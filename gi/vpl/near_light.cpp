@@ -99,7 +99,8 @@ struct Mixture {
 /// A tent of 5×5 in which each of the 16 parts of a block's pattern has the same weight. The filter over the subsets,
 /// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
 constexpr std::array<std::array<float, 3>, 3> kTent{{{1, 1, 0.5f}, {1, 1, 0.5f}, {0.5f, 0.5f, 0.25f}}};
-/// A tent of 3×3 over one colour of a chessboard, in which each of kPatterns has the same weight.
+/// A tent of 3×3 over one colour of a chessboard, in which each of kPatterns has the same weight where
+/// all of that colour cast, as with GatherSettings::near 8.
 constexpr std::array<std::array<float, 3>, 3> kQuincunx{{{4, 0, 1}, {0, 2, 0}, {1, 0, 0}}};
 constexpr uint32_t kPatterns = 4;
 

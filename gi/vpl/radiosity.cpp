@@ -28,29 +28,42 @@ bool sameStart(const KeptVertex& a, const KeptVertex& b) {
          a.weight == b.weight;
 }
 
+/// Slice of the lights and strata of directions, by path: the same for all VPLs, but for where they begin.
+struct Orders {
+  std::vector<uint32_t> light, stratum, sky;
+
+  explicit Orders(uint32_t paths)
+      : light(spreadOrder(paths, 0.6180339887498949)), stratum(spreadOrder(paths, 0.7548776662466927)),
+        sky(spreadOrder(paths, 0.5698402909980532)) {}
+};
+
 class VplEstimator {
  public:
-  VplEstimator(const RayQuery& rays, const LightSet& lights, const RadianceUpdate& update)
+  VplEstimator(const RayQuery& rays, const LightSet& lights, const RadianceUpdate& update, const Orders& orders)
       : rays_(rays), lights_(lights), update_(update), paths_(update.paths),
         stream_(update.use == RadianceUse::Rendering ? Stream::LightPaths : Stream::SamplerPaths),
         skyStream_(update.use == RadianceUse::Rendering ? Stream::SkyLight : Stream::SamplerSkyLight), starts_(paths_),
-        lightOrder_(spreadOrder(uint32_t(paths_), 0.6180339887498949)),
-        stratumOrder_(spreadOrder(uint32_t(paths_), 0.7548776662466927)),
-        skyOrder_(spreadOrder(uint32_t(paths_), 0.5698402909980532)) {}
+        orders_(orders) {}
 
   /// The estimate of one path from the VPL itself, with the numbers that it has among all of them.
   vec3 estimateOne(const Vpl& vpl, int path, KeptPaths& scratch, PathCounts& counts) {
+    first_ = path;
+    end_ = path + 1;
     const uint32_t id = begin(vpl);
     ++counts.paths;
     ++counts.traced;
-    scratch.vertices.assign(size_t(paths_) * update_.bounces, {});
-    scratch.lengths.assign(paths_, 0);
+    scratch.vertices.resize(size_t(paths_) * update_.bounces); // only this path's are looked at
+    scratch.lengths.resize(paths_);
+    for (int depth = 0; depth < update_.bounces; ++depth) scratch.vertices[depth * paths_ + path] = {};
     scratch.emitters.clear();
     scratch.bounces = update_.bounces;
     scratch.lastRays = lastRays();
     stale_.assign(1, path);
     trace(scratch, id, counts);
-    return light(scratch, id, counts);
+    const vec3 radiance = light(scratch, id, counts);
+    first_ = 0;
+    end_ = paths_;
+    return radiance;
   }
 
   /// Brings `kept` up to date. False: the radiance is what it was.
@@ -96,7 +109,8 @@ class VplEstimator {
     stratumTurn_ = first.below(uint32_t(paths_));
     uStart_ = first.next();
     skyTurn_ = first.below(uint32_t(paths_));
-    for (KeptVertex& s : starts_) s = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
+    for (int path = first_; path < end_; ++path)
+      starts_[path] = {{vpl.position, vpl.normal, vpl.geometricNormal}, vpl.albedo};
     return id;
   }
   bool lastRays() const { return update_.lastRays || !lights_.emitters.empty() || !lights_.sky.black(); }
@@ -173,7 +187,7 @@ class VplEstimator {
         Rng rng = numbersAt(id, path, depth);
         rng.skip(4);
         vec2 u = rng.next2();
-        const int stratum = int(stratumOrder_[(uint32_t(path) + stratumTurn_) % uint32_t(paths_)]);
+        const int stratum = int(orders_.stratum[(uint32_t(path) + stratumTurn_) % uint32_t(paths_)]);
         if (depth == 0 && stratum < side * side) u = (vec2(stratum % side, stratum / side) + u) / float(side);
         const vec3 direction = sampleCosineHemisphere(v.at.normal, u);
         if (glm::dot(direction, v.at.geometricNormal) <= 0) continue; // under the real surface of a smooth-shaded one
@@ -211,7 +225,7 @@ class VplEstimator {
     for (int depth = 0; depth < kept.bounces; ++depth) {
       sum += connections(kept, depth, id, counts);
       if (!lights_.sky.constant()) sum += skyConnections(kept, depth, id, counts);
-      for (int path = 0; path < paths_; ++path) {
+      for (int path = first_; path < end_; ++path) {
         if (kept.lengths[path] <= depth) continue;
         const KeptVertex& v = kept.vertices[depth * paths_ + path];
         if (v.distance == kInfinity) sum += v.weight * skyByRay(lights_, v.at, v.direction);
@@ -227,14 +241,14 @@ class VplEstimator {
   /// Light that reaches the vertices of one depth. Rays are cast only for connections that are not those of last time.
   vec3 connections(KeptPaths& kept, int depth, uint32_t id, PathCounts& counts) {
     if (lights_.lightCount() == 0) return vec3(0);
-    for (int path = 0; path < paths_; ++path) {
+    for (int path = first_; path < end_; ++path) {
       if (kept.lengths[path] <= depth) continue;
       KeptVertex& v = kept.vertices[depth * paths_ + path];
       Rng rng = numbersAt(id, path, depth);
       float uLight = rng.next();
       vec3 u = rng.next3();
       if (depth == 0) {
-        const uint32_t slice = lightOrder_[(uint32_t(path) + lightTurn_) % uint32_t(paths_)];
+        const uint32_t slice = orders_.light[(uint32_t(path) + lightTurn_) % uint32_t(paths_)];
         uLight = std::min((float(slice) + lightShift_) / float(paths_), 0x1.fffffep-1f);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
@@ -247,13 +261,13 @@ class VplEstimator {
   /// The same of the sky.
   vec3 skyConnections(KeptPaths& kept, int depth, uint32_t id, PathCounts& counts) {
     const int side = int(std::sqrt(float(paths_)));
-    for (int path = 0; path < paths_; ++path) {
+    for (int path = first_; path < end_; ++path) {
       if (kept.lengths[path] <= depth) continue;
       KeptVertex& v = kept.vertices[depth * paths_ + path];
       Rng rng(update_.seed, skyStream_, id, uint32_t(path) + 1);
       rng.skip(2 * uint32_t(depth));
       vec2 u = rng.next2();
-      const int stratum = int(skyOrder_[(uint32_t(path) + skyTurn_) % uint32_t(paths_)]);
+      const int stratum = int(orders_.sky[(uint32_t(path) + skyTurn_) % uint32_t(paths_)]);
       if (depth == 0 && stratum < side * side) u = (vec2(stratum % side, stratum / side) + u) / float(side);
       add(v.sky, connectToSky(lights_, v.at, v.weight, u, rays_.grain()));
     }
@@ -296,13 +310,13 @@ class VplEstimator {
   const LightSet& lights_;
   const RadianceUpdate& update_;
   const int paths_;
+  int first_ = 0, end_ = paths_; // those that are estimated
   const Stream stream_, skyStream_;
   vec3 shift_{0};
   float lightShift_ = 0, uStart_ = 0;
   uint32_t lightTurn_ = 0, stratumTurn_ = 0, skyTurn_ = 0; // where the orders begin
   std::vector<KeptVertex> starts_;
-  const std::vector<uint32_t> lightOrder_, stratumOrder_,
-      skyOrder_;           // slice of the lights, strata of directions, by path
+  const Orders& orders_;
   std::vector<int> stale_; // paths to be traced, ascending
   std::vector<Ray> segments_, tested_;
   std::vector<Pending> pending_;
@@ -320,13 +334,14 @@ PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& r
   std::vector<PathCounts> perBlock((jobs.size() + kGrain - 1) / kGrain);
   const bool dark = lights.empty() || update.bounces < 1;
   vec3 Vpl::*const result = update.use == RadianceUse::Rendering ? &Vpl::radiance : &Vpl::samplerRadiance;
+  const Orders orders(uint32_t(update.paths));
   parallelFor(jobs.size(), kGrain, [&](size_t begin, size_t end) {
-    VplEstimator estimator(rays, lights, update);
+    VplEstimator estimator(rays, lights, update, orders);
     KeptPaths scratch;
     for (size_t i = begin; i < end; ++i) {
       const RadianceJob& job = jobs[i];
       KeptPaths& kept = job.kept ? *job.kept : scratch;
-      if (!job.kept) scratch.clear();
+      if (!job.kept && job.path < 0) scratch.clear();
       if (dark || (!job.cell && maxComponent(job.vpl->albedo) <= 0)) {
         kept.clear();
         job.vpl->*result = vec3(0);

@@ -34,8 +34,8 @@ float shadowOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   float distance = length(toLight);
   vec3 d = mat3(light.mapFromWorld) * (toLight / -distance);
   float texel = 1.5 * light.directionTexel.w * (1.0 + d.z);
-  float reach = distance * (1.0 - texel * (tangentOf(cosine) + 0.1)) / light.coneNear.z - paraboloidRounding();
-  return texture(maps, vec4(paraboloidFromDirection(d), layer, reach));
+  float reach = distance * max(1.0 - texel * (tangentOf(cosine) + 0.1), 0.0) / light.coneNear.z;
+  return texture(maps, vec4(paraboloidFromDirection(d), layer, leastParaboloidValue(reach)));
 #elif defined(CUBE_MAPS)
   float texel = light.directionTexel.w * axisDistance(toLight);
   vec3 fromLight = liftedReceiver(position, normal, cosine, texel, 1.5) - light.positionRange.xyz;

@@ -103,7 +103,9 @@ int answerOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec4 cosines = -(2.0 * (n.x * s + n.y * t) + n.z * (1.0 - r2)) / (1.0 + r2); // at the plane, in the texels' directions
   vec4 inverse = cosines * (light.coneNear.z / -dot(normal, fromLight)); // far distance over the plane's
   float texel = light.directionTexel.w * (1.0 + d.z);
-  vec4 met = (metAt(base, light.intensityLayer.w) + paraboloidRounding()) * inverse; // over the plane's distance
+  vec4 values = metAt(base, light.intensityLayer.w);
+  vec4 met = vec4(paraboloidShare(values.x), paraboloidShare(values.y), paraboloidShare(values.z),
+                  paraboloidShare(values.w)) * inverse; // over the plane's distance
   if (all(greaterThanEqual(met, vec4(1.0 - sameWithin(cosine) * texel)))) return kLit;
   return all(lessThan(met, vec4(1.0 - apartBeyond(cosine) * texel))) ? kShadowed : kInDoubt;
 }

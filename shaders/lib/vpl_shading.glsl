@@ -60,7 +60,7 @@ float visibility(int layer, vec3 d, vec3 n, float distance, float cosine) {
   vec2 uv = paraboloidFromDirection(d);
   // Where no light arrives anyway, all look at one texel: the loop is bound by the cache.
   ivec2 texel = d.z > 0.0 && cosine > 0.0 ? ivec2(uv * mapResolution) : ivec2(0);
-  float met = (texelFetch(maps, ivec3(texel, layer), 0).r + paraboloidRounding()) * farDistance;
+  float met = paraboloidShare(texelFetch(maps, ivec3(texel, layer), 0).r) * farDistance;
   vec2 centre = (vec2(texel) + 0.5) * (2.0 / mapResolution) - 1.0;
   return paraboloidLit(met, centre, n, distance, cosine, biasTexels, mapResolution) ? 1.0 : 0.0;
 }

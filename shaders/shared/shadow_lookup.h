@@ -4,8 +4,16 @@
 #include "paraboloid.h"
 SHARED_BEGIN
 
-/// Share of the far distance that map values may be off by: rounding to 16 bits and the offset of the map's origin.
-SHARED_INLINE float paraboloidRounding() { return 4e-5f; }
+/// What a map holds of a distance, both as shares of the far distance: its root, so that 16 bits tell near ones apart
+/// where far surfaces are seen too.
+SHARED_INLINE float paraboloidValue(float share) { return sqrt(share); }
+/// Shares of the far distance that values may stand for, at most: rounded, and the map's origin off its surface.
+SHARED_INLINE float paraboloidShare(float value) {
+  float above = value + 1.0f / 65535.0f;
+  return above * above + 1e-5f;
+}
+/// The other way round: the least value for which that is `share` or more.
+SHARED_INLINE float leastParaboloidValue(float share) { return sqrt(max(share - 1e-5f, 0.0f)) - 1.0f / 65535.0f; }
 
 /// Whether a texel leaves a receiver in the light. `met` is the distance that it holds, `centre` its place in [-1,1]²,
 /// `normal` the receiver's in the light's frame, `distance` the receiver's, `cosine` that at the receiver; metres.

@@ -339,6 +339,22 @@ TEST(SkyPaths, RadiosityOfOpenPlanesAndOfARoom) {
 }
 
 /// Kept paths give what paths from scratch do, whatever becomes of the sky and of what stands before the window.
+/// Lobes of smooth-shaded surfaces reach there, with no weight.
+TEST(SkyPaths, NothingComesFromBelowTheShadingHorizon) {
+  LightSet lights;
+  lights.sky = Sky::daylight(directionAt(25, 75), 3);
+  const PathVertex vertex{vec3(0), {0, 1, 0}, {0.6f, 0.8f, 0}};
+  int below = 0;
+  test::overSphere(64, [&](const vec3& d) {
+    if (d.y <= 0 && glm::dot(d, vertex.geometricNormal) > 0) {
+      ++below;
+      EXPECT_EQ(skyByRay(lights, vertex, d), vec3(0)) << d.x << ' ' << d.y << ' ' << d.z;
+    }
+    return 0.0;
+  });
+  EXPECT_GT(below, 100);
+}
+
 TEST(SkyPaths, KeptThroughChangesOfSkyAndGeometry) {
   WindowRoom room;
   const uint32_t m = room.scene.material(vec3(0.4f));

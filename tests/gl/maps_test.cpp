@@ -74,6 +74,11 @@ TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
     ASSERT_EQ(maps.arrays.size(), 1u);
     const std::vector<float> distances = pass.readLayer(0);
     EXPECT_NEAR(distances[32 * 64 + 32], 2, 0.01f) << "straight up to the ceiling";
+    in.farDistance = 400; // 16 bits in equal steps: 6 mm each
+    pass.run(in);
+    const std::vector<float> finely = pass.readLayer(0);
+    for (size_t i = 0; i < finely.size(); i += 7)
+      if (distances[i] > 0.1f && distances[i] < 3) EXPECT_NEAR(finely[i], distances[i], 0.001f) << i;
   }
 }
 

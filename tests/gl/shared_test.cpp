@@ -1,7 +1,7 @@
 // Mappings that C++ and GLSL share give the same numbers on both sides.
 #include "gl_fixture.h"
 #include "shaders/shared/octahedral.h"
-#include "shaders/shared/paraboloid.h"
+#include "shaders/shared/shadow_lookup.h"
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +12,17 @@ namespace lambent::test {
 namespace fs = std::filesystem;
 
 using SharedTest = GlTest;
+
+/// What a receiver is held to is never nearer than what the map met, and hardly farther.
+TEST(ParaboloidValue, SixteenBitsHoldNearDistancesFinely) {
+  for (int i = 1; i < 100000; ++i) {
+    const float share = std::pow(float(i) / 100000, 4.0f); // most of them near
+    const float value = std::round(paraboloidValue(share) * 65535) / 65535, held = paraboloidShare(value);
+    EXPECT_GE(held, share + 0.9e-5f) << "room for the map's origin off its surface";
+    EXPECT_LE(held, share + 1.1e-5f + 5e-5f * std::sqrt(share));
+    EXPECT_NEAR(leastParaboloidValue(held), value, 2e-6f);
+  }
+}
 
 TEST_F(SharedTest, GlslAgreesWithCpp) {
   constexpr int kSide = 33; // odd: the axes themselves are among the directions

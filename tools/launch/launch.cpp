@@ -84,12 +84,16 @@ void addDaylight(Stage& stage, const LaunchOptions& options) {
   const double up = glm::radians(elevation), around = glm::radians(azimuth);
   const vec3 towardsSun =
       glm::normalize(vec3(std::cos(up) * std::sin(around), std::sin(up), std::cos(up) * std::cos(around)));
-  stage.scene.registry.each<PunctualLight>([&](Entity, PunctualLight& light) {
-    if (light.type != LightType::Directional || !(maxComponent(light.intensity) > 0)) return;
+  stage.scene.registry.each<PunctualLight>([&](Entity e, PunctualLight& light) {
+    if (light.type != LightType::Directional) return;
+    const Name* name = stage.scene.registry.tryGet<Name>(e);
+    const bool keyed = name && stage.shot && stage.shot->lights.erase(name->value) > 0;
+    if (!keyed && !(maxComponent(light.intensity) > 0)) return;
     light.intensity = vec3(0);
     ++suns;
   });
-  if (suns > 0) stage.notes.push_back("the scene's own sun gives way to that of --daylight");
+  if (suns > 0)
+    stage.notes.push_back("the scene's own sun, and what the shot does with it, gives way to that of --daylight");
   stage.scene.sky = Sky::daylight(towardsSun, float(turbidity));
   LightView sun;
   sun.type = LightType::Directional;
@@ -237,10 +241,11 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
   command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
-  command.add_option("--daylight", options.daylight,
-                     "clear sky and its sun, in place of the scene's own: ELEVATION[,AZIMUTH[,TURBIDITY]], degrees; "
-                     "azimuth from +Z towards +X "
-                     "(default 50), turbidity 2 (very clear) to 10 (default 3)");
+  command.add_option(
+      "--daylight", options.daylight,
+      "clear sky and its sun, in place of the scene's own sky and suns: ELEVATION[,AZIMUTH[,TURBIDITY]]; "
+      "degrees, -90 to 90 (below 0: dusk) and from +Z towards +X (default 50); turbidity 2 (very clear) "
+      "to 10 (default 3)");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
 }
