@@ -43,12 +43,17 @@ uint32_t Distribution::sample(float u) const {
   return uint32_t(std::lower_bound(cdf_.begin(), cdf_.end(), cdf_.back()) - cdf_.begin()); // u rounded up to 1
 }
 
+std::pair<uint32_t, float> Distribution::choose(float u) const {
+  const uint32_t i = sample(u);
+  return {i, glm::clamp((u - cumulative(i)) / probability(i), 0.0f, kBelowOne)};
+}
+
 vec3 additiveRecurrence3(uint32_t i, const vec3& shift) {
   // 1/g, 1/g², 1/g³ with g the real root of x⁴ = x + 1; the product is taken in double so large i keep their fraction.
   constexpr double a1 = 0.8191725133961645, a2 = 0.6710436067037893, a3 = 0.5497004779019703;
   const auto wrap = [](double x) { return float(x - std::floor(x)); };
   vec3 p(wrap(shift.x + i * a1), wrap(shift.y + i * a2), wrap(shift.z + i * a3));
-  return glm::min(p, vec3(0x1.fffffep-1f)); // float rounding may reach 1
+  return glm::min(p, vec3(kBelowOne)); // float rounding may reach 1
 }
 
 std::vector<uint32_t> spreadOrder(uint32_t count, double step) {

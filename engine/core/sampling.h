@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lambent {
+
+/// The largest float below 1: the end of [0, 1) for numbers that rounding may carry there.
+inline constexpr float kBelowOne = 0x1.fffffep-1f;
 
 /// Unit direction with density cosθ/π around unit `n` (Malley's method on polar coordinates).
 vec3 sampleCosineHemisphere(const vec3& n, vec2 u);
@@ -32,6 +36,8 @@ class Distribution {
   size_t size() const { return cdf_.size(); }
   /// Index with probability weight/total, never one of weight zero. Requires !empty().
   uint32_t sample(float u) const;
+  /// That index, and where u lies within its share: in [0, 1), uniform as u is. Requires !empty().
+  std::pair<uint32_t, float> choose(float u) const;
   /// Share of the total before entry i: the least u that sample() answers with it. Requires !empty().
   float cumulative(uint32_t i) const { return i ? float(cdf_[i - 1] / cdf_.back()) : 0; }
   float probability(uint32_t i) const { return empty() ? 0 : float((cdf_[i] - (i ? cdf_[i - 1] : 0)) / cdf_.back()); }
@@ -44,8 +50,8 @@ class Distribution {
 /// low-discrepancy in each pair of coordinates for any prefix.
 vec3 additiveRecurrence3(uint32_t i, const vec3& shift);
 
-/// Numbers 0 … count − 1 in the order of the additive recurrence of `step`: neighbours in the list are far apart, and so
-/// are the places of neighbouring numbers.
+/// Numbers 0 … count − 1 in the order of the additive recurrence of `step`: neighbours in the list are far apart, and
+/// so are the places of neighbouring numbers.
 std::vector<uint32_t> spreadOrder(uint32_t count, double step);
 
 } // namespace lambent

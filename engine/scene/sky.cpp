@@ -18,7 +18,6 @@ namespace {
 constexpr int kRows = 32, kColumns = 32;     // of the tables: rows of equal height from +Y down, columns around +Y
 constexpr float kPerKilocandela = kPi / 100; // see Sky
 constexpr float kGroundAlbedo = 0.2f;
-constexpr float kBelowOne = 0x1.fffffep-1f;
 
 float degrees(float radians) { return radians * (180 / kPi); }
 float elevationOf(const vec3& towardsSun) { return std::asin(glm::clamp(towardsSun.y, -1.0f, 1.0f)); }
@@ -30,13 +29,6 @@ vec3 tableDirection(float row, float column) {
   return {r * std::cos(phi), y, r * std::sin(phi)};
 }
 int cellOf(float place, int count) { return glm::clamp(int(place * float(count)), 0, count - 1); }
-
-/// Entry of a distribution, and what is left of the number within it.
-std::pair<uint32_t, float> choose(const Distribution& distribution, float u) {
-  const uint32_t i = distribution.sample(u);
-  const float rest = (u - distribution.cumulative(i)) / distribution.probability(i);
-  return {i, glm::clamp(rest, 0.0f, kBelowOne)};
-}
 
 /// Chooses a cell by its weight, and a direction uniformly within it.
 class Table {
@@ -53,8 +45,8 @@ class Table {
   }
   double total() const { return rows_.total(); }
   vec3 sample(vec2 u) const {
-    const auto [row, withinRow] = choose(rows_, u.x);
-    const auto [column, withinColumn] = choose(columns_[row], u.y);
+    const auto [row, withinRow] = rows_.choose(u.x);
+    const auto [column, withinColumn] = columns_[row].choose(u.y);
     return tableDirection((float(row) + withinRow) / kRows, (float(column) + withinColumn) / kColumns);
   }
   float pdf(const vec3& direction) const {

@@ -10,7 +10,6 @@ namespace lambent {
 
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1f;
 constexpr float kLargestWeight = 1e30f; // sums stay finite
 // Round-off must not take a light away: relative, of lengths; and of cosines that come from angles.
 constexpr float kSlack = 1e-5f, kAngleSlack = 2e-3f;

@@ -12,8 +12,6 @@ namespace lambent {
 
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1f;
-
 /// Integral over the cosine of a spot's falloff ((c − outer)/width)², clamped to [0, 1]: a ramp, then a plateau.
 struct SpotProfile {
   float outer, rampEnd, ramp, plateau; // the last two are the integrals
@@ -89,16 +87,14 @@ PhotonSource::PhotonSource(const LightSet& lights, const Aabb& boundsWorld, floa
 }
 
 Photon PhotonSource::emit(const PhotonNumbers& u) const {
-  const uint32_t light = choice_.sample(u.light);
+  const auto [light, within] = choice_.choose(u.light); // within the share: chooses the triangle of a surface
   const float probability = choice_.probability(light);
   Photon photon;
   if (light < lights_.punctual.size()) {
     photon = emitPunctual(lights_.punctual[light], u);
   } else if (light < lights_.lightCount()) {
     const Emitter& emitter = lights_.emitters[light - lights_.punctual.size()];
-    // What is left of the number within the light's share chooses the triangle.
-    const float within = (u.light - choice_.cumulative(light)) / probability;
-    photon = emitSurface(emitter, glm::clamp(within, 0.0f, kBelowOne), u);
+    photon = emitSurface(emitter, within, u);
   } else {
     photon = emitSky(u);
   }

@@ -249,7 +249,7 @@ class VplEstimator {
       vec3 u = rng.next3();
       if (depth == 0) {
         const uint32_t slice = orders_.light[(uint32_t(path) + lightTurn_) % uint32_t(paths_)];
-        uLight = std::min((float(slice) + lightShift_) / float(paths_), 0x1.fffffep-1f);
+        uLight = std::min((float(slice) + lightShift_) / float(paths_), kBelowOne);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
       const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain());
