@@ -9,11 +9,18 @@
 
 namespace lambent {
 
+namespace {
+
+/// Of relative squared errors: what counts as dark.
+double relative(double square, double truth) { return square / (truth * truth + 0.01); }
+
+} // namespace
+
 PictureError pictureError(const Image& picture, const Image& truth, const Image& mask) {
   CHECK_EQ(picture.width, truth.width);
   CHECK_EQ(picture.height, truth.height);
   PictureError out;
-  double squares = 0, relative = 0, difference = 0, sum = 0;
+  double squares = 0, relativeSquares = 0, difference = 0, sum = 0;
   for (size_t i = 0; i < truth.pixels.size(); ++i) {
     if (!mask.pixels.empty() && !(maxComponent(mask.pixels[i]) > 0)) continue;
     if (!isFinite(picture.pixels[i]) || !isFinite(truth.pixels[i])) {
@@ -24,7 +31,7 @@ PictureError pictureError(const Image& picture, const Image& truth, const Image&
     for (int c = 0; c < 3; ++c) {
       const double b = truth.pixels[i][c], d = picture.pixels[i][c] - b;
       squares += d * d;
-      relative += d * d / (b * b + 0.01);
+      relativeSquares += relative(d * d, b);
       difference += d;
       sum += b;
       out.largest = std::max(out.largest, std::abs(d));
@@ -32,10 +39,23 @@ PictureError pictureError(const Image& picture, const Image& truth, const Image&
   }
   const double n = 3 * double(std::max<size_t>(1, out.pixels));
   out.rmse = std::sqrt(squares / n);
-  out.relMse = relative / n;
+  out.relMse = relativeSquares / n;
   out.bias = sum != 0 ? difference / sum : 0;
   out.meanTruth = sum / n;
   return out;
+}
+
+double expectedRelMse(const Image& mean, const Image& standardError) {
+  CHECK_EQ(mean.width, standardError.width);
+  CHECK_EQ(mean.height, standardError.height);
+  double sum = 0;
+  size_t values = 0;
+  for (size_t i = 0; i < mean.pixels.size(); ++i) {
+    if (!isFinite(mean.pixels[i]) || !isFinite(standardError.pixels[i])) continue;
+    for (int c = 0; c < 3; ++c) sum += relative(std::pow(standardError.pixels[i][c], 2), mean.pixels[i][c]);
+    values += 3;
+  }
+  return values ? sum / double(values) : 0;
 }
 
 Image allButBrightest(const Image& truth, double share) {

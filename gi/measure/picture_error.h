@@ -20,6 +20,10 @@ struct PictureError {
 /// Of pictures of the same size, where `mask` (none: everywhere) is above 0.
 PictureError pictureError(const Image& picture, const Image& truth, const Image& mask = {});
 
+/// PictureError::relMse to expect of an unbiased picture with this mean and these standard errors of its values,
+/// against the exact one. Pixels that are not finite in either are left out.
+double expectedRelMse(const Image& mean, const Image& standardError);
+
 /// Mask of all pixels but the truth's brightest: 1 but in that share of the pixels, by luminance.
 Image allButBrightest(const Image& truth, double share);
 

@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 constexpr uint32_t kSamplesToJudge = 16;
 
 /// Samples until enough are taken, the error is reached or it is cancelled; saves the state as it goes.
-ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t key, RayCounts& rays) {
+ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t key, TracedPicture& out) {
   ReferenceSums sums(in.camera.width, in.camera.height);
   if (!plan.state.empty() && std::filesystem::exists(plan.state)) sums = loadReference(plan.state, in, key);
   uint32_t saved = sums.samples;
@@ -28,6 +28,8 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
   // A pass takes about a second: progress moves, and a wish to stop is heard.
   const uint32_t perPass = uint32_t(std::clamp<size_t>((1 << 19) / sums.pixels.size(), 1, 64));
   auto lastSave = Clock::now();
+  const uint32_t before = sums.samples;
+  double seconds = 0;
   while (sums.samples < plan.samples && !(plan.cancelled && plan.cancelled())) {
     double expected = plan.samples;
     if (plan.error > 0 && sums.samples >= kSamplesToJudge) {
@@ -35,7 +37,9 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
       if (error <= plan.error) break;
       expected = std::min(expected, sums.samples * std::pow(error / plan.error, 2)); // it falls with the root
     }
-    addSamples(sums, in, std::min(perPass, plan.samples - sums.samples), rays);
+    const auto start = Clock::now();
+    addSamples(sums, in, std::min(perPass, plan.samples - sums.samples), out.rays);
+    seconds += std::chrono::duration<double>(Clock::now() - start).count();
     if (plan.progress) plan.progress(int(sums.samples), int(std::max<double>(sums.samples, expected)));
     if (Clock::now() - lastSave > std::chrono::seconds(60)) {
       save();
@@ -43,6 +47,8 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
     }
   }
   save();
+  out.samples = sums.samples;
+  if (sums.samples > before) out.sampleSeconds = seconds / (sums.samples - before);
   return sums;
 }
 
@@ -72,8 +78,7 @@ TracedPicture tracePicture(const SceneView& view, const Settings& settings, cons
                            .seed = plan.seed,
                            .glossy = glossy ? &view : nullptr};
   TracedPicture out{.bounces = in.bounces, .clamp = in.clamp};
-  const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out.rays);
-  out.samples = sums.samples;
+  const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);
   if (out.samples == 0) return out;
   out.picture = readReference(sums, in, plan.buffer);
   out.exposure = settings.image.exposure;

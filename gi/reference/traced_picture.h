@@ -28,6 +28,7 @@ struct TracedPicture {
   float clamp = 0;    // 1/m²; 0 = none
   float exposure = 1; // as set, or as GiFrame would measure it
   RayCounts rays = {};
+  double sampleSeconds = 0; // that one sample of every pixel took, without what is made once; 0: none was taken anew
 };
 
 /// Glossy where the settings say so, except irradiance, which does not depend on how it is reflected. Throws InputError

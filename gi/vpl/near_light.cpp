@@ -19,6 +19,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
+#include "gi/vpl/near_mix.h"
 #include "gi/vpl/receivers.h"
 
 #include <algorithm>
@@ -32,6 +33,7 @@ namespace {
 
 constexpr float kCertain = 0.25f; // rests of this and more are always traced on
 constexpr float kWide = 2;        // lights of this many times the mean area are as likely as they should be
+constexpr uint32_t kPatterns = 4; // that mixPatterns brings together
 
 /// Finds the light in whose cell a surface lies.
 class Cells {
@@ -89,53 +91,8 @@ uint32_t turnOf(size_t x, size_t y) {
   return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
 }
 
-/// Which neighbours a pixel's light is mixed with.
-struct Mixture {
-  std::array<std::array<float, 3>, 3> weights; // by how many columns and rows apart
-  float reach = 0;                             // m: between the surfaces that they see
-  float slope = 1;                             // sine: how far a neighbour may be off the plane, over its distance
-};
-
-/// A tent of 5×5 in which each of the 16 parts of a block's pattern has the same weight. The filter over the subsets,
-/// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
-constexpr std::array<std::array<float, 3>, 3> kTent{{{1, 1, 0.5f}, {1, 1, 0.5f}, {0.5f, 0.5f, 0.25f}}};
-/// A tent of 3×3 over one colour of a chessboard, in which each of kPatterns has the same weight where
-/// all of that colour cast, as with GatherSettings::near 8.
-constexpr std::array<std::array<float, 3>, 3> kQuincunx{{{4, 0, 1}, {0, 2, 0}, {1, 0, 0}}};
-constexpr uint32_t kPatterns = 4;
-
 /// The pattern of a pixel: columns and rows of the chessboard's diagonals take turns.
 uint32_t patternOf(uint32_t x, uint32_t y) { return ((x + y) >> 1 & 1) | ((x + ~y) >> 1 & 1) << 1; }
-
-/// Over pixels that cast rays and see surfaces turned roughly alike; others keep what they have.
-void mix(std::vector<vec3>& light, std::span<const vec3> positions, std::span<const vec3> normals, int width,
-         const Mixture& mixture) {
-  constexpr float kAlike = 0.3f; // cosine between normals
-  const std::vector<vec3> traced = light;
-  const int height = int(light.size()) / width;
-  parallelFor(size_t(height), 8, [&](size_t begin, size_t end) {
-    for (int y = int(begin); y < int(end); ++y)
-      for (int x = 0; x < width; ++x) {
-        const size_t at = size_t(y) * width + x;
-        vec3 sum(0);
-        float weights = 0;
-        for (int v = std::max(y - 2, 0); v <= std::min(y + 2, height - 1); ++v)
-          for (int u = std::max(x - 2, 0); u <= std::min(x + 2, width - 1); ++u) {
-            const float weight = mixture.weights[std::abs(u - x)][std::abs(v - y)];
-            const size_t other = size_t(v) * width + u;
-            const vec3 d = positions[other] - positions[at];
-            const float apart2 = glm::dot(d, d), off = glm::dot(normals[at], d), offThere = glm::dot(normals[other], d);
-            if (weight == 0 || !(apart2 <= mixture.reach * mixture.reach) ||
-                glm::dot(normals[other], normals[at]) < kAlike ||
-                std::max(off * off, offThere * offThere) > mixture.slope * mixture.slope * apart2)
-              continue;
-            sum += weight * traced[other];
-            weights += weight;
-          }
-        if (weights > 0) light[at] = sum / weights;
-      }
-  });
-}
 
 /// A ray that goes on.
 struct Near {
@@ -259,10 +216,9 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   });
   for (const RayCounts& c : countsOf) counts += c;
   if (in.subsets) {
-    const float cell = std::sqrt(cells.meanArea());
-    const Mixture mixture = averaged ? Mixture{kQuincunx, 0.2f * cell, 0.4f} : Mixture{kTent, cell};
-    mix(out.irradiance, positions, normals, camera.width, mixture);
-    if (in.glossy) mix(out.glossy, positions, normals, camera.width, mixture);
+    const NeighbourSurfaces seen{positions, normals, camera.width, std::sqrt(cells.meanArea())};
+    for (std::vector<vec3>* light : {&out.irradiance, &out.glossy})
+      if (!light->empty()) averaged ? mixPatterns(*light, seen) : mixBlocks(*light, seen);
   }
   return out;
 }

@@ -114,6 +114,22 @@ nlohmann::json rowOf(const PictureError& e) {
   return {{"rmse", e.rmse}, {"rmse_share", e.rmseShare()}, {"rel_mse", e.relMse}, {"bias", e.bias}};
 }
 
+/// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the truth's
+/// own variance and pace. May be less than a sample of every pixel takes.
+double pathsMs(const TracedPicture& truth, double relMse) {
+  const double ofTruth = expectedRelMse(truth.picture.mean, truth.picture.error);
+  const double ofPicture = std::max(relMse - ofTruth, 1e-6); // what the truth does not know is no error of it
+  return 1000 * truth.sampleSeconds * truth.samples * ofTruth / ofPicture;
+}
+
+/// Median over the second half: warm-up and what a first frame makes are past. Not of one frame.
+std::optional<double> steadyMs(const std::vector<FrameStats>& frames) {
+  if (frames.size() < 2) return {};
+  std::vector<double> ms;
+  for (size_t i = frames.size() / 2; i < frames.size(); ++i) ms.push_back(frames[i].wallMs);
+  return spreadOf(ms).median;
+}
+
 const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kRelMse{"rel_mse", "relMSE", "%.4f"},
     kBias{"bias", "bias", "%+.1f %%", 100};
 
@@ -216,7 +232,10 @@ void accuracyLight(const AccuracyOptions& options) {
       rows.back().update({{"lights", m.variant.name},
                           {"seed", m.variant.seed},
                           {"bias_most", pictureError(m.picture, truth, most).bias},
-                          {"blocks", blocksWithin(m.picture, truth, 10, 0.06)}});
+                          {"blocks", blocksWithin(m.picture, truth, 10, 0.06)},
+                          {"paths_ms", pathsMs(*study.truth, pictureError(m.picture, truth).relMse)}});
+      if (const auto ms = steadyMs(m.frames))
+        rows.back().update({{"ms", *ms}, {"times", rows.back()["paths_ms"].get<double>() / *ms}});
     }
   }
   study.report({{"lights", "lights"},
@@ -224,7 +243,10 @@ void accuracyLight(const AccuracyOptions& options) {
                 kBias,
                 {"bias_most", "but the brightest 1 %", "%+.1f %%", 100},
                 {"blocks", "blocks within 6 %", "%.0f %%", 100},
-                kRelMse},
+                kRelMse,
+                {"ms", "ms a frame", "%.0f"},
+                {"paths_ms", "ms of path tracing to that error", "%.0f"},
+                {"times", "times the frame", "%.1f"}},
                rows);
 }
 

@@ -1,3 +1,4 @@
+#include "engine/core/rng.h"
 #include "gi/measure/picture_error.h"
 #include "gi/measure/statistics.h"
 
@@ -43,6 +44,22 @@ TEST(PictureErrorTest, PixelsOutsideTheMaskAndThoseNotFiniteAreLeftOut) {
   EXPECT_EQ(e.notFinite, 1u);
   EXPECT_DOUBLE_EQ(e.rmse, 0.5);
   EXPECT_DOUBLE_EQ(e.bias, 0.5);
+}
+
+TEST(PictureErrorTest, StandardErrorsTellTheRelMseThatIsMet) {
+  Rng rng(3, Stream::NearLight, 0);
+  Image truth(200, 100), error(200, 100), noisy(200, 100);
+  for (size_t i = 0; i < truth.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      truth.pixels[i][c] = 2 * rng.next();
+      error.pixels[i][c] = 0.3f * rng.next();
+      noisy.pixels[i][c] = truth.pixels[i][c] + error.pixels[i][c] * std::sqrt(3.0f) * (2 * rng.next() - 1);
+    }
+  const double expected = expectedRelMse(truth, error);
+  EXPECT_NEAR(pictureError(noisy, truth).relMse, expected, 0.03 * expected);
+  error.pixels[0] = vec3(INFINITY); // of a single sample
+  EXPECT_NEAR(expectedRelMse(truth, error), expected, 0.01 * expected);
+  EXPECT_EQ(expectedRelMse({}, {}), 0);
 }
 
 TEST(Statistics, SpreadOfAFewValues) {

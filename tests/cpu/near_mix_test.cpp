@@ -1,0 +1,80 @@
+// Near light mixed over neighbours: nothing made, nothing lost, patterns evened out, edges kept.
+#include "engine/core/rng.h"
+#include "gi/vpl/near_mix.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lambent {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 16;
+
+bool casts(int x, int y) { return ((x + y) & 1) == 0; }
+
+/// A floor with a wall behind its upper rows; pixels are 0.1 m apart. One colour of the chessboard casts.
+struct Corner {
+  std::vector<vec3> positions, normals;
+  explicit Corner(int wallRows, float stretch = 1) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const bool wall = y < wallRows;
+        const float along = 0.1f * float(x), up = 0.1f * float(wallRows - y);
+        const vec3 at = wall ? vec3(along, up, 0) : vec3(along, 0, -up * stretch);
+        positions.push_back(casts(x, y) ? at : vec3(std::numeric_limits<float>::infinity()));
+        normals.push_back(casts(x, y) ? (wall ? vec3(0, 0, 1) : vec3(0, 1, 0)) : vec3(0));
+      }
+  }
+  NeighbourSurfaces seen(float cell) const { return {positions, normals, kWidth, cell}; }
+};
+
+glm::dvec3 sumOf(const std::vector<vec3>& light) {
+  glm::dvec3 sum(0);
+  for (const vec3& l : light) sum += l;
+  return sum;
+}
+
+TEST(NearMix, LightIsMovedNeitherMadeNorLost) {
+  for (const float cell : {0.1f, 0.3f, 1.0f, 3.0f})
+    for (const float stretch : {1.0f, 7.0f}) {
+      const Corner corner(6, stretch);
+      Rng rng(1, Stream::NearLight, 0);
+      std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+      for (size_t i = 0; i < light.size(); ++i) // bright spots, so that edges between them matter
+        if (glm::length(corner.normals[i]) > 0) light[i] = std::pow(rng.next(), 8.0f) * vec3(9, 3, 1);
+      const std::vector<vec3> traced = light;
+      mixPatterns(light, corner.seen(cell));
+      EXPECT_LT(glm::length(sumOf(light) - sumOf(traced)), 1e-5 * glm::length(sumOf(traced)));
+      EXPECT_EQ(light != traced, cell > 0.2f) << "cell " << cell;
+    }
+}
+
+TEST(NearMix, FourPatternsAreEvenedOutOnAPlane) {
+  for (const float stretch : {1.0f, 3.0f}) { // rows far apart, as on a floor seen at a grazing angle
+    const Corner floor(0, stretch);
+    std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+    for (uint32_t y = 0; y < kHeight; ++y)
+      for (uint32_t x = 0; x < kWidth; ++x)
+        if (casts(int(x), int(y)) && ((x + y) >> 1 & 1) && ((x + ~y) >> 1 & 1)) light[y * kWidth + x] = vec3(4);
+    mixPatterns(light, floor.seen(1));
+    for (int y = 2; y < kHeight - 2; ++y)
+      for (int x = 2; x < kWidth - 2; ++x)
+        if (casts(x, y)) ASSERT_NEAR(light[size_t(y) * kWidth + x].x, 1, 1e-5) << x << ", " << y;
+  }
+}
+
+TEST(NearMix, AWallTakesNothingFromTheFloor) {
+  const Corner corner(6);
+  std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+  for (int y = 6; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (casts(x, y)) light[size_t(y) * kWidth + x] = vec3(1);
+  const std::vector<vec3> traced = light;
+  mixPatterns(light, corner.seen(3));
+  EXPECT_EQ(light, traced);
+}
+
+} // namespace
+} // namespace lambent
