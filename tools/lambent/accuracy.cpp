@@ -73,7 +73,8 @@ void declareAccuracy(CLI::App& app) {
   forms->add_flag(
       "--light", options->light,
       "indirect light as set, averaged over pictures, against path tracing: bias, error, share of blocks that "
-      "are right; beside it one picture, and every light at every pixel by rays");
+      "are right, frame time and path tracing's to the same error; beside it one picture, and every light at every "
+      "pixel by rays");
   forms->add_flag("--direct", options->direct,
                   "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
                   "samples of what is emissive");

@@ -114,11 +114,13 @@ nlohmann::json rowOf(const PictureError& e) {
   return {{"rmse", e.rmse}, {"rmse_share", e.rmseShare()}, {"rel_mse", e.relMse}, {"bias", e.bias}};
 }
 
-/// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the truth's
-/// own variance and pace. May be less than a sample of every pixel takes.
-double pathsMs(const TracedPicture& truth, double relMse) {
+/// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the
+/// truth's own variance and pace. May be less than a sample of every pixel takes; none where one sample is all the
+/// truth has.
+std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
   const double ofTruth = expectedRelMse(truth.picture.mean, truth.picture.error);
   const double ofPicture = std::max(relMse - ofTruth, 1e-6); // what the truth does not know is no error of it
+  if (!(ofTruth > 0)) return {};
   return 1000 * truth.sampleSeconds * truth.samples * ofTruth / ofPicture;
 }
 
@@ -232,10 +234,11 @@ void accuracyLight(const AccuracyOptions& options) {
       rows.back().update({{"lights", m.variant.name},
                           {"seed", m.variant.seed},
                           {"bias_most", pictureError(m.picture, truth, most).bias},
-                          {"blocks", blocksWithin(m.picture, truth, 10, 0.06)},
-                          {"paths_ms", pathsMs(*study.truth, pictureError(m.picture, truth).relMse)}});
-      if (const auto ms = steadyMs(m.frames))
-        rows.back().update({{"ms", *ms}, {"times", rows.back()["paths_ms"].get<double>() / *ms}});
+                          {"blocks", blocksWithin(m.picture, truth, 10, 0.06)}});
+      const auto ms = steadyMs(m.frames), paths = pathsMs(*study.truth, rows.back()["rel_mse"]);
+      if (ms) rows.back()["ms"] = *ms;
+      if (paths) rows.back()["paths_ms"] = *paths;
+      if (ms && paths) rows.back()["times"] = *paths / *ms;
     }
   }
   study.report({{"lights", "lights"},
