@@ -61,7 +61,9 @@ TEST(NearMix, FourPatternsAreEvenedOutOnAPlane) {
     mixPatterns(light, floor.seen(1));
     for (int y = 2; y < kHeight - 2; ++y)
       for (int x = 2; x < kWidth - 2; ++x)
-        if (casts(x, y)) ASSERT_NEAR(light[size_t(y) * kWidth + x].x, 1, 1e-5) << x << ", " << y;
+        if (casts(x, y)) {
+          ASSERT_NEAR(light[size_t(y) * kWidth + x].x, 1, 1e-5) << x << ", " << y;
+        }
   }
 }
 
