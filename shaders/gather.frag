@@ -6,6 +6,9 @@
 #include "lib/gbuffer.glsl"
 #include "lib/vpl_shading.glsl"
 #include "shared/patches.h"
+#ifdef CHECKED
+#include "shared/octahedral.h"
+#endif
 
 uniform ivec2 tileOrigin;   // of this draw's sub-image, pixels
 uniform ivec2 subset;       // (x mod 4, y mod 4) of its pixels
@@ -19,6 +22,20 @@ uniform float scale;        // 16 for one class of 16, 1 for all
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+#endif
+#ifdef CHECKED
+uniform int picture; // of those that are averaged
+#ifdef GLOSSY
+layout(location = 2) out uvec4 outDrawn; // as DrawnPair in gi/gather/map_checks.cpp
+#else
+layout(location = 1) out uvec4 outDrawn;
+#endif
+
+/// Uniform in [0, 1), evenly spread over neighbours and over pictures (additive recurrences, Roberts 2018).
+float numberOf(uvec2 pixel) {
+  uint bits = pixel.x * 3242174889u + pixel.y * 2447445414u + uint(picture) * 2654435769u;
+  return float(bits >> 8) / 16777216.0;
+}
 #endif
 #ifdef PATCHES
 layout(early_fragment_tests) in;
@@ -34,15 +51,26 @@ void main() {
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
+#ifdef CHECKED
+  outDrawn = uvec4(0u);
+#endif
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   Surface surface = surfaceAt(pixel, depth);
   Received sum = receivedNothing();
+#ifdef CHECKED
+  sum.number = numberOf(uvec2(pixel));
+#endif
   for (int c = firstClass; c < firstClass + classCount; ++c)
     for (int i = 0; i < perClass; ++i)
       receive(sum, surface, lights[c * kLightsPerClass + i], i * kLightClasses + blockClass + c);
   outIrradiance = vec4(sum.irradiance * scale, 1.0);
+#ifdef CHECKED
+  float gain = sum.drawn > 0.0 ? scale * sum.term * sum.unseen / sum.drawn : 0.0;
+  outDrawn = uvec4(uint(sum.layer), floatBitsToUint(gain), floatBitsToUint(viewDistanceFromDepth(camera, depth)),
+                   packSnorm2x16(octahedralFromUnit(surface.normal)));
+#endif
 #ifdef GLOSSY
   outGlossy = vec4(sum.glossy * scale / glossyTint(surface.receiver), 1.0);
 #endif

@@ -91,6 +91,7 @@ int texelBytes(GLenum format) {
   case GL_RGBA16F:
     return 8;
   case GL_RGBA32F:
+  case GL_RGBA32UI:
     return 16;
   }
   checkFailed("a texture format of this project", format, 0, __FILE__, __LINE__);

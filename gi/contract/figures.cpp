@@ -19,6 +19,7 @@ constexpr FigureRow kRows[] = {
     {"rays.map_tests", "from VPLs to objects that moved", [](const S& s) -> Figure { return s.raysMapTests; }},
     {"rays.shadows", "where maps of direct light are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
     {"rays.near", "for the light that bounds take from near VPLs", [](const S& s) -> Figure { return s.raysNear; }},
+    {"rays.checks", "that check maps of VPLs", [](const S& s) -> Figure { return s.raysChecks; }},
     {"rays.gather", "between pixels and VPLs", [](const S& s) -> Figure { return s.raysGather; }},
     {"vpls.alive", "virtual lights that bring light", [](const S& s) -> Figure { return uint64_t(s.vplsAlive); }},
     {"vpls.kept", "that stayed", [](const S& s) -> Figure { return uint64_t(s.vplsKept); }},

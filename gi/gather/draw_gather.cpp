@@ -81,6 +81,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (maps) desc.defines.push_back("SHADOWS");
+  if (!in.checks.empty()) desc.defines.push_back("CHECKED");
   const gl::Program& program = programs.get(desc);
   program.use();
   setShading(program, in);
@@ -88,6 +89,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.set("stride", in.grid);
   program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
   program.set("scale", subsets ? float(kLightClasses) : 1.0f);
+  if (!in.checks.empty()) program.set("picture", int(in.picture));
   target.bind();
 
   constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
@@ -100,6 +102,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
       CHECK_LT(chunk, maps->arrays.size());
       maps->arrays[chunk].bind(2);
     }
+    if (!in.checks.empty()) in.checks[chunk].bind();
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
       packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
       program.set("blockClass", block * kClassesPerLightBlock);

@@ -24,7 +24,9 @@ struct GatherDraw {
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
   bool addToTarget = false; // instead of overwriting it
   float biasTexels = 1;
-  GatherSettings bounds = {}; // of near lights, and of lobes; the mode is not read
+  std::span<const gl::Framebuffer> checks = {}; // MapChecks::begin
+  uint32_t picture = 0;                         // of those that are averaged, for checks
+  GatherSettings bounds = {};                   // of near lights, and of lobes; the mode is not read
 };
 
 /// Size of one of the 16 sub-images of a de-interleaved picture.

@@ -3,22 +3,18 @@
 
 #include "gi/contract/figures.h"
 #include "gi/contract/indirect_stage.h"
-#include "gi/contract/pass_context.h"
+#include "gi/gather/add_pixels.h"
 
 namespace lambent {
 
 class NearLightPass {
  public:
-  explicit NearLightPass(PassContext context) : context_(context) {}
+  explicit NearLightPass(PassContext context) : traced_(context, StageId::NearLight) {}
   /// `grid`: sub-images per axis of the target, 4 or 1.
   void add(const IndirectInputs& in, const LightTarget& target, int grid, FrameStats& stats);
 
  private:
-  PassContext context_;
-  LightTarget traced_{"near light"};
+  PixelAdder traced_;
 };
-
-/// Puts pixels (row by row from the top) where drawGather puts them.
-void uploadPixels(const gl::Texture& texture, std::span<const vec3> pixels, const GBuffer& surfaces, int grid);
 
 } // namespace lambent

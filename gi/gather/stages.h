@@ -3,10 +3,12 @@
 //   draw_gather     the draw that all of them share
 //   pixel_gather    at pixels: every light at each, or the 4×4 subsets of interleaved sampling
 //   ray_gather      at pixels, on the CPU, with a ray for every pair
+//   add_pixels      what the CPU found at pixels, added to what was gathered
 //   patch_atlas     the multiresolution buffer of papers 2 and 3, flattened; from its patches to pixels
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
 //   tree_gather     the draw of light trees
+//   map_checks      rays that check what maps say at pixels
 //   near_light_pass what bounds take from near lights, added to any of these
 //   history         what pixels gathered, averaged over pictures
 //   filter          the subsets mixed

@@ -105,6 +105,8 @@ class Table {
     number(
         "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
+    flag("gather.checks", &Settings::gather, &GatherSettings::checks, Nothing,
+         "interleaved, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps say");
     flag("gather.glossy", &Settings::gather, &GatherSettings::glossy, Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,

@@ -1,4 +1,4 @@
-// Near light of neighbouring pixels, which cast different rays, brought together.
+// Light traced at neighbouring pixels, which cast different rays, brought together.
 #pragma once
 
 #include "engine/core/math.h"
@@ -24,5 +24,8 @@ void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 /// Over 5×5 pixels, so that each of the 16 parts of a block's one pattern weighs alike. The filter over the subsets,
 /// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen);
+
+/// Over 3×3 pixels, each with light of its own; light is moved, not made, as by mixPatterns.
+void mixPixels(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
 } // namespace lambent

@@ -1,5 +1,5 @@
 // What a VPL brings to a surface point, for gathering and for splatting. Variants: SHADOWS (paraboloid maps, unit 2),
-// GLOSSY (the receivers' lobes too).
+// GLOSSY (the receivers' lobes too), CHECKED (SHADOWS: a ray is to check what the map says of one of the pairs).
 #include "gbuffer.glsl"
 #ifdef GLOSSY
 #include "receiver.glsl"
@@ -31,6 +31,14 @@ struct Received {
 #ifdef GLOSSY
   vec3 glossy; // radiance towards the camera
 #endif
+#ifdef CHECKED
+  // One light, drawn in proportion to what it would bring were all lights seen (luminances).
+  float number;  // uniform in [0, 1), as far as it is not used up
+  float unseen;  // what all lights would bring
+  float drawn;   // what the one drawn would
+  float term;    // its geometry term; negative where its map says shadowed
+  int layer;     // its map's
+#endif
 };
 
 /// `depth` is the pixel's and not 0.
@@ -50,8 +58,27 @@ Received receivedNothing() {
 #ifdef GLOSSY
   r.glossy = vec3(0.0);
 #endif
+#ifdef CHECKED
+  r.number = r.unseen = r.drawn = r.term = 0.0;
+  r.layer = 0;
+#endif
   return r;
 }
+
+#ifdef CHECKED
+/// The light takes the place of the one drawn so far with the chance of its share. What is left of the number is uniform
+/// again, either way.
+void draw(inout Received sum, VplLight light, int layer, float g, bool lit) {
+  float brings = g * dot(light.powerNormalX.rgb, vec3(0.2126, 0.7152, 0.0722)), before = sum.unseen;
+  sum.unseen += brings;
+  float at = sum.number * sum.unseen;
+  bool takes = at < brings;
+  sum.number = takes ? at / brings : before > 0.0 ? (at - brings) / before : sum.number;
+  sum.drawn = takes ? brings : sum.drawn;
+  sum.term = takes ? (lit ? g : -g) : sum.term;
+  sum.layer = takes ? layer : sum.layer;
+}
+#endif
 
 #ifdef SHADOWS
 /// 1 where the light's map shows nothing nearer than the receiver in direction d. `d` and the receiver's normal `n` are
@@ -83,7 +110,11 @@ void receive(inout Received sum, Surface s, VplLight light, int layer) {
   float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
   g = min(g, largestG);
 #ifdef SHADOWS
-  g *= visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosineReceiver);
+  float lit = visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosineReceiver);
+#ifdef CHECKED
+  draw(sum, light, layer, g, lit > 0.0);
+#endif
+  g *= lit;
 #endif
   sum.irradiance += light.powerNormalX.rgb * g;
 #ifdef GLOSSY

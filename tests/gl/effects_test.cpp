@@ -316,7 +316,7 @@ TEST_F(EffectsTest, AStillWorldSettlesAndSleeps) {
   for (int i = 0; i < 20; ++i) {
     const FrameStats& s = gi.run(w.still());
     for (const RayCounts& r : {s.raysPoints, s.raysValidation, s.raysCandidates, s.raysRadiosity, s.raysCells,
-                               s.raysGather, s.raysNear, s.raysMapTests})
+                               s.raysGather, s.raysNear, s.raysChecks, s.raysMapTests})
       EXPECT_EQ(r.closest + r.occlusion, 0u);
     EXPECT_EQ(s.mapsDrawn + s.lightMapsDrawn, 0u);
     for (size_t e = 0; e < kEffects; ++e) EXPECT_EQ(s.work[e], 0u) << effectRow(EffectId(e)).name;

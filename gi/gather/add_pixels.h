@@ -1,0 +1,27 @@
+// Light that the CPU found at pixels, added to what was gathered.
+#pragma once
+
+#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/pass_context.h"
+
+#include <span>
+
+namespace lambent {
+
+class PixelAdder {
+ public:
+  PixelAdder(PassContext context, StageId stage) : context_(context), stage_(stage), pixels_(key(stage).name) {}
+  /// Pixels row by row from the top; `glossy` may be empty. `grid`: sub-images per axis of the target, 4 or 1.
+  void add(std::span<const vec3> irradiance, std::span<const vec3> glossy, const GBuffer& surfaces,
+           const LightTarget& target, int grid);
+
+ private:
+  PassContext context_;
+  StageId stage_;
+  LightTarget pixels_;
+};
+
+/// Puts pixels (row by row from the top) where drawGather puts them.
+void uploadPixels(const gl::Texture& texture, std::span<const vec3> pixels, const GBuffer& surfaces, int grid);
+
+} // namespace lambent

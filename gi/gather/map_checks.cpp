@@ -1,0 +1,107 @@
+#include "gi/gather/map_checks.h"
+
+#include "engine/core/parallel.h"
+#include "engine/trace/ray_query.h"
+#include "gi/gather/draw_gather.h"
+#include "gi/vpl/near_mix.h"
+#include "shaders/shared/octahedral.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
+
+/// A pixel and the light that it drew, as gather.frag writes it.
+struct DrawnPair {
+  uint32_t layer;        // the light's slot in its chunk
+  float gain;            // times its power: irradiance for the pixel; negative where the map says shadowed, 0: none
+  float viewDistance;    // m; 0 where nothing is seen
+  int16_t octahedral[2]; // normal
+};
+static_assert(sizeof(DrawnPair) == 16);
+
+/// Length of a side of the mean cell.
+float cellOf(std::span<const VirtualLight> lights) {
+  double area = 0, alive = 0;
+  for (const VirtualLight& light : lights)
+    if (light.alive) area += light.area, ++alive;
+  return alive > 0 ? float(std::sqrt(area / alive)) : 0;
+}
+
+} // namespace
+
+std::span<const gl::Framebuffer> MapChecks::begin(const IndirectInputs& in, const LightTarget& target, bool subsets) {
+  framebuffers_.clear();
+  const bool stands = in.averaged && !in.changes && !in.world.view.changes.camera;
+  const bool known = in.seen.maps && !in.seen.lights.slots.empty() && in.surfaces.depth->holdsSinglePrecision();
+  if (!in.settings.gather.checks || !subsets || !stands || !known) return {};
+  const glm::ivec2 size = target.size();
+  const size_t chunks = (in.seen.lights.packed.count + kChunk - 1) / kChunk;
+  if (drawn_.size() != chunks || drawn_[0].width() != size.x || drawn_[0].height() != size.y) {
+    drawn_.clear();
+    for (size_t i = 0; i < chunks; ++i)
+      drawn_.emplace_back("map checks", gl::TextureDesc{.format = GL_RGBA32UI, .width = size.x, .height = size.y});
+  }
+  const LightOnSurfaces light = target.light();
+  for (const gl::Texture& drawn : drawn_)
+    framebuffers_.push_back(light.glossy ? gl::Framebuffer("map checks", {light.irradiance, light.glossy, &drawn})
+                                         : gl::Framebuffer("map checks", {light.irradiance, &drawn}));
+  return framebuffers_;
+}
+
+void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameStats& stats) {
+  const CameraView& camera = in.world.view.camera;
+  const RayQuery& rays = in.world.rays;
+  const vec3 forward = -vec3(camera.worldFromView[2]);
+  const glm::ivec2 tile = tileSize(in.surfaces), size = target.size();
+  const size_t pixels = size_t(camera.width) * camera.height, grain = 512;
+  std::vector<vec3> differences(pixels, vec3(0)), positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0));
+  std::vector<DrawnPair> drawn(size_t(size.x) * size.y);
+  std::vector<uint64_t> countOf((pixels + grain - 1) / grain);
+  for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
+    drawn_[chunk].read(std::span(drawn), GL_RGBA_INTEGER, GL_UNSIGNED_INT); // waits for the GPU
+    const CpuScope scope(stats.stages, key(StageId::MapChecks));
+    parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+      struct Asked {
+        size_t pixel;
+        vec3 light; // irradiance; negative where the map says shadowed
+      };
+      std::vector<Asked> asked;
+      std::vector<Ray> segments;
+      for (size_t i = begin; i < end; ++i) {
+        const int x = int(i % camera.width), row = int(i / camera.width), y = camera.height - 1 - row;
+        const glm::ivec2 at = glm::ivec2(x % 4, y % 4) * tile + glm::ivec2(x / 4, y / 4);
+        const DrawnPair& pair = drawn[size_t(at.y) * size.x + at.x];
+        if (pair.viewDistance == 0) continue;
+        const CameraRay towards =
+            cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(row) + 0.5f) / float(camera.height));
+        positions[i] = towards.origin + towards.direction * (pair.viewDistance / glm::dot(towards.direction, forward));
+        normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
+        if (pair.gain == 0) continue;
+        const VirtualLight& light = in.seen.lights.slots[size_t(chunk) * kChunk + pair.layer];
+        segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.grain()),
+                                   offsetPoint(light.position, light.geometricNormal, rays.grain())));
+        asked.push_back({i, light.radiance * (light.area * pair.gain)});
+      }
+      std::vector<uint8_t> blocked(segments.size());
+      rays.occluded(segments, blocked);
+      countOf[begin / grain] += segments.size();
+      for (size_t j = 0; j < asked.size(); ++j) {
+        const bool saidLit = maxComponent(asked[j].light) > 0;
+        if (saidLit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
+      }
+    });
+  }
+  uint64_t count = 0;
+  for (const uint64_t c : countOf) count += c;
+  stats.raysChecks.occlusion += count;
+  stats.of(EffectId::Indirect) += count;
+  mixPixels(differences, {positions, normals, camera.width, cellOf(in.seen.lights.slots)});
+  differences_.add(differences, {}, in.surfaces, target, 4);
+}
+
+} // namespace lambent
