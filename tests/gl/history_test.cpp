@@ -14,6 +14,7 @@ class HistoryTest : public GlTest {
     settings.smc.warmup = 20;
     settings.smc.moves = 0; // the same lights in every picture
     settings.gather.near = 0;
+    settings.gather.checks = false;
     settings.shadow.resolution = 64;
     settings.shadow.maker = ShadowMaker::Rays;
     settings.history.frames = 16;

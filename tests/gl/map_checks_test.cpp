@@ -1,0 +1,77 @@
+// Rays that check shadow maps: averaged, they come to what a ray for every pair gives, and only where a view stands.
+#include "gi/frame/gi_frame.h"
+#include "gl_fixture.h"
+#include "tests/support/images.h"
+
+namespace lambent::test {
+
+class MapChecksTest : public GlTest, public ::testing::WithParamInterface<int> {
+ protected:
+  MapChecksTest() {
+    settings.smc.vpls = 512;
+    settings.smc.points = 512;
+    settings.smc.warmup = 20;
+    settings.smc.moves = 0; // the same lights in every picture
+    settings.gather.near = 0;
+    settings.shadow.resolution = 16; // in whose texels the block's shadow is coarse
+    settings.shadow.maker = ShadowMaker::Rays;
+    settings.image.exposure = 1;
+    LightView lamp;
+    lamp.position = {0.4f, 0.7f, 0.4f};
+    lamp.intensity = {1, 0.8f, 0.5f};
+    room.scene.lights.push_back(lamp);
+    room.scene.camera.width = 81; // no whole number of blocks
+    room.scene.camera.height = 54;
+  }
+
+  SceneView view(const SceneChanges& changes) const {
+    SceneView v = room.scene.view();
+    v.changes = changes;
+    for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
+    return v;
+  }
+  SceneView still() const { return view({false, false, false, false, false}); }
+
+  /// Irradiance after 64 pictures of a still view.
+  Image averaged(bool checks) const {
+    Settings s = settings;
+    s.gather.checks = checks;
+    GiFrame gi(s);
+    gi.run(room.scene.view());
+    for (int i = 1; i < 64; ++i) gi.run(still());
+    return gi.read(Buffer::Irradiance);
+  }
+
+  Room room;
+  Settings settings;
+};
+
+INSTANTIATE_TEST_SUITE_P(Lights, MapChecksTest, ::testing::Values(512, 4096)); // in one array of maps; in two
+
+TEST_P(MapChecksTest, ComeToARayForEveryPair) {
+  settings.smc.vpls = GetParam();
+  settings.gather.glossy = GetParam() == 512; // another place among the gather's targets
+  Settings byRays = settings;
+  byRays.vpl.visibility = VplVisibility::Rays;
+  GiFrame truth(byRays);
+  truth.run(room.scene.view());
+  const Image expected = truth.read(Buffer::Irradiance), checked = averaged(true), believed = averaged(false);
+  EXPECT_LT(relativeRmse(checked, expected), 0.42 * relativeRmse(believed, expected));
+  EXPECT_NEAR(meanLuminance(checked), meanLuminance(expected), 0.0015 * meanLuminance(expected));
+  EXPECT_GT(std::abs(meanLuminance(believed) - meanLuminance(expected)), 0.006 * meanLuminance(expected))
+      << "there is something to mend";
+}
+
+TEST_F(MapChecksTest, OnlyWhileTheViewStands) {
+  GiFrame gi(settings);
+  EXPECT_EQ(gi.run(room.scene.view()).raysChecks.occlusion, 0u);
+  const uint64_t rays = gi.run(still()).raysChecks.occlusion;
+  EXPECT_GT(rays, 3500u);
+  EXPECT_LE(rays, 81u * 54u);
+  EXPECT_EQ(gi.run(view({false, true, false, false, false})).raysChecks.occlusion, 0u) << "camera";
+  EXPECT_EQ(gi.run(view({false, false, true, false, false})).raysChecks.occlusion, 0u) << "light";
+  gi.settings().gather.checks = false;
+  EXPECT_EQ(gi.run(still()).raysChecks.occlusion, 0u);
+}
+
+} // namespace lambent::test
