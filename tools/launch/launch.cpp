@@ -273,6 +273,9 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   if (file.extension() == ".json") {
     stage->shot = loadShot(file);
     file = stage->shot->scene;
+    if (std::error_code error; !fs::exists(file, error))
+      throw InputError(options.scene, "there is no scene " + file.string() + " (a generated one: lambent content " +
+                                          file.stem().string() + ")");
   }
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
