@@ -24,7 +24,7 @@ layout(location = 0) out vec4 outIrradiance;
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
 #endif
 #ifdef CHECKED
-uniform int picture; // of those that are averaged
+uniform int turn; // another one for each picture of those that are averaged, and each 2048 lights
 #ifdef GLOSSY
 layout(location = 2) out uvec4 outDrawn; // as DrawnPair in gi/gather/map_checks.cpp
 #else
@@ -33,7 +33,7 @@ layout(location = 1) out uvec4 outDrawn;
 
 /// Uniform in [0, 1), evenly spread over neighbours and over pictures (additive recurrences, Roberts 2018).
 float numberOf(uvec2 pixel) {
-  uint bits = pixel.x * 3242174889u + pixel.y * 2447445414u + uint(picture) * 2654435769u;
+  uint bits = pixel.x * 3242174889u + pixel.y * 2447445414u + uint(turn) * 2654435769u;
   return float(bits >> 8) / 16777216.0;
 }
 #endif

@@ -21,8 +21,8 @@ struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages;   // CPU and GPU, in order
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
-  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks, raysMapTests,
-      raysShadows;
+  RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
+      raysMapTests, raysShadows;
   uint64_t patches = 0; // of the multiresolution buffer that gathered, as far as the GPU has told
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before

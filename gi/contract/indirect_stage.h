@@ -22,6 +22,7 @@ struct IndirectInputs {
   uint32_t picture = 0;  // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such pictures
   bool changes = false;  // light does; means are short then
+  bool stands = false;   // neither light nor camera changes, and means follow no change before
 };
 
 class IndirectStage {

@@ -49,6 +49,8 @@ struct VirtualLights {
 };
 
 inline constexpr int kLayersPerArray = 2048; // what every OpenGL 4.5 offers
+inline constexpr uint32_t kLightsPerChunk = kLightClasses * kLightsPerClass;
+static_assert(kLightsPerChunk == kLayersPerArray);
 
 /// Distance maps of one set of lights: DEPTH16 texture arrays of up to so many layers, layer = slot mod 2048 of array
 /// slot / 2048; texels hold paraboloidValue(distance / farDistance) along the ray, 1 where nothing is met.

@@ -116,10 +116,11 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
       const int bounces = more ? settings.smc.bounces : 1;
       if (averages) k.history.fit(surfaces);
-      gathered = k.indirectStages.of(settings).run({world, surfaces, patches, seen, settings, bounces, k.seed,
-                                                    averages ? k.history.picture() : 0, averages,
-                                                    averages && plan.lightChanges()},
-                                                   stats);
+      const bool changes = averages && plan.lightChanges();
+      gathered = k.indirectStages.of(settings).run(
+          {world, surfaces, patches, seen, settings, bounces, k.seed, averages ? k.history.picture() : 0, averages,
+           changes, averages && !changes && !world.view.changes.camera && !k.history.follows()},
+          stats);
       const FilterSettings filter = k.filterFor(plan);
       LightOnSurfaces mean = gathered;
       if (averages) {

@@ -89,20 +89,21 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.set("stride", in.grid);
   program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
   program.set("scale", subsets ? float(kLightClasses) : 1.0f);
-  if (!in.checks.empty()) program.set("picture", int(in.picture));
   target.bind();
 
-  constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
   constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
-  const uint32_t chunks = std::max(1u, (packed.count + kChunk - 1) / kChunk);
+  const uint32_t chunks = std::max(1u, (packed.count + kLightsPerChunk - 1) / kLightsPerChunk);
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    const uint32_t lights = std::min(kChunk, packed.count - chunk * kChunk);
+    const uint32_t lights = std::min(kLightsPerChunk, packed.count - chunk * kLightsPerChunk);
     program.set("perClass", int((lights + kLightClasses - 1) / kLightClasses));
     if (maps && lights > 0) {
       CHECK_LT(chunk, maps->arrays.size());
       maps->arrays[chunk].bind(2);
     }
-    if (!in.checks.empty()) in.checks[chunk].bind();
+    if (!in.checks.empty()) {
+      in.checks[chunk].bind();
+      program.set("turn", int(in.picture * chunks + chunk));
+    }
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
       packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
       program.set("blockClass", block * kClassesPerLightBlock);

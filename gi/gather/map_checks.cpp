@@ -13,8 +13,6 @@ namespace lambent {
 
 namespace {
 
-constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
-
 /// A pixel and the light that it drew, as gather.frag writes it.
 struct DrawnPair {
   uint32_t layer;        // the light's slot in its chunk
@@ -36,11 +34,11 @@ float cellOf(std::span<const VirtualLight> lights) {
 
 std::span<const gl::Framebuffer> MapChecks::begin(const IndirectInputs& in, const LightTarget& target, bool subsets) {
   framebuffers_.clear();
-  const bool stands = in.averaged && !in.changes && !in.world.view.changes.camera;
   const bool known = in.seen.maps && !in.seen.lights.slots.empty() && in.surfaces.depth->holdsSinglePrecision();
-  if (!in.settings.gather.checks || !subsets || !stands || !known) return {};
+  if (!in.settings.gather.checks || !subsets || !in.stands || !known) return {};
   const glm::ivec2 size = target.size();
-  const size_t chunks = (in.seen.lights.packed.count + kChunk - 1) / kChunk;
+  const size_t chunks = (in.seen.lights.packed.count + kLightsPerChunk - 1) / kLightsPerChunk;
+  if (chunks == 0) return {};
   if (drawn_.size() != chunks || drawn_[0].width() != size.x || drawn_[0].height() != size.y) {
     drawn_.clear();
     for (size_t i = 0; i < chunks; ++i)
@@ -60,47 +58,50 @@ void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameSt
   const glm::ivec2 tile = tileSize(in.surfaces), size = target.size();
   const size_t pixels = size_t(camera.width) * camera.height, grain = 512;
   std::vector<vec3> differences(pixels, vec3(0)), positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0));
-  std::vector<DrawnPair> drawn(size_t(size.x) * size.y);
+  std::vector<std::vector<DrawnPair>> drawn(drawn_.size(), std::vector<DrawnPair>(size_t(size.x) * size.y));
+  for (size_t chunk = 0; chunk < drawn.size(); ++chunk) // waits for the GPU
+    drawn_[chunk].read(std::span(drawn[chunk]), GL_RGBA_INTEGER, GL_UNSIGNED_INT);
   std::vector<uint64_t> countOf((pixels + grain - 1) / grain);
-  for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
-    drawn_[chunk].read(std::span(drawn), GL_RGBA_INTEGER, GL_UNSIGNED_INT); // waits for the GPU
+  {
     const CpuScope scope(stats.stages, key(StageId::MapChecks));
-    parallelFor(pixels, grain, [&](size_t begin, size_t end) {
-      struct Asked {
-        size_t pixel;
-        vec3 light; // irradiance; negative where the map says shadowed
-      };
-      std::vector<Asked> asked;
-      std::vector<Ray> segments;
-      for (size_t i = begin; i < end; ++i) {
-        const int x = int(i % camera.width), row = int(i / camera.width), y = camera.height - 1 - row;
-        const glm::ivec2 at = glm::ivec2(x % 4, y % 4) * tile + glm::ivec2(x / 4, y / 4);
-        const DrawnPair& pair = drawn[size_t(at.y) * size.x + at.x];
-        if (pair.viewDistance == 0) continue;
-        const CameraRay towards =
-            cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(row) + 0.5f) / float(camera.height));
-        positions[i] = towards.origin + towards.direction * (pair.viewDistance / glm::dot(towards.direction, forward));
-        normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
-        if (pair.gain == 0) continue;
-        const VirtualLight& light = in.seen.lights.slots[size_t(chunk) * kChunk + pair.layer];
-        segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.grain()),
-                                   offsetPoint(light.position, light.geometricNormal, rays.grain())));
-        asked.push_back({i, light.radiance * (light.area * pair.gain)});
-      }
-      std::vector<uint8_t> blocked(segments.size());
-      rays.occluded(segments, blocked);
-      countOf[begin / grain] += segments.size();
-      for (size_t j = 0; j < asked.size(); ++j) {
-        const bool saidLit = maxComponent(asked[j].light) > 0;
-        if (saidLit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
-      }
-    });
+    for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
+      parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+        struct Asked {
+          size_t pixel;
+          vec3 light; // irradiance; negative where the map says shadowed
+          bool lit;   // says the map
+        };
+        std::vector<Asked> asked;
+        std::vector<Ray> segments;
+        for (size_t i = begin; i < end; ++i) {
+          const int x = int(i % camera.width), row = int(i / camera.width), y = camera.height - 1 - row;
+          const glm::ivec2 at = glm::ivec2(x % 4, y % 4) * tile + glm::ivec2(x / 4, y / 4);
+          const DrawnPair& pair = drawn[chunk][size_t(at.y) * size.x + at.x];
+          if (pair.viewDistance == 0) continue;
+          const CameraRay towards =
+              cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(row) + 0.5f) / float(camera.height));
+          positions[i] =
+              towards.origin + towards.direction * (pair.viewDistance / glm::dot(towards.direction, forward));
+          normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
+          if (pair.gain == 0 || !std::isfinite(pair.gain)) continue;
+          const VirtualLight& light = in.seen.lights.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
+          segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.grain()),
+                                     offsetPoint(light.position, light.geometricNormal, rays.grain())));
+          asked.push_back({i, light.radiance * (light.area * pair.gain), pair.gain > 0});
+        }
+        std::vector<uint8_t> blocked(segments.size());
+        rays.occluded(segments, blocked);
+        countOf[begin / grain] += segments.size();
+        for (size_t j = 0; j < asked.size(); ++j)
+          if (asked[j].lit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
+      });
+    }
+    mixPixels(differences, {positions, normals, camera.width, cellOf(in.seen.lights.slots)});
   }
   uint64_t count = 0;
   for (const uint64_t c : countOf) count += c;
   stats.raysChecks.occlusion += count;
   stats.of(EffectId::Indirect) += count;
-  mixPixels(differences, {positions, normals, camera.width, cellOf(in.seen.lights.slots)});
   differences_.add(differences, {}, in.surfaces, target, 4);
 }
 

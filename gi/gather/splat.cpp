@@ -10,7 +10,6 @@ namespace lambent {
 
 namespace {
 
-constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
 
 /// Variant of vpl_shading.glsl, and its textures and numbers.
@@ -26,9 +25,10 @@ struct LightPlace {
   int block, light, layer; // block of the chunk, light of the block
 
   explicit LightPlace(uint32_t slot)
-      : chunk(slot / kChunk), block(int(slot % kLightClasses) / kClassesPerLightBlock),
-        light(int(slot % kLightClasses) % kClassesPerLightBlock * kLightsPerClass + int(slot % kChunk) / kLightClasses),
-        layer(int(slot % kChunk)) {}
+      : chunk(slot / kLightsPerChunk), block(int(slot % kLightClasses) / kClassesPerLightBlock),
+        light(int(slot % kLightClasses) % kClassesPerLightBlock * kLightsPerClass +
+              int(slot % kLightsPerChunk) / kLightClasses),
+        layer(int(slot % kLightsPerChunk)) {}
 };
 
 void bindLights(const GatherDraw& draw, uint32_t chunk, int block) {
@@ -119,8 +119,9 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
 void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
   const gl::PassScope scope = context_.scope(StageId::Splat);
   const uint32_t count = in.draw.seen.lights.packed.count;
-  for (uint32_t chunk = 0; chunk * kChunk < count; ++chunk) {
-    const int perClass = int(std::min(kChunk, count - chunk * kChunk) + kLightClasses - 1) / kLightClasses;
+  for (uint32_t chunk = 0; chunk * kLightsPerChunk < count; ++chunk) {
+    const int perClass =
+        int(std::min(kLightsPerChunk, count - chunk * kLightsPerChunk) + kLightClasses - 1) / kLightClasses;
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block)
       drawPoints(in, atlas, chunk, block, 0, perClass * kClassesPerLightBlock);
   }
@@ -128,9 +129,9 @@ void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
 
 void SplatPass::splatOne(const SplatInputs& in, const gl::Framebuffer& atlas, uint32_t slot) {
   const LightPlace place(slot);
-  const int perClass =
-      int(std::min(kChunk, in.draw.seen.lights.packed.count - place.chunk * kChunk) + kLightClasses - 1) /
-      kLightClasses;
+  const int perClass = int(std::min(kLightsPerChunk, in.draw.seen.lights.packed.count - place.chunk * kLightsPerChunk) +
+                           kLightClasses - 1) /
+                       kLightClasses;
   const int index = place.light / kLightsPerClass * perClass + place.light % kLightsPerClass;
   drawPoints(in, atlas, place.chunk, place.block, index, 1);
 }
@@ -143,7 +144,8 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   const glm::ivec2 size = atlasSize(in.shape.base, in.shape.coarsest);
   program.set("base", in.shape.base);
   program.set("inverseSize", 1.0f / vec2(size));
-  program.set("perClass", int(std::min(kChunk, in.draw.seen.lights.packed.count - chunk * kChunk) + kLightClasses - 1) /
+  program.set("perClass", int(std::min(kLightsPerChunk, in.draw.seen.lights.packed.count - chunk * kLightsPerChunk) +
+                              kLightClasses - 1) /
                               kLightClasses);
   program.set("firstLight", firstLight);
   program.set("blockClass", block * kClassesPerLightBlock);

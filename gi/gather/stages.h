@@ -74,6 +74,8 @@ class HistoryPass {
   void fit(const GBuffer& surfaces);
   LightOnSurfaces run(const HistoryInputs& in);
   void forget() { pictures_ = 0, following_ = 0; }
+  /// Whether the next picture of a still view follows light that changed before.
+  bool follows() const { return following_ > 0; }
   /// Pictures in it: which of those that are averaged the next one is.
   uint32_t picture() const { return pictures_; }
 

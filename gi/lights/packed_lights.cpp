@@ -9,12 +9,12 @@ namespace lambent {
 namespace {
 
 const VplLight kNoLight{vec4(0), vec4(0), vec4(0), vec4(0)};
-constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 
 } // namespace
 
 uint32_t lightOrder(uint32_t slot) {
-  return slot / kChunk * kChunk + slot % kLightClasses * kLightsPerClass + slot % kChunk / kLightClasses;
+  return slot / kLightsPerChunk * kLightsPerChunk + slot % kLightClasses * kLightsPerClass +
+         slot % kLightsPerChunk / kLightClasses;
 }
 
 VplLight pack(const VirtualLight& light) {
@@ -43,23 +43,23 @@ VirtualLight unpack(const VplLight& packed) {
 
 PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
   const gl::PassScope scope = context_.scope(stage_);
-  const size_t chunks = std::max<size_t>(1, (slots.size() + kChunk - 1) / kChunk);
-  const bool fresh = mirror_.size() != chunks * kChunk;
-  if (fresh) mirror_.assign(chunks * kChunk, kNoLight);
+  const size_t chunks = std::max<size_t>(1, (slots.size() + kLightsPerChunk - 1) / kLightsPerChunk);
+  const bool fresh = mirror_.size() != chunks * kLightsPerChunk;
+  if (fresh) mirror_.assign(chunks * kLightsPerChunk, kNoLight);
   uploaded_ = 0;
   std::vector<bool> dirtyChunks(chunks);
   const auto put = [&](uint32_t slot, const VplLight& light) {
     VplLight& held = mirror_[lightOrder(slot)];
     if (std::memcmp(&held, &light, sizeof light) == 0) return;
     held = light;
-    dirtyChunks[slot / kChunk] = true;
+    dirtyChunks[slot / kLightsPerChunk] = true;
     ++uploaded_;
   };
   for (uint32_t i = 0; i < slots.size(); ++i) put(i, pack(slots[i]));
   for (uint32_t i = uint32_t(slots.size()); i < count_ && i < mirror_.size(); ++i) put(i, kNoLight);
   count_ = uint32_t(slots.size());
 
-  constexpr uint64_t kBytes = kChunk * sizeof(VplLight);
+  constexpr uint64_t kBytes = kLightsPerChunk * sizeof(VplLight);
   if (fresh) {
     buffer_ = gl::Buffer::of<VplLight>(std::string(key(stage_).name) + "/lights", mirror_);
     return {&buffer_, count_};
@@ -68,7 +68,7 @@ PackedLights PackedLightBuffer::run(std::span<const VirtualLight> slots) {
   // they belong in the GPU's own memory. Whole chunks of 128 KiB: one transfer costs less than many small ones.
   changes_.reserve(chunks * kBytes);
   for (size_t chunk = 0; chunk < chunks; ++chunk)
-    if (dirtyChunks[chunk]) changes_.upload(buffer_, chunk * kBytes, kBytes, &mirror_[chunk * kChunk]);
+    if (dirtyChunks[chunk]) changes_.upload(buffer_, chunk * kBytes, kBytes, &mirror_[chunk * kLightsPerChunk]);
   return {&buffer_, count_};
 }
 

@@ -14,7 +14,6 @@ namespace lambent {
 namespace {
 
 const std::vector<std::string> kLightFields{"positionArea", "powerNormalX", "tangentNormalY", "bitangentNormalZ"};
-constexpr uint32_t kChunk = kLightClasses * kLightsPerClass;
 constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
 /// Bounds the buffer of clusters (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
@@ -69,7 +68,8 @@ LightGrid lightGrid(int vpls, int maps) {
 }
 
 void ReflectiveLightPass::reserve(uint32_t slots) {
-  const uint64_t bytes = uint64_t(std::max(1u, (slots + kChunk - 1) / kChunk)) * kChunk * sizeof(VplLight);
+  const uint64_t bytes =
+      uint64_t(std::max(1u, (slots + kLightsPerChunk - 1) / kLightsPerChunk)) * kLightsPerChunk * sizeof(VplLight);
   if (!lights_ || lights_.bytes() < bytes) lights_ = gl::Buffer("reflective lights/lights", bytes, nullptr);
 }
 
@@ -95,7 +95,7 @@ PackedLights ReflectiveLightPass::runGrid(const ReflectiveMaps& maps, const RsmS
   program.set("mapsWithOneMore", grid.mapsWithOneMore);
   program.set("exact", rsm.exact ? 1 : 0);
   bindClusters(maps);
-  capture(program, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+  capture(program, lights_, std::max(1u, (count_ + kLightsPerChunk - 1) / kLightsPerChunk) * kLightsPerChunk);
   return {&lights_, count_};
 }
 
@@ -130,13 +130,13 @@ PackedLights ReflectiveLightPass::runClusters(const ReflectiveMaps& maps, const 
   const gl::Program& order = context_.programs.get({.vertex = "rsm_light.vert", .captured = kLightFields});
   order.set("count", int(count_));
   compactView_.bind(0);
-  capture(order, lights_, std::max(1u, (count_ + kChunk - 1) / kChunk) * kChunk);
+  capture(order, lights_, std::max(1u, (count_ + kLightsPerChunk - 1) / kLightsPerChunk) * kLightsPerChunk);
   return {&lights_, count_};
 }
 
 std::vector<VplLight> ReflectiveLightPass::read() const {
-  const uint32_t chunks = std::max(1u, (count_ + kChunk - 1) / kChunk);
-  std::vector<VplLight> ordered(size_t(chunks) * kChunk), slots(count_);
+  const uint32_t chunks = std::max(1u, (count_ + kLightsPerChunk - 1) / kLightsPerChunk);
+  std::vector<VplLight> ordered(size_t(chunks) * kLightsPerChunk), slots(count_);
   lights_.read(0, std::span(ordered));
   for (uint32_t slot = 0; slot < count_; ++slot) slots[slot] = ordered[lightOrder(slot)];
   return slots;

@@ -23,7 +23,7 @@ constexpr Mixture kTent{{{{1, 1, 0.5f}, {1, 1, 0.5f}, {0.5f, 0.5f, 0.25f}}}, 1, 
 // grazing angle the next row is far off: with the shorter reach for planes too, patterns show as combs of single
 // pixels.
 constexpr Mixture kQuincunx{{{{4, 0, 1}, {0, 2, 0}, {1, 0, 0}}}, 0.2f, 0.8f, 0.4f, 16};
-constexpr Mixture kTent3{{{{4, 2, 0}, {2, 1, 0}, {0, 0, 0}}}, 0.2f, 0.4f, 0.4f, 16};
+constexpr Mixture kTent5{{{{9, 6, 3}, {6, 4, 2}, {3, 2, 1}}}, 0.2f, 0.4f, 0.4f, 81};
 
 void mix(std::vector<vec3>& light, const NeighbourSurfaces& seen, const Mixture& mixture) {
   constexpr float kAlike = 0.3f; // cosine between normals
@@ -62,6 +62,6 @@ void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(
 
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(light, seen, kTent); }
 
-void mixPixels(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(light, seen, kTent3); }
+void mixPixels(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(light, seen, kTent5); }
 
 } // namespace lambent

@@ -25,7 +25,7 @@ void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 /// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
-/// Over 3×3 pixels, each with light of its own; light is moved, not made, as by mixPatterns.
+/// Over 5×5 pixels, each with light of its own; light is moved, not made, as by mixPatterns.
 void mixPixels(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
 } // namespace lambent

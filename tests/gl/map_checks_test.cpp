@@ -46,7 +46,8 @@ class MapChecksTest : public GlTest, public ::testing::WithParamInterface<int> {
   Settings settings;
 };
 
-INSTANTIATE_TEST_SUITE_P(Lights, MapChecksTest, ::testing::Values(512, 4096)); // in one array of maps; in two
+INSTANTIATE_TEST_SUITE_P(Lights, MapChecksTest,
+                         ::testing::Values(512, 3000)); // in one array of maps; in two, one of them not full
 
 TEST_P(MapChecksTest, ComeToARayForEveryPair) {
   settings.smc.vpls = GetParam();
@@ -56,7 +57,7 @@ TEST_P(MapChecksTest, ComeToARayForEveryPair) {
   GiFrame truth(byRays);
   truth.run(room.scene.view());
   const Image expected = truth.read(Buffer::Irradiance), checked = averaged(true), believed = averaged(false);
-  EXPECT_LT(relativeRmse(checked, expected), 0.42 * relativeRmse(believed, expected));
+  EXPECT_LT(relativeRmse(checked, expected), 0.45 * relativeRmse(believed, expected));
   EXPECT_NEAR(meanLuminance(checked), meanLuminance(expected), 0.0015 * meanLuminance(expected));
   EXPECT_GT(std::abs(meanLuminance(believed) - meanLuminance(expected)), 0.006 * meanLuminance(expected))
       << "there is something to mend";
@@ -70,6 +71,8 @@ TEST_F(MapChecksTest, OnlyWhileTheViewStands) {
   EXPECT_LE(rays, 81u * 54u);
   EXPECT_EQ(gi.run(view({false, true, false, false, false})).raysChecks.occlusion, 0u) << "camera";
   EXPECT_EQ(gi.run(view({false, false, true, false, false})).raysChecks.occlusion, 0u) << "light";
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(gi.run(still()).raysChecks.occlusion, 0u) << "means still follow it";
+  EXPECT_GT(gi.run(still()).raysChecks.occlusion, 3500u);
   gi.settings().gather.checks = false;
   EXPECT_EQ(gi.run(still()).raysChecks.occlusion, 0u);
 }
