@@ -1,39 +1,19 @@
 // Light averaged over pictures: what it comes to in a still view, while the camera moves, and when light changes.
-#include "gi/frame/gi_frame.h"
 #include "gi/plan/techniques.h"
-#include "gl_fixture.h"
+#include "still_room.h"
 #include "tests/support/images.h"
 
 namespace lambent::test {
 
-class HistoryTest : public GlTest {
+class HistoryTest : public StillRoomTest {
  protected:
   HistoryTest() {
-    settings.smc.vpls = 512;
-    settings.smc.points = 512;
-    settings.smc.warmup = 20;
-    settings.smc.moves = 0; // the same lights in every picture
-    settings.gather.near = 0;
     settings.gather.checks = false;
     settings.shadow.resolution = 64;
-    settings.shadow.maker = ShadowMaker::Rays;
     settings.history.frames = 16;
-    settings.image.exposure = 1;
-    LightView lamp;
-    lamp.position = {0.4f, 0.7f, 0.4f};
-    lamp.intensity = vec3(1);
-    room.scene.lights.push_back(lamp);
     room.scene.camera.width = 96;
     room.scene.camera.height = 72;
   }
-
-  SceneView view(const SceneChanges& changes) const {
-    SceneView v = room.scene.view();
-    v.changes = changes;
-    for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
-    return v;
-  }
-  SceneView still() const { return view({false, false, false, false, false}); }
 
   static Settings with(Settings s, GatherMode mode, int frames) {
     s.gather.mode = mode;
@@ -46,9 +26,6 @@ class HistoryTest : public GlTest {
     gi.run(room.scene.view());
     return gi.read(Buffer::Irradiance);
   }
-
-  Room room;
-  Settings settings;
 };
 
 TEST_F(HistoryTest, AStillViewComesToHoldEveryLightAndSleeps) {

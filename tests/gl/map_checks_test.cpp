@@ -1,36 +1,17 @@
 // Rays that check shadow maps: averaged, they come to what a ray for every pair gives, and only where a view stands.
-#include "gi/frame/gi_frame.h"
-#include "gl_fixture.h"
+#include "still_room.h"
 #include "tests/support/images.h"
 
 namespace lambent::test {
 
-class MapChecksTest : public GlTest, public ::testing::WithParamInterface<int> {
+class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface<int> {
  protected:
   MapChecksTest() {
-    settings.smc.vpls = 512;
-    settings.smc.points = 512;
-    settings.smc.warmup = 20;
-    settings.smc.moves = 0; // the same lights in every picture
-    settings.gather.near = 0;
     settings.shadow.resolution = 16; // in whose texels the block's shadow is coarse
-    settings.shadow.maker = ShadowMaker::Rays;
-    settings.image.exposure = 1;
-    LightView lamp;
-    lamp.position = {0.4f, 0.7f, 0.4f};
-    lamp.intensity = {1, 0.8f, 0.5f};
-    room.scene.lights.push_back(lamp);
+    room.scene.lights[0].intensity = {1, 0.8f, 0.5f};
     room.scene.camera.width = 81; // no whole number of blocks
     room.scene.camera.height = 54;
   }
-
-  SceneView view(const SceneChanges& changes) const {
-    SceneView v = room.scene.view();
-    v.changes = changes;
-    for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
-    return v;
-  }
-  SceneView still() const { return view({false, false, false, false, false}); }
 
   /// Irradiance after 64 pictures of a still view.
   Image averaged(bool checks) const {
@@ -41,9 +22,6 @@ class MapChecksTest : public GlTest, public ::testing::WithParamInterface<int> {
     for (int i = 1; i < 64; ++i) gi.run(still());
     return gi.read(Buffer::Irradiance);
   }
-
-  Room room;
-  Settings settings;
 };
 
 INSTANTIATE_TEST_SUITE_P(Lights, MapChecksTest,

@@ -1,0 +1,37 @@
+// A room whose virtual lights stay the same in every picture, and views of it in which something or nothing changes.
+#pragma once
+
+#include "gi/frame/gi_frame.h"
+#include "gl_fixture.h"
+
+namespace lambent::test {
+
+class StillRoomTest : public GlTest {
+ protected:
+  StillRoomTest() {
+    settings.smc.vpls = 512;
+    settings.smc.points = 512;
+    settings.smc.warmup = 20;
+    settings.smc.moves = 0;
+    settings.gather.near = 0;
+    settings.shadow.maker = ShadowMaker::Rays;
+    settings.image.exposure = 1;
+    LightView lamp;
+    lamp.position = {0.4f, 0.7f, 0.4f};
+    lamp.intensity = vec3(1);
+    room.scene.lights.push_back(lamp);
+  }
+
+  SceneView view(const SceneChanges& changes) const {
+    SceneView v = room.scene.view();
+    v.changes = changes;
+    for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
+    return v;
+  }
+  SceneView still() const { return view({false, false, false, false, false}); }
+
+  Room room;
+  Settings settings;
+};
+
+} // namespace lambent::test
