@@ -18,6 +18,15 @@ double toneMappedVariance(const vec3& radiance, const vec3& error, float exposur
   return e * e;
 }
 
+PixelSeries toneMappedSeries(std::span<const std::vector<TrackedValue>> values,
+                             const std::vector<std::vector<bool>>& seen, float exposure) {
+  PixelSeries out(values.size());
+  for (size_t f = 0; f < values.size(); ++f)
+    for (size_t i = 0; i < values[f].size(); ++i)
+      out[f].push_back(seen[f][i] ? toneMappedLuminance(values[f][i].radiance, exposure) : std::nanf(""));
+  return out;
+}
+
 StabilityErrors stabilityErrors(const PixelSeries& technique, const PixelSeries& truth,
                                 std::span<const uint32_t> pixels) {
   CHECK_EQ(technique.size(), truth.size());

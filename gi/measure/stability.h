@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/scene/scene_view.h"
+#include "gi/measure/watched.h"
 
 #include <cstdint>
 #include <span>
@@ -17,6 +18,10 @@ float toneMappedLuminance(const vec3& radiance, float exposure);
 /// Variance of that where radiance has this standard error: by its derivative 1/(1+x)², as if channels were fully
 /// correlated.
 double toneMappedVariance(const vec3& radiance, const vec3& error, float exposure);
+
+/// Of values at points, where `seen` says that the camera sees a surface: both [frame][point].
+PixelSeries toneMappedSeries(std::span<const std::vector<TrackedValue>> values,
+                             const std::vector<std::vector<bool>>& seen, float exposure);
 
 /// E = technique − truth, averaged over frames and pixels; E' = E(t) − E(t−1), over pixels seen in both frames.
 struct StabilityErrors {

@@ -320,28 +320,4 @@ std::string whyNot(const Settings& settings) {
   return whyNot(axesOf(settings));
 }
 
-const std::vector<std::string>& presetNames() {
-  static const std::vector<std::string> names{"low", "medium", "high", "ultra"};
-  return names;
-}
-
-void applyPreset(Settings& settings, const std::string& name) {
-  struct Preset {
-    int vpls, points, paths, resolution;
-    GatherMode mode;
-  };
-  static constexpr Preset presets[]{{512, 1024, 8, 64, GatherMode::Interleaved},
-                                    {2048, 2048, 16, 128, GatherMode::Interleaved},
-                                    {8192, 4096, 16, 128, GatherMode::Interleaved},
-                                    {2048, 4096, 16, 128, GatherMode::Multires}};
-  const auto found = std::find(presetNames().begin(), presetNames().end(), name);
-  if (found == presetNames().end()) throw InputError("preset " + name, "no such preset (low, medium, high or ultra)");
-  const Preset& preset = presets[found - presetNames().begin()];
-  settings.smc.vpls = preset.vpls;
-  settings.smc.points = preset.points;
-  settings.smc.paths = preset.paths;
-  settings.shadow.resolution = preset.resolution;
-  if (rowOf(settings.vpl.source).sampled) settings.gather.mode = preset.mode; // others have a gather of their own
-}
-
 } // namespace lambent

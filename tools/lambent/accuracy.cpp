@@ -53,10 +53,10 @@ void declareAccuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
   CLI::App* command = app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual "
                                                      "lights, or one of the forms below");
-  command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
+  command->add_option("SCENE", options->scenes, "glTF or shot file; several with --report")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output,
-                   "--curve, --figure: folder for pictures (default out/accuracy, out/figure-N)");
+                   "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
   command->add_option("--lights", options->slots, "virtual lights to compare")->check(CLI::Range(1, 32768));
   command->add_option("--points", options->points, "visible points to compare at")->check(CLI::Range(1, 1000000));
   CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
@@ -78,6 +78,10 @@ void declareAccuracy(CLI::App& app) {
   forms->add_flag("--direct", options->direct,
                   "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
                   "samples of what is emissive");
+  forms->add_flag("--report", options->report,
+                  "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
+                  "every technique, along each shot and standing at its end: front, curves, pictures on one page "
+                  "(index.html), points.csv; interrupted, the same command goes on");
   forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
   forms
       ->add_option("--figure", options->figure,
@@ -85,8 +89,9 @@ void declareAccuracy(CLI::App& app) {
                    "rays; 10, N = 2000, 8000, 40000 by rays against path tracing")
       ->check(CLI::IsMember({8, 9, 10}));
   command
-      ->add_option("--spp", options->samples,
-                   "paths per pixel of the truth (4096; --light 2048, --direct 256, --presets 8192, --figure 1024)")
+      ->add_option(
+          "--spp", options->samples,
+          "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --presets 8192, --figure 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--clamp", options->clamp,
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
@@ -97,7 +102,10 @@ void declareAccuracy(CLI::App& app) {
   command->add_flag("--alone", options->alone, "--light, --direct: only as set, nothing beside it");
   command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
   command->callback([options] {
-    const AccuracyOptions& o = *options;
+    AccuracyOptions& o = *options;
+    if (!o.report && o.scenes.size() > 1)
+      throw InputError(o.scenes[1], "one scene or shot is enough (several go with --report)");
+    o.launch.scene = o.scenes[0];
     if (const std::string& technique = o.launch.technique; !technique.empty()) {
       if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
       if (!rowOf(techniqueByName(technique).axes.source).sampled)
@@ -108,6 +116,7 @@ void declareAccuracy(CLI::App& app) {
     if (o.gathers) return accuracyGathers(o);
     if (o.light) return accuracyLight(o);
     if (o.direct) return accuracyDirect(o);
+    if (o.report) return accuracyReport(o);
     if (o.presets) return accuracyPresets(o);
     if (o.figure > 0) return accuracyFigure(o);
     accuracy(o);

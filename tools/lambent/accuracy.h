@@ -9,14 +9,15 @@
 namespace lambent {
 
 struct AccuracyOptions {
-  LaunchOptions launch;
+  LaunchOptions launch; // its scene is empty where several are given
   OutputOptions output;
+  std::vector<std::string> scenes;
   int slots = 64, points = 1024;
   std::string curve; // empty: none
   int figure = 0;    // 0: none
   int frame = 0;     // of a shot
   bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false,
-       quick = false;
+       report = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 };
@@ -31,6 +32,8 @@ void accuracyGathers(const AccuracyOptions& options);
 void accuracyLight(const AccuracyOptions& options);
 /// Bias and error of direct light against path tracing, as set, and by other means.
 void accuracyDirect(const AccuracyOptions& options);
+/// What accuracy costs in time: all knobs and techniques, in several scenes, on one page.
+void accuracyReport(const AccuracyOptions& options);
 /// Error against time of the presets.
 void accuracyPresets(const AccuracyOptions& options);
 /// Paper 1's figures 8, 9 and 10 for any scene.

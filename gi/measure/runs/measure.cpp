@@ -1,4 +1,5 @@
 #include "engine/core/error.h"
+#include "engine/gl/objects.h"
 #include "gi/measure/runs/runs.h"
 
 #include <algorithm>
@@ -12,8 +13,10 @@ void runFrame(Runner& runner, const SceneView& view, int frame, const RunPlan& p
   const FrameStats& stats = runner.run(view);
   if (frame >= plan.skip) out.frames.push_back(stats);
   if (!plan.points.empty()) out.series.push_back(runner.at(plan.points));
+  if (plan.picture && std::ranges::count(plan.also, frame)) out.before.push_back(runner.picture(*plan.picture));
   if (frame + 1 < plan.frames) return;
   if (plan.picture) out.picture = runner.picture(*plan.picture);
+  for (const auto& [owner, bytes] : gl::memoryByOwner()) out.gpuBytes += bytes;
   out.exposure = runner.exposure();
 }
 

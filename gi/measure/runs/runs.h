@@ -57,6 +57,7 @@ struct RunPlan {
   int skip = 0;       // frames at the start that do not count
   bool inTurn = true; // false: one variant after the other, so that one alone takes memory: for still views
   std::optional<Buffer> picture = {}; // to be read after the last frame
+  std::vector<int> also = {};         // ascending: frames before the last after which it is read too
   std::span<const vec2> points = {};  // to be read after every frame, also those that do not count
   std::function<bool()> cancelled = {};
   std::function<void(int, int)> progress = {}; // frames done, frames of all variants
@@ -66,6 +67,8 @@ struct Measured {
   Variant variant;
   std::vector<FrameStats> frames = {}; // those that count
   Image picture = {};
+  std::vector<Image> before = {}; // those of RunPlan::also
+  uint64_t gpuBytes = 0;          // that GL objects held after the last frame; of all variants where they run in turn
   float exposure = 1;
   std::vector<std::vector<TrackedValue>> series = {}; // [frame][point], all frames
 

@@ -1,0 +1,170 @@
+#include "gi/measure/runs/sweeps.h"
+
+#include "gi/plan/techniques.h"
+
+#include <algorithm>
+#include <set>
+
+namespace lambent {
+
+namespace {
+
+std::string nameOf(const Assignments& set) {
+  std::string name;
+  for (const auto& [setting, value] : set) name += (name.empty() ? "" : " ") + setting + "=" + value;
+  return name;
+}
+
+Settings settingsOf(const Assignments& set) {
+  Settings settings;
+  for (const auto& [setting, value] : set) applySetting(settings, setting, value);
+  return settings;
+}
+
+const char* kDefault[] = {"default", "default, direct light"}; // by KnobLight
+
+/// Lights and what each is worth: the more of them, the less a single one's map and paths matter. Lean, as by default,
+/// rich at every N; then other gathers, where these may pay.
+std::vector<Assignments> jointDesign(bool quick) {
+  struct Worth {
+    const char *points, *paths, *resolution;
+  };
+  static const Worth worths[] = {{"1024", "8", "64"}, {"2048", "16", "128"}, {"4096", "32", "128"}};
+  std::vector<Assignments> sets;
+  for (const char* vpls : {"256", "512", "1024", "2048", "4096", "8192"})
+    for (const Worth& w : worths)
+      sets.push_back({{"smc.vpls", vpls},
+                      {"smc.points", w.points},
+                      {"smc.paths", w.paths},
+                      {"shadow.resolution", w.resolution},
+                      {"gather.mode", "interleaved"}});
+  if (quick) return {sets.front()};
+  for (const char* mode : {"multires-interleaved", "multires"})
+    for (const char* vpls : {"512", "2048"})
+      sets.push_back({{"smc.vpls", vpls},
+                      {"smc.points", "2048"},
+                      {"smc.paths", "16"},
+                      {"shadow.resolution", "128"},
+                      {"gather.mode", mode}});
+  return sets;
+}
+
+} // namespace
+
+const std::vector<Knob>& knobTable() {
+  using enum KnobLight;
+  static const Assignments patches{{"gather.mode", "multires-interleaved"}};
+  static const Assignments clamped{{"gather.disk", "0"}, {"gather.near", "0"}};
+  static const std::vector<Knob> knobs{
+      // The set of lights.
+      {"smc.vpls", {"512", "1024", "2048", "4096", "8192"}},
+      {"smc.moves", {"4", "16", "64"}},
+      {"smc.candidateRays", {"4", "16", "64"}},
+      {"smc.poolFrames", {"64", "16", "1"}},
+      {"smc.paths", {"4", "8", "16", "32", "64"}},
+      {"smc.bounces", {"1", "2", "3"}},
+      {"smc.points", {"512", "2048", "8192"}},
+      {"smc.validationRays", {"4", "16", "64"}},
+      {"smc.warmup", {"25", "100", "400"}},
+      {"smc.density", {"knn", "knn-side", "cells"}},
+      {"smc.neighbours", {"1", "8", "32"}, Indirect, {{"smc.density", "knn-side"}}},
+      // Who sees them.
+      {"vpl.visibility", {"none", "maps", "rays"}},
+      {"shadow.resolution", {"32", "64", "128", "256"}},
+      {"shadow.refresh", {"8", "32", "128"}},
+      {"shadow.motionRays", {"0", "4", "16", "64"}},
+      {"gather.checks", {"off", "on"}},
+      // Bounded energy, and how it is given back.
+      {"gather.disk", {"0", "1", "4"}},
+      {"gather.near", {"0", "2", "8", "32"}},
+      {"gather.nearLimit", {"2", "8", "0"}},
+      {"gather.clamp", {"1", "10", "0"}, Indirect, clamped},
+      // Where light is gathered, and how it is put together.
+      {"gather.mode", {"interleaved", "multires-interleaved", "multires", "full"}},
+      {"filter.on", {"off", "on"}},
+      {"filter.kernel", {"separable", "whole"}},
+      {"filter.distance", {"0.0025", "0.01", "0.04"}},
+      {"history.frames", {"0", "16", "64"}},
+      {"multires.coarsest", {"8", "16", "64"}, Indirect, patches},
+      {"multires.depth", {"0.1", "0.02", "0.005"}, Indirect, patches},
+      {"multires.normal", {"0.7", "0.2", "0.05"}, Indirect, patches},
+      {"multires.balance", {"off", "on"}, Indirect, patches},
+      {"multires.edges", {"off", "on"}, Indirect, patches},
+      // Direct light.
+      {"shadow.rays", {"off", "on"}, Direct},
+      {"shadow.emitterSamples", {"4", "16", "64"}, Direct},
+      {"shadow.emitterResolution", {"64", "256", "512"}, Direct},
+      {"shadow.sunResolution", {"256", "512", "2048"}, Direct},
+      {"shadow.pointResolution", {"64", "128", "512"}, Direct},
+      {"shadow.skyMaps", {"8", "32", "128"}, Direct},
+      {"shadow.skyResolution", {"64", "256", "512"}, Direct},
+  };
+  return knobs;
+}
+
+const std::vector<NoKnob>& noKnobTable() {
+  static const std::vector<NoKnob> table{
+      {{"vpl.source", "vpl.mirCandidates", "vpl.tcasIterations"}, "techniques are points of their own, as published"},
+      {{"rsm.resolution", "rsm.vpls", "rsm.exact", "rsm.coarsest", "rsm.finest", "rsm.depth", "rsm.normal", "rsm.tau"},
+       "of techniques from reflective shadow maps; their curves: --curve clusters"},
+      {{"smc.cache", "shadow.maker", "frame.overlap"}, "time alone: the picture is the same, or a frame late"},
+      {{"shadow.bias", "filter.normalPower"}, "error alone: any value costs the same"},
+      {{"shadow.spotResolution"}, "as shadow.sunResolution, of lights that these scenes have not"},
+      {{"multires.detail", "multires.light"}, "of splatting (technique multires-splat)"},
+      {{"gather.glossy", "gather.spread"}, "another picture: what is measured here is diffuse"},
+      {{"image.exposure", "image.toneMapper", "image.antiAliasing", "debug.nan", "debug.timing"}, "how it is shown"},
+      {{"effects.indirect", "effects.bounces", "effects.emissive", "effects.sky", "effects.alpha", "effects.textures",
+        "effects.motion", "effects.mapRefresh", "effects.relight", "effects.replace", "effects.filter",
+        "effects.history", "effects.glossy", "effects.softShadows", "effects.redraw"},
+       "the plan leaves out only what shows nowhere"},
+  };
+  return table;
+}
+
+std::string knobPoint(const Knob& knob, const std::string& value) {
+  Assignments set = knob.with;
+  set.emplace_back(knob.setting, value);
+  return settingsOf(set) == Settings{} ? kDefault[int(knob.light)] : nameOf(set);
+}
+
+std::string presetPoint(const Preset& preset) {
+  return settingsOf(preset.set) == Settings{} ? kDefault[0] : nameOf(preset.set);
+}
+
+std::vector<SweepPoint> sweepPoints(bool quick) {
+  using enum SweepPoint::Kind;
+  std::vector<SweepPoint> points{{.name = kDefault[0]}, {.name = kDefault[1], .light = KnobLight::Direct}};
+  std::set<std::string> known{kDefault[0], kDefault[1]};
+  const auto add = [&](SweepPoint point) {
+    if (known.insert(point.name).second) points.push_back(std::move(point));
+  };
+  for (const Knob& knob : knobTable()) {
+    const std::string name = knob.setting;
+    if (quick && name != "smc.vpls" && name != "shadow.emitterSamples") continue;
+    for (const char* value : knob.values) {
+      if (quick && value != knob.values.front() && value != knob.values.back()) continue;
+      Assignments set = knob.with;
+      set.emplace_back(name, value);
+      // A ray for every pair of pixel and light takes seconds; with all lights at every pixel, map by map, less.
+      add({.name = knobPoint(knob, value),
+           .kind = Alone,
+           .set = set,
+           .light = knob.light,
+           .slow = value == std::string("rays")});
+    }
+  }
+  for (const Assignments& set : jointDesign(quick))
+    if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
+  for (const Technique& technique : techniqueTable()) {
+    if (technique.name == std::string("smc") || technique.axes.source == VplSource::None) continue;
+    if (quick && technique.name != std::string("rsm")) continue;
+    const SourceRow& source = rowOf(technique.axes.source);
+    add({.name = technique.name,
+         .kind = Named,
+         .technique = technique.name,
+         .slow = source.sampled && !source.persistent}); // every map anew in every frame
+  }
+  return points;
+}
+
+} // namespace lambent

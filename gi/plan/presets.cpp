@@ -1,0 +1,51 @@
+#include "gi/plan/presets.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+namespace {
+
+Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* mode) {
+  return {{"smc.vpls", vpls},
+          {"smc.points", points},
+          {"smc.paths", paths},
+          {"shadow.resolution", resolution},
+          {"gather.mode", mode}};
+}
+
+} // namespace
+
+const std::vector<Preset>& presetTable() {
+  static const std::vector<Preset> table{
+      {"low", worth("512", "1024", "8", "64", "interleaved")},
+      {"medium", worth("2048", "2048", "16", "128", "interleaved")},
+      {"high", worth("8192", "4096", "16", "128", "interleaved")},
+      {"ultra", worth("2048", "4096", "16", "128", "multires")},
+  };
+  return table;
+}
+
+const std::vector<std::string>& presetNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Preset& preset : presetTable()) all.push_back(preset.name);
+    return all;
+  }();
+  return names;
+}
+
+void applyPreset(Settings& settings, const std::string& name) {
+  const auto found = std::ranges::find(presetTable(), name, &Preset::name);
+  if (found == presetTable().end()) {
+    std::string known;
+    for (const std::string& other : presetNames()) known += (known.empty() ? "" : ", ") + other;
+    throw InputError("preset " + name, "no such preset (" + known + ")");
+  }
+  for (const auto& [setting, value] : found->set) // techniques from reflective maps have a gather of their own
+    if (setting != "gather.mode" || rowOf(settings.vpl.source).sampled) applySetting(settings, setting, value);
+}
+
+} // namespace lambent

@@ -1,0 +1,25 @@
+// Presets: points of the measured front of error against time (docs/measurements/presets.md).
+#pragma once
+
+#include "gi/plan/settings.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lambent {
+
+/// Settings by name, as on the command line.
+using Assignments = std::vector<std::pair<std::string, std::string>>;
+
+struct Preset {
+  std::string name;
+  Assignments set;
+  /// As measured over the scenes of the report, of the default's: time of a frame in motion; relMSE of indirect light,
+  /// moving and standing (geometric mean).
+  double time = 1, error = 1;
+};
+/// Cheapest first. The rule that chose them: ladderOf, gi/measure/front.h.
+const std::vector<Preset>& presetTable();
+
+} // namespace lambent

@@ -1,0 +1,407 @@
+// lambent accuracy SCENE... --report: what accuracy costs in time. Measures the sweeps of gi/measure/runs/sweeps.h in
+// each scene (sweep.cpp), and writes one page with everything in it (index.html), and points.csv.
+#include "engine/core/error.h"
+#include "engine/platform/gl_context.h"
+#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/scatter.h"
+#include "tools/lambent/sweep_figures.h"
+#include "tools/lambent/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <thread>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr float kBlackAt = 0.5f; // of heat maps: relative error
+
+enum class State { Moving, Still };
+CostError of(const PointFigures& f, State state) { return state == State::Moving ? f.moving : f.still; }
+const char* titleOf(State state) { return state == State::Moving ? "in motion" : "standing still"; }
+
+Choice indirectPoints(const Figures& figures, State state) {
+  return choiceOf(figures, [&](const PointFigures& f) {
+    return f.point.light == KnobLight::Indirect ? of(f, state) : CostError{};
+  });
+}
+
+/// Names of the front, cheapest first.
+std::vector<std::string> frontNames(const Choice& choice) {
+  std::vector<std::string> names;
+  for (size_t i : frontOf(choice.points)) names.push_back(choice.names[i]);
+  return names;
+}
+
+MarkShape shapeOf(SweepPoint::Kind kind) {
+  switch (kind) {
+  case SweepPoint::Kind::Default:
+    return MarkShape::Diamond;
+  case SweepPoint::Kind::Alone:
+    return MarkShape::Square;
+  case SweepPoint::Kind::Joint:
+    return MarkShape::Dot;
+  case SweepPoint::Kind::Named:
+    return MarkShape::Triangle;
+  }
+  return MarkShape::Dot;
+}
+
+Scatter frontPlot(const std::string& title, const Figures& figures, State state, bool relative) {
+  Scatter plot;
+  plot.title = title + ", " + titleOf(state);
+  plot.xLabel = relative ? "time of a frame, of the default's" : "milliseconds a frame";
+  plot.yLabel = relative ? "relMSE, of the default's" : "relMSE of indirect irradiance";
+  plot.legend = {{MarkShape::Diamond, "default"},
+                 {MarkShape::Square, "one setting changed"},
+                 {MarkShape::Dot, "joint sweep"},
+                 {MarkShape::Triangle, "technique"}};
+  const Choice choice = indirectPoints(figures, state);
+  const std::vector<size_t> front = frontOf(choice.points);
+  plot.lines.push_back({.stairs = true});
+  for (size_t i : front) plot.lines[0].points.emplace_back(choice.points[i].cost, choice.points[i].error);
+  for (size_t i = 0; i < choice.points.size(); ++i) {
+    const CostError& p = choice.points[i];
+    const SweepPoint::Kind kind = figures.at(choice.names[i]).point.kind;
+    const auto place = std::ranges::find(front, i);
+    const bool onFront = place != front.end();
+    plot.marks.push_back({.x = p.cost,
+                          .y = p.error,
+                          .xNoise = onFront ? p.costNoise : 0,
+                          .yNoise = onFront ? p.errorNoise : 0,
+                          .name = choice.names[i] + format(": %.3g %s, %.3g", p.cost, relative ? "x" : "ms", p.error),
+                          .label = onFront ? std::to_string(place - front.begin() + 1) : "",
+                          .shape = shapeOf(kind),
+                          .filled = onFront || kind == SweepPoint::Kind::Default});
+  }
+  return plot;
+}
+
+/// Of a knob: its points in each scene, in the order in which they should become dearer.
+struct KnobCurve {
+  std::string scene;
+  std::vector<std::string> values;
+  std::vector<CostError> points;
+};
+std::vector<KnobCurve> curvesOf(const Knob& knob, const std::vector<std::string>& scenes,
+                                const std::vector<Figures>& figures, State state) {
+  std::vector<KnobCurve> curves;
+  for (size_t s = 0; s < scenes.size(); ++s) {
+    KnobCurve curve{scenes[s], {}, {}};
+    for (const char* value : knob.values) {
+      const auto found = figures[s].find(knobPoint(knob, value));
+      if (found == figures[s].end() || of(found->second, state).cost <= 0) continue;
+      curve.values.push_back(value);
+      curve.points.push_back(of(found->second, state));
+    }
+    if (curve.points.size() >= 2) curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+Scatter knobPlot(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
+  Scatter plot;
+  plot.title = std::string(knob.setting) + ", " + titleOf(state);
+  plot.xLabel = "milliseconds a frame";
+  plot.yLabel = "relMSE";
+  constexpr MarkShape shapes[] = {MarkShape::Dot, MarkShape::Square, MarkShape::Triangle, MarkShape::Diamond};
+  for (size_t s = 0; s < curves.size(); ++s) {
+    const KnobCurve& curve = curves[s];
+    plot.lines.push_back({.dashed = s % 2 == 1});
+    for (size_t i = 0; i < curve.points.size(); ++i) {
+      const CostError& p = curve.points[i];
+      plot.lines.back().points.emplace_back(p.cost, p.error);
+      plot.marks.push_back({p.cost, p.error, 0, p.errorNoise, curve.scene + ": " + knob.setting + "=" + curve.values[i],
+                            curve.values[i], shapes[s % 4]});
+    }
+    plot.legend.emplace_back(shapes[s % 4], curve.scene);
+  }
+  return plot;
+}
+
+/// What a knob does in each scene, in words.
+nlohmann::json verdictsOf(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
+  nlohmann::json rows;
+  for (const KnobCurve& curve : curves) {
+    const KnobVerdict v = knobVerdict(curve.points);
+    rows.push_back({{"knob", knob.setting},
+                    {"scene", curve.scene},
+                    {"state", titleOf(state)},
+                    {"values", curve.values.front() + " to " + curve.values.back()},
+                    {"dearer", v.dearer},
+                    {"nearer", v.nearer},
+                    {"buys", v.buys ? "less error" : "nothing here"},
+                    {"monotone", v.monotone ? "yes" : "no"}});
+  }
+  return rows;
+}
+
+const std::vector<TableColumn> kVerdictColumns{{"knob", "setting"},
+                                               {"values", "from, to"},
+                                               {"scene", "scene"},
+                                               {"state", "state"},
+                                               {"dearer", "time", "%.2f x"},
+                                               {"nearer", "error", "%.2f x"},
+                                               {"buys", "buys"},
+                                               {"monotone", "dearer at each step"}};
+
+std::string htmlTable(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
+  std::string out = "<table><tr>";
+  const auto text = [](std::string cell) { // without what Markdown needs
+    std::erase(cell, '\\');
+    return escaped(cell);
+  };
+  for (const TableColumn& c : columns) out += "<th>" + text(c.title) + "</th>";
+  out += "</tr>\n";
+  for (const nlohmann::json& row : rows) {
+    out += "<tr>";
+    for (const TableColumn& c : columns) out += "<td>" + text(cellText(c, row)) + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</table>\n";
+}
+
+std::string base64(const std::string& bytes) {
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
+    for (size_t k = 0; k < 4; ++k) out += i + k < bytes.size() + 1 ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+/// A picture inside the page.
+std::string htmlPicture(const fs::path& folder, const std::string& name, const Image& shown, const std::string& under) {
+  const fs::path file = folder / (name + ".png");
+  writeShown(file.string(), shown);
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  return "<figure><img alt='" + escaped(under) + "' src='data:image/png;base64," + base64(bytes) + "'><figcaption>" +
+         escaped(under) + "</figcaption></figure>\n";
+}
+
+/// Relative error as relMSE counts it: white 0, black kBlackAt and more.
+Image heatOf(const Image& picture, const Image& truth) {
+  Image heat = truth;
+  for (size_t i = 0; i < heat.pixels.size(); ++i) {
+    const float b = luminance(truth.pixels[i]), d = luminance(picture.pixels[i]) - b;
+    heat.pixels[i] = vec3(1 - std::min(std::abs(d) / std::sqrt(b * b + 0.01f) / kBlackAt, 1.0f));
+  }
+  return heat;
+}
+
+std::string frontPictures(const SweptScene& scene, const Figures& figures, const fs::path& folder) {
+  std::string out = htmlPicture(folder, scene.name + "-truth", shownImage(scene.truths[0], scene.exposure), "truth");
+  int number = 0;
+  for (const std::string& name : frontNames(indirectPoints(figures, State::Still))) {
+    const PointFigures& f = figures.at(name);
+    const Image picture = readExr(scene.pictures / f.picture);
+    const std::string file = scene.name + format("-%d", ++number);
+    out += "<span class='pair'>" +
+           htmlPicture(folder, file, shownImage(picture, scene.exposure),
+                       format("%d: %.0f ms, relMSE %.4f: ", number, f.still.cost, f.still.error) + name) +
+           htmlPicture(folder, file + "-error", heatOf(picture, scene.truths[0]), "its error") + "</span>";
+  }
+  return out;
+}
+
+nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
+  nlohmann::json rows;
+  for (const std::string& name : frontNames(indirectPoints(figures, state))) {
+    const CostError p = of(figures.at(name), state);
+    rows.push_back(relative ? nlohmann::json{{"point", name}, {"time", p.cost}, {"error", p.error}}
+                            : figures.at(name).row);
+    rows.back()["number"] = rows.size();
+  }
+  return rows;
+}
+
+/// Milliseconds of path tracing over those of the default's frame, for the same relMSE.
+nlohmann::json pathRow(const SweptScene& scene, const Figures& figures, State state) {
+  const CostError p = of(figures.at(sweepPoints(true)[0].name), state);
+  const nlohmann::json& truth = scene.truth["indirect"];
+  const double ms =
+      truth["sample_ms"].get<double>() * truth["spp"].get<double>() * truth["rel_mse"].get<double>() / p.error;
+  return {{"scene", scene.name},
+          {"state", titleOf(state)},
+          {"ms", p.cost},
+          {"rel_mse", p.error},
+          {"paths_ms", ms},
+          {"times", ms / p.cost},
+          {"holds", ms / p.cost >= 20 ? "yes" : "no"}};
+}
+const std::vector<TableColumn> kPathColumns{{"scene", "scene"},
+                                            {"state", "state"},
+                                            {"ms", "ms a frame", "%.1f"},
+                                            {"rel_mse", "relMSE", "%.4f"},
+                                            {"paths_ms", "path tracing, ms", "%.0f"},
+                                            {"times", "times the frame", "%.0f"},
+                                            {"holds", "20 or more"}};
+
+const std::vector<TableColumn> kLadderColumns{{"preset", "preset"},
+                                              {"point", "point"},
+                                              {"time", "time", "%.2f x"},
+                                              {"error", "error", "%.2f x"},
+                                              {"step_time", "of the step below: time", "%.2f x"},
+                                              {"step_error", "error", "%.2f x"}};
+
+nlohmann::json ladderRows(const Choice& choice) {
+  nlohmann::json rows;
+  const CostError* below = nullptr;
+  for (size_t i : ladderOf(choice.points)) {
+    const CostError& p = choice.points[i];
+    rows.push_back({{"point", choice.names[i]}, {"time", p.cost}, {"error", p.error}});
+    rows.back()["preset"] = "(none is this)";
+    for (const Preset& preset : presetTable())
+      if (presetPoint(preset) == choice.names[i]) rows.back()["preset"] = preset.name;
+    if (below) rows.back().update({{"step_time", p.cost / below->cost}, {"step_error", p.error / below->error}});
+    below = &p;
+  }
+  return rows;
+}
+
+std::string machineLine() {
+  std::string renderer = "?", cpu = "?";
+  for (const auto& [name, value] : GlContext::headless().info())
+    if (name == "renderer") renderer = value;
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      cpu = line.substr(line.find(':') + 2);
+      break;
+    }
+  const std::time_t now = std::time(nullptr);
+  char date[16] = "";
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  return std::to_string(std::thread::hardware_concurrency()) + " threads of " + cpu + "; OpenGL: " + renderer + "; " +
+         date;
+}
+
+constexpr const char* kStyle =
+    "body{font:15px/1.45 sans-serif;max-width:1320px;margin:2em auto;padding:0 1em;color:#111;background:#fff}"
+    "table{border-collapse:collapse;margin:.6em 0;font-size:13px}th,td{border:1px solid #bbb;padding:2px "
+    "7px;text-align:right}"
+    "td:first-child,th:first-child{text-align:left}figure{display:inline-block;margin:4px;vertical-align:top;width:"
+    "320px}"
+    "figure img{width:320px;image-rendering:pixelated;border:1px solid #999}figcaption{font-size:12px}"
+    ".pair{display:inline-block;white-space:nowrap}.pair figcaption{white-space:normal}svg{max-width:100%;height:auto}"
+    "details{margin:.6em 0}@media print{details{display:block}h2{break-before:page}}";
+
+} // namespace
+
+void accuracyReport(const AccuracyOptions& options) {
+  const fs::path folder = reportFolder(options.output.out, "out/accuracy");
+  const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};
+  std::vector<SweptScene> scenes;
+  std::vector<Figures> figures;
+  std::vector<std::string> names;
+  for (const std::string& file : options.scenes) {
+    scenes.push_back(sweepScene(options, file, folder, frames));
+    if (std::ranges::count(names, scenes.back().name))
+      throw InputError(file, "another scene has this name (rename one: files are named by them)");
+    names.push_back(scenes.back().name);
+    figures.push_back(figuresOf(scenes.back()));
+  }
+  const Figures all = overScenes(figures);
+  const Choice presets = presetChoice(all);
+
+  nlohmann::json points, verdicts, paths;
+  for (size_t s = 0; s < scenes.size(); ++s) {
+    for (const auto& [name, f] : figures[s]) {
+      points.push_back(f.row);
+      points.back()["scene"] = names[s];
+    }
+    for (State state : {State::Moving, State::Still}) paths.push_back(pathRow(scenes[s], figures[s], state));
+  }
+  for (const Knob& knob : knobTable())
+    for (State state : {State::Moving, State::Still})
+      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, names, figures, state), state))
+        verdicts.push_back(std::move(row));
+
+  const std::string front =
+      svgOf({frontPlot("All scenes", all, State::Moving, true), frontPlot("All scenes", all, State::Still, true)}, 2,
+            540, 380);
+  std::string page =
+      "<!doctype html><html lang='en'><meta charset='utf-8'><title>What accuracy costs in time</title><style>" +
+      std::string(kStyle) + "</style><h1>What accuracy costs in time</h1>\n<p>";
+  for (const std::string& name : names) page += (name == names[0] ? "" : ", ") + escaped(name);
+  page +=
+      format(". %d frames along each shot, then %d standing where these end; error is relMSE of indirect irradiance "
+             "against path tracing of that view, time the median of a frame. Bars: one standard error. ",
+             frames.moving, frames.still) +
+      escaped(machineLine()) + ".</p>\n<p>Made by <code>lambent accuracy SHOT... --report</code>.</p>\n" + front +
+      "<p>Points of the front, left of and below which there is none:</p>";
+  const std::vector<TableColumn> relativeColumns{
+      {"number", ""}, {"point", "point"}, {"time", "time", "%.2f x"}, {"error", "error", "%.2f x"}};
+  for (State state : {State::Moving, State::Still})
+    page += "<p>" + std::string(titleOf(state)) + "</p>" + htmlTable(relativeColumns, frontRows(all, state, true));
+  page +=
+      "<h2>Presets by rule</h2><p>Among the default and the joint sweep: the longest ladder of the front whose steps "
+      "take at least 1.5 times the time and leave at most 0.75 times the error, over all scenes, moving and "
+      "still.</p>" +
+      htmlTable(kLadderColumns, ladderRows(presets)) +
+      "<h2>Beside path tracing</h2><p>Time in which our own path tracer comes as near as a frame of the default.</p>" +
+      htmlTable(kPathColumns, paths);
+  for (size_t s = 0; s < scenes.size(); ++s) {
+    std::vector<TableColumn> columns{{"number", ""}};
+    columns.insert(columns.end(), kPointColumns.begin(), kPointColumns.end());
+    page += "<h2>" + escaped(names[s]) + "</h2>" +
+            svgOf({frontPlot(names[s], figures[s], State::Moving, false),
+                   frontPlot(names[s], figures[s], State::Still, false)},
+                  2, 540, 340) +
+            "<p>The front in motion</p>" + htmlTable(columns, frontRows(figures[s], State::Moving, false)) +
+            "<p>The front standing still</p>" + htmlTable(columns, frontRows(figures[s], State::Still, false)) +
+            format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
+                   "and more.</p>",
+                   scenes[s].truth["indirect"]["spp"].get<int>(), scenes[s].truth["indirect"]["rel_mse"].get<double>(),
+                   100 * kBlackAt) +
+            frontPictures(scenes[s], figures[s], folder);
+    for (const std::string& left : scenes[s].leftOut) page += "<p>Left out: " + escaped(left) + "</p>";
+    nlohmann::json rows;
+    for (const auto& [name, f] : figures[s]) rows.push_back(f.row);
+    page += "<details open><summary>All points</summary>" + htmlTable(kPointColumns, rows) + "</details>\n";
+  }
+  page +=
+      "<h2>Setting by setting</h2><p>Each alone, the others at their defaults; values from those that should be "
+      "cheap to those that should be dear. A setting that buys nothing leaves errors within their noise (two standard "
+      "errors).</p>";
+  for (KnobLight light : {KnobLight::Indirect, KnobLight::Direct}) {
+    std::vector<Scatter> plots;
+    for (const Knob& knob : knobTable())
+      for (State state : {State::Moving, State::Still}) {
+        if (knob.light != light) continue;
+        const std::vector<KnobCurve> curves = curvesOf(knob, names, figures, state);
+        if (!curves.empty()) plots.push_back(knobPlot(knob, curves, state));
+      }
+    if (plots.empty()) continue;
+    page += std::string("<h3>") + (light == KnobLight::Direct ? "Direct light" : "Indirect light") + "</h3>" +
+            svgOf(plots, 3, 340, 230);
+  }
+  page += htmlTable(kVerdictColumns, verdicts) + "</html>\n";
+
+  writeText(folder / "index.html", page);
+  writeText(folder / "front.svg", front);
+  writeText(folder / "points.csv", csvText(points));
+  writeText(folder / "knobs.csv", csvText(verdicts));
+  writeJson(options.output.json, {{"points", points},
+                                  {"knobs", verdicts},
+                                  {"presets", ladderRows(presets)},
+                                  {"paths", paths},
+                                  {"front_moving", frontRows(all, State::Moving, true)},
+                                  {"front_still", frontRows(all, State::Still, true)}});
+  if (options.output.quiet) return;
+  std::printf("%s\n%s\nreport: %s\n", tableText(kLadderColumns, ladderRows(presets)).c_str(),
+              tableText(kPathColumns, paths).c_str(), (folder / "index.html").c_str());
+}
+
+} // namespace lambent
