@@ -31,7 +31,7 @@ TEST(Sweeps, AKnobHasItsDefaultAmongItsValues) {
 
 TEST(Sweeps, PointsCanBeSetAndDiffer) {
   std::set<std::string> names;
-  for (const SweepPoint& point : sweepPoints(false)) {
+  for (const SweepPoint& point : sweepPoints(SweepPart::All)) {
     EXPECT_TRUE(names.insert(point.name).second) << point.name;
     Settings settings;
     if (!point.technique.empty()) applyTechnique(settings, point.technique);
@@ -41,7 +41,8 @@ TEST(Sweeps, PointsCanBeSetAndDiffer) {
   }
   for (const Knob& knob : knobTable())
     for (const char* value : knob.values) EXPECT_TRUE(names.count(knobPoint(knob, value))) << knob.setting << value;
-  for (const SweepPoint& point : sweepPoints(true)) EXPECT_TRUE(names.count(point.name)) << point.name;
+  for (SweepPart part : {SweepPart::Joint, SweepPart::Quick})
+    for (const SweepPoint& point : sweepPoints(part)) EXPECT_TRUE(names.count(point.name)) << point.name;
 }
 
 } // namespace

@@ -99,6 +99,7 @@ void declareAccuracy(CLI::App& app) {
       ->check(CLI::Range(1, 1000));
   command->add_option("--frame", options->frame, "--light: of a shot, with all that moves before it")
       ->check(CLI::Range(1, 1000000));
+  command->add_flag("--joint", options->joint, "--report: only what presets are chosen among");
   command->add_flag("--alone", options->alone, "--light, --direct: only as set, nothing beside it");
   command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
   command->callback([options] {

@@ -1,6 +1,7 @@
 // What the forms of `lambent accuracy` share.
 #pragma once
 
+#include "gi/measure/runs/sweeps.h"
 #include "tools/lambent/commands.h"
 
 #include <optional>
@@ -17,9 +18,11 @@ struct AccuracyOptions {
   int figure = 0;    // 0: none
   int frame = 0;     // of a shot
   bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false,
-       report = false, quick = false;
+       report = false, joint = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
+
+  SweepPart sweepPart() const { return quick ? SweepPart::Quick : joint ? SweepPart::Joint : SweepPart::All; }
 };
 
 /// Error against threshold: "patches" of the picture (paper 3, fig. 9) or "clusters" of the lights (fig. 13).

@@ -215,6 +215,25 @@ std::string frontPictures(const SweptScene& scene, const Figures& figures, const
   return out;
 }
 
+/// Milliseconds of each stage in motion, at the points of the front: those of a hundredth of a frame and more.
+std::string frontStages(const Figures& figures) {
+  nlohmann::json rows;
+  std::vector<TableColumn> columns{{"number", ""}, {"point", "point"}, {"moving_ms", "frame", "%.1f"}};
+  std::set<std::string> listed;
+  for (const std::string& name : frontNames(indirectPoints(figures, State::Moving))) {
+    const nlohmann::json& row = figures.at(name).row;
+    nlohmann::json times{{"number", rows.size() + 1}, {"point", name}, {"moving_ms", row["moving_ms"]}};
+    for (const char* stage : kStageNames) {
+      const double ms = row.value(std::string("ms_") + stage, 0.0);
+      times[stage] = ms;
+      if (ms >= 0.01 * row["moving_ms"].get<double>() && listed.insert(stage).second)
+        columns.push_back({stage, stage, "%.1f", 1, ""});
+    }
+    rows.push_back(std::move(times));
+  }
+  return htmlTable(columns, rows);
+}
+
 nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
   nlohmann::json rows;
   for (const std::string& name : frontNames(indirectPoints(figures, state))) {
@@ -228,7 +247,7 @@ nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
 
 /// Milliseconds of path tracing over those of the default's frame, for the same relMSE.
 nlohmann::json pathRow(const SweptScene& scene, const Figures& figures, State state) {
-  const CostError p = of(figures.at(sweepPoints(true)[0].name), state);
+  const CostError p = of(figures.at(sweepPoints(SweepPart::Quick)[0].name), state);
   const nlohmann::json& truth = scene.truth["indirect"];
   const double ms =
       truth["sample_ms"].get<double>() * truth["spp"].get<double>() * truth["rel_mse"].get<double>() / p.error;
@@ -266,6 +285,23 @@ nlohmann::json ladderRows(const Choice& choice) {
       if (presetPoint(preset) == choice.names[i]) rows.back()["preset"] = preset.name;
     if (below) rows.back().update({{"step_time", p.cost / below->cost}, {"step_error", p.error / below->error}});
     below = &p;
+  }
+  return rows;
+}
+
+/// What presets are chosen among; which of them are presets, and whether these have left the front.
+nlohmann::json presetRows(const Choice& choice) {
+  nlohmann::json rows;
+  for (size_t i = 0; i < choice.points.size(); ++i) {
+    const CostError& p = choice.points[i];
+    rows.push_back({{"point", choice.names[i]},
+                    {"time", p.cost},
+                    {"error", p.error},
+                    {"time_noise", p.costNoise},
+                    {"error_noise", p.errorNoise},
+                    {"off_front", offFront(choice.points, i) ? 1 : 0}});
+    for (const Preset& preset : presetTable())
+      if (presetPoint(preset) == choice.names[i]) rows.back()["preset"] = preset.name;
   }
   return rows;
 }
@@ -360,7 +396,8 @@ void accuracyReport(const AccuracyOptions& options) {
                    frontPlot(names[s], figures[s], State::Still, false)},
                   2, 540, 340) +
             "<p>The front in motion</p>" + htmlTable(columns, frontRows(figures[s], State::Moving, false)) +
-            "<p>The front standing still</p>" + htmlTable(columns, frontRows(figures[s], State::Still, false)) +
+            "<p>Milliseconds of its stages</p>" + frontStages(figures[s]) + "<p>The front standing still</p>" +
+            htmlTable(columns, frontRows(figures[s], State::Still, false)) +
             format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
                    "and more.</p>",
                    scenes[s].truth["indirect"]["spp"].get<int>(), scenes[s].truth["indirect"]["rel_mse"].get<double>(),
@@ -393,9 +430,11 @@ void accuracyReport(const AccuracyOptions& options) {
   writeText(folder / "front.svg", front);
   writeText(folder / "points.csv", csvText(points));
   writeText(folder / "knobs.csv", csvText(verdicts));
+  writeText(folder / "presets.csv", csvText(presetRows(presets)));
   writeJson(options.output.json, {{"points", points},
                                   {"knobs", verdicts},
-                                  {"presets", ladderRows(presets)},
+                                  {"ladder", ladderRows(presets)},
+                                  {"presets", presetRows(presets)},
                                   {"paths", paths},
                                   {"front_moving", frontRows(all, State::Moving, true)},
                                   {"front_still", frontRows(all, State::Still, true)}});

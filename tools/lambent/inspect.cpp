@@ -1,7 +1,11 @@
-// lambent inspect SCENE: contents, size, lights; the effects it calls for, each with its reason; warnings.
+// lambent inspect SCENE: contents, size, lights; the effects it calls for, each with its reason; warnings. With
+// --presets the presets, no scene.
+#include "engine/core/error.h"
 #include "gi/plan/effects.h"
+#include "gi/plan/presets.h"
 #include "gi/vpl/light_set.h"
 #include "tools/lambent/commands.h"
+#include "tools/lambent/text.h"
 
 #include <cstdio>
 
@@ -95,16 +99,40 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   for (const std::string& n : stage->notes) std::printf("note: %s\n", n.c_str());
 }
 
+void inspectPresets(const OutputOptions& output) {
+  nlohmann::json rows;
+  for (const Preset& preset : presetTable()) {
+    std::string set;
+    for (const auto& [setting, value] : preset.set) set += (set.empty() ? "" : " ") + setting + "=" + value;
+    rows.push_back({{"preset", preset.name}, {"set", set}, {"time", preset.time}, {"error", preset.error}});
+  }
+  writeJson(output.json, rows);
+  if (output.quiet) return;
+  std::printf("%s", tableText({{"preset", "preset"},
+                               {"set", "sets"},
+                               {"time", "time of a frame", "%.2f"},
+                               {"error", "relMSE of indirect light", "%.2f"}},
+                              rows)
+                        .c_str());
+  std::printf("of the default's, in hall, citadel and Cornell box together (docs/measurements/presets.md)\n");
+}
+
 } // namespace
 
 void declareInspect(CLI::App& app) {
   auto launch = std::make_shared<LaunchOptions>();
   auto output = std::make_shared<OutputOptions>();
+  auto presets = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("inspect", "what a scene holds and which effects it calls for");
-  command->add_option("SCENE", launch->scene, "glTF or shot file")->required();
+  command->add_option("SCENE", launch->scene, "glTF or shot file");
   addLaunchOptions(*command, *launch);
   addOutputOptions(*command, *output, "");
-  command->callback([launch, output] { inspect(*launch, *output); });
+  command->add_flag("--presets", *presets, "what the presets set, cost and bring, as measured; without SCENE");
+  command->callback([launch, output, presets] {
+    if (*presets) return inspectPresets(*output);
+    if (launch->scene.empty()) throw InputError("inspect", "needs a scene or shot (or --presets)");
+    inspect(*launch, *output);
+  });
 }
 
 } // namespace lambent

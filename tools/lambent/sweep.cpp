@@ -112,7 +112,7 @@ class SceneSweep {
     traceTruths();
     RunLog log(folder_ / ("runs-" + name_ + ".jsonl"), conditions_);
     std::vector<SweepPoint> points;
-    for (SweepPoint& p : sweepPoints(options_.quick)) {
+    for (SweepPoint& p : sweepPoints(options_.sweepPart())) {
       if (!p.technique.empty() && rowOf(techniqueByName(p.technique).axes.source).reflective && !punctual_)
         out_.leftOut.push_back(p.technique + ": no punctual light to draw reflective maps from");
       else

@@ -91,7 +91,7 @@ Figures figuresOf(const SweptScene& scene) {
   }
 
   Figures figures;
-  for (const SweepPoint& point : sweepPoints(false)) {
+  for (const SweepPoint& point : sweepPoints(SweepPart::All)) {
     const auto found = runs.find(point.name);
     if (found == runs.end()) continue;
     const std::vector<Json>& own = found->second;

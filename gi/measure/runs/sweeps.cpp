@@ -131,7 +131,8 @@ std::string presetPoint(const Preset& preset) {
   return settingsOf(preset.set) == Settings{} ? kDefault[0] : nameOf(preset.set);
 }
 
-std::vector<SweepPoint> sweepPoints(bool quick) {
+std::vector<SweepPoint> sweepPoints(SweepPart part) {
+  const bool quick = part == SweepPart::Quick;
   using enum SweepPoint::Kind;
   std::vector<SweepPoint> points{{.name = kDefault[0]}, {.name = kDefault[1], .light = KnobLight::Direct}};
   std::set<std::string> known{kDefault[0], kDefault[1]};
@@ -139,6 +140,7 @@ std::vector<SweepPoint> sweepPoints(bool quick) {
     if (known.insert(point.name).second) points.push_back(std::move(point));
   };
   for (const Knob& knob : knobTable()) {
+    if (part == SweepPart::Joint) break;
     const std::string name = knob.setting;
     if (quick && name != "smc.vpls" && name != "shadow.emitterSamples") continue;
     for (const char* value : knob.values) {
@@ -157,7 +159,7 @@ std::vector<SweepPoint> sweepPoints(bool quick) {
     if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
   for (const Technique& technique : techniqueTable()) {
     if (technique.name == std::string("smc") || technique.axes.source == VplSource::None) continue;
-    if (quick && technique.name != std::string("rsm")) continue;
+    if (part == SweepPart::Joint || (quick && technique.name != std::string("rsm"))) continue;
     const SourceRow& source = rowOf(technique.axes.source);
     add({.name = technique.name,
          .kind = Named,

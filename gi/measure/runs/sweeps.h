@@ -35,9 +35,11 @@ struct SweepPoint {
   KnobLight light = KnobLight::Indirect;
   bool slow = false; // seconds a frame: measured over a few frames in motion, and not standing still
 };
-/// The default first. A knob's default value is no point of its own; find it by knobPoint. `quick`: the ends of a few
-/// knobs and of the joint sweep, one technique.
-std::vector<SweepPoint> sweepPoints(bool quick);
+/// Of the joint sweep and the default alone presets are chosen; quick are the ends of two knobs, a joint point and one
+/// technique, to try whether it runs.
+enum class SweepPart { All, Joint, Quick };
+/// The default first. A knob's default value is no point of its own; find it by knobPoint.
+std::vector<SweepPoint> sweepPoints(SweepPart part);
 /// Name of the point of a knob's value.
 std::string knobPoint(const Knob& knob, const std::string& value);
 /// Name of the point that a preset is.
