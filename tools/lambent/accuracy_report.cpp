@@ -1,7 +1,7 @@
 // lambent accuracy SCENE... --report: what accuracy costs in time. Measures the sweeps of gi/measure/runs/sweeps.h in
 // each scene (sweep.cpp), and writes one page with everything in it (index.html), and points.csv.
 #include "engine/core/error.h"
-#include "engine/platform/gl_context.h"
+#include "tools/lambent/html.h"
 #include "tools/lambent/linear_picture.h"
 #include "tools/lambent/scatter.h"
 #include "tools/lambent/sweep_figures.h"
@@ -10,11 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <iterator>
 #include <set>
-#include <thread>
 
 namespace lambent {
 
@@ -153,43 +149,6 @@ const std::vector<TableColumn> kVerdictColumns{{"knob", "setting"},
                                                {"buys", "buys"},
                                                {"monotone", "dearer at each step"}};
 
-std::string htmlTable(const std::vector<TableColumn>& columns, const nlohmann::json& rows) {
-  std::string out = "<table><tr>";
-  const auto text = [](std::string cell) { // without what Markdown needs
-    std::erase(cell, '\\');
-    return escaped(cell);
-  };
-  for (const TableColumn& c : columns) out += "<th>" + text(c.title) + "</th>";
-  out += "</tr>\n";
-  for (const nlohmann::json& row : rows) {
-    out += "<tr>";
-    for (const TableColumn& c : columns) out += "<td>" + text(cellText(c, row)) + "</td>";
-    out += "</tr>\n";
-  }
-  return out + "</table>\n";
-}
-
-std::string base64(const std::string& bytes) {
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
-    for (size_t k = 0; k < 4; ++k) out += i + k < bytes.size() + 1 ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
-
-/// A picture inside the page.
-std::string htmlPicture(const fs::path& folder, const std::string& name, const Image& shown, const std::string& under) {
-  const fs::path file = folder / (name + ".png");
-  writeShown(file.string(), shown);
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return "<figure><img alt='" + escaped(under) + "' src='data:image/png;base64," + base64(bytes) + "'><figcaption>" +
-         escaped(under) + "</figcaption></figure>\n";
-}
-
 /// Relative error as relMSE counts it: white 0, black kBlackAt and more.
 Image heatOf(const Image& picture, const Image& truth) {
   Image heat = truth;
@@ -306,33 +265,6 @@ nlohmann::json presetRows(const Choice& choice) {
   return rows;
 }
 
-std::string machineLine() {
-  std::string renderer = "?", cpu = "?";
-  for (const auto& [name, value] : GlContext::headless().info())
-    if (name == "renderer") renderer = value;
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) {
-      cpu = line.substr(line.find(':') + 2);
-      break;
-    }
-  const std::time_t now = std::time(nullptr);
-  char date[16] = "";
-  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  return std::to_string(std::thread::hardware_concurrency()) + " threads of " + cpu + "; OpenGL: " + renderer + "; " +
-         date;
-}
-
-constexpr const char* kStyle =
-    "body{font:15px/1.45 sans-serif;max-width:1320px;margin:2em auto;padding:0 1em;color:#111;background:#fff}"
-    "table{border-collapse:collapse;margin:.6em 0;font-size:13px}th,td{border:1px solid #bbb;padding:2px "
-    "7px;text-align:right}"
-    "td:first-child,th:first-child{text-align:left}figure{display:inline-block;margin:4px;vertical-align:top;width:"
-    "320px}"
-    "figure img{width:320px;image-rendering:pixelated;border:1px solid #999}figcaption{font-size:12px}"
-    ".pair{display:inline-block;white-space:nowrap}.pair figcaption{white-space:normal}svg{max-width:100%;height:auto}"
-    "details{margin:.6em 0}@media print{details{display:block}h2{break-before:page}}";
-
 } // namespace
 
 void accuracyReport(const AccuracyOptions& options) {
@@ -367,15 +299,13 @@ void accuracyReport(const AccuracyOptions& options) {
   const std::string front =
       svgOf({frontPlot("All scenes", all, State::Moving, true), frontPlot("All scenes", all, State::Still, true)}, 2,
             540, 380);
-  std::string page =
-      "<!doctype html><html lang='en'><meta charset='utf-8'><title>What accuracy costs in time</title><style>" +
-      std::string(kStyle) + "</style><h1>What accuracy costs in time</h1>\n<p>";
+  std::string page = htmlHead("What accuracy costs in time") + "<p>";
   for (const std::string& name : names) page += (name == names[0] ? "" : ", ") + escaped(name);
   page +=
       format(". %d frames along each shot, then %d standing where these end; error is relMSE of indirect irradiance "
              "against path tracing of that view, time the median of a frame. Bars: one standard error. ",
              frames.moving, frames.still) +
-      escaped(machineLine()) + ".</p>\n<p>Made by <code>lambent accuracy SHOT... --report</code>.</p>\n" + front +
+      escaped(machineText()) + ".</p>\n<p>Made by <code>lambent accuracy SHOT... --report</code>.</p>\n" + front +
       "<p>Points of the front, left of and below which there is none:</p>";
   const std::vector<TableColumn> relativeColumns{
       {"number", ""}, {"point", "point"}, {"time", "time", "%.2f x"}, {"error", "error", "%.2f x"}};

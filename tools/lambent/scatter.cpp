@@ -1,6 +1,6 @@
 #include "tools/lambent/scatter.h"
 
-#include "tools/lambent/text.h"
+#include "tools/lambent/html.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,12 +101,6 @@ std::string marksOf(const Scatter& plot, const LogAxis& x, const LogAxis& y) {
 }
 
 } // namespace
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
 
 std::string svgOf(const std::vector<Scatter>& plots, size_t perRow, int width, int height) {
   const double cellWidth = kLeft + width + kRight, cellHeight = kTop + height + kBelow;

@@ -31,7 +31,4 @@ struct Scatter {
 /// So many side by side; each frame of this size in pixels.
 std::string svgOf(const std::vector<Scatter>& plots, size_t perRow, int width, int height);
 
-/// For text inside SVG and HTML.
-std::string escaped(const std::string& text);
-
 } // namespace lambent
