@@ -1,11 +1,14 @@
 #include "gi/measure/runs/sweeps.h"
 
+#include "gi/measure/front.h"
 #include "gi/plan/techniques.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 namespace lambent {
 namespace {
@@ -43,6 +46,44 @@ TEST(Sweeps, PointsCanBeSetAndDiffer) {
     for (const char* value : knob.values) EXPECT_TRUE(names.count(knobPoint(knob, value))) << knob.setting << value;
   for (SweepPart part : {SweepPart::Joint, SweepPart::Quick})
     for (const SweepPoint& point : sweepPoints(part)) EXPECT_TRUE(names.count(point.name)) << point.name;
+}
+
+/// What the report measured when presets were last chosen (docs/measurements/presets.md).
+TEST(Presets, AreTheLadderOfWhatWasMeasured) {
+  std::ifstream in("docs/measurements/presets.csv");
+  ASSERT_TRUE(in) << "run from the root of the source tree";
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> out;
+    std::istringstream rest(line);
+    for (std::string cell; std::getline(rest, cell, ',');) out.push_back(cell);
+    return out;
+  };
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> head = cells(line);
+  const auto column = [&](const char* name) { return size_t(std::ranges::find(head, name) - head.begin()); };
+  std::vector<std::string> names;
+  std::vector<CostError> points;
+  while (std::getline(in, line)) {
+    const std::vector<std::string> row = cells(line);
+    ASSERT_GT(row.size(), std::max({column("point"), column("time"), column("error")})) << line;
+    names.push_back(row[column("point")]);
+    points.push_back({std::stod(row[column("time")]), std::stod(row[column("error")])});
+  }
+  const std::vector<size_t> ladder = ladderOf(points);
+  ASSERT_EQ(ladder.size(), presetTable().size());
+  for (size_t i = 0; i < ladder.size(); ++i) {
+    const Preset& preset = presetTable()[i];
+    EXPECT_EQ(presetPoint(preset), names[ladder[i]]);
+    EXPECT_NEAR(preset.time, points[ladder[i]].cost, 0.005) << preset.name;
+    EXPECT_NEAR(preset.error, points[ladder[i]].error, 0.005) << preset.name;
+  }
+}
+
+TEST(Presets, MediumIsTheDefault) {
+  Settings settings;
+  applyPreset(settings, "medium");
+  EXPECT_TRUE(settings == Settings{});
 }
 
 } // namespace

@@ -1,0 +1,93 @@
+#include "gi/plan/governor.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Scale at which a frame that takes `ms` at this one would take `targetMs`, if all its cost were the pixels'.
+double scaleFor(double scale, double ms, double targetMs) { return scale * std::sqrt(targetMs / ms); }
+
+double timeOf(const Settings& settings) {
+  for (const Preset& preset : presetTable()) {
+    Settings same = settings;
+    applyPreset(same, preset.name);
+    if (same == settings) return preset.time;
+  }
+  return 1; // as the default's
+}
+
+/// The dearest preset whose picture need not be too small for the target, else the cheapest.
+void choosePreset(Governed& g, double ms, double targetMs, const GovernorGains& gains) {
+  const double now = timeOf(g.settings);
+  const Preset* chosen = &presetTable().front();
+  for (const Preset& preset : presetTable())
+    if (scaleFor(g.scale, ms * preset.time / now, targetMs) >= double(gains.easy)) chosen = &preset;
+  g.preset = chosen->name;
+  applyPreset(g.settings, g.preset);
+  g.scale = float(scaleFor(g.scale, ms * chosen->time / now, targetMs));
+}
+
+} // namespace
+
+const char* paceText(Pace pace) {
+  constexpr const char* texts[] = {"calibrating", "holding the target", "too slow at the least scale",
+                                   "faster than the target"};
+  return texts[int(pace)];
+}
+
+Governed governed(Governed g, double ms, double targetMs, const GovernorGains& gains) {
+  CHECK(targetMs > 0 && ms >= 0);
+  const size_t window = size_t(std::clamp(std::lround(1000 * gains.window / targetMs), 3l, 24l));
+  if (++g.frames <= (g.calibrated ? gains.after : gains.warmup)) return g;
+  g.ms.push_back(std::max(ms, 1e-3));
+  if (g.ms.size() > window) g.ms.erase(g.ms.begin());
+
+  const float before = g.scale;
+  const Settings settingsBefore = g.settings;
+  const double target = gains.aim * targetMs;
+  if (!g.calibrated) {
+    if (int(g.ms.size()) < std::min(gains.calibration, int(window))) return g;
+    const double least = *std::ranges::min_element(g.ms);
+    if (g.choosesPreset)
+      choosePreset(g, least, target, gains);
+    else
+      g.scale = float(scaleFor(g.scale, least, target));
+    g.calibrated = true;
+    g.pace = Pace::Holding;
+  } else {
+    // A single slow frame is an accident; two that are far too slow are not.
+    const double twice = g.ms.size() >= 2 ? std::min(g.ms.back(), g.ms[g.ms.size() - 2]) : 0;
+    const bool full = g.ms.size() == window;
+    const double cost = full ? medianOf(g.ms) : twice;
+    const bool tooLong = twice > (1 + gains.urgent) * targetMs || (full && cost > (1 + gains.above) * targetMs);
+    const bool tooShort = full && cost < (1 - gains.below) * targetMs;
+    if (tooLong) g.scale = float(scaleFor(g.scale, std::max(cost, twice), target));
+    if (tooShort) g.scale = float(scaleFor(g.scale, cost, target));
+    if (full || tooLong)
+      g.pace = tooLong && before <= gains.least ? Pace::TooSlow : tooShort && before >= 1 ? Pace::Idle : Pace::Holding;
+  }
+  g.scale = std::clamp(g.scale, gains.least, 1.0f);
+  const bool end = g.scale == 1 || g.scale == gains.least; // is worth a small step
+  if (std::abs(g.scale - before) < gains.step * before && !(end && g.scale != before)) g.scale = before;
+  if (g.scale != before || !(g.settings == settingsBefore)) g.ms.clear(), g.frames = 0;
+  return g;
+}
+
+CameraView scaled(CameraView camera, float scale) {
+  camera.width = std::max(1, int(std::lround(float(camera.width) * scale)));
+  camera.height = std::max(1, int(std::lround(float(camera.height) * scale)));
+  return camera;
+}
+
+} // namespace lambent
