@@ -58,18 +58,19 @@ void Hud::say(std::string message) {
   if (messages_.size() > kMost) messages_.pop_front();
 }
 
-void Hud::draw(HudModel& model, GiFrame& gi, const FrameStats& stats) {
+void Hud::draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  if (model.panel) drawPanel(model, gi, stats);
+  if (model.panel) drawPanel(model, gi, truth, stats);
+  drawTruthLegend(truth, model.buffer);
   if (model.help) drawHelp();
   drawMessages();
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
+void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
   ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
   const float height = ImGui::GetIO().DisplaySize.y - 16;
   ImGui::SetNextWindowSize({340, std::min(620.0f, height)}, ImGuiCond_FirstUseEver);
@@ -86,6 +87,9 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats) {
   if (choose("preset", presetNames(), model.preset))
     change(gi.settings(), [&](Settings& s) { applyPreset(s, model.preset); });
   if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
+
+  if (truth.mode() != TruthMode::Off && ImGui::CollapsingHeader("Truth", ImGuiTreeNodeFlags_DefaultOpen))
+    drawTruthFigures(truth);
 
   ImGui::Separator();
   ImGui::Checkbox("paused", &model.paused);

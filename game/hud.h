@@ -1,6 +1,7 @@
 // The panel over the picture: what is shown, where the time goes, and every setting.
 #pragma once
 
+#include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 
 #include <deque>
@@ -40,10 +41,10 @@ class Hud {
   /// One line at the bottom, for some seconds.
   void say(std::string message);
   /// Draws into the framebuffer that is bound, over the picture of the last GiFrame::run.
-  void draw(HudModel& model, GiFrame& gi, const FrameStats& stats);
+  void draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
 
  private:
-  void drawPanel(HudModel& model, GiFrame& gi, const FrameStats& stats);
+  void drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawSettings(Settings& settings);

@@ -16,6 +16,8 @@ std::vector<std::pair<const char*, const char*>> keyHelp() {
           {"L", "carry a lamp"},
           {"P", "stop and start time"},
           {"F", "follow the shot's camera path"},
+          {"V", "path-traced truth: split view, error heat map, off"},
+          {"Left, Right / mouse", "move the split's divider"},
           {"R", "record a camera key into a shot"},
           {"Tab", "panel"},
           {"F1", "these keys"},
@@ -47,10 +49,12 @@ Wishes Interaction::read(bool keysTaken, bool mouseTaken) {
     w.lamp = tapped(GLFW_KEY_L);
     w.recordKey = tapped(GLFW_KEY_R);
     w.followPath = tapped(GLFW_KEY_F);
+    w.truth = tapped(GLFW_KEY_V);
     const auto held = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0f : 0.0f; };
     const float up = glm::max(held(GLFW_KEY_E), held(GLFW_KEY_SPACE));
     const float down = glm::max(held(GLFW_KEY_Q), held(GLFW_KEY_LEFT_CONTROL));
     w.move.direction = {held(GLFW_KEY_D) - held(GLFW_KEY_A), up - down, held(GLFW_KEY_S) - held(GLFW_KEY_W)};
+    w.divider = held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT);
     w.move.fast = held(GLFW_KEY_LEFT_SHIFT) > 0 || held(GLFW_KEY_RIGHT_SHIFT) > 0;
   }
 
@@ -63,6 +67,11 @@ Wishes Interaction::read(bool keysTaken, bool mouseTaken) {
     w.move.look = kRadiansPerPixel * vec2(float(x - cursorX_), float(cursorY_ - y));
   }
   looking_ = looking;
+  if (!mouseTaken && glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    w.dividerAt = float(x) / float(std::max(width, 1));
+  }
   cursorX_ = x;
   cursorY_ = y;
   return w;

@@ -5,6 +5,7 @@
 #include "game/player.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 struct GLFWwindow;
@@ -16,6 +17,9 @@ struct Wishes {
   MoveInput move;
   bool quit = false, pause = false, help = false, panel = false, followPath = false;
   bool lamp = false, recordKey = false, screenshot = false, reloadShaders = false;
+  bool truth = false;             // the next way to look at it
+  float divider = 0;              // -1 to the left, 1 to the right
+  std::optional<float> dividerAt; // where the mouse draws it, share of the window's width
 };
 
 /// Key and meaning, for the help text.

@@ -6,6 +6,7 @@
 #include "game/hud.h"
 #include "game/interaction.h"
 #include "game/player.h"
+#include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 #include "tools/launch/launch.h"
 
@@ -31,6 +32,7 @@ struct GameOptions {
   std::string buffer = "beauty";
   std::optional<int> frames; // for tests: quit after so many
   std::string screenshot;    // for tests: what the window shows at the end
+  std::string truth;         // for tests: split or heat from the start
 };
 
 class Walkthrough {
@@ -40,7 +42,7 @@ class Walkthrough {
         diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, diameter_),
         context_(GlContext::window("Lambent", stage_->camera.width, stage_->camera.height)),
         gi_(stage_->settings, stage_->seed), hud_(context_.handle()), interaction_(context_.handle()),
-        recorder_(scene_.file) {
+        recorder_(scene_.file), truth_(stage_->seed) {
     for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << warning << "\n";
     for (const std::string& note : stage_->notes) hud_.say(note);
     // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
@@ -55,6 +57,7 @@ class Walkthrough {
     const double duration = shot_ ? shot_->seconds : longest;
     model_.duration = duration > 0 ? duration : 1;
     hud_.say("F1 shows the keys");
+    if (!options.truth.empty()) showTruth(options.truth == "heat" ? TruthMode::Heat : TruthMode::Split);
   }
 
   void run() {
@@ -63,7 +66,8 @@ class Walkthrough {
       const auto now = Clock::now();
       const double seconds = options_.frames ? kTestFrameSeconds : std::chrono::duration<double>(now - before).count();
       before = now;
-      if (!options_.frames) keepUp(i, seconds);
+      const bool sizeMayChange = truth_.mode() == TruthMode::Off; // another size is another truth
+      if (!options_.frames && sizeMayChange) keepUp(i, seconds);
       frame(seconds);
       if (options_.frames && i + 1 == *options_.frames && !options_.screenshot.empty())
         writeScreenshot(options_.screenshot);
@@ -110,10 +114,11 @@ class Walkthrough {
     const SceneView view = extractor_.extract(scene_, player_.view(width, height), model_.time);
     const FrameStats& stats = gi_.run(view, [this](int done, int total) { showProgress(done, total); });
 
-    gi_.present(model_.buffer, 0, windowWidth, windowHeight);
+    truth_.update(view, gi_, stats, model_.buffer, options_.frames.has_value());
+    truth_.present(gi_, model_.buffer, windowWidth, windowHeight);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, windowWidth, windowHeight);
-    hud_.draw(model_, gi_, stats);
+    hud_.draw(model_, gi_, truth_, stats);
     if (screenshotWanted_) report([&] { return saveNumberedScreenshot(); });
   }
 
@@ -138,6 +143,12 @@ class Walkthrough {
     constexpr float kLongestStep = 0.25f;
     player_.setSpeed(model_.speed);
     player_.move(wishes.move, std::min(seconds, kLongestStep));
+    if (wishes.truth) showTruth(nextMode(truth_.mode()));
+    if (truth_.mode() == TruthMode::Split) {
+      constexpr float kSharePerSecond = 0.5f;
+      truth_.moveDivider(kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider);
+      truth_.divider = wishes.dividerAt.value_or(truth_.divider);
+    }
     screenshotWanted_ = wishes.screenshot;
     if (wishes.recordKey) report([&] { return recorder_.addKey(player_, scene_.origin); });
     if (wishes.reloadShaders) {
@@ -145,6 +156,15 @@ class Walkthrough {
       for (const std::string& message : messages) hud_.say(message);
       if (messages.empty()) hud_.say("no shader file has changed");
     }
+  }
+
+  /// A truth accumulates while nothing moves: time stands still with it, and goes on after it.
+  void showTruth(TruthMode mode) {
+    const bool was = truth_.mode() != TruthMode::Off, is = mode != TruthMode::Off;
+    truth_.set(mode);
+    if (was == is) return;
+    if (is && !model_.paused) hud_.say("time stands still while paths are traced (P: let it run, and they start anew)");
+    model_.paused = is ? (pausedBefore_ = model_.paused, true) : pausedBefore_;
   }
 
   /// Keeps a point light a little below and before the player's eyes while the lamp is carried.
@@ -214,6 +234,8 @@ class Walkthrough {
   HudModel model_;
   std::optional<Entity> lamp_;
   double typicalSeconds_ = 1e9; // the fastest of the frames that keepUp looks at, seconds
+  TruthView truth_;
+  bool pausedBefore_ = false; // when the truth was asked for
   bool screenshotWanted_ = false;
 };
 
@@ -229,6 +251,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("--buffer", options.buffer, "what to show first: beauty, indirect, vpls, ...");
   app.add_option("--frames", options.frames)->check(CLI::Range(0, 1000000))->group("");
   app.add_option("--screenshot", options.screenshot)->group("");
+  app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

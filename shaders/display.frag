@@ -3,7 +3,8 @@
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
 // and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
 // patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes), DAYLIGHT (EMITTED: of
-// the sky), LUMA (alpha: see antialias.frag).
+// the sky), LUMA (alpha: see antialias.frag), ERROR (how far the value is from a truth, mean of the channels).
+#include "shared/error_color.h"
 #include "shared/tone_map.h"
 #if defined(GLOSSY) || defined(DAYLIGHT)
 #include "lib/gbuffer.glsl"
@@ -29,6 +30,11 @@ layout(location = 0) out vec4 outColor;
 layout(binding = 5) uniform sampler2D patchNormals; // PatchPyramid::normalLo
 uniform int patchLevels;
 uniform int finestPatch; // level
+#endif
+
+#ifdef ERROR
+layout(binding = 6) uniform sampler2D truth; // as the source, with all that the variants make of it
+uniform float fullError;
 #endif
 
 #ifdef LUMA
@@ -77,6 +83,10 @@ void main() {
     outColor = vec4(0.0, 1.0, 1.0, kMark);
     return;
   }
+#ifdef ERROR
+  outColor = vec4(errorColor(dot(value - texelFetch(truth, pixel, 0).rgb, vec3(1.0 / 3.0)) / fullError), 1.0);
+  return;
+#endif
   value = max(value * factor, 0.0);
   value = toneMapped(value, toneMapper);
 #ifdef PATCHES

@@ -1,7 +1,21 @@
 #version 450
-// A finished picture, scaled to the target.
+// A finished picture, scaled to the target; SPLIT: another one right of the divider.
 layout(binding = 0) uniform sampler2D picture; // already display-encoded, bilinear
 uniform vec2 targetSize;
+#ifdef SPLIT
+layout(binding = 1) uniform sampler2D right; // likewise
+uniform float divider;                       // pixels of the target, from the left
+#endif
 layout(location = 0) out vec4 outColor;
 
-void main() { outColor = vec4(texture(picture, gl_FragCoord.xy / targetSize).rgb, 1.0); }
+void main() {
+  vec2 at = gl_FragCoord.xy / targetSize;
+#ifdef SPLIT
+  const float kHalfLine = 1.0; // pixels
+  float beyond = gl_FragCoord.x - divider;
+  vec4 left = texture(picture, at), beside = texture(right, at);
+  outColor = abs(beyond) < kHalfLine ? vec4(1.0) : vec4(beyond > 0.0 ? beside.rgb : left.rgb, 1.0);
+#else
+  outColor = vec4(texture(picture, at).rgb, 1.0);
+#endif
+}

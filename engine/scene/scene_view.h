@@ -66,6 +66,8 @@ struct SceneChanges {
   bool lights = true;    // any light added, removed, moved or changed; sky
   bool geometry = true;  // any instance moved or was reshaped
   bool instances = true; // instances were added or removed
+
+  bool any() const { return first || camera || lights || geometry || instances; }
 };
 
 struct SceneView {

@@ -85,14 +85,16 @@ std::vector<Sprite> spritesOf(const VplSet& set) {
 
 } // namespace
 
-const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, const Look& look) {
-  const bool smooth = look.antiAliasing == AntiAliasing::Edges && hasEdgesToSmooth(buffer);
-  draw(buffer, frame, look, smooth);
+const gl::Texture& DisplayPass::run(Buffer buffer, const FrameResults& frame, const Look& look,
+                                    const ErrorView& error) {
+  const bool smooth = look.antiAliasing == AntiAliasing::Edges && hasEdgesToSmooth(buffer) && !error.truth;
+  draw(buffer, frame, look, error, smooth);
   if (smooth) antiAlias();
   return display_;
 }
 
-void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& look, bool smooth) {
+void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error,
+                       bool smooth) {
   const gl::PassScope scope = context_.scope(StageId::Display);
   const int width = frame.surfaces.width, height = frame.surfaces.height;
   if (!black_) {
@@ -127,6 +129,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     for (const std::string& variant : backgroundVariants(frame.sky)) view.defines.push_back(variant);
   }
   if (smooth) view.defines.push_back("LUMA");
+  if (error.truth) view.defines.push_back("ERROR");
   const gl::Program& program = context_.programs.get({.fragment = "display.frag", .defines = view.defines});
   program.use();
   program.set("factor", view.factor);
@@ -139,6 +142,10 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     program.set("patchLevels", frame.patches->levels);
     program.set("finestPatch", frame.gathered.deinterleaved ? 2 : 0);
     frame.patches->normalLo->bind(5);
+  }
+  if (error.truth) {
+    program.set("fullError", error.full);
+    error.truth->bind(6);
   }
   (view.source ? view.source : &black_)->bind(2);
   frame.surfaces.albedo->bind(3);
@@ -189,12 +196,18 @@ void DisplayPass::drawVpls(const FrameResults& frame) {
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
 
-void DisplayPass::present(uint32_t framebuffer, int width, int height) {
+void DisplayPass::present(uint32_t framebuffer, int width, int height, const gl::Texture* right, float divider) {
   const gl::PassScope scope = context_.scope(StageId::Present);
-  const gl::Program& program = context_.programs.get({.fragment = "present.frag"});
+  std::vector<std::string> defines;
+  if (right) defines.push_back("SPLIT");
+  const gl::Program& program = context_.programs.get({.fragment = "present.frag", .defines = std::move(defines)});
   program.use();
   program.set("targetSize", vec2(width, height));
   display_.bind(0);
+  if (right) {
+    program.set("divider", divider * float(width));
+    right->bind(1);
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();

@@ -48,6 +48,7 @@ struct GiFrame::Kept {
   FilterPass filter{context};
   CompositePass composite{context};
   DisplayPass display{context};
+  TruthDisplay truth{context};
   std::unique_ptr<LightSource> source; // below the world, which its update reads
   VplSource sourceOf = VplSource::None;
 
@@ -238,6 +239,24 @@ void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height
   const gl::StateGuard guard;
   if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
   kept_->display.run(buffer, kept_->results, kept_->look());
+  kept_->display.present(framebuffer, width, height);
+}
+
+void GiFrame::takeTruth(const Image& truth) {
+  const gl::StateGuard guard;
+  kept_->truth.take(truth, kept_->results);
+}
+
+void GiFrame::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
+  const gl::Texture& truth = kept_->truth.run(buffer, kept_->results, kept_->look());
+  kept_->display.run(buffer, kept_->results, kept_->look());
+  kept_->display.present(framebuffer, width, height, &truth, divider);
+}
+
+void GiFrame::presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
+  kept_->display.run(buffer, kept_->results, kept_->look(), {&kept_->truth.linear(), full});
   kept_->display.present(framebuffer, width, height);
 }
 

@@ -68,6 +68,16 @@ class GiFrame {
   /// Draws the last frame as shown on a display into the framebuffer bound as `framebuffer`, scaled to its size.
   void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
 
+  // A truth of the last frame's view beside the picture. Of beauty, direct, indirect or irradiance only.
+
+  /// Takes it over: linear, of the picture's size, as read() gives the buffer.
+  void takeTruth(const Image& truth);
+  /// present; right of `divider`, a share of the width, the truth of the buffer, shown alike.
+  void presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const;
+  /// Draws how far the buffer is from its truth (shaders/shared/error_color.h); `full`: the error that has the full
+  /// colour, in the buffer's unit.
+  void presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const;
+
   /// Shadow maps of the present VPLs held against each other and against rays, as `view` (the last one run) sees them.
   ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
                                     const std::function<void(int, int)>& progress = {});

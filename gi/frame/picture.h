@@ -72,20 +72,27 @@ struct Look {
   AntiAliasing antiAliasing = AntiAliasing::Off; // of beauty, direct and indirect
 };
 
+/// Draws the error of a buffer of light in place of the buffer (shaders/shared/error_color.h).
+struct ErrorView {
+  const gl::Texture* truth = nullptr; // linear, of the same buffer and size; null: the buffer itself is drawn
+  float full = 1;                     // error with the full colour, in the buffer's unit
+};
+
 class DisplayPass {
  public:
   explicit DisplayPass(PassContext context) : context_(context) {}
 
   /// Draws `buffer` as a display shows it into a texture (RGB8, sRGB-encoded, dithered; alpha means nothing) of the
   /// picture's size.
-  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
-  /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height.
-  void present(uint32_t framebuffer, int width, int height);
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error = {});
+  /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height. With `right`, that
+  /// takes its place right of `divider`, a share of the width, and a line parts them.
+  void present(uint32_t framebuffer, int width, int height, const gl::Texture* right = nullptr, float divider = 1);
   /// The texture of the last run.
   Image8 read() const;
 
  private:
-  void draw(Buffer buffer, const FrameResults& frame, const Look& look, bool smooth);
+  void draw(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error, bool smooth);
   void antiAlias();
   void drawVpls(const FrameResults& frame);
 
@@ -94,6 +101,23 @@ class DisplayPass {
   gl::Framebuffer framebuffer_;
   gl::Ring sprites_{"display/vpls"};
   gl::VertexArray spriteArray_;
+};
+
+/// A truth of what is shown, made on the CPU, as a display shows it.
+class TruthDisplay {
+ public:
+  explicit TruthDisplay(PassContext context) : context_(context), display_(context) {}
+
+  /// Takes the truth of a buffer over: beauty, direct, indirect or irradiance; linear, row 0 at the top.
+  void take(const Image& truth, const FrameResults& frame);
+  /// It, drawn as the frame's own buffer would be. It was taken for a frame of this size.
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
+  const gl::Texture& linear() const { return linear_; }
+
+ private:
+  PassContext context_;
+  gl::Texture linear_;
+  DisplayPass display_;
 };
 
 /// Linear values of a buffer: radiance for beauty, direct (emission and background included: beauty − indirect),

@@ -9,8 +9,6 @@ namespace {
 
 constexpr SceneChanges kAllChanged{true, true, true, true, true};
 
-bool anyChange(const SceneChanges& c) { return c.first || c.camera || c.lights || c.geometry || c.instances; }
-
 /// All maps are drawn anew when their reach changes, so it leaves room to grow.
 float reachOf(const SceneView& view, float before) {
   const float wanted = std::max(view.boundsWorld.diameter(), 1e-20f); // all in one place, as far as floats tell
@@ -69,7 +67,7 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
     view.changes = kAllChanged;
     plan = planEffects(view, settings, facts);
   }
-  const bool changed = anyChange(view.changes);
+  const bool changed = view.changes.any();
   untold_ = !everything() && (untold_ || changed);
   unseen_ = !plan.on(EffectId::Redraw) && (unseen_ || changed);
   return plan;

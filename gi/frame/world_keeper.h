@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gl/program.h"
+#include "engine/scene/view_copy.h"
 #include "engine/trace/embree_query.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/world.h"

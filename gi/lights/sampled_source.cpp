@@ -1,6 +1,8 @@
 // When the set of VPLs is updated, and what the GPU gets of it.
 #include "gi/lights/sampled_source.h"
 
+#include "engine/scene/view_copy.h"
+
 #include <algorithm>
 #include <chrono>
 #include <iterator>

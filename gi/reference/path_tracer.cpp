@@ -213,6 +213,7 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
   std::vector<RayCounts> perBlock((pixels + kBlockPixels - 1) / kBlockPixels);
   parallelFor(perBlock.size(), 1, [&](size_t firstBlock, size_t lastBlock) {
     for (size_t block = firstBlock; block < lastBlock; ++block) {
+      if (in.stopped && *in.stopped) return;
       const size_t begin = block * kBlockPixels, end = std::min(begin + kBlockPixels, pixels);
       const std::vector<SurfaceHit> primary = primaryHits(in.rays, in.camera, begin, end);
       perBlock[block].closest += primary.size();

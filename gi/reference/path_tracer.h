@@ -9,6 +9,8 @@
 #include "engine/core/image.h"
 #include "gi/vpl/light_set.h"
 
+#include <atomic>
+
 namespace lambent {
 
 struct ReferenceInputs {
@@ -21,6 +23,9 @@ struct ReferenceInputs {
   /// Primary hits reflect by the roughness and metalness of this view's materials, as with gather.glossy; null:
   /// Lambert.
   const SceneView* glossy = nullptr;
+  /// Where another thread sets it, addSamples returns soon; what it has added is then part of a pass, and good for
+  /// nothing.
+  const std::atomic<bool>* stopped = nullptr;
 };
 
 /// Sums over the samples of one pixel. `direct` and `indirect` are irradiance/π: what a white surface would reflect;

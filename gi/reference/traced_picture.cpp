@@ -64,19 +64,22 @@ float exposureFor(std::span<const vec3> radiance) {
   return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
 }
 
+bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer) {
+  return settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&
+         buffer != ReferenceBuffer::Irradiance;
+}
+
 TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
   rays.update(view);
   const LightSet lights = collectLights(view);
-  const bool glossy = settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&
-                      plan.buffer != ReferenceBuffer::Irradiance;
   const ReferenceInputs in{.rays = rays,
                            .lights = lights,
                            .camera = view.camera,
                            .bounces = settings.smc.bounces,
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
-                           .glossy = glossy ? &view : nullptr};
+                           .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr};
   TracedPicture out{.bounces = in.bounces, .clamp = in.clamp};
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);
   if (out.samples == 0) return out;

@@ -31,8 +31,11 @@ struct TracedPicture {
   double sampleSeconds = 0; // that one sample of every pixel took, without what is made once; 0: none was taken anew
 };
 
-/// Glossy where the settings say so, except irradiance, which does not depend on how it is reflected. Throws InputError
-/// for a state file of another picture.
+/// Whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance, which
+/// does not depend on how it is reflected.
+bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
+
+/// Throws InputError for a state file of another picture.
 TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
 /// The exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame

@@ -1,4 +1,4 @@
-#include "gi/contract/world.h"
+#include "engine/scene/view_copy.h"
 
 namespace lambent {
 

@@ -1,0 +1,166 @@
+// What the panel and the picture tell of the truth.
+#include "game/truth_view.h"
+#include "shaders/shared/error_color.h"
+
+#include <imgui/imgui.h>
+
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// Three digits at least, whatever the size.
+std::string number(double value, const char* unit = "") {
+  if (!std::isfinite(value)) return "?";
+  char text[32];
+  std::snprintf(text, sizeof text, value >= 100 ? "%.0f%s" : "%.3g%s", value, unit);
+  return text;
+}
+
+std::string percent(double share, const char* format = "%.2f %%") {
+  if (!std::isfinite(share)) return "?";
+  char text[32];
+  std::snprintf(text, sizeof text, format, 100 * share);
+  return text;
+}
+
+void row(const char* name, const std::string& picture, const std::string& truth, const char* help) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(name);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(picture.c_str());
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(truth.c_str());
+}
+
+std::string plural(int count, const char* noun) { return std::to_string(count) + " " + noun + (count == 1 ? "" : "s"); }
+
+const std::string& nameOf(ReferenceBuffer buffer) {
+  static const Buffer kShown[] = {Buffer::Beauty, Buffer::Direct, Buffer::Indirect, Buffer::Irradiance};
+  for (const Buffer shown : kShown)
+    if (referenceOf(shown) == buffer) return bufferNames()[size_t(shown)];
+  return bufferNames()[0];
+}
+
+/// What may be said of the picture's error for the present.
+std::string verdict(const AgainstTruth& against) {
+  if (const std::optional<double> own = against.pictureRmse())
+    return "GI's own RMSE: " + percent(*own / against.error.meanTruth) + " of the mean";
+  return "mostly the truth's own noise so far";
+}
+
+/// From -1 to 1.
+void drawColorBar(float width, float height) {
+  constexpr int kSteps = 64;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (int i = 0; i < kSteps; ++i) {
+    const vec3 c = errorColor((float(i) + 0.5f) * 2 / kSteps - 1);
+    list->AddRectFilled({at.x + width * float(i) / kSteps, at.y}, {at.x + width * float(i + 1) / kSteps, at.y + height},
+                        ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
+  }
+  ImGui::Dummy({width, height});
+}
+
+/// Text that ends at the right, stands in the middle or begins at the left of a line: `at` 1, 0.5 or 0.
+void textAt(float at, float width, const std::string& text) {
+  const float left = ImGui::GetStyle().WindowPadding.x;
+  ImGui::SetCursorPosX(left + at * (width - ImGui::CalcTextSize(text.c_str()).x));
+  ImGui::TextUnformatted(text.c_str());
+}
+
+} // namespace
+
+void drawTruthFigures(TruthView& view) {
+  const LiveTruth* truth = view.truth();
+  if (!truth) {
+    ImGui::TextWrapped("the truth starts anew: %s", view.reason().c_str());
+    return;
+  }
+  const AgainstTruth& a = view.against();
+  const FramesSpent& spent = view.spent();
+  const bool single = truth->samples < 2;
+  ImGui::Text("%s, path traced: %s, %s", nameOf(truth->buffer).c_str(), plural(int(truth->samples), "sample").c_str(),
+              plural(truth->bounces, "bounce").c_str());
+  if (ImGui::BeginTable("truth", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 75);
+    ImGui::TableSetupColumn("GI's error");
+    ImGui::TableSetupColumn("the truth's own");
+    ImGui::TableHeadersRow();
+    const auto own = [&](const std::string& text) { return single ? "?" : text; };
+    row("RMSE", number(a.error.rmse), own(number(a.truthRmse)),
+        "root of the mean squared difference, over all pixels and channels; beside it what to expect of\n"
+        "the truth by its standard error. GI's figure holds both.");
+    const double mean = a.error.meanTruth;
+    row("of the mean", percent(a.error.rmseShare()), own(percent(a.truthRmse / mean)), "RMSE over the truth's mean");
+    row("relMSE", number(a.error.relMse), own(number(a.truthRelMse)), "mean of (a - b)^2 / (b^2 + 0.01)");
+    row("bias", percent(a.error.bias, "%+.2f %%"), own(percent(a.truthBias, "\u00b1%.2f %%")),
+        "mean of the difference over the truth's mean");
+    row("ms", spent.drawn ? number(spent.typicalMs(), " a frame") : "no frame drawn",
+        number(truth->ms / truth->samples, " a sample"),
+        "median of the frames that drew a picture since anything changed, a settled one stays. Paths that are\n"
+        "traced beside them take their share of the machine: lambent bench tells times alone.");
+    row("ms in all", number(spent.ms) + " in " + plural(spent.drawn, "frame"), number(truth->ms),
+        "spent on this view so far");
+    ImGui::EndTable();
+  }
+  ImGui::TextUnformatted(verdict(a).c_str());
+  if (const std::optional<double> ms = a.pathTracingMs(truth->ms))
+    ImGui::Text("path tracing comes as near in %s ms", number(*ms).c_str());
+  if (view.mode() == TruthMode::Heat) {
+    float full = 100 * view.fullError;
+    if (ImGui::SliderFloat("full colour, %", &full, 1, 1000, "%.0f", ImGuiSliderFlags_Logarithmic))
+      view.fullError = full / 100;
+  } else {
+    ImGui::SliderFloat("divider", &view.divider, 0, 1, "%.2f");
+  }
+}
+
+void drawTruthLegend(const TruthView& view, Buffer shown) {
+  if (view.mode() == TruthMode::Off) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 8, 8}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("truth legend", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  const LiveTruth* truth = view.truth();
+  constexpr float kWidth = 260;
+  if (!referenceOf(shown)) {
+    ImGui::Text("no truth of %s:", bufferNames()[size_t(shown)].c_str());
+    ImGui::TextUnformatted("show beauty, direct, indirect or irradiance");
+  } else if (!truth) {
+    ImGui::Text("the truth starts anew:\n%s", view.reason().c_str());
+  } else {
+    const AgainstTruth& a = view.against();
+    if (view.mode() == TruthMode::Split) {
+      ImGui::Text("left GI, right path traced, %s", plural(int(truth->samples), "sample").c_str());
+    } else {
+      const std::string full = percent(view.fullError, "%.0f %%");
+      drawColorBar(kWidth, 10);
+      const float line = ImGui::GetCursorPosY();
+      for (const auto& [at, text] : {std::pair{0.0f, "-" + full}, {0.5f, std::string("0")}, {1.0f, "+" + full}}) {
+        ImGui::SetCursorPosY(line);
+        textAt(at, kWidth, text);
+      }
+      const float words = ImGui::GetCursorPosY();
+      for (const auto& [at, text] : {std::pair{0.0f, "GI too dark"}, {1.0f, "GI too bright"}}) {
+        ImGui::SetCursorPosY(words);
+        textAt(at, kWidth, text);
+      }
+      ImGui::Text("of the truth's mean, %s", plural(int(truth->samples), "sample").c_str());
+    }
+    ImGui::Text("%s RMSE %s, bias %s", nameOf(truth->buffer).c_str(), percent(a.error.rmseShare()).c_str(),
+                percent(a.error.bias, "%+.2f %%").c_str());
+    const FramesSpent& spent = view.spent();
+    ImGui::Text("%s, %s", spent.drawn ? number(spent.typicalMs(), " ms a frame").c_str() : "no frame drawn",
+                number(truth->ms / truth->samples, " ms a sample").c_str());
+    ImGui::TextUnformatted(verdict(a).c_str());
+  }
+  ImGui::End();
+}
+
+} // namespace lambent

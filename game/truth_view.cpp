@@ -1,0 +1,78 @@
+#include "game/truth_view.h"
+
+#include "gi/measure/statistics.h"
+
+namespace lambent {
+
+std::optional<ReferenceBuffer> referenceOf(Buffer buffer) {
+  switch (buffer) {
+  case Buffer::Beauty:
+    return ReferenceBuffer::Beauty;
+  case Buffer::Direct:
+    return ReferenceBuffer::Direct;
+  case Buffer::Indirect:
+    return ReferenceBuffer::Indirect;
+  case Buffer::Irradiance:
+    return ReferenceBuffer::Irradiance;
+  default:
+    return {};
+  }
+}
+
+double FramesSpent::typicalMs() const { return spreadOf(latestMs).median; }
+
+void TruthView::set(TruthMode mode) {
+  mode_ = mode;
+  if (mode == TruthMode::Off) {
+    reference_.reset();
+    truth_.reset();
+  } else if (!reference_) {
+    reference_ = std::make_unique<LiveReference>(seed_);
+  }
+}
+
+void TruthView::update(const SceneView& view, GiFrame& gi, const FrameStats& stats, Buffer shown, bool wait) {
+  countFrame(view, gi.settings(), stats);
+  const std::optional<ReferenceBuffer> wanted = referenceOf(shown);
+  if (!reference_) return;
+  // Where a buffer has no truth, that of beauty goes on: a look at the normals does not cost what was traced.
+  const ReferenceBuffer buffer = wanted.value_or(ReferenceBuffer::Beauty);
+  if (const std::string why = reference_->follow(view, gi.settings(), buffer); !why.empty()) {
+    truth_.reset();
+    reason_ = why;
+  }
+  if (truth_ && truth_->buffer != buffer) {
+    truth_.reset();
+    reason_ = "another buffer is read from its samples";
+  }
+  if (!wanted) return;
+  std::shared_ptr<const LiveTruth> news = reference_->take(wait);
+  if (!news) return;
+  truth_ = std::move(news);
+  against_ = againstTruth(gi.read(shown), truth_->picture);
+  gi.takeTruth(truth_->picture.mean);
+}
+
+void TruthView::countFrame(const SceneView& view, Settings settings, const FrameStats& stats) {
+  settings.image = {}; // how light is shown, not what it is
+  if (view.changes.any() || settings != before_) spent_ = {};
+  before_ = settings;
+  if (!stats.plan.on(EffectId::Redraw)) return;
+  constexpr size_t kLatest = 64;
+  ++spent_.drawn;
+  spent_.ms += stats.wallMs;
+  if (spent_.latestMs.size() == kLatest) spent_.latestMs.erase(spent_.latestMs.begin());
+  spent_.latestMs.push_back(stats.wallMs);
+}
+
+void TruthView::present(const GiFrame& gi, Buffer shown, int width, int height) const {
+  const bool known = truth_ && referenceOf(shown) == truth_->buffer;
+  if (known && mode_ == TruthMode::Split)
+    gi.presentBesideTruth(shown, divider, 0, width, height);
+  else if (known && mode_ == TruthMode::Heat)
+    gi.presentError(shown, std::max(1e-20f, fullError * float(against_.error.meanTruth)), 0, width, height);
+  else
+    gi.present(shown, 0, width, height);
+}
+
+} // namespace lambent

@@ -1,0 +1,72 @@
+// The truth of the view that a window shows, traced beside it: a thread of its own takes passes of samples over a copy
+// of the view, and starts anew where the view, or what light it asks for, becomes another.
+#pragma once
+
+#include "engine/scene/view_copy.h"
+#include "gi/reference/traced_picture.h"
+
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace lambent {
+
+/// What is known after some passes.
+struct LiveTruth {
+  ReferenceBuffer buffer = ReferenceBuffer::Beauty;
+  ReferencePicture picture;
+  uint32_t samples = 0; // of each pixel
+  int bounces = 0;
+  double ms = 0; // of tracing, by all threads together, beside whatever else ran
+};
+
+class LiveReference {
+ public:
+  explicit LiveReference(uint32_t seed = 1);
+  ~LiveReference(); // gives up the pass that runs, and joins
+  LiveReference(const LiveReference&) = delete;
+
+  /// To be told of every frame: view.changes counts since the last one. What the sums do not depend on (another buffer
+  /// of the same light) goes on with them. Returns why the truth starts anew, in words; empty where it goes on.
+  /// The view's assets must outlive this.
+  std::string follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
+
+  /// The newest truth of what was last followed, once; null where none is new. With `wait` it waits for one, unless no
+  /// more will come. Rethrows what ended the thread.
+  std::shared_ptr<const LiveTruth> take(bool wait = false);
+
+ private:
+  /// What samples depend on besides the view.
+  struct Paths {
+    int bounces = 0;
+    bool glossy = false;
+    bool operator==(const Paths&) const = default;
+  };
+  struct Task {
+    ViewCopy view;
+    Paths paths;
+  };
+  class Tracing;
+  void work();
+
+  const uint32_t seed_;
+  std::optional<Paths> followed_; // of the thread that follows
+
+  std::atomic<bool> stopped_{false}; // the pass that runs is wanted no more
+  std::mutex mutex_;                 // guards what follows
+  std::condition_variable asked_, answered_;
+  bool quit_ = false;
+  bool done_ = true;           // until asked again
+  std::unique_ptr<Task> task_; // to begin with
+  ReferenceBuffer buffer_ = ReferenceBuffer::Beauty;
+  std::shared_ptr<const LiveTruth> ready_;
+  std::exception_ptr failure_;
+
+  std::thread thread_; // last: it sees all of the above
+};
+
+} // namespace lambent

@@ -1,0 +1,195 @@
+// The truth that is traced beside a window is the truth, of the present view, and says when it starts anew.
+#include "engine/trace/embree_query.h"
+#include "gi/measure/against_truth.h"
+#include "gi/reference/live_reference.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+namespace lambent {
+namespace {
+
+bool sameImage(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
+}
+
+/// A box with a lamp in it, seen from within.
+class LiveReferenceTest : public ::testing::Test {
+ protected:
+  LiveReferenceTest() {
+    scene_.box(vec3(-1), vec3(1), scene_.material({0.7f, 0.5f, 0.3f}), true);
+    block_ = scene_.quad({-0.5f, -0.5f, -0.8f}, {1, 0, 0}, {0, 0.4f, 0}, scene_.material(vec3(0.5f)));
+    LightView lamp;
+    lamp.position = {0.2f, 0.8f, -0.1f};
+    scene_.lights.push_back(lamp);
+    scene_.camera.worldFromView[3].z = 0.9f;
+    scene_.camera.width = 24;
+    scene_.camera.height = 16;
+    settings_.smc.bounces = 2;
+  }
+
+  /// As extracted; by default nothing has changed.
+  SceneView seen(SceneChanges changes = {false, false, false, false, false}) const {
+    SceneView view = scene_.view();
+    view.changes = changes;
+    return view;
+  }
+
+  /// Truths as they come until one has so many samples.
+  std::shared_ptr<const LiveTruth> after(LiveReference& live, uint32_t samples) const {
+    for (;;) {
+      std::shared_ptr<const LiveTruth> truth = live.take(true);
+      if (!truth || truth->samples >= samples) return truth;
+    }
+  }
+
+  TracedPicture traced(ReferenceBuffer buffer, uint32_t samples) const {
+    return tracePicture(scene_.view(), settings_, {.buffer = buffer, .samples = samples, .seed = kSeed});
+  }
+
+  void expectTruth(const LiveTruth& live, ReferenceBuffer buffer) const {
+    EXPECT_EQ(live.buffer, buffer);
+    const TracedPicture once = traced(buffer, live.samples);
+    EXPECT_TRUE(sameImage(live.picture.mean, once.picture.mean));
+    EXPECT_TRUE(sameImage(live.picture.error, once.picture.error));
+    EXPECT_EQ(live.picture.relativeError, once.picture.relativeError);
+    EXPECT_EQ(live.bounces, once.bounces);
+    EXPECT_GT(live.ms, 0);
+  }
+
+  static constexpr uint32_t kSeed = 5;
+  test::HandScene scene_;
+  uint32_t block_ = 0;
+  Settings settings_;
+};
+
+TEST_F(LiveReferenceTest, AccumulatesWhatOneRunTraces) {
+  LiveReference live(kSeed);
+  EXPECT_EQ(live.take(true), nullptr) << "nothing was asked for";
+  EXPECT_EQ(live.follow(seen(), settings_, ReferenceBuffer::Indirect), "it begins");
+  uint32_t before = 0;
+  while (before < 8) {
+    const auto truth = live.take(true);
+    ASSERT_TRUE(truth);
+    EXPECT_GT(truth->samples, before) << "each is of more samples";
+    before = truth->samples;
+    expectTruth(*truth, ReferenceBuffer::Indirect);
+    EXPECT_EQ(live.follow(seen(), settings_, ReferenceBuffer::Indirect), "") << "nothing changed";
+  }
+}
+
+TEST_F(LiveReferenceTest, AnotherBufferIsReadFromTheSameSamples) {
+  LiveReference live(kSeed);
+  live.follow(seen(), settings_, ReferenceBuffer::Indirect);
+  const uint32_t before = after(live, 4)->samples;
+  for (const ReferenceBuffer buffer : {ReferenceBuffer::Beauty, ReferenceBuffer::Irradiance}) {
+    EXPECT_EQ(live.follow(seen(), settings_, buffer), "");
+    const auto truth = live.take(true);
+    EXPECT_GE(truth->samples, before) << "none is lost";
+    expectTruth(*truth, buffer);
+  }
+}
+
+TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
+  LiveReference live(kSeed);
+  const ReferenceBuffer buffer = ReferenceBuffer::Beauty;
+  live.follow(seen(), settings_, buffer);
+  const auto anew = [&](const SceneChanges& changes, const std::string& why) {
+    after(live, 4);
+    EXPECT_EQ(live.follow(seen(changes), settings_, buffer), why);
+    const auto truth = live.take(true);
+    ASSERT_TRUE(truth);
+    expectTruth(*truth, buffer); // of the view as it is now
+  };
+  scene_.camera.worldFromView[3].x = 0.2f;
+  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false},
+       "the camera or the picture's size changed");
+  scene_.camera.width = 32;
+  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false},
+       "the camera or the picture's size changed");
+  scene_.lights[0].intensity = {1, 2, 3};
+  anew({.first = false, .camera = false, .lights = true, .geometry = false, .instances = false}, "the light changed");
+  scene_.instances[block_].worldFromObject[3].x = 0.4f;
+  anew({.first = false, .camera = false, .lights = false, .geometry = true, .instances = false}, "objects moved");
+  scene_.instances.pop_back();
+  anew({.first = false, .camera = false, .lights = false, .geometry = false, .instances = true}, "objects moved");
+  settings_.smc.bounces = 1;
+  anew({false, false, false, false, false}, "smc.bounces changed");
+  settings_.gather.glossy = true;
+  anew({false, false, false, false, false}, "surfaces reflect in another way");
+  settings_.image.exposure = 3;
+  settings_.smc.vpls = 64;
+  EXPECT_EQ(live.follow(seen(), settings_, buffer), "") << "no sample depends on it";
+}
+
+TEST_F(LiveReferenceTest, ViewsInBetweenAreNotMissed) {
+  LiveReference live(kSeed);
+  live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+  const SceneChanges moved{false, false, false, true, false}, turned{false, true, false, false, false};
+  for (int i = 0; i < 20; ++i) { // most of them are overtaken before a sample is taken
+    scene_.instances[block_].worldFromObject[3].x = 0.02f * float(i);
+    scene_.instances[block_].moved = true;
+    live.follow(seen(moved), settings_, ReferenceBuffer::Beauty);
+    scene_.instances[block_].moved = false;
+    scene_.camera.worldFromView[3].y = 0.01f * float(i);
+    live.follow(seen(turned), settings_, ReferenceBuffer::Beauty);
+  }
+  expectTruth(*live.take(true), ReferenceBuffer::Beauty);
+}
+
+TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
+  scene_.camera.width = 640;
+  scene_.camera.height = 480;
+  settings_.smc.bounces = 8;
+  const auto begin = std::chrono::steady_clock::now();
+  {
+    LiveReference live(kSeed);
+    live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+    live.take(true);
+  }
+  const double pass = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto again = std::chrono::steady_clock::now();
+  {
+    LiveReference live(kSeed);
+    live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.05 * pass));
+  }
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count(), 0.7 * pass);
+}
+
+TEST_F(LiveReferenceTest, ErrorsAreThoseOfThePicturesAndKnowTheTruthsOwn) {
+  const ReferenceBuffer buffer = ReferenceBuffer::Indirect;
+  LiveReference live(kSeed);
+  live.follow(seen(), settings_, buffer);
+  const auto truth = after(live, 64);
+  const TracedPicture exact = tracePicture(scene_.view(), settings_, {.buffer = buffer, .samples = 4096, .seed = 77});
+  Image darker = exact.picture.mean;
+  for (vec3& p : darker.pixels) p *= 0.5f;
+  const AgainstTruth far = againstTruth(darker, truth->picture);
+  const PictureError plain = pictureError(darker, traced(buffer, truth->samples).picture.mean);
+  EXPECT_EQ(far.error.rmse, plain.rmse);
+  EXPECT_EQ(far.error.relMse, plain.relMse);
+  EXPECT_EQ(far.error.bias, plain.bias);
+  EXPECT_NEAR(far.error.bias, -0.5, 0.02);
+  ASSERT_TRUE(far.known());
+  const double alone = pictureError(darker, exact.picture.mean).rmse;
+  EXPECT_NEAR(*far.pictureRmse(), alone, 0.05 * alone) << "without the noise of the truth";
+  EXPECT_GT(std::abs(far.error.rmse - alone), 0) << "or the test shows nothing";
+  EXPECT_LT(*far.pathTracingMs(1000), 1000) << "the truth is nearer than that already";
+
+  const AgainstTruth near = againstTruth(exact.picture.mean, truth->picture);
+  EXPECT_FALSE(near.known()) << "all that is left is the truth's own noise";
+  EXPECT_FALSE(near.pictureRmse() || near.pathTracingMs(1000));
+  EXPECT_NEAR(near.truthRmse, near.error.rmse, 0.25 * near.error.rmse) << "which it expects";
+  EXPECT_NEAR(near.truthRelMse, near.error.relMse, 0.5 * near.error.relMse);
+  EXPECT_FALSE(againstTruth(darker, traced(buffer, 1).picture).known()) << "one sample does not know its error";
+}
+
+} // namespace
+} // namespace lambent
