@@ -1,6 +1,7 @@
 // The panel over the picture: what is shown, where the time goes, and every setting.
 #pragma once
 
+#include "game/pace.h"
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 
@@ -23,9 +24,9 @@ struct HudModel {
   bool hasPath = false, followPath = false; // camera path of a shot
 
   bool lamp = false;
-  vec3 lampIntensity{1}; // W/sr
-  float speed = 1;       // of the player, m/s
-  float scale = 1;       // picture size as a share of the window's
+  vec3 lampIntensity{1};  // W/sr
+  float speed = 1;        // of the player, m/s
+  Pacer pacer{{}, false}; // picture size as a share of the window's
 };
 
 class Hud {
@@ -45,6 +46,7 @@ class Hud {
 
  private:
   void drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  void drawPace(Pacer& pacer);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawSettings(Settings& settings);

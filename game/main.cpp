@@ -5,6 +5,7 @@
 #include "engine/platform/gl_context.h"
 #include "game/hud.h"
 #include "game/interaction.h"
+#include "game/pace.h"
 #include "game/player.h"
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
@@ -30,9 +31,10 @@ constexpr double kTestFrameSeconds = 1.0 / 30; // scene time per frame under --f
 struct GameOptions {
   LaunchOptions launch;
   std::string buffer = "beauty";
-  std::optional<int> frames; // for tests: quit after so many
-  std::string screenshot;    // for tests: what the window shows at the end
-  std::string truth;         // for tests: split or heat from the start
+  std::optional<double> targetMs; // of a frame
+  std::optional<int> frames;      // for tests: quit after so many
+  std::string screenshot;         // for tests: what the window shows at the end
+  std::string truth;              // for tests: split or heat from the start
 };
 
 class Walkthrough {
@@ -48,6 +50,7 @@ class Walkthrough {
     // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
     model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter_ * diameter_, 1e-6f);
     model_.speed = player_.speed();
+    model_.pacer = Pacer(options.targetMs, options.launch.preset.empty());
     model_.buffer = bufferByName(options.buffer);
     if (!options.launch.preset.empty()) model_.preset = options.launch.preset;
     model_.hasPath = shot_ && !shot_->camera.empty();
@@ -66,8 +69,6 @@ class Walkthrough {
       const auto now = Clock::now();
       const double seconds = options_.frames ? kTestFrameSeconds : std::chrono::duration<double>(now - before).count();
       before = now;
-      const bool sizeMayChange = truth_.mode() == TruthMode::Off; // another size is another truth
-      if (!options_.frames && sizeMayChange) keepUp(i, seconds);
       frame(seconds);
       if (options_.frames && i + 1 == *options_.frames && !options_.screenshot.empty())
         writeScreenshot(options_.screenshot);
@@ -78,15 +79,13 @@ class Walkthrough {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Lowers the picture's scale once, after the first frames, when this machine cannot keep up (software Mesa in a
-  /// large window). Only the picture changes; the window and the slider stay the person's.
-  void keepUp(int frame, double seconds) {
-    constexpr int kFirst = 4, kLast = 8; // the frames before prepare shaders and maps
-    constexpr double kTooSlow = 0.25, kGoal = 0.15;
-    if (frame >= kFirst) typicalSeconds_ = std::min(typicalSeconds_, seconds);
-    if (frame != kLast || typicalSeconds_ < kTooSlow) return;
-    model_.scale = std::max(0.25f, float(std::sqrt(kGoal / typicalSeconds_))) * model_.scale;
-    hud_.say("picture scale lowered to keep up with this machine (panel: picture scale)");
+  void pace(const FrameStats& stats, bool moved) {
+    const std::string before = model_.pacer.preset();
+    model_.pacer.took(stats, moved, gi_.settings());
+    const std::string& now = model_.pacer.preset();
+    if (now == before) return;
+    model_.preset = now;
+    hud_.say("preset " + now + ": the dearest that this machine draws in time");
   }
 
   void pose(double time) {
@@ -108,12 +107,15 @@ class Walkthrough {
       glfwWaitEventsTimeout(0.1);
       return;
     }
-    const int width = std::max(1, int(float(windowWidth) * model_.scale));
-    const int height = std::max(1, int(float(windowHeight) * model_.scale));
     if (model_.followPath) player_.place(shotCamera(*shot_, model_.time, scene_.origin));
-    const SceneView view = extractor_.extract(scene_, player_.view(width, height), model_.time);
+    const SceneView view =
+        extractor_.extract(scene_, scaled(player_.view(windowWidth, windowHeight), model_.pacer.scale()), model_.time);
     const FrameStats& stats = gi_.run(view, [this](int done, int total) { showProgress(done, total); });
 
+    const SceneChanges& c = view.changes;
+    const mat4 pose = view.camera.worldFromView; // the camera changes also where the scale does
+    const bool moved = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
+    if (!options_.frames || options_.targetMs) pace(stats, moved);
     truth_.update(view, gi_, stats, model_.buffer, options_.frames.has_value());
     truth_.present(gi_, model_.buffer, windowWidth, windowHeight);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -233,7 +235,7 @@ class Walkthrough {
   SceneExtractor extractor_;
   HudModel model_;
   std::optional<Entity> lamp_;
-  double typicalSeconds_ = 1e9; // the fastest of the frames that keepUp looks at, seconds
+  mat4 pose_{0}; // of the camera in the last frame
   TruthView truth_;
   bool pausedBefore_ = false; // when the truth was asked for
   bool screenshotWanted_ = false;
@@ -249,6 +251,10 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("SCENE", options.launch.scene, "glTF or shot file (default: the bundled hall)");
   addLaunchOptions(app, options.launch);
   app.add_option("--buffer", options.buffer, "what to show first: beauty, indirect, vpls, ...");
+  app.add_option("--target-ms", options.targetMs,
+                 "choose the preset (where none is given) that fits this time of a frame, and hold it by the picture's "
+                 "scale; without, only where frames take longer than 150 ms")
+      ->check(CLI::Range(1.0, 10000.0));
   app.add_option("--frames", options.frames)->check(CLI::Range(0, 1000000))->group("");
   app.add_option("--screenshot", options.screenshot)->group("");
   app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");

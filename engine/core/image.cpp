@@ -8,6 +8,7 @@
 #include <random>
 #include <system_error>
 
+#include <stb/stb_image_resize.h>
 #include <stb/stb_image_write.h>
 
 namespace lambent {
@@ -46,6 +47,15 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
     fs::remove(temporary, ignored);
     throw;
   }
+}
+
+Image8 resized(const Image8& image, int width, int height) {
+  Image8 out{width, height, std::vector<uint8_t>(size_t(3) * width * height)};
+  const bool made = stbir_resize_uint8_generic(image.rgb.data(), image.width, image.height, 0, out.rgb.data(), width,
+                                               height, 0, 3, STBIR_ALPHA_CHANNEL_NONE, 0, STBIR_EDGE_CLAMP,
+                                               STBIR_FILTER_TRIANGLE, STBIR_COLORSPACE_LINEAR, nullptr) != 0;
+  if (!made) throw RunError("no memory for a picture of " + std::to_string(width) + "x" + std::to_string(height));
+  return out;
 }
 
 void writePng(const fs::path& file, const Image8& image) {

@@ -29,6 +29,9 @@ struct Image8 {
   std::vector<uint8_t> rgb;
 };
 
+/// Bilinear, on the encoded values.
+Image8 resized(const Image8& image, int width, int height);
+
 float srgbFromLinear(float linear);
 float linearFromSrgb(float encoded);
 

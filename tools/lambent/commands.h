@@ -39,8 +39,8 @@ void say(const Stage& stage, bool quiet);
 /// Writes figures for programs; nothing when `file` is empty.
 void writeJson(const std::string& file, const nlohmann::json& figures);
 /// What to write for a buffer by the file's extension: .exr linear, .png as a display shows it. Throws InputError for
-/// others.
-void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer);
+/// others. A .png is brought to this size where one is given.
+void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer, int width = 0, int height = 0);
 /// Checks before long work that `file` has an extension that can be written.
 void checkPictureName(const std::string& file);
 nlohmann::json figuresOf(const FrameStats& stats);

@@ -33,12 +33,12 @@ void checkPictureName(const std::string& file) {
     throw InputError(file, "not a picture format that can be written (.png or .exr)");
 }
 
-void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer) {
+void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer, int width, int height) {
   checkPictureName(file);
-  if (std::filesystem::path(file).extension() == ".exr")
-    writeExr(file, gi.read(buffer));
-  else
-    writePng(file, gi.readDisplay(buffer));
+  if (std::filesystem::path(file).extension() == ".exr") return writeExr(file, gi.read(buffer));
+  const Image8 picture = gi.readDisplay(buffer);
+  const bool fits = width == 0 || (picture.width == width && picture.height == height);
+  writePng(file, fits ? picture : resized(picture, width, height));
 }
 
 namespace {

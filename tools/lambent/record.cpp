@@ -2,6 +2,7 @@
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
+#include "gi/plan/governor.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/text.h"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 namespace lambent {
@@ -26,13 +28,16 @@ struct RecordOptions {
   std::string buffer = "beauty", format = "png";
   int frames = 0; // 0 = the whole shot
   bool video = false;
+  std::optional<double> targetMs;
 };
 
 /// Keeps the log in memory and writes it whole, so that it is never half-written.
 class FrameLog {
  public:
-  void add(double time, const FrameStats& s, double writeMs) {
-    rows_.push_back({time, s, writeMs});
+  /// `governed`: of the frame; null: nothing governs.
+  void add(double time, const FrameStats& s, double writeMs, const Governed* governed) {
+    rows_.push_back({time, s, writeMs, governed ? governed->scale : 1, governed ? governed->preset : ""});
+    governed_ |= governed != nullptr;
     for (const StageTime& t : s.stages) stages_[t.stage.id] = true;
   }
 
@@ -44,12 +49,13 @@ class FrameLog {
         const Row row = rows_.empty() ? Row{} : rows_[i];
         const std::vector<FigureColumn> columns = columnsOf(row.stats, stages_);
         if (i == 0) {
-          out << "time_s,write_ms";
+          out << "time_s,write_ms" << (governed_ ? ",scale,preset" : "");
           for (const FigureColumn& c : columns) out << ',' << c.name;
           out << '\n';
           if (rows_.empty()) break;
         }
         out << format("%.6f,%.3f", row.time, row.writeMs);
+        if (governed_) out << format(",%.4f,", double(row.scale)) << row.preset;
         for (const FigureColumn& c : columns) out << ',' << c.text;
         out << '\n';
       }
@@ -69,9 +75,12 @@ class FrameLog {
     double time = 0;
     FrameStats stats;
     double writeMs = 0;
+    float scale = 1;
+    std::string preset = {};
   };
 
   std::vector<Row> rows_;
+  bool governed_ = false;
   std::array<bool, kStages> stages_{}; // that ran in any frame
 };
 
@@ -110,6 +119,8 @@ void record(const RecordOptions& options) {
   if (options.format != "png" && options.format != "exr" && options.format != "none")
     throw InputError("--format " + options.format, "no such format (png, exr or none)");
   if (options.video && options.format != "png") throw InputError("--video", "needs --format png");
+  if (options.targetMs && options.format == "exr")
+    throw InputError("--target-ms", "changes the size at which pictures are computed (--format png or none)");
   const auto stage = openStage(options.launch);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   say(*stage, options.output.quiet);
@@ -124,20 +135,28 @@ void record(const RecordOptions& options) {
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
   FrameLog log;
+  const CameraView whole = stage->camera;
+  std::optional<Governed> governor;
+  if (options.targetMs) governor = {.settings = stage->settings, .choosesPreset = options.launch.preset.empty()};
   int done = 0;
   {
     Progress progress("recording", options.output.quiet);
     for (; done < total && !interrupted; ++done) {
       const double t = done / stage->shot->fps;
+      if (governor) stage->camera = scaled(whole, governor->scale);
       const FrameStats& stats = gi.run(stage->at(t));
       const auto begin = std::chrono::steady_clock::now();
       if (options.format != "none") {
         char name[32];
         std::snprintf(name, sizeof name, "%06d.%s", done, options.format.c_str());
-        writeBuffer((folder / name).string(), gi, buffer);
+        writeBuffer((folder / name).string(), gi, buffer, whole.width, whole.height);
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
-      log.add(t, stats, writing.count());
+      log.add(t, stats, writing.count(), governor ? &*governor : nullptr);
+      if (governor) {
+        governor = governed(std::move(*governor), stats.wallMs, *options.targetMs);
+        gi.settings() = governor->settings;
+      }
       progress.update(done + 1, total);
     }
   }
@@ -173,6 +192,12 @@ void declareRecord(CLI::App& app) {
   command->add_option("--format", options->format, "png, exr or none (default png)");
   command->add_option("--frames", options->frames, "only the first so many")->check(CLI::Range(1, 1000000));
   command->add_flag("--video", options->video, "also make video.mp4 with ffmpeg");
+  command
+      ->add_option(
+          "--target-ms", options->targetMs,
+          "choose the preset (where none is given) that fits this time of a frame, and hold it by the scale at "
+          "which pictures are computed; frames.csv tells both")
+      ->check(CLI::Range(1.0, 10000.0));
   command->callback([options] { record(*options); });
 }
 

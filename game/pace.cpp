@@ -1,0 +1,45 @@
+#include "game/pace.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lambent {
+
+Pacer::Pacer(std::optional<double> targetMs, bool choosesPreset) : targetMs_(targetMs.value_or(kUsable)) {
+  governed_.choosesPreset = targetMs && choosesPreset;
+}
+
+void Pacer::took(const FrameStats& stats, bool moved, Settings& settings) {
+  const bool asGoverned = moving(); // else it was drawn at full scale
+  stillFrames_ = moved ? 0 : stillFrames_ + 1;
+  if (!governs_ || !asGoverned || !stats.plan[EffectId::Redraw].on) return;
+  if (!moved && governed_.calibrated) return; // cheaper than frames in motion will be
+  double gpuMs = 0;
+  for (const StageTime& stage : stats.stages) gpuMs += stage.gpuMs;
+  // Not the time between frames: that is the display's where it waits for it.
+  governed_.settings = settings;
+  const std::string before = governed_.preset;
+  governed_ = governed(std::move(governed_), std::max(stats.wallMs, gpuMs), targetMs_);
+  if (governed_.preset != before) settings = governed_.settings;
+}
+
+void Pacer::hold(float scale) {
+  governs_ = false;
+  governed_.scale = scale;
+}
+
+void Pacer::govern(double targetMs) {
+  governs_ = true;
+  targetMs_ = targetMs;
+  governed_.ms.clear();
+}
+
+std::string Pacer::text() const {
+  if (!governs_) return "scale as set";
+  char text[96];
+  std::snprintf(text, sizeof text, "%s: %.0f ms, scale %.2f%s%s", paceText(governed_.pace), targetMs_,
+                double(governed_.scale), governed_.preset.empty() ? "" : ", preset ", governed_.preset.c_str());
+  return text;
+}
+
+} // namespace lambent
