@@ -79,6 +79,7 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameS
     return;
   }
   ImGui::PushItemWidth(-110);
+  ImGui::PushAllowKeyboardFocus(false); // Tab shows this panel, and would begin to type into it
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
   std::string technique = techniqueOf(gi.settings()).name;
@@ -127,6 +128,7 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameS
   }
   if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());
   ImGui::TextDisabled("F1: keys   Tab: hide this panel");
+  ImGui::PopAllowKeyboardFocus();
   ImGui::PopItemWidth();
   ImGui::End();
 }

@@ -165,7 +165,7 @@ class Walkthrough {
     const bool was = truth_.mode() != TruthMode::Off, is = mode != TruthMode::Off;
     truth_.set(mode);
     if (was == is) return;
-    if (is && !model_.paused) hud_.say("time stands still while paths are traced (P: let it run, and they start anew)");
+    if (is && !model_.paused) hud_.say("time stands still for the truth (P lets it run)");
     model_.paused = is ? (pausedBefore_ = model_.paused, true) : pausedBefore_;
   }
 

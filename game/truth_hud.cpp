@@ -77,14 +77,13 @@ void textAt(float at, float width, const std::string& text) {
 void drawTruthFigures(TruthView& view) {
   const LiveTruth* truth = view.truth();
   if (!truth) {
-    ImGui::TextWrapped("the truth starts anew: %s", view.reason().c_str());
+    ImGui::TextWrapped("the truth starts anew once all stands still: %s", view.reason().c_str());
     return;
   }
   const AgainstTruth& a = view.against();
   const FramesSpent& spent = view.spent();
   const bool single = truth->samples < 2;
-  ImGui::Text("%s, path traced: %s, %s", nameOf(truth->buffer).c_str(), plural(int(truth->samples), "sample").c_str(),
-              plural(truth->bounces, "bounce").c_str());
+  ImGui::Text("%s, path traced with %s", nameOf(truth->buffer).c_str(), plural(truth->bounces, "bounce").c_str());
   if (ImGui::BeginTable("truth", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 75);
     ImGui::TableSetupColumn("GI's error");
@@ -103,13 +102,14 @@ void drawTruthFigures(TruthView& view) {
         number(truth->ms / truth->samples, " a sample"),
         "median of the frames that drew a picture since anything changed, a settled one stays. Paths that are\n"
         "traced beside them take their share of the machine: lambent bench tells times alone.");
-    row("ms in all", number(spent.ms) + " in " + plural(spent.drawn, "frame"), number(truth->ms),
-        "spent on this view so far");
+    row("s in all", number(1e-3 * spent.ms), number(1e-3 * truth->ms), "spent on this view so far");
+    row("in", plural(spent.drawn, "frame"), plural(int(truth->samples), "sample"), "what that was spent for");
     ImGui::EndTable();
   }
   ImGui::TextUnformatted(verdict(a).c_str());
   if (const std::optional<double> ms = a.pathTracingMs(truth->ms))
-    ImGui::Text("path tracing comes as near in %s ms", number(*ms).c_str());
+    ImGui::Text("path tracing comes as near in %s s", number(1e-3 * *ms).c_str());
+  ImGui::TextDisabled("each takes time from the other while both run");
   if (view.mode() == TruthMode::Heat) {
     float full = 100 * view.fullError;
     if (ImGui::SliderFloat("full colour, %", &full, 1, 1000, "%.0f", ImGuiSliderFlags_Logarithmic))
@@ -121,22 +121,25 @@ void drawTruthFigures(TruthView& view) {
 
 void drawTruthLegend(const TruthView& view, Buffer shown) {
   if (view.mode() == TruthMode::Off) return;
+  const bool heat = view.mode() == TruthMode::Heat;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x - 8, 8}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("truth legend", nullptr,
+  // A window of its own for each: one that grows would be cut off for a frame.
+  const LiveTruth* truth = view.truth();
+  const char* id = !referenceOf(shown) ? "no truth" : !truth ? "truth anew" : heat ? "truth heat" : "truth split";
+  ImGui::Begin(id, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-  const LiveTruth* truth = view.truth();
   constexpr float kWidth = 260;
   if (!referenceOf(shown)) {
     ImGui::Text("no truth of %s:", bufferNames()[size_t(shown)].c_str());
     ImGui::TextUnformatted("show beauty, direct, indirect or irradiance");
   } else if (!truth) {
-    ImGui::Text("the truth starts anew:\n%s", view.reason().c_str());
+    ImGui::Text("the truth starts anew\nonce all stands still:\n%s", view.reason().c_str());
   } else {
     const AgainstTruth& a = view.against();
-    if (view.mode() == TruthMode::Split) {
+    if (!heat) {
       ImGui::Text("left GI, right path traced, %s", plural(int(truth->samples), "sample").c_str());
     } else {
       const std::string full = percent(view.fullError, "%.0f %%");

@@ -17,7 +17,7 @@ constexpr uint32_t kMostSamples = 65536; // of each pixel; then it rests
 /// Why samples of another view are good for nothing; empty where they are.
 std::string whatChanged(const SceneChanges& changes) {
   if (changes.first) return "another scene";
-  if (changes.camera) return "the camera or the picture's size changed";
+  if (changes.camera) return "the camera changed"; // its picture's size, too
   if (changes.lights) return "the light changed";
   if (changes.geometry || changes.instances) return "objects moved";
   return {};
@@ -101,16 +101,18 @@ std::string LiveReference::follow(const SceneView& view, const Settings& setting
   if (why.empty() && followed_->bounces != paths.bounces) why = "smc.bounces changed";
   if (why.empty() && followed_->glossy != paths.glossy) why = "surfaces reflect in another way";
   followed_ = paths;
+  const bool begins = why.empty() && waiting_;
+  waiting_ = !why.empty();
   {
     const std::lock_guard lock(mutex_);
-    if (why.empty() && buffer == buffer_) return why;
+    if (why.empty() && !begins && buffer == buffer_) return why;
     buffer_ = buffer;
     ready_ = nullptr;
-    done_ = false;
-    if (!why.empty()) {
-      task_ = std::make_unique<Task>(Task{ViewCopy(view), paths});
+    if (begins || waiting_) {
       stopped_ = true;
+      task_ = begins ? std::make_unique<Task>(Task{ViewCopy(view), paths}) : nullptr;
     }
+    done_ = waiting_;
   }
   asked_.notify_one();
   return why;

@@ -1,5 +1,6 @@
 // The truth of the view that a window shows, traced beside it: a thread of its own takes passes of samples over a copy
-// of the view, and starts anew where the view, or what light it asks for, becomes another.
+// of the view. What changes the view ends them; they start anew once it stands still, so whoever walks about is not
+// slowed down.
 #pragma once
 
 #include "engine/scene/view_copy.h"
@@ -30,13 +31,13 @@ class LiveReference {
   ~LiveReference(); // gives up the pass that runs, and joins
   LiveReference(const LiveReference&) = delete;
 
-  /// To be told of every frame: view.changes counts since the last one. What the sums do not depend on (another buffer
-  /// of the same light) goes on with them. Returns why the truth starts anew, in words; empty where it goes on.
-  /// The view's assets must outlive this.
+  /// To be told of every frame: view.changes counts since the last one. Returns why the samples are good for nothing
+  /// any more, in words; the next view without changes begins anew. Empty where they stay, as when another buffer is
+  /// wanted that can be read from them. The view's assets must outlive this.
   std::string follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
 
-  /// The newest truth of what was last followed, once; null where none is new. With `wait` it waits for one, unless no
-  /// more will come. Rethrows what ended the thread.
+  /// The newest truth of what was last followed, once; null where none is new. With `wait` it waits for one, unless
+  /// none is being traced. Rethrows what ended the thread.
   std::shared_ptr<const LiveTruth> take(bool wait = false);
 
  private:
@@ -54,7 +55,8 @@ class LiveReference {
   void work();
 
   const uint32_t seed_;
-  std::optional<Paths> followed_; // of the thread that follows
+  std::optional<Paths> followed_; // this and the next: of the thread that follows
+  bool waiting_ = false;          // for the view to stand still
 
   std::atomic<bool> stopped_{false}; // the pass that runs is wanted no more
   std::mutex mutex_;                 // guards what follows

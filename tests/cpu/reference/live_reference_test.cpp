@@ -41,6 +41,14 @@ class LiveReferenceTest : public ::testing::Test {
     return view;
   }
 
+  /// A view that has changed and then stands still. Returns what the first of the two was answered.
+  std::string begin(LiveReference& live, ReferenceBuffer buffer, const SceneChanges& changes = {}) const {
+    const std::string why = live.follow(seen(changes), settings_, buffer);
+    EXPECT_EQ(live.take(true), nullptr) << "it may move on";
+    EXPECT_EQ(live.follow(seen(), settings_, buffer), "");
+    return why;
+  }
+
   /// Truths as they come until one has so many samples.
   std::shared_ptr<const LiveTruth> after(LiveReference& live, uint32_t samples) const {
     for (;;) {
@@ -72,7 +80,7 @@ class LiveReferenceTest : public ::testing::Test {
 TEST_F(LiveReferenceTest, AccumulatesWhatOneRunTraces) {
   LiveReference live(kSeed);
   EXPECT_EQ(live.take(true), nullptr) << "nothing was asked for";
-  EXPECT_EQ(live.follow(seen(), settings_, ReferenceBuffer::Indirect), "it begins");
+  EXPECT_EQ(begin(live, ReferenceBuffer::Indirect), "it begins");
   uint32_t before = 0;
   while (before < 8) {
     const auto truth = live.take(true);
@@ -86,7 +94,7 @@ TEST_F(LiveReferenceTest, AccumulatesWhatOneRunTraces) {
 
 TEST_F(LiveReferenceTest, AnotherBufferIsReadFromTheSameSamples) {
   LiveReference live(kSeed);
-  live.follow(seen(), settings_, ReferenceBuffer::Indirect);
+  begin(live, ReferenceBuffer::Indirect);
   const uint32_t before = after(live, 4)->samples;
   for (const ReferenceBuffer buffer : {ReferenceBuffer::Beauty, ReferenceBuffer::Irradiance}) {
     EXPECT_EQ(live.follow(seen(), settings_, buffer), "");
@@ -99,20 +107,18 @@ TEST_F(LiveReferenceTest, AnotherBufferIsReadFromTheSameSamples) {
 TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
   LiveReference live(kSeed);
   const ReferenceBuffer buffer = ReferenceBuffer::Beauty;
-  live.follow(seen(), settings_, buffer);
+  begin(live, buffer);
   const auto anew = [&](const SceneChanges& changes, const std::string& why) {
     after(live, 4);
-    EXPECT_EQ(live.follow(seen(changes), settings_, buffer), why);
+    EXPECT_EQ(begin(live, buffer, changes), why);
     const auto truth = live.take(true);
     ASSERT_TRUE(truth);
     expectTruth(*truth, buffer); // of the view as it is now
   };
   scene_.camera.worldFromView[3].x = 0.2f;
-  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false},
-       "the camera or the picture's size changed");
+  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false}, "the camera changed");
   scene_.camera.width = 32;
-  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false},
-       "the camera or the picture's size changed");
+  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false}, "the camera changed");
   scene_.lights[0].intensity = {1, 2, 3};
   anew({.first = false, .camera = false, .lights = true, .geometry = false, .instances = false}, "the light changed");
   scene_.instances[block_].worldFromObject[3].x = 0.4f;
@@ -130,16 +136,18 @@ TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
 
 TEST_F(LiveReferenceTest, ViewsInBetweenAreNotMissed) {
   LiveReference live(kSeed);
-  live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+  begin(live, ReferenceBuffer::Beauty);
   const SceneChanges moved{false, false, false, true, false}, turned{false, true, false, false, false};
   for (int i = 0; i < 20; ++i) { // most of them are overtaken before a sample is taken
     scene_.instances[block_].worldFromObject[3].x = 0.02f * float(i);
     scene_.instances[block_].moved = true;
-    live.follow(seen(moved), settings_, ReferenceBuffer::Beauty);
+    begin(live, ReferenceBuffer::Beauty, moved);
     scene_.instances[block_].moved = false;
     scene_.camera.worldFromView[3].y = 0.01f * float(i);
     live.follow(seen(turned), settings_, ReferenceBuffer::Beauty);
   }
+  EXPECT_EQ(live.take(true), nullptr) << "a truth of a view that is no more";
+  live.follow(seen(), settings_, ReferenceBuffer::Beauty);
   expectTruth(*live.take(true), ReferenceBuffer::Beauty);
 }
 
@@ -150,14 +158,14 @@ TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
   const auto begin = std::chrono::steady_clock::now();
   {
     LiveReference live(kSeed);
-    live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+    this->begin(live, ReferenceBuffer::Beauty);
     live.take(true);
   }
   const double pass = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto again = std::chrono::steady_clock::now();
   {
     LiveReference live(kSeed);
-    live.follow(seen(), settings_, ReferenceBuffer::Beauty);
+    this->begin(live, ReferenceBuffer::Beauty);
     std::this_thread::sleep_for(std::chrono::duration<double>(0.05 * pass));
   }
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count(), 0.7 * pass);
@@ -166,7 +174,7 @@ TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
 TEST_F(LiveReferenceTest, ErrorsAreThoseOfThePicturesAndKnowTheTruthsOwn) {
   const ReferenceBuffer buffer = ReferenceBuffer::Indirect;
   LiveReference live(kSeed);
-  live.follow(seen(), settings_, buffer);
+  begin(live, buffer);
   const auto truth = after(live, 64);
   const TracedPicture exact = tracePicture(scene_.view(), settings_, {.buffer = buffer, .samples = 4096, .seed = 77});
   Image darker = exact.picture.mean;
