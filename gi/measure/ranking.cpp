@@ -1,0 +1,86 @@
+#include "gi/measure/ranking.h"
+
+#include "engine/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+double square(double x) { return x * x; }
+
+/// Two-sided 95 % quantile of Student's t, by its expansion in 1/degrees (Abramowitz and Stegun 26.7.5); 3 % low at 2.
+double studentQuantile(double degrees) {
+  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * degrees * degrees * degrees);
+}
+
+} // namespace
+
+Estimate meanOver(std::span<const double> runs) {
+  CHECK(!runs.empty());
+  const double n = double(runs.size());
+  Estimate mean{0, std::numeric_limits<double>::quiet_NaN(), runs.size()};
+  for (double run : runs) mean.value += run / n;
+  if (runs.size() < 2) return mean;
+  double squares = 0;
+  for (double run : runs) squares += square(run - mean.value);
+  mean.error = std::sqrt(squares / (n - 1) / n);
+  return mean;
+}
+
+std::vector<Estimate> estimatesOf(std::span<const AgainstTruth> techniques) {
+  std::vector<Estimate> out;
+  double ofTruth = 0; // variance
+  size_t halved = 0;
+  for (const AgainstTruth& t : techniques) {
+    out.push_back(meanOver(t.seeds));
+    if (t.halves.empty()) continue;
+    CHECK_EQ(t.halves.size(), size_t(2));
+    ofTruth += square(0.5 * (t.halves[0] - t.halves[1]));
+    ++halved;
+  }
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (techniques[i].halves.empty()) continue;
+    const double gain = 0.5 * (techniques[i].halves[0] + techniques[i].halves[1]) - out[i].value;
+    out[i].error = std::sqrt(square(out[i].error) + ofTruth / double(halved) + square(gain));
+  }
+  return out;
+}
+
+Order compared(const Estimate& a, const Estimate& b) {
+  const double error = std::hypot(a.error, b.error);
+  if (std::isnan(error)) return Order::Unknown;
+  double degrees = 0;
+  for (const Estimate* e : {&a, &b}) degrees += double(e->runs > 0 ? e->runs - 1 : 0);
+  const double most = error * (degrees > 0 ? studentQuantile(degrees) : 2);
+  if (std::abs(a.value - b.value) <= most) return Order::WithinNoise;
+  return a.value < b.value ? Order::Less : Order::Greater;
+}
+
+std::vector<Ranked> ranked(std::vector<Ranked> all) {
+  std::ranges::stable_sort(all, {}, [](const Ranked& r) { return r.estimate.value; });
+  return all;
+}
+
+std::string rankingText(std::span<const Ranked> all) {
+  std::string text;
+  for (size_t i = 0; i + 1 < all.size(); ++i) {
+    const Order order = compared(all[i].estimate, all[i + 1].estimate);
+    const bool less = order == Order::Less, unknown = order == Order::Unknown;
+    text += (i ? "; " : "") + all[i].name +
+            (less      ? " < "
+             : unknown ? " ? "
+                       : " ≈ ") +
+            all[i + 1].name +
+            (less      ? ""
+             : unknown ? " (noise unknown)"
+                       : " (within noise)");
+  }
+  return text;
+}
+
+} // namespace lambent
