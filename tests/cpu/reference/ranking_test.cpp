@@ -26,6 +26,16 @@ TEST(Ranking, MeanOverSeedsAndItsError) {
   EXPECT_TRUE(std::isnan(meanOver(std::span(runs).first(1)).error));
 }
 
+TEST(Ranking, ErrorsHoldSeedsTruthAndWhatItsNoiseBrings) {
+  // Halves 0.4 apart and equal ones: variance (0.2² + 0)/2 for both. The second gains 0.3 where the truth is halved.
+  const std::vector<Estimate> e =
+      estimatesOf(std::vector<AgainstTruth>{{{1.1, 0.9}, {1.2, 0.8}}, {{2, 2}, {2.3, 2.3}}});
+  EXPECT_NEAR(e[0].value, 1, 1e-12);
+  EXPECT_NEAR(e[0].error, std::sqrt(0.01 + 0.02), 1e-12);
+  EXPECT_NEAR(e[1].error, std::sqrt(0.02 + 0.09), 1e-12);
+  EXPECT_NEAR(estimatesOf(std::vector<AgainstTruth>{{{1.1, 0.9}, {}}})[0].error, 0.1, 1e-12); // an exact truth
+}
+
 TEST(Ranking, OfOneSeedNothingIsKnown) {
   const std::vector<Estimate> e = estimatesOf(std::vector<AgainstTruth>{{{0.1}, {0.1, 0.1}}, {{0.9}, {0.9, 0.9}}});
   EXPECT_EQ(compared(e[0], e[1]), Order::Unknown);
