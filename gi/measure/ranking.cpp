@@ -20,10 +20,10 @@ double studentQuantile(double degrees) {
 
 } // namespace
 
-Estimate meanOver(std::span<const double> runs) {
+UncertainValue meanOver(std::span<const double> runs) {
   CHECK(!runs.empty());
   const double n = double(runs.size());
-  Estimate mean{0, std::numeric_limits<double>::quiet_NaN(), runs.size()};
+  UncertainValue mean{0, std::numeric_limits<double>::quiet_NaN(), runs.size()};
   for (double run : runs) mean.value += run / n;
   if (runs.size() < 2) return mean;
   double squares = 0;
@@ -32,8 +32,8 @@ Estimate meanOver(std::span<const double> runs) {
   return mean;
 }
 
-std::vector<Estimate> estimatesOf(std::span<const AgainstTruth> techniques) {
-  std::vector<Estimate> out;
+std::vector<UncertainValue> estimatesOf(std::span<const AgainstTruth> techniques) {
+  std::vector<UncertainValue> out;
   double ofTruth = 0; // variance
   size_t halved = 0;
   for (const AgainstTruth& t : techniques) {
@@ -51,11 +51,11 @@ std::vector<Estimate> estimatesOf(std::span<const AgainstTruth> techniques) {
   return out;
 }
 
-Order compared(const Estimate& a, const Estimate& b) {
+Order compared(const UncertainValue& a, const UncertainValue& b) {
   const double error = std::hypot(a.error, b.error);
   if (std::isnan(error)) return Order::Unknown;
   double degrees = 0;
-  for (const Estimate* e : {&a, &b}) degrees += double(e->runs > 0 ? e->runs - 1 : 0);
+  for (const UncertainValue* e : {&a, &b}) degrees += double(e->runs > 0 ? e->runs - 1 : 0);
   const double most = error * (degrees > 0 ? studentQuantile(degrees) : 2);
   if (std::abs(a.value - b.value) <= most) return Order::WithinNoise;
   return a.value < b.value ? Order::Less : Order::Greater;
@@ -70,15 +70,9 @@ std::string rankingText(std::span<const Ranked> all) {
   std::string text;
   for (size_t i = 0; i + 1 < all.size(); ++i) {
     const Order order = compared(all[i].estimate, all[i + 1].estimate);
-    const bool less = order == Order::Less, unknown = order == Order::Unknown;
-    text += (i ? "; " : "") + all[i].name +
-            (less      ? " < "
-             : unknown ? " ? "
-                       : " ≈ ") +
-            all[i + 1].name +
-            (less      ? ""
-             : unknown ? " (noise unknown)"
-                       : " (within noise)");
+    if (order == Order::Unknown) return "not ranked: the noise over seeds is unknown (two seeds or more tell)";
+    const bool less = order == Order::Less;
+    text += (i ? "; " : "") + all[i].name + (less ? " < " : " ≈ ") + all[i + 1].name + (less ? "" : " (within noise)");
   }
   return text;
 }

@@ -9,13 +9,13 @@
 namespace lambent {
 
 /// A number that was measured and its standard error. NaN: how well it is known is not known.
-struct Estimate {
+struct UncertainValue {
   double value = 0, error = std::numeric_limits<double>::quiet_NaN();
   size_t runs = 0; // independent ones that `error` is from; 0: many
 };
 
 /// Mean of independent runs, as over seeds. Of one run, the error is NaN. Needs one at least.
-Estimate meanOver(std::span<const double> runs);
+UncertainValue meanOver(std::span<const double> runs);
 
 /// A statistic of one technique, as mean |E|, against a truth that is noisy: over the seeds against the truth, and
 /// means over the seeds against each half of the truth's samples alone.
@@ -28,21 +28,22 @@ struct AgainstTruth {
 /// half the difference between its halves (all techniques share the truth: root of the mean square over them); and by
 /// how much the truth's noise may raise or lower the statistic itself. What the statistic gains when the truth has half
 /// the samples is about what the whole truth's noise has brought, and brings to each technique in its own measure.
-std::vector<Estimate> estimatesOf(std::span<const AgainstTruth> techniques);
+std::vector<UncertainValue> estimatesOf(std::span<const AgainstTruth> techniques);
 
 enum class Order { Less, Greater, WithinNoise, Unknown };
 /// Whether a is less than b: their difference is beyond what noise makes in one of twenty cases, about two standard
 /// errors where there are many runs, and by Student's distribution more where there are few. Unknown where an error is.
-Order compared(const Estimate& a, const Estimate& b);
+Order compared(const UncertainValue& a, const UncertainValue& b);
 
 /// One of several, in a ranking.
 struct Ranked {
   std::string name;
-  Estimate estimate;
+  UncertainValue estimate;
 };
 /// From the least to the greatest.
 std::vector<Ranked> ranked(std::vector<Ranked> all);
-/// Each with the next: "smc < ir; ir ≈ tcas (within noise)"; "smc ? ir (noise unknown)". `all` is in order.
+/// Each with the next: "smc < ir; ir ≈ tcas (within noise)"; "not ranked: …" where an error is unknown. `all` is in
+/// order.
 std::string rankingText(std::span<const Ranked> all);
 
 } // namespace lambent

@@ -36,7 +36,7 @@ nlohmann::json rowOf(std::span<const Measured> seeds, const TracedPicture& truth
   const double ofTruth = expectedRelMse(truth.picture.mean, truth.picture.error);
   nlohmann::json row{{"preset", seeds[0].variant.name}, {"seeds", seeds.size()}, {"pictures", seeds[0].frames.size()}};
   const auto add = [&](const std::string& key, const std::vector<double>& values) {
-    const Estimate mean = meanOver(values);
+    const UncertainValue mean = meanOver(values);
     row[key] = mean.value;
     if (!std::isnan(mean.error)) row[key + "_error"] = mean.error;
   };
@@ -89,15 +89,14 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
       rows.back().update({{"scene", fs::path(file).stem().string()}, {"motion", motion}});
     }
   };
+  const int last = study.stage->shot ? study.stage->shot->frameCount() - 1 : 0; // 0: nothing moves
+  const int frame = options.frame > 0 ? options.frame : std::min(options.quick ? 3 : 30, last);
+  if (last > 0 && frame > last) throw InputError("--frame", "the shot has only " + std::to_string(last + 1));
   constexpr int kPaths = 2048;
   study.trace(kPaths, ReferenceBuffer::Irradiance, false);
   const int averaged = std::max(2, study.stage->settings.history.frames);
   add("still", study.draw(variants, Buffer::Irradiance, options.quick ? 4 : averaged));
-  if (!study.stage->shot) return;
-  const int last = study.stage->shot->frameCount() - 1;
-  const int frame = options.frame > 0 ? options.frame : std::min(options.quick ? 3 : 30, last);
-  if (frame > last) throw InputError("--frame", "the shot has only " + std::to_string(last + 1));
-  if (frame < 1) return;
+  if (last < 1) return;
   study.trace(kPaths, ReferenceBuffer::Irradiance, false, {}, frame);
   add("frame " + std::to_string(frame), study.drawUpTo(frame, variants, Buffer::Irradiance));
 }

@@ -85,10 +85,10 @@ struct Published {
   const char *shot, *name; // of ours that follows it; theirs
   double triangles, vpls, ms[11];
 };
-constexpr const char* kPublishedKeys[] = {"candidates", "resampling",      "visibility",    "radiosity",
-                                          "density",    "sampling_total",  "maps",          "shading",
-                                          "beyond",     "rendering_total", "indirect_total"};
-constexpr Published kPublished[] = {
+constexpr const char* kTable2Keys[] = {"candidates", "resampling",      "visibility",    "radiosity",
+                                       "density",    "sampling_total",  "maps",          "shading",
+                                       "beyond",     "rendering_total", "indirect_total"};
+constexpr Published kTable2[] = {
     {"citadel", "Epic Citadel", 373e3, 2048, {3.3, 3.0, 1.6, 11.0, 2.6, 21.5, 8.7, 20.0, 0, 28.7, 50.2}},
     {"office", "Soda Hall", 551e3, 2048, {2.3, 2.2, 1.2, 7.8, 1.7, 15.2, 15.9, 19.1, 0, 35.0, 50.2}},
     {"atrium", "Crytek Sponza", 262e3, 2048, {2.7, 2.5, 2.0, 9.8, 1.6, 18.6, 6.0, 24.4, 0, 30.4, 49.0}},
@@ -96,14 +96,14 @@ constexpr Published kPublished[] = {
 };
 /// The row of the sequence that a shot of ours follows, small versions too; null: none.
 const Published* publishedOf(const std::string& shot) {
-  for (const Published& p : kPublished)
+  for (const Published& p : kTable2)
     if (shot == p.shot || shot.starts_with(std::string(p.shot) + "-")) return &p;
   return nullptr;
 }
 
 nlohmann::json rowOf(const Published& p) {
   nlohmann::json row{{"triangles", p.triangles}, {"vpls", p.vpls}};
-  for (size_t i = 0; i < std::size(kPublishedKeys); ++i) row["median_ms"][kPublishedKeys[i]] = p.ms[i];
+  for (size_t i = 0; i < std::size(kTable2Keys); ++i) row["median_ms"][kTable2Keys[i]] = p.ms[i];
   return row;
 }
 

@@ -12,7 +12,7 @@ namespace lambent {
 namespace {
 
 constexpr double kWidth = 420, kHeight = 240; // of the frame, pixels
-constexpr double kLeft = 60, kTop = 34, kBelow = 52, kRight = 16;
+constexpr double kLeft = 60, kTop = 34, kBelow = 52, kRight = 28;
 constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#8c564b", "#e377c2"};
 
 /// The least of 1, 2, 5 times a power of ten that reaches `most` in five steps.
@@ -85,7 +85,11 @@ void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
     out << format("<path d='M%.0f %.1fh%.0f' stroke='#ddd'/><text x='%.0f' y='%.1f' text-anchor='end'>%g</text>\n",
                   kLeft, axes.y(y), kWidth, kLeft - 6, axes.y(y) + 4, y);
   std::vector<double> ticks = plot.x;
-  if (plot.even) ticks = {plot.x.front(), plot.x.back()};
+  if (plot.even) {
+    ticks.clear();
+    const double low = plot.x.front(), high = plot.x.back(), step = stepFor(high > low ? high - low : 1);
+    for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push_back(i * step);
+  }
   for (double x : ticks)
     out << format("<path d='M%.1f %.0fv5' stroke='#888'/><text x='%.1f' y='%.0f' text-anchor='middle'>%g</text>\n",
                   axes.x(x), bottom, axes.x(x), bottom + 18, x);
@@ -99,13 +103,17 @@ void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
       << plot.yLabel << "</text>\n";
 }
 
+const char* colourOf(const Plot& plot, size_t s) {
+  return plot.series[s].colour ? plot.series[s].colour : kColours[s % std::size(kColours)];
+}
+
 void drawSeries(std::ostringstream& out, const Plot& plot, const Axes& axes) {
   if (plot.marked)
     out << format("<path d='M%.1f %.0fv%.0f' stroke='#888' stroke-dasharray='4 3'/>\n", axes.x(plot.x[*plot.marked]),
                   kTop, kHeight);
   for (size_t s = 0; s < plot.series.size(); ++s) {
     const PlotSeries& series = plot.series[s];
-    const char* colour = series.colour ? series.colour : kColours[s % std::size(kColours)];
+    const char* colour = colourOf(plot, s);
     out << "<polyline fill='none' stroke-width='1.5' stroke='" << colour << "' points='";
     for (size_t i = 0; i < plot.x.size(); ++i)
       if (axes.shows(series.y[i])) out << format("%.1f,%.1f ", axes.x(plot.x[i]), axes.y(series.y[i]));
@@ -113,9 +121,11 @@ void drawSeries(std::ostringstream& out, const Plot& plot, const Axes& axes) {
     for (size_t i = 0; plot.marked && i < plot.x.size(); ++i)
       out << format("<circle cx='%.1f' cy='%.1f' r='%d' fill='%s' stroke='%s'/>\n", axes.x(plot.x[i]),
                     axes.y(series.y[i]), i == plot.marked ? 5 : 3, i == plot.marked ? "#fff" : colour, colour);
-    out << format("<text x='%.0f' y='%.0f' fill='%s'>", kLeft + 10, kTop + 18 + 16 * double(s), colour) << series.name
-        << "</text>\n";
   }
+  for (size_t s = 0; s < plot.series.size(); ++s) // above all lines
+    out << format("<text class='name' x='%.0f' y='%.0f' fill='%s'>", kLeft + 10, kTop + 18 + 16 * double(s),
+                  colourOf(plot, s))
+        << plot.series[s].name << "</text>\n";
 }
 
 } // namespace
@@ -126,7 +136,8 @@ std::string svgOf(const std::vector<Plot>& plots, size_t perRow) {
   out << format("<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f'>\n",
                 width * double(std::clamp<size_t>(plots.size(), 1, perRow)),
                 height * double((plots.size() + perRow - 1) / perRow))
-      << "<style>text{font:12px sans-serif}.title{font-weight:bold}</style><rect width='100%' height='100%' "
+      << "<style>text{font:12px sans-serif}.title{font-weight:bold}"
+         ".name{paint-order:stroke;stroke:#fff;stroke-width:3px}</style><rect width='100%' height='100%' "
          "fill='#fff'/>\n";
   for (size_t i = 0; i < plots.size(); ++i) {
     const Plot& plot = plots[i];
