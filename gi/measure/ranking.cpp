@@ -11,7 +11,8 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// Two-sided 95 % quantile of Student's t, by its expansion in 1/degrees (Abramowitz and Stegun 26.7.5); 3 % low at 2.
+/// Two-sided 95 % quantile of Student's t, by its expansion in 1/degrees (Abramowitz and Stegun 26.7.5); 3 % low at 2,
+/// a quarter at 1.
 double studentQuantile(double degrees) {
   constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees) +
@@ -23,7 +24,7 @@ double studentQuantile(double degrees) {
 UncertainValue meanOver(std::span<const double> runs) {
   CHECK(!runs.empty());
   const double n = double(runs.size());
-  UncertainValue mean{0, std::numeric_limits<double>::quiet_NaN(), runs.size()};
+  UncertainValue mean{0, std::numeric_limits<double>::quiet_NaN(), n - 1};
   for (double run : runs) mean.value += run / n;
   if (runs.size() < 2) return mean;
   double squares = 0;
@@ -46,17 +47,19 @@ std::vector<UncertainValue> estimatesOf(std::span<const AgainstTruth> techniques
   for (size_t i = 0; i < out.size(); ++i) {
     if (techniques[i].halves.empty()) continue;
     const double gain = 0.5 * (techniques[i].halves[0] + techniques[i].halves[1]) - out[i].value;
-    out[i].error = std::sqrt(square(out[i].error) + ofTruth / double(halved) + square(gain));
+    const double ofSeeds = square(out[i].error), all = ofSeeds + ofTruth / double(halved) + square(gain);
+    out[i].error = std::sqrt(all);
+    if (ofSeeds > 0)
+      out[i].degrees *= square(all / ofSeeds); // Welch and Satterthwaite: the scatter of seeds alone has few
   }
   return out;
 }
 
 Order compared(const UncertainValue& a, const UncertainValue& b) {
-  const double error = std::hypot(a.error, b.error);
-  if (std::isnan(error)) return Order::Unknown;
-  double degrees = 0;
-  for (const UncertainValue* e : {&a, &b}) degrees += double(e->runs > 0 ? e->runs - 1 : 0);
-  const double most = error * (degrees > 0 ? studentQuantile(degrees) : 2);
+  const double varianceA = square(a.error), varianceB = square(b.error), variance = varianceA + varianceB;
+  if (std::isnan(variance)) return Order::Unknown;
+  const double degrees = square(variance) / (square(varianceA) / a.degrees + square(varianceB) / b.degrees);
+  const double most = variance > 0 ? std::sqrt(variance) * studentQuantile(degrees) : 0;
   if (std::abs(a.value - b.value) <= most) return Order::WithinNoise;
   return a.value < b.value ? Order::Less : Order::Greater;
 }

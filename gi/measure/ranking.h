@@ -11,7 +11,7 @@ namespace lambent {
 /// A number that was measured and its standard error. NaN: how well it is known is not known.
 struct UncertainValue {
   double value = 0, error = std::numeric_limits<double>::quiet_NaN();
-  size_t runs = 0; // independent ones that `error` is from; 0: many
+  double degrees = std::numeric_limits<double>::infinity(); // of freedom, of the error itself
 };
 
 /// Mean of independent runs, as over seeds. Of one run, the error is NaN. Needs one at least.

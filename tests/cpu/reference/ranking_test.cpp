@@ -22,7 +22,7 @@ TEST(Ranking, MeanOverSeedsAndItsError) {
   const UncertainValue mean = meanOver(runs);
   EXPECT_DOUBLE_EQ(mean.value, 3);
   EXPECT_NEAR(mean.error, std::sqrt(7.0 / 3), 1e-12); // variance (4 + 1 + 9)/2
-  EXPECT_EQ(mean.runs, 3u);
+  EXPECT_EQ(mean.degrees, 2);
   EXPECT_TRUE(std::isnan(meanOver(std::span(runs).first(1)).error));
 }
 
@@ -33,6 +33,7 @@ TEST(Ranking, ErrorsHoldSeedsTruthAndWhatItsNoiseBrings) {
   EXPECT_NEAR(e[0].value, 1, 1e-12);
   EXPECT_NEAR(e[0].error, std::sqrt(0.01 + 0.02), 1e-12);
   EXPECT_NEAR(e[1].error, std::sqrt(0.02 + 0.09), 1e-12);
+  EXPECT_NEAR(e[0].degrees, 9, 1e-9); // the one of two seeds, of a third of the variance
   EXPECT_NEAR(estimatesOf(std::vector<AgainstTruth>{{{1.1, 0.9}, {}}})[0].error, 0.1, 1e-12); // an exact truth
 }
 
@@ -45,20 +46,21 @@ TEST(Ranking, OfOneSeedNothingIsKnown) {
 }
 
 TEST(Ranking, DifferencesCountBeyondTwoStandardErrorsAndMoreOfFewRuns) {
-  const auto order = [](double difference, size_t runs) {
-    return compared({1, 0.03, runs}, {1 + difference, 0.04, runs}); // 0.05 together
+  const auto order = [](double difference, double degrees) {
+    return compared({1, 0.03, degrees}, {1 + difference, 0.04, degrees}); // 0.05 together
   };
-  EXPECT_EQ(order(0.09, 0), Order::WithinNoise);
-  EXPECT_EQ(order(0.11, 0), Order::Less);
-  EXPECT_EQ(order(-0.11, 0), Order::Greater);
-  EXPECT_EQ(order(0.11, 50), Order::Less);
-  EXPECT_EQ(order(0.11, 2), Order::WithinNoise); // Student's t of 2 degrees: 4.30
-  EXPECT_EQ(order(0.25, 2), Order::Less);
+  EXPECT_EQ(order(0.09, INFINITY), Order::WithinNoise);
+  EXPECT_EQ(order(0.11, INFINITY), Order::Less);
+  EXPECT_EQ(order(-0.11, INFINITY), Order::Greater);
+  EXPECT_EQ(order(0.11, 49), Order::Less);
+  EXPECT_EQ(order(0.19, 1), Order::WithinNoise); // Student's t of 1.85 degrees: 4.6
+  EXPECT_EQ(order(0.25, 1), Order::Less);
+  EXPECT_EQ(compared({1, 0, 1}, {1, 0, 1}), Order::WithinNoise);
+  EXPECT_EQ(compared({1, 0, 1}, {1.5, 0, 1}), Order::Less);
 }
 
 TEST(Ranking, TextSaysWhatIsNotKnown) {
-  const std::vector<Ranked> all =
-      ranked({{"tcas", {0.021, 0.002, 0}}, {"smc", {0.010, 0.001, 0}}, {"ir", {0.020, 0.002, 0}}});
+  const std::vector<Ranked> all = ranked({{"tcas", {0.021, 0.002}}, {"smc", {0.010, 0.001}}, {"ir", {0.020, 0.002}}});
   EXPECT_EQ(rankingText(all), "smc < ir; ir ≈ tcas (within noise)");
   EXPECT_EQ(rankingText(std::span(all).first(1)), "");
 }
