@@ -88,7 +88,8 @@ void drawFrame(std::ostringstream& out, const Plot& plot, const Axes& axes) {
   if (plot.even) {
     ticks.clear();
     const double low = plot.x.front(), high = plot.x.back(), step = stepFor(high > low ? high - low : 1);
-    for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push_back(i * step);
+    for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
+      ticks.push_back(i * step + 0.0); // no -0
   }
   for (double x : ticks)
     out << format("<path d='M%.1f %.0fv5' stroke='#888'/><text x='%.1f' y='%.0f' text-anchor='middle'>%g</text>\n",
