@@ -19,4 +19,7 @@ Spread spreadOf(std::vector<double> values);
 /// different x at least.
 double exponentOf(std::span<const double> x, std::span<const double> y);
 
+/// Standard error of that exponent, from how far the values are off the fit; NaN of fewer than three.
+double exponentError(std::span<const double> x, std::span<const double> y);
+
 } // namespace lambent

@@ -26,6 +26,7 @@ namespace {
 struct Sweep {
   std::string technique, setting;
   std::vector<double> values;
+  const char* unit;
 };
 
 /// What a curve is of. `prepare` is applied to the settings of the sweep, after its technique; `truth` to those of the
@@ -38,28 +39,32 @@ struct CurveKind {
 
 CurveKind curveKind(const std::string& name) {
   if (name == "patches")
-    return {name,
-            "light gathered at patches of the picture, against the same VPLs gathered at every pixel",
-            {{"multires-gather", "multires.depth", {0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}},
-             {"multires-gather", "multires.normal", {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2}}},
-            [](Settings&) {},
-            [](Settings& s) {
-              applyTechnique(s, "rsm");
-              s.gather.mode = GatherMode::Full;
-            }};
+    return {
+        name,
+        "light gathered at patches of the picture, against the same VPLs gathered at every pixel",
+        {{"multires-gather",
+          "multires.depth",
+          {0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5},
+          "share of the view distance"},
+         {"multires-gather", "multires.normal", {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2}, "range of a component, 0 to 2"}},
+        [](Settings&) {},
+        [](Settings& s) {
+          applyTechnique(s, "rsm");
+          s.gather.mode = GatherMode::Full;
+        }};
   return {name,
           "clusters of the reflective maps, against every texel of them; both gathered at every pixel",
-          {{"hisr", "rsm.tau", {0, 0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.3}},
-           {"isr", "rsm.depth", {0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}}},
+          {{"hisr", "rsm.tau", {0, 0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.3}, "share of the brightest map's light"},
+           {"isr", "rsm.depth", {0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}, "share of the distance"}},
           [](Settings& s) { s.gather.mode = GatherMode::Full; },
           lightByEveryTexel};
 }
 
 /// Of the points of one sweep.
-Plot plotOf(const nlohmann::json& points) {
+Plot plotOf(const nlohmann::json& points, const char* unit) {
   Plot plot;
   plot.title = points[0]["technique"];
-  plot.xLabel = points[0]["setting"];
+  plot.xLabel = points[0]["setting"].get<std::string>() + ", " + unit;
   plot.yLabel = "error, %";
   plot.series = {{"RMSE, share of mean indirect radiance", {}}, {"RMS on the display", {}}};
   for (const nlohmann::json& p : points) {
@@ -144,7 +149,7 @@ void accuracyCurve(const AccuracyOptions& options) {
       writeShown(folder / (kind.name + "-" + pictured + "-difference.png"), absoluteDifference(shown, truthShown, 8));
     }
     all.insert(all.end(), points.begin(), points.end());
-    plots.push_back(plotOf(points));
+    plots.push_back(plotOf(points, sweep.unit));
     tables += tableOf(points, settings) + "\n";
   }
   writeText(folder / (kind.name + ".csv"), csvText(all));

@@ -1,9 +1,11 @@
 // lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against of two settings,
-// with --techniques of several techniques, frame by frame in turn. With --multires see bench_multires.cpp.
+// with --techniques of several techniques, frame by frame in turn. Other forms: bench_multires.cpp, bench_tables.cpp
+// (--table2), bench_growth.cpp, bench_equal_error.cpp.
 #include "tools/lambent/bench.h"
 
 #include "engine/core/error.h"
 #include "engine/platform/gl_context.h"
+#include "tools/lambent/text.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,27 +14,6 @@
 namespace lambent {
 
 namespace {
-
-/// A line of the table: of time, or of what is counted.
-struct Line {
-  std::string name;
-  std::function<Spread(const Measured&)> of;
-};
-
-std::vector<Line> timeLines(const std::vector<Measured>& sides) {
-  std::vector<Line> lines;
-  bool listed[kStages] = {};
-  for (const Measured& side : sides)
-    for (StageId stage : side.stages())
-      if (!std::exchange(listed[size_t(stage)], true))
-        lines.push_back({kStageNames[size_t(stage)], [stage](const Measured& m) { return m.ms(stage); }});
-  const auto line = [&](const char* name, double FrameStats::*ms) {
-    lines.push_back({name, [ms](const Measured& m) { return m.of([ms](const FrameStats& s) { return s.*ms; }); }});
-  };
-  line("updateVpls", &FrameStats::updateMs);
-  line("frame", &FrameStats::wallMs);
-  return lines;
-}
 
 double countOf(const Figure& figure) {
   if (const uint64_t* n = std::get_if<uint64_t>(&figure)) return double(*n);
@@ -136,8 +117,12 @@ std::vector<Variant> sidesOf(const BenchOptions& options, const Stage& stage) {
 
 void bench(const BenchOptions& options) {
   if (options.multires) return benchMultires(options);
+  if (options.table2) return benchTable2(options);
+  if (options.equalError) return benchEqualError(options);
   if (options.launch.scene.empty())
-    throw InputError(options.scenes[1], "one scene or shot is enough (several go with --multires)");
+    throw InputError(options.scenes[1],
+                     "one scene or shot is enough (several go with --multires, --table2 and --equal-error)");
+  if (options.growth) return benchGrowth(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
     throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
   const auto stage = openStage(options.launch);
@@ -178,8 +163,48 @@ void bench(const BenchOptions& options) {
 
 } // namespace
 
-RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress) {
-  RunPlan plan = planOf(stage, progress, options.frames);
+std::vector<Line> timeLines(const std::vector<Measured>& sides) {
+  std::vector<Line> lines;
+  bool listed[kStages] = {};
+  for (const Measured& side : sides)
+    for (StageId stage : side.stages())
+      if (!std::exchange(listed[size_t(stage)], true))
+        lines.push_back({kStageNames[size_t(stage)], [stage](const Measured& m) { return m.ms(stage); }});
+  const auto line = [&](const char* name, double FrameStats::*ms) {
+    lines.push_back({name, [ms](const Measured& m) { return m.of([ms](const FrameStats& s) { return s.*ms; }); }});
+  };
+  line("updateVpls", &FrameStats::updateMs);
+  line("frame", &FrameStats::wallMs);
+  return lines;
+}
+
+SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
+  constexpr float kShare = 1e-4f;
+  lights.assign(view.lights.begin(), view.lights.end());
+  for (LightView& light : lights) {
+    const vec3 aside = frame % 2 == 0 ? vec3(0) : vec3(kShare, 0, kShare);
+    light.position += view.boundsWorld.diameter() * aside;
+    if (light.type == LightType::Directional) light.direction = glm::normalize(light.direction + aside);
+    light.changed = true;
+  }
+  view.lights = lights;
+  view.changes.lights = true;
+  return view;
+}
+
+std::string spreadText(const Spread& s) {
+  const int digits = s.median < 10 ? 2 : s.median < 100 ? 1 : 0;
+  return format("%.*f (%.*f to %.*f)", digits, s.median, digits, s.quarter, digits, s.threeQuarters);
+}
+
+std::string rendererName(const GlContext& context) {
+  for (const auto& [name, value] : context.info())
+    if (name == "renderer") return value;
+  return "an unknown renderer";
+}
+
+RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress, int frames) {
+  RunPlan plan = planOf(stage, progress, options.frames > 0 || stage.shot ? options.frames : frames);
   plan.skip = options.skip;
   if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));
   return plan;
@@ -189,24 +214,38 @@ void declareBench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against of two settings, "
                                                   "with --techniques of several techniques, frame by frame in turn");
-  command->add_option("SCENE", options->scenes, "glTF or shot file; several with --multires")->required();
+  command
+      ->add_option("SCENE", options->scenes, "glTF or shot file; several with --multires, --table2 and --equal-error")
+      ->required();
   addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "");
+  addOutputOptions(*command, options->output,
+                   "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");
   command->add_option("--frames", options->frames, "only the first so many (60 of a scene)")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
       ->check(CLI::Range(1, 1000000));
-  CLI::Option* against = command->add_option("--against", options->against,
-                                             "NAME=VALUE: measure this setting too, frame by frame in turn");
-  CLI::Option* techniques = command->add_option("--techniques", options->techniques, "comma-separated: measure each")
-                                ->delimiter(',')
-                                ->excludes(against);
-  command
-      ->add_flag("--multires", options->multires,
-                 "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
-                 "(paper 3, table 1)")
-      ->excludes(against)
-      ->excludes(techniques);
+  CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
+  forms->add_option("--against", options->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
+  forms->add_option("--techniques", options->techniques, "comma-separated: measure each")->delimiter(',');
+  forms->add_flag("--multires", options->multires,
+                  "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
+                  "(paper 3, table 1)");
+  forms->add_flag("--table2", options->table2,
+                  "shots: milliseconds of the steps of paper 1's table 2, medians and quartiles, the paper's beside");
+  forms->add_flag("--growth", options->growth,
+                  "how each stage's time grows with virtual lights, pixels, lights, instances and triangles, one at a "
+                  "time, values in turn: medians, exponents with standard errors, plots");
+  forms->add_flag("--equal-error", options->equalError,
+                  "the presets' error of indirect irradiance, still and in shots moving, and how long path tracing "
+                  "takes to the same");
+  command->add_option("--along", options->along, "--growth: comma-separated, only these")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));
+  command->add_option("--seeds", options->seeds, "--equal-error: so many (default 3)")->check(CLI::Range(1, 1000));
+  command->add_option("--spp", options->samples, "--equal-error: paths per pixel of the truth (default 2048)")
+      ->check(CLI::Range(2, 1 << 24));
+  command->add_option("--frame", options->frame, "--equal-error: of a shot in motion (default 30, or the last)")
+      ->check(CLI::Range(1, 1000000));
   command->add_flag("--quick", options->quick, "a few small frames, to try whether it runs");
   command->callback([options] {
     if (options->quick && options->launch.size.empty()) options->launch.size = "64x36";

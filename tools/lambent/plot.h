@@ -1,4 +1,4 @@
-// Plots of errors against thresholds and of values over time, as SVG.
+// Plots of errors against thresholds, of values over time and of cost over amounts, as SVG.
 #pragma once
 
 #include <optional>
@@ -20,10 +20,11 @@ struct Plot {
   std::vector<double> x;             // ascending, not negative
   std::optional<size_t> marked = {}; // gets rings and a line, and the others dots: the value in use
   bool even = false;
+  bool logarithmic = false; // y too, from the decade of the least value above 0; else from 0
   std::vector<PlotSeries> series;
 };
 
-/// So many side by side, y from 0.
+/// So many side by side.
 std::string svgOf(const std::vector<Plot>& plots, size_t perRow = 4);
 
 } // namespace lambent

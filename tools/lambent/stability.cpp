@@ -6,6 +6,8 @@
 #include "gi/measure/runs/runs.h"
 #include "gi/reference/traced_picture.h"
 #include "tools/lambent/commands.h"
+#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/marks.h"
 #include "tools/lambent/reflective_truth.h"
 #include "tools/lambent/stability_report.h"
 #include "tools/lambent/text.h"
@@ -32,15 +34,28 @@ struct StabilityOptions {
   bool pathTraced() const { return truth == "path"; }
 };
 
+/// Keeps each seed's, and means over the seeds against the halves of the truth.
+void addSeed(ErrorRuns& all, const ErrorRuns& run, int seeds) {
+  for (auto error : {&ErrorRuns::error, &ErrorRuns::change}) {
+    AgainstTruth& to = all.*error;
+    const AgainstTruth& from = run.*error;
+    to.seeds.insert(to.seeds.end(), from.seeds.begin(), from.seeds.end());
+    to.halves.resize(from.halves.size());
+    for (size_t h = 0; h < from.halves.size(); ++h) to.halves[h] += from.halves[h] / seeds;
+  }
+}
+
 /// Errors are means over the seeds, delays the worst; curves are of the first.
 void addSeed(std::vector<TechniqueRun>& techniques, TechniqueRun run, int seeds) {
   for (StabilityErrors* e : {&run.marked, &run.grid})
     for (double* value : {&e->error, &e->change, &e->bias}) *value /= seeds;
   run.placeMs /= seeds;
-  if (techniques.empty() || techniques.back().name != run.name) {
-    techniques.push_back(std::move(run));
-    return;
-  }
+  const ErrorRuns marked = std::exchange(run.runsMarked, {}), grid = std::exchange(run.runsGrid, {});
+  const bool first = techniques.empty() || techniques.back().name != run.name;
+  if (first) techniques.push_back(run);
+  addSeed(techniques.back().runsMarked, marked, seeds);
+  addSeed(techniques.back().runsGrid, grid, seeds);
+  if (first) return;
   TechniqueRun& mean = techniques.back();
   for (auto errors : {&TechniqueRun::marked, &TechniqueRun::grid})
     for (auto value : {&StabilityErrors::error, &StabilityErrors::change, &StabilityErrors::bias})
@@ -49,19 +64,23 @@ void addSeed(std::vector<TechniqueRun>& techniques, TechniqueRun run, int seeds)
   if (run.latency.worstTenth > mean.latency.worstTenth) mean.latency = run.latency;
 }
 
-constexpr int kStillFrames = 6; // to measure each time at which a shot stands still
+constexpr int kPicturePaths = 32; // per pixel of the picture that shows where the marked pixels are
+constexpr int kStillFrames = 6;   // to measure each time at which a shot stands still
 
 bool drawsWholeFrames(const Settings& settings) {
   return settings.own || rowOf(settings.vpl.source).reflective || settings.vpl.visibility == VplVisibility::Maps;
 }
 
-/// The truth first, then each technique with each seed.
+/// The truth first, path traced in two halves, then each technique with each seed.
 std::vector<Variant> variantsOf(const StabilityOptions& options, const Stage& stage, const WatchedScene& watched) {
   std::vector<Variant> variants{{"truth", stage.settings, stage.seed}};
-  if (options.pathTraced())
-    variants[0].make = pathsAtPoints(watched, uint32_t(options.samples));
-  else
+  if (options.pathTraced()) {
+    variants.push_back({"truth, second half", stage.settings, ~stage.seed});
+    for (int half : {0, 1})
+      variants[size_t(half)].make = pathsAtPoints(watched, uint32_t(options.samples + 1 - half) / 2);
+  } else {
     lightByEveryTexel(variants[0].settings);
+  }
   for (const std::string& name : options.techniques)
     for (int k = 0; k < options.seeds; ++k) {
       Variant& v = variants.emplace_back(name, stage.settings, stage.seed + uint32_t(k));
@@ -69,6 +88,36 @@ std::vector<Variant> variantsOf(const StabilityOptions& options, const Stage& st
       if (!drawsWholeFrames(v.settings)) v.make = raysAtPoints(watched);
     }
   return variants;
+}
+
+using ValueSeries = std::vector<std::vector<TrackedValue>>; // [frame][point]
+
+/// The mean of two independent ones, of `samples` in all.
+ValueSeries joined(ValueSeries a, const ValueSeries& b, int samples) {
+  const float ofA = float((samples + 1) / 2) / float(samples), ofB = 1 - ofA;
+  for (size_t f = 0; f < a.size(); ++f)
+    for (size_t i = 0; i < a[f].size(); ++i) {
+      const vec3 errorA = ofA * a[f][i].error, errorB = ofB * b[f][i].error;
+      a[f][i] = {ofA * a[f][i].radiance + ofB * b[f][i].radiance, glm::sqrt(errorA * errorA + errorB * errorB)};
+    }
+  return a;
+}
+
+/// The first frame, path traced, with the marked pixels numbered.
+Image markedPicture(Stage& stage, std::span<const vec2> marked, int samples) {
+  constexpr int kWidth = 480;
+  SceneView view = stage.at(0);
+  view.camera.height = std::max(1, view.camera.height * kWidth / view.camera.width);
+  view.camera.width = kWidth;
+  const TracedPicture traced = tracePicture(
+      view, stage.settings,
+      {.buffer = ReferenceBuffer::Beauty, .samples = uint32_t(samples), .seed = stage.seed, .cancelled = [] {
+         return interrupted.load();
+       }});
+  if (interrupted) throw RunError("interrupted: nothing is written");
+  Image shown = shownImage(traced.picture.mean, traced.exposure);
+  drawMarks(shown, marked);
+  return shown;
 }
 
 /// One shot, as it moves or, with `stillAt` (a share of its length), standing still at that time.
@@ -107,19 +156,20 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   const std::vector<Measured> runs = measure(variants, plan);
 
   const auto& seen = watched.seen();
-  const auto& truth = runs[0].series;
+  const size_t truths = options.pathTraced() ? 2 : 1;
+  const ValueSeries truth = truths > 1 ? joined(runs[0].series, runs[1].series, options.samples) : runs[0].series;
   float exposure = stage->settings.image.exposure;
   if (exposure <= 0) {
     std::vector<vec3> first;
     for (const TrackedValue& v : truth[0]) first.push_back(v.radiance);
     exposure = exposureFor(first);
   }
-  const auto toneMapped = [&](const Measured& run) {
+  const auto toneMapped = [&](const ValueSeries& series) {
     PixelSeries out;
-    for (size_t f = 0; f < run.series.size(); ++f) {
+    for (size_t f = 0; f < series.size(); ++f) {
       out.emplace_back();
-      for (size_t i = 0; i < run.series[f].size(); ++i)
-        out[f].push_back(seen[f][i] ? toneMappedLuminance(run.series[f][i].radiance, exposure) : std::nanf(""));
+      for (size_t i = 0; i < series[f].size(); ++i)
+        out[f].push_back(seen[f][i] ? toneMappedLuminance(series[f][i].radiance, exposure) : std::nanf(""));
     }
     return out;
   };
@@ -129,19 +179,32 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     for (size_t i = 0; i < truth[f].size(); ++i)
       if (seen[f][i]) variance += toneMappedVariance(truth[f][i].radiance, truth[f][i].error, exposure), ++values;
   shot.truthError = values ? std::sqrt(variance / double(values)) : 0;
-  shot.truth = toneMapped(runs[0]);
+  shot.truth = toneMapped(truth);
+  std::vector<PixelSeries> halves;
+  for (size_t h = 0; h < truths && truths > 1; ++h) halves.push_back(toneMapped(runs[h].series));
   std::vector<uint32_t> marked, grid;
   for (uint32_t i = 0; i < tracked.points.size(); ++i) (i < shot.marked ? marked : grid).push_back(i);
-  for (const Measured& m : runs) {
-    if (&m == &runs[0]) continue;
+  const auto errorRuns = [&](const PixelSeries& series, const StabilityErrors& whole,
+                             std::span<const uint32_t> pixels) {
+    ErrorRuns out{{{whole.error}, {}}, {{whole.change}, {}}};
+    for (const PixelSeries& half : halves) {
+      const StabilityErrors e = stabilityErrors(series, half, pixels);
+      out.error.halves.push_back(e.error);
+      out.change.halves.push_back(e.change);
+    }
+    return out;
+  };
+  for (const Measured& m : std::span(runs).subspan(truths)) {
     TechniqueRun run;
     run.name = m.variant.name;
     run.vpls = rowOf(m.variant.settings.vpl.source).reflective
                    ? uint32_t(m.of([](const FrameStats& s) { return s.vplsAlive; }).most)
                    : uint32_t(m.variant.settings.smc.vpls);
-    run.series = toneMapped(m);
+    run.series = toneMapped(m.series);
     run.marked = stabilityErrors(run.series, shot.truth, marked);
     run.grid = stabilityErrors(run.series, shot.truth, grid);
+    run.runsMarked = errorRuns(run.series, run.marked, marked);
+    run.runsGrid = errorRuns(run.series, run.grid, grid);
     run.latency = latency90(run.series, shot.truth, grid, shot.steps);
     run.placeMs = m.of([](const FrameStats& s) {
                      double ms = 0;
@@ -150,6 +213,9 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
                    }).median;
     addSeed(shot.techniques, std::move(run), options.seeds);
   }
+  if (shot.marked > 0 && !stillAt)
+    shot.picture =
+        markedPicture(*stage, std::span(tracked.points).first(shot.marked), std::min(options.samples, kPicturePaths));
   return shot;
 }
 
@@ -194,8 +260,8 @@ void stability(const StabilityOptions& options) {
   writeStabilityReport(folder, shots, figures, conditions);
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s%s\nreport: %s\n", stabilityTable(figures).c_str(), conditions.c_str(),
-                (folder / "stability.md").c_str());
+    std::printf("%s%s\n%sreport: %s\n", stabilityTable(figures).c_str(), conditions.c_str(),
+                stabilityRankings(shots).c_str(), (folder / "stability.md").c_str());
 }
 
 } // namespace
@@ -214,7 +280,7 @@ void declareStability(CLI::App& app) {
           "which rsm, isr, hisr and the multires techniques approximate")
       ->check(CLI::IsMember({"path", "reflective"}));
   command->add_option("--spp", options->samples, "paths per pixel and frame of the truth (default 1024)")
-      ->check(CLI::Range(2, 1 << 24));
+      ->check(CLI::Range(4, 1 << 24)); // two halves, of two or more each
   command->add_option("--frames", options->frames, "only the first so many of each shot")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--grid", options->grid, "grid of so many by so many pixels besides the marked (default 16)")
@@ -223,7 +289,10 @@ void declareStability(CLI::App& app) {
       ->add_option("--still", options->still,
                    "also at so many times at which the shot stands still, for |E| over still")
       ->check(CLI::Range(0, 1000));
-  command->add_option("--seeds", options->seeds, "errors are means over so many seeds (default 1)")
+  command
+      ->add_option(
+          "--seeds", options->seeds,
+          "errors are means over so many seeds (default 1; two or more tell how well they are known, and rank)")
       ->check(CLI::Range(1, 1000));
   command->add_flag("--quick", options->quick, "few pixels, frames and paths, to try whether it runs");
   command->callback([options] {

@@ -1,9 +1,11 @@
 #include "tools/lambent/stability_report.h"
 
 #include "gi/plan/techniques.h"
+#include "tools/lambent/linear_picture.h"
 #include "tools/lambent/plot.h"
 #include "tools/lambent/text.h"
 
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -25,6 +27,29 @@ const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 
+/// What is ranked, as rows of figures name it.
+struct Statistic {
+  const char *key, *title;
+  ErrorRuns TechniqueRun::*pixels;
+  AgainstTruth ErrorRuns::*error;
+};
+constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::runsMarked, &ErrorRuns::error},
+                                     {"change_marked", "|E'| marked", &TechniqueRun::runsMarked, &ErrorRuns::change},
+                                     {"error_grid", "|E| grid", &TechniqueRun::runsGrid, &ErrorRuns::error},
+                                     {"change_grid", "|E'| grid", &TechniqueRun::runsGrid, &ErrorRuns::change}};
+
+/// Without marked pixels there is nothing to know of them.
+bool measured(const ShotRun& s, const Statistic& statistic) {
+  return s.marked > 0 || statistic.pixels != &TechniqueRun::runsMarked;
+}
+
+/// Beside the shot's techniques.
+std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& statistic) {
+  std::vector<AgainstTruth> all;
+  for (const TechniqueRun& t : s.techniques) all.push_back(t.*statistic.pixels.*statistic.error);
+  return estimatesOf(all);
+}
+
 nlohmann::json figuresOf(const ShotRun& s, const TechniqueRun& t) {
   nlohmann::json j{{"shot", s.name},
                    {"technique", t.name},
@@ -44,6 +69,11 @@ nlohmann::json figuresOf(const ShotRun& s, const TechniqueRun& t) {
                    {"l90_count", t.latency.count},
                    {"place_ms", t.placeMs},
                    {"truth_error", s.truthError}};
+  for (const Statistic& statistic : kStatistics) {
+    if (!measured(s, statistic)) continue;
+    const double error = estimatesOf(s, statistic)[size_t(&t - s.techniques.data())].error;
+    if (!std::isnan(error)) j[std::string(statistic.key) + "_se"] = error;
+  }
   if (t.latency.count > 0) j["l90"] = {t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
   if (const TechniqueRun* simplest = simplestOf(s, t))
     j["change_over_simplest"] = t.grid.change / simplest->grid.change;
@@ -88,7 +118,12 @@ std::string seriesCsv(const ShotRun& s) {
 std::vector<Plot> plotsOf(const ShotRun& s) {
   std::vector<Plot> plots;
   for (size_t p = 0; p < s.marked; ++p) {
-    Plot plot{format("%s, pixel %zu", s.name.c_str(), p), "seconds", "tone-mapped luminance", {}, {}, true, {}};
+    Plot plot{.title = format("%s, pixel %zu", s.name.c_str(), p),
+              .xLabel = "time, s",
+              .yLabel = "indirect luminance, tone-mapped (0 to 1)",
+              .x = {},
+              .even = true,
+              .series = {}};
     const auto add = [&](const std::string& name, const PixelSeries& series, const char* colour) {
       plot.series.push_back({name, {}, colour});
       for (const auto& frame : series) plot.series.back().y.push_back(frame[p]);
@@ -116,15 +151,43 @@ nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots) {
   return figures;
 }
 
-std::string stabilityTable(const nlohmann::json& figures) { return tableText(kColumns, figures); }
+std::string stabilityTable(const nlohmann::json& figures) {
+  nlohmann::json rows = figures;
+  for (nlohmann::json& row : rows)
+    for (const Statistic& statistic : kStatistics)
+      if (const std::string error = std::string(statistic.key) + "_se"; row.contains(error))
+        row[statistic.key] = format("%.4f ± %.4f", row[statistic.key].get<double>(), row[error].get<double>());
+  return tableText(kColumns, rows);
+}
+
+std::string stabilityRankings(const std::vector<ShotRun>& shots) {
+  std::string text;
+  for (const ShotRun& s : shots) {
+    if (s.techniques.size() < 2) continue;
+    for (const Statistic& statistic : kStatistics) {
+      if (!measured(s, statistic)) continue;
+      const std::vector<UncertainValue> estimates = estimatesOf(s, statistic);
+      std::vector<Ranked> all;
+      for (size_t i = 0; i < estimates.size(); ++i) all.push_back({s.techniques[i].name, estimates[i]});
+      text += "- " + s.name + ", " + statistic.title + ": " + rankingText(ranked(std::move(all))) + "\n";
+    }
+  }
+  if (text.empty()) return text;
+  return "Rankings, the least first; a difference counts where seeds and the truth's noise make it in less than one of "
+         "twenty cases:\n\n" +
+         text;
+}
 
 void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const nlohmann::json& figures,
                           const std::string& conditions) {
   writeText(folder / "stability.csv", csvText(figures));
   std::string page = "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures);
+  if (const std::string rankings = stabilityRankings(shots); !rankings.empty()) page += "\n" + rankings;
   for (const ShotRun& s : shots) {
     writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
     if (s.marked == 0) continue;
+    writeShown(folder / ("marked-" + s.name + ".png"), s.picture);
+    page += "\n![" + s.name + ", first frame, marked pixels](marked-" + s.name + ".png)\n";
     writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
     page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
   }

@@ -1,0 +1,77 @@
+// Views with more of one thing and the same light on the picture, to measure what it costs.
+#pragma once
+
+#include "engine/scene/scene_view.h"
+
+#include <vector>
+
+namespace lambent {
+
+/// Triangles cut in n² each, along their edges: the same surface, without gaps. Texture coordinates, colours and
+/// normals are those between the corners. Meshes that may be deformed stay as they are.
+SceneAssets tessellated(const SceneAssets& assets, uint32_t n);
+
+/// Meshes cut in up to `parts` each.
+struct Pieces {
+  SceneAssets assets;
+  std::vector<std::vector<uint32_t>> of; // the pieces of each mesh, as indices into assets.meshes
+};
+/// Each with as many triangles of each primitive, ordered along the mesh's longest side. The same triangles as before
+/// in all. Meshes that may be deformed stay whole.
+Pieces inPieces(const SceneAssets& assets, uint32_t parts);
+
+/// Placed triangles.
+size_t trianglesOf(const SceneView& view);
+
+/// A view changed in one way. What it gives points into itself and into the view given, until the next call.
+class ScaledView {
+ public:
+  virtual ~ScaledView() = default;
+  virtual SceneView of(SceneView view) = 0;
+};
+
+/// Each punctual light as `count` lights at its place, which share its intensity.
+class SplitLights final : public ScaledView {
+ public:
+  explicit SplitLights(uint32_t count) : count_(count) {}
+  SceneView of(SceneView view) override;
+
+ private:
+  uint32_t count_;
+  std::vector<LightView> lights_;
+};
+
+/// Each instance as instances of the pieces of its mesh. `assets` are those of all views to come.
+class SplitInstances final : public ScaledView {
+ public:
+  SplitInstances(const SceneAssets& assets, uint32_t parts) : pieces_(inPieces(assets, parts)) {}
+  SceneView of(SceneView view) override;
+
+ private:
+  Pieces pieces_;
+  std::vector<InstanceView> instances_;
+};
+
+class SplitTriangles final : public ScaledView {
+ public:
+  SplitTriangles(const SceneAssets& assets, uint32_t n) : assets_(tessellated(assets, n)) {}
+  SceneView of(SceneView view) override {
+    view.assets = &assets_;
+    return view;
+  }
+
+ private:
+  SceneAssets assets_;
+};
+
+/// A picture of another size, of the same shape as nearly as whole pixels allow.
+class ResizedPicture final : public ScaledView {
+ public:
+  explicit ResizedPicture(float side) : side_(side) {}
+  SceneView of(SceneView view) override;
+
+ private:
+  float side_; // times as wide and as high
+};
+
+} // namespace lambent
