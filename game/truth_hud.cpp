@@ -112,8 +112,9 @@ void drawTruthFigures(TruthView& view) {
   ImGui::TextDisabled("each takes time from the other while both run");
   if (view.mode() == TruthMode::Heat) {
     float full = 100 * view.fullError;
-    if (ImGui::SliderFloat("full colour, %", &full, 1, 1000, "%.0f", ImGuiSliderFlags_Logarithmic))
-      view.fullError = full / 100;
+    const char* format = full > 0 ? "%.0f" : "2 x RMSE";
+    if (ImGui::SliderFloat("full colour, %", &full, 0, 1000, format, ImGuiSliderFlags_Logarithmic))
+      view.fullError = full < 1 ? 0 : full / 100;
   } else {
     ImGui::SliderFloat("divider", &view.divider, 0, 1, "%.2f");
   }
@@ -142,7 +143,7 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
     if (!heat) {
       ImGui::Text("left GI, right path traced, %s", plural(int(truth->samples), "sample").c_str());
     } else {
-      const std::string full = percent(view.fullError, "%.0f %%");
+      const std::string full = percent(view.fullErrorNow(), "%.3g %%");
       drawColorBar(kWidth, 10);
       const float line = ImGui::GetCursorPosY();
       for (const auto& [at, text] : {std::pair{0.0f, "-" + full}, {0.5f, std::string("0")}, {1.0f, "+" + full}}) {

@@ -2,6 +2,9 @@
 
 #include "gi/measure/statistics.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lambent {
 
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer) {
@@ -65,12 +68,22 @@ void TruthView::countFrame(const SceneView& view, Settings settings, const Frame
   spent_.latestMs.push_back(stats.wallMs);
 }
 
+double TruthView::fullErrorNow() const {
+  if (fullError > 0) return double(fullError);
+  const double wanted = 2 * against_.error.rmseShare();
+  if (!(wanted > 0 && std::isfinite(wanted))) return 1;
+  const double power = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double digit : {1, 2, 5})
+    if (digit * power >= wanted) return digit * power;
+  return 10 * power;
+}
+
 void TruthView::present(const GiFrame& gi, Buffer shown, int width, int height) const {
   const bool known = truth_ && referenceOf(shown) == truth_->buffer;
   if (known && mode_ == TruthMode::Split)
     gi.presentBesideTruth(shown, divider, 0, width, height);
   else if (known && mode_ == TruthMode::Heat)
-    gi.presentError(shown, std::max(1e-20f, fullError * float(against_.error.meanTruth)), 0, width, height);
+    gi.presentError(shown, float(std::max(1e-20, fullErrorNow() * against_.error.meanTruth)), 0, width, height);
   else
     gi.present(shown, 0, width, height);
 }

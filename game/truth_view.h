@@ -41,11 +41,13 @@ class TruthView {
   const LiveTruth* truth() const { return truth_.get(); }
   const AgainstTruth& against() const { return against_; }
   const FramesSpent& spent() const { return spent_; }
+  /// As chosen, or a round number from twice the RMSE on.
+  double fullErrorNow() const;
   /// Why there is no truth yet, in words.
   const std::string& reason() const { return reason_; }
 
-  float divider = 0.5f;    // share of the window's width
-  float fullError = 0.25f; // that has the full colour, share of the truth's mean
+  float divider = 0.5f; // share of the window's width
+  float fullError = 0;  // that has the full colour, share of the truth's mean; 0: follows the RMSE
 
  private:
   void countFrame(const SceneView& view, Settings settings, const FrameStats& stats);

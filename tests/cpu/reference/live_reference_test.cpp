@@ -155,17 +155,18 @@ TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
   scene_.camera.width = 640;
   scene_.camera.height = 480;
   settings_.smc.bounces = 8;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto start = std::chrono::steady_clock::now();
+  double pass = 0;
   {
     LiveReference live(kSeed);
-    this->begin(live, ReferenceBuffer::Beauty);
+    begin(live, ReferenceBuffer::Beauty);
     live.take(true);
+    pass = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  const double pass = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto again = std::chrono::steady_clock::now();
   {
     LiveReference live(kSeed);
-    this->begin(live, ReferenceBuffer::Beauty);
+    begin(live, ReferenceBuffer::Beauty);
     std::this_thread::sleep_for(std::chrono::duration<double>(0.05 * pass));
   }
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count(), 0.7 * pass);
