@@ -39,20 +39,22 @@ LightOnSurfaces HistoryPass::run(const HistoryInputs& in) {
 
 void HistoryPass::fit(const GBuffer& surfaces) {
   const bool glossy = surfaces.finish != nullptr;
-  if (found_ && found_.width() == surfaces.width && found_.height() == surfaces.height &&
-      bool(kept_[0].glossy) == glossy)
-    return;
-  forget();
+  const auto fits = [&](const gl::Texture& texture) {
+    return texture && texture.width() == surfaces.width && texture.height() == surfaces.height;
+  };
   const auto make = [&](const char* label) {
     return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
   };
-  for (Kept& k : kept_) {
-    k.irradiance = make("history/irradiance");
-    k.seen = make("history/seen");
-    k.glossy = glossy ? make("history/glossy") : gl::Texture();
-    k.framebuffer = glossy ? gl::Framebuffer("history", {&k.irradiance, &k.seen, &k.glossy})
-                           : gl::Framebuffer("history", {&k.irradiance, &k.seen});
+  if (bool(kept_[now_].glossy) != glossy) forget();
+  Kept& next = kept_[1 - now_]; // the other is looked up, at the size that it has
+  if (!fits(next.irradiance) || bool(next.glossy) != glossy) {
+    next.irradiance = make("history/irradiance");
+    next.seen = make("history/seen");
+    next.glossy = glossy ? make("history/glossy") : gl::Texture();
+    next.framebuffer = glossy ? gl::Framebuffer("history", {&next.irradiance, &next.seen, &next.glossy})
+                              : gl::Framebuffer("history", {&next.irradiance, &next.seen});
   }
+  if (fits(found_)) return;
   found_ = make("history/found");
   change_ = make("history/change");
   tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,

@@ -70,7 +70,8 @@ struct HistoryInputs {
 class HistoryPass {
  public:
   explicit HistoryPass(PassContext context) : context_(context) {}
-  /// Before the gather: forgets pictures of another size or kind.
+  /// Before the gather: makes room. Pictures of another size are looked up like any others; those of another kind are
+  /// forgotten.
   void fit(const GBuffer& surfaces);
   LightOnSurfaces run(const HistoryInputs& in);
   void forget() { pictures_ = 0, following_ = 0; }

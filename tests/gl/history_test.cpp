@@ -115,7 +115,27 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
   }
 }
 
-/// After other settings, another size or another scene the next picture is that of a frame that begins.
+/// The governor changes the picture's size while frames run: what is kept is looked up at the size that it has.
+TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  for (int i = 1; i < 16; ++i) gi.run(still());
+  for (const int width : {64, 48, 96}) {
+    room.scene.camera.width = width;
+    room.scene.camera.height = width * 3 / 4;
+    GiFrame fresh(settings);
+    fresh.run(room.scene.view());
+    const Image all = allLights(), one = fresh.read(Buffer::Irradiance);
+    for (int i = 0; i < 3; ++i) { // the first of this size, and two that look up one of it
+      gi.run(view({false, i == 0, false, false, false}));
+      const Image along = gi.read(Buffer::Irradiance);
+      EXPECT_LT(relativeRmse(along, all), 0.8 * relativeRmse(one, all)) << width << " " << i;
+      EXPECT_NEAR(meanLuminance(along), meanLuminance(all), 0.01 * meanLuminance(all)) << width << " " << i;
+    }
+  }
+}
+
+/// After other settings or another scene the next picture is that of a frame that begins.
 TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
   const auto asNew = [&](GiFrame& gi, const Room& shown, const char* what) {
     GiFrame fresh(gi.settings());
@@ -132,10 +152,6 @@ TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
   gi.run(still());
   asNew(gi, room, "settings");
   for (int i = 1; i < 5; ++i) gi.run(still());
-  room.scene.camera.width = 64;
-  room.scene.camera.height = 48;
-  gi.run(view({false, true, false, false, false}));
-  asNew(gi, room, "size");
   Room other;
   other.scene.lights = room.scene.lights;
   other.scene.lights[0].intensity *= 0.9f;
