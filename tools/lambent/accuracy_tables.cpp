@@ -1,13 +1,8 @@
 // lambent accuracy SCENE --convergence, --gathers, --light, --direct, --presets, --figure 8|9|10: tables of pictures of
 // one view under changing settings, held to path tracing or to one among them.
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
-#include "engine/platform/gl_context.h"
-#include "gi/measure/picture_error.h"
-#include "gi/reference/traced_picture.h"
-#include "tools/lambent/accuracy.h"
 #include "tools/lambent/linear_picture.h"
-#include "tools/lambent/text.h"
+#include "tools/lambent/study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,117 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Settings by name, as on the command line.
-using Assignments = std::vector<std::pair<std::string, std::string>>;
-
-/// What the forms have in common: a still view that is drawn, traced and reported on.
-class Study {
- public:
-  /// `defaults` and `size` hold unless the command line says otherwise.
-  Study(const AccuracyOptions& options, const std::string& size, Assignments defaults = {})
-      : launch(options.launch), options_(options) {
-    if (launch.size.empty()) launch.size = options.quick ? "32x18" : size;
-    if (options.quick) defaults.insert(defaults.end(), {{"smc.vpls", "128"}, {"smc.warmup", "4"}});
-    if (options.clamp) defaults.emplace_back("gather.clamp", format("%.9g", *options.clamp));
-    for (const auto& [name, value] : defaults) launch.set.insert(launch.set.begin(), name + "=" + value);
-    stage = openStage(launch);
-    say(*stage, options.output.quiet);
-    context_.emplace(GlContext::headless());
-  }
-
-  Variant variant(const std::string& name, const Assignments& assignments) const {
-    Variant v{name, stage->settings, stage->seed};
-    for (const auto& [setting, value] : assignments) applySetting(v.settings, setting, value);
-    return v;
-  }
-
-  std::vector<Measured> draw(const std::vector<Variant>& variants, Buffer buffer, int frames = 1, int skip = 0,
-                             bool inTurn = false) {
-    Progress progress("drawing", options_.output.quiet);
-    RunPlan plan = stillPlan(*stage, progress, buffer);
-    plan.frames = frames, plan.skip = skip, plan.inTurn = inTurn;
-    return measure(variants, plan);
-  }
-
-  /// Of a shot, from its first frame to this one.
-  std::vector<Measured> drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) {
-    Progress progress("drawing", options_.output.quiet);
-    RunPlan plan = planOf(*stage, progress, frame + 1);
-    plan.inTurn = false, plan.picture = buffer;
-    if (plan.frames <= frame) throw InputError("--frame", "the shot has only " + std::to_string(plan.frames));
-    return measure(variants, plan);
-  }
-
-  /// `state` keeps the sums; empty: nothing does.
-  const TracedPicture& trace(int samples, ReferenceBuffer buffer, bool clamped, const fs::path& state = {},
-                             int frame = 0) {
-    Progress progress("tracing paths", options_.output.quiet);
-    const RunPlan plan = planOf(*stage, progress, 0);
-    truth = tracePicture(plan.view(frame), stage->settings,
-                         {.buffer = buffer,
-                          .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
-                          .clamped = clamped,
-                          .seed = stage->seed,
-                          .state = state,
-                          .cancelled = plan.cancelled,
-                          .progress = plan.progress});
-    if (interrupted)
-      throw RunError(state.empty() ? "interrupted: nothing is written" : "interrupted: the same command goes on");
-    return *truth;
-  }
-
-  /// The table, with how well its truth is known.
-  void report(const std::vector<TableColumn>& columns, const nlohmann::json& rows,
-              nlohmann::json figures = nlohmann::json::object()) const {
-    figures["scene"] = launch.scene;
-    figures["rows"] = rows;
-    if (truth)
-      figures["truth"] = {{"spp", truth->samples},
-                          {"clamp", truth->clamp},
-                          {"relative_error", truth->picture.relativeError},
-                          {"relative_error_of_mean", truth->picture.relativeErrorOfMean}};
-    writeJson(options_.output.json, figures);
-    if (options_.output.quiet) return;
-    if (truth)
-      std::printf("truth: %u paths per pixel, standard error %.2f %% per pixel (RMS), %.2f %% of the mean\n",
-                  truth->samples, 100 * truth->picture.relativeError, 100 * truth->picture.relativeErrorOfMean);
-    std::printf("%s", tableText(columns, rows).c_str());
-  }
-
-  LaunchOptions launch;
-  std::unique_ptr<Stage> stage;
-  std::optional<TracedPicture> truth; // the last one traced
-
- private:
-  const AccuracyOptions& options_;
-  std::optional<GlContext> context_;
-};
-
 void needClamp(const AccuracyOptions& options) {
   if (!(options.clamp.value_or(0) > 0))
     throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
-}
-
-nlohmann::json rowOf(const PictureError& e) {
-  return {{"rmse", e.rmse}, {"rmse_share", e.rmseShare()}, {"rel_mse", e.relMse}, {"bias", e.bias}};
-}
-
-/// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the
-/// truth's own variance and pace. May be less than a sample of every pixel takes; none where one sample is all the
-/// truth has.
-std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
-  const double ofTruth = expectedRelMse(truth.picture.mean, truth.picture.error);
-  const double ofPicture = std::max(relMse - ofTruth, 1e-6); // what the truth does not know is no error of it
-  if (!(ofTruth > 0)) return {};
-  return 1000 * truth.sampleSeconds * truth.samples * ofTruth / ofPicture;
-}
-
-/// Median over the second half: warm-up and what a first frame makes are past. Not of one frame.
-std::optional<double> steadyMs(const std::vector<FrameStats>& frames) {
-  if (frames.size() < 2) return {};
-  std::vector<double> ms;
-  for (size_t i = frames.size() / 2; i < frames.size(); ++i) ms.push_back(frames[i].wallMs);
-  return spreadOf(ms).median;
 }
 
 const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kRelMse{"rel_mse", "relMSE", "%.4f"},
