@@ -1,11 +1,12 @@
 // Patches as the papers have them: a finest size, split by depth, upsampled without regard to surfaces.
 #include "multires_fixture.h"
+#include "shaders/shared/patches.h"
 
 namespace lambent::test {
 
 namespace {
 
-/// A panel before a wall, and a lamp between them that lights the wall alone.
+/// A panel before a wall, over the left half of the picture, and a lamp between them that lights the wall alone.
 struct Panels {
   HandScene scene;
   std::vector<VirtualLight> lamp{lightAt(vec3(0, 0, -1), vec3(0, 0, -1), vec3(1), 0.1f)};
@@ -13,8 +14,8 @@ struct Panels {
   Panels() {
     const uint32_t grey = scene.material(vec3(0.5f));
     scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-    scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 18, 0), grey); // nearer, over the left half
-    scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 131, 77);
+    scene.quad(vec3(-9, -9, 0), vec3(9, 0, 0), vec3(0, 18, 0), grey);
+    scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
   }
 };
 
@@ -84,6 +85,20 @@ TEST_F(MultiresTest, AboveTheFinestPatchesAreThoseOfPixels) {
     for (int x = 0; x < 127; ++x)
       for (const int other : {y * 128 + x + 1, (y + 1) * 128 + x, (y + 1) * 128 + x + 1})
         ASSERT_LE(std::abs(levels[size_t(y) * 128 + x] - levels[size_t(other)]), 1) << "balance";
+}
+
+/// A patch that would be split and may not has no parts to be balanced against.
+TEST_F(MultiresTest, PatchesOfTheFinestSizeSplitNoneBesideThem) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
+  scene.quad(vec3(-9, -9, 0), vec3(9.854f, 0, 0), vec3(0, 18, 0), grey); // up to pixel 76
+  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
+  multires(surfaces(scene), roomLights(), {.coarsest = 4, .finest = 8, .edges = false});
+  const std::vector<int> levels = patchLevels(surfaces(scene));
+  for (int x = 64; x < 80; ++x) ASSERT_EQ(levels[size_t(x)], 3) << x;
+  for (int x = 80; x < 96; ++x) ASSERT_EQ(levels[size_t(x)], 4) << x;
+  for (int x = 96; x < 128; ++x) ASSERT_EQ(levels[size_t(x)], 5) << x;
 }
 
 /// The pixel at the middle of a patch may show nothing.
@@ -171,26 +186,85 @@ TEST_F(MultiresTest, DepthFiresOnAFloorAtAGrazingAngleWhereThePlaneDoesNot) {
     multires(step, panels.lamp, {.coarsest = 4, .criterion = criterion});
     const std::vector<int> levels = patchLevels(step);
     EXPECT_EQ(levels[0], patches->levels);
-    EXPECT_EQ(levels[size_t(40) * 131 + 130], patches->levels);
+    EXPECT_EQ(levels[size_t(40) * 128 + 127], patches->levels);
     int small = 0;
-    for (int x = 0; x < 131; ++x) small += levels[size_t(40) * 131 + x] <= 1;
-    EXPECT_GE(small, 2);
+    for (int x = 0; x < 128; ++x) small += levels[size_t(40) * 128 + x] <= 1;
+    EXPECT_EQ(small, 8) << "two patches of 2 × 2 pixels on either side";
   }
 }
 
+/// Where an edge runs between patches. One within a patch splits it to pixels, which are not interpolated.
 TEST_F(MultiresTest, BilinearLeaksOverAnEdgeAndBilateralDoesNot) {
   Panels panels;
   const GBuffer gbuffer = surfaces(panels.scene);
   const Image full = gathered(gbuffer, panels.lamp, GatherMode::Full);
-  const auto leaked = [&](PatchUpsample upsample, bool edges) {
-    const Image image = multires(gbuffer, panels.lamp, {.coarsest = 4, .edges = edges, .upsample = upsample});
-    double dark = 0, all = 0;
-    for (size_t i = 0; i < full.pixels.size(); ++i) (full.pixels[i].x == 0 ? dark : all) += image.pixels[i].x;
-    return dark / all;
+  // Shares of the light beside the edge: on its dark side, and missing on its lit side.
+  const auto leaked = [&](PatchUpsample upsample, bool edges, int finest) {
+    const Image image =
+        multires(gbuffer, panels.lamp, {.coarsest = 4, .finest = finest, .edges = edges, .upsample = upsample});
+    double dark = 0, missing = 0, all = 0;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 56; x < 72; ++x) {
+        const float light = image.at(x, y).x, right = full.at(x, y).x;
+        EXPECT_EQ(right > 0, x >= 64);
+        (right == 0 ? dark : missing) += right == 0 ? light : std::max(0.0f, right - light);
+        all += right;
+      }
+    return std::pair(dark / all, missing / all);
   };
-  for (const bool edges : {true, false}) EXPECT_LT(leaked(PatchUpsample::Bilateral, edges), 1e-6);
-  EXPECT_GT(leaked(PatchUpsample::Bilinear, true), 1e-4);
-  EXPECT_GT(leaked(PatchUpsample::Bilinear, false), 1e-4);
+  for (const bool edges : {true, false})
+    for (const int finest : {1, 8}) EXPECT_LT(leaked(PatchUpsample::Bilateral, edges, finest).first, 1e-6);
+  for (const auto& [edges, finest] : {std::pair(true, 8), {false, 1}, {false, 8}})
+    EXPECT_GT(leaked(PatchUpsample::Bilinear, edges, finest).first, 0.03) << finest << edges;
+  // Of patches of 2 × 2 pixels the dark ones stand for the first lit column too.
+  EXPECT_LT(leaked(PatchUpsample::Bilateral, true, 1).second, 0.02);
+  EXPECT_GT(leaked(PatchUpsample::Bilinear, true, 1).second, 0.05);
+}
+
+/// Paper 2, section 3.5, done once more from every pixel's light.
+TEST_F(MultiresTest, BilinearIsThePapersUpsampling) {
+  const Room room;
+  const GBuffer gbuffer = surfaces(room.scene);
+  const Image full = gathered(gbuffer, roomLights(), GatherMode::Full);
+  const Image image =
+      multires(gbuffer, roomLights(), {.coarsest = 4, .balance = false, .upsample = PatchUpsample::Bilinear});
+  const std::vector<int> levels = patchLevels(gbuffer);
+  ASSERT_EQ(patches->levels, 4);
+  struct Level {
+    int width, height;
+    std::vector<std::optional<float>> light;
+  };
+  Level coarse{0, 0, {}};
+  for (int level = 4; level >= 0; --level) {
+    Level fine{64 >> level, 48 >> level, {}};
+    for (int y = 0; y < fine.height; ++y)
+      for (int x = 0; x < fine.width; ++x) {
+        std::optional<float>& light = fine.light.emplace_back();
+        const ivec2 centre = patchCentre(ivec2(x, y), level);
+        if (levels[size_t(y << level) * 64 + (x << level)] == level) {
+          light = full.at(centre.x, 47 - centre.y).y;
+          continue;
+        }
+        if (level == 4 || !coarse.light[size_t(y / 2 * coarse.width + x / 2)]) continue;
+        const vec2 at = (vec2(centre) - vec2(patchCentre(ivec2(0), level + 1))) / float(2 << level); // coarse texels
+        float sum = 0, weights = 0;
+        for (int j = 0; j < coarse.height; ++j)
+          for (int i = 0; i < coarse.width; ++i) {
+            const vec2 away = glm::abs(at - vec2(i, j));
+            const std::optional<float>& value = coarse.light[size_t(j * coarse.width + i)];
+            if (!value || away.x >= 1 || away.y >= 1) continue;
+            sum += (1 - away.x) * (1 - away.y) * *value;
+            weights += (1 - away.x) * (1 - away.y);
+          }
+        light = sum / weights;
+      }
+    coarse = std::move(fine);
+  }
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const float expected = *coarse.light[size_t(y) * 64 + x];
+      ASSERT_NEAR(image.at(x, 47 - y).y, expected, 1e-4f * expected) << x << ' ' << y;
+    }
 }
 
 /// As the paper's figure 3: nothing comes from texels that hold no light, and nothing goes to them.

@@ -20,6 +20,10 @@ struct BenchOptions {
 /// As the options say. Throws InputError when no frame would be left.
 RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress);
 
+/// The view with every punctual light a ten-thousandth of the scene aside in every other frame, so that no map is kept
+/// and every stage runs in every frame. `lights` holds them.
+SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights);
+
 /// Techniques multires-gather and multires-splat, scene by scene.
 void benchMultires(const BenchOptions& options);
 

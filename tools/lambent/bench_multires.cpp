@@ -56,22 +56,6 @@ double medianMs(const Measured& m, size_t row) {
       .median;
 }
 
-/// The view with every punctual light a ten-thousandth of the scene aside in every other frame, so that no map is kept
-/// and every stage runs in every frame.
-SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
-  constexpr float kShare = 1e-4f;
-  lights.assign(view.lights.begin(), view.lights.end());
-  for (LightView& light : lights) {
-    const vec3 aside = frame % 2 == 0 ? vec3(0) : vec3(kShare, 0, kShare);
-    light.position += view.boundsWorld.diameter() * aside;
-    if (light.type == LightType::Directional) light.direction = glm::normalize(light.direction + aside);
-    light.changed = true;
-  }
-  view.lights = lights;
-  view.changes.lights = true;
-  return view;
-}
-
 /// All figures of one scene: a column of the table.
 nlohmann::json columnOf(const BenchOptions& options, const std::string& file) {
   LaunchOptions launch = options.launch;
@@ -124,6 +108,20 @@ void print(const nlohmann::json& columns, const char* title, const std::string& 
 }
 
 } // namespace
+
+SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
+  constexpr float kShare = 1e-4f;
+  lights.assign(view.lights.begin(), view.lights.end());
+  for (LightView& light : lights) {
+    const vec3 aside = frame % 2 == 0 ? vec3(0) : vec3(kShare, 0, kShare);
+    light.position += view.boundsWorld.diameter() * aside;
+    if (light.type == LightType::Directional) light.direction = glm::normalize(light.direction + aside);
+    light.changed = true;
+  }
+  view.lights = lights;
+  view.changes.lights = true;
+  return view;
+}
 
 void benchMultires(const BenchOptions& options) {
   if (!options.launch.technique.empty())

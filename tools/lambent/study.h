@@ -50,6 +50,9 @@ class Study {
 };
 
 nlohmann::json rowOf(const PictureError& e);
+/// Columns of such a row.
+inline const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100},
+    kRelMse{"rel_mse", "relMSE", "%.4f"}, kBias{"bias", "bias", "%+.1f %%", 100};
 
 /// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the
 /// truth's own variance and pace. May be less than a sample of every pixel takes; none where one sample is all the
