@@ -46,7 +46,7 @@ struct Curve {
   const char *key, *label;
   double factor = 1;
 };
-const Curve kRate{"fps", "frames per second"}, kPatches{"patches", "patches"},
+const Curve kRate{"fps", "frames per second"}, kPatches{"patches", "patches, thousands", 1e-3},
     kError{"rmse_share", "RMSE, % of mean indirect radiance", 100}, kLights{"vpls", "VPLs"};
 
 struct PaperFigure {
@@ -211,8 +211,8 @@ const char* xLabel(const PaperFigure& figure) { return figure.overTime ? "second
 /// One plot for each technique and curve, with a line for each value of the series.
 std::vector<Plot> plotsOf(const PaperFigure& figure, const nlohmann::json& rows) {
   std::vector<Plot> plots;
-  for (const Curve& curve : figure.curves)
-    for (const std::string& technique : figure.techniques) {
+  for (const std::string& technique : figure.techniques)
+    for (const Curve& curve : figure.curves) {
       Plot plot{technique, xLabel(figure), curve.label, {}, {}, figure.overTime, {}};
       for (const nlohmann::json& row : rows) {
         if (row["technique"] != technique || !row.contains("x") || !row.contains(curve.key)) continue;
@@ -224,7 +224,10 @@ std::vector<Plot> plotsOf(const PaperFigure& figure, const nlohmann::json& rows)
       }
       if (!figure.series.setting.empty())
         for (PlotSeries& s : plot.series) s.name = figure.series.setting + " " + s.name;
-      if (!plot.x.empty()) plots.push_back(std::move(plot));
+      // Patches are counted where they gather, and hisr's clusters are not: nothing to see of those.
+      const bool any = std::ranges::any_of(
+          plot.series, [](const PlotSeries& s) { return std::ranges::any_of(s.y, [](double y) { return y != 0; }); });
+      if (any) plots.push_back(std::move(plot));
     }
   return plots;
 }
@@ -345,7 +348,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
   }
   writeText(folder / "figure.csv", csvText(report));
   const std::vector<Plot> plots = plotsOf(figure, report);
-  if (!plots.empty()) writeText(folder / "figure.svg", svgOf(plots, figure.techniques.size()));
+  if (!plots.empty()) writeText(folder / "figure.svg", svgOf(plots, 3));
   writeJson(options.output.json, {{"figure", figure.name}, {"rows", report}});
   if (!options.output.quiet)
     std::printf("%s, %d x %d\n\n%s\nreport (differences times 8): %s\n", figure.title, stage->camera.width,
