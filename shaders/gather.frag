@@ -5,7 +5,7 @@
 // those of lib/vpl_shading.glsl.
 #include "lib/gbuffer.glsl"
 #include "lib/vpl_shading.glsl"
-#include "shared/patches.h"
+#include "lib/patch_sample.glsl"
 #ifdef CHECKED
 #include "shared/octahedral.h"
 #endif
@@ -43,7 +43,7 @@ layout(early_fragment_tests) in;
 
 void main() {
 #ifdef PATCHES
-  ivec2 pixel = patchPixel(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset, ivec2(camera.size.xy));
+  ivec2 pixel = patchSample(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset);
 #else
   ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
 #endif

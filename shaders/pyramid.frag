@@ -3,7 +3,8 @@
 // inverse depth over the picture (affine for every plane, however steep), a bound of how far its pixels lie from that
 // plane, and the range of their normals. It is split where these pass the thresholds, for balance where a patch beside it is
 // split twice over (2:1), and, if larger than 2 × 2 pixels, where an edge runs along it. Serves the camera's picture, and
-// light maps that lie side by side (cells).
+// light maps that lie side by side (cells). Variant DEPTH_RANGE: a patch keeps its least and largest inverse depth instead
+// of a plane, and is split where the range of its depths is too large (papers 2 and 3).
 layout(binding = 0) uniform sampler2D depthMap;  // FIRST: reversed depth, 0 where nothing is seen
 layout(binding = 1) uniform sampler2D normalMap; // FIRST
 layout(binding = 0) uniform sampler2D planes;    // else: the level below
@@ -12,6 +13,7 @@ layout(binding = 2) uniform sampler2D normalsHi;
 uniform ivec2 size;           // of the picture, pixels
 uniform ivec2 cell;           // of one map, children; patches never span two
 uniform int childPixels;      // 2^(level − 1)
+uniform int mayBeSplit;       // 0: not at this level, whatever it holds
 uniform float depthThreshold;  // MultiresSettings::depth
 uniform float normalThreshold; // MultiresSettings::normal
 uniform float orthoScale;      // depth range over half the width, of maps by parallel rays: depths are not inverse there
@@ -20,15 +22,17 @@ uniform int columns;           // of maps
 uniform int balance;           // MultiresSettings::balance
 uniform int edges;             // MultiresSettings::edges
 layout(location = 0) out vec4 outPlane;    // inverse depth at the centre (0: background, −1: outside), slope per pixel,
-                                           // largest deviation
-layout(location = 1) out vec4 outNormalLo; // a: 1 = to be split
+                                           // largest deviation; DEPTH_RANGE: least inverse depth, the same and the
+                                           // largest, their difference
+layout(location = 1) out vec4 outNormalLo; // a: 1 = to be split, kWhole = would be but may not
 layout(location = 2) out vec4 outNormalHi; // a, of 2 × 2 pixels: 1 = whole, but an edge runs along its border
 
 const float kSplit = 1e30;
+const float kWhole = 0.25;
 
 struct Child {
   float centre;
-  vec2 slope;
+  vec2 slope; // DEPTH_RANGE: least and largest inverse depth
   float deviation;
   vec3 lo, hi;
 };
@@ -42,7 +46,52 @@ bool turns(vec3 lo, vec3 hi) {
   return max(max(range.x, range.y), range.z) >= normalThreshold;
 }
 
+/// outPlane of the `surfaces` children of `inside` that show one.
+vec4 mergedPlane(Child children[4], int surfaces, int inside) {
+#ifdef DEPTH_RANGE
+  vec2 range = vec2(kSplit, 0.0);
+  for (int i = 0; i < 4; ++i)
+    if (children[i].centre > 0.0)
+      range = vec2(min(range.x, children[i].slope.x), max(range.y, children[i].slope.y));
+  // Over the least inverse depth: the largest depth over the least, less one.
+  return vec4(range.x, range, surfaces < inside ? kSplit : range.y - range.x);
+#else
+  vec2 slope = vec2(0.0);
+  for (int i = 0; i < 4; ++i)
+    if (children[i].centre > 0.0) slope += children[i].slope;
+  slope /= float(surfaces);
+  float centre = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    if (!(children[i].centre > 0.0)) continue;
+    vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
+    centre += children[i].centre - dot(slope, offset);
+  }
+  centre /= float(surfaces);
+  // Pixel centres of a child lie within half of its pixels less one of its centre.
+  float reach = 0.5 * float(childPixels - 1);
+  float deviation = surfaces < inside || !(centre > 0.0) ? kSplit : 0.0;
+  for (int i = 0; i < 4; ++i) {
+    if (!(children[i].centre > 0.0)) continue;
+    vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
+    vec2 turn = abs(children[i].slope - slope);
+    deviation = max(deviation, children[i].deviation + abs(children[i].centre - centre - dot(slope, offset)) +
+                                   (turn.x + turn.y) * reach);
+  }
+  return vec4(max(centre, 1e-30), slope, deviation);
+#endif
+}
+
 #ifdef FIRST
+/// How far a pixel beside the patch is from continuing it, as relativeTo.
+float offThePatch(float beside, vec2 step, ivec2 map) {
+#ifdef DEPTH_RANGE
+  float least = min(beside, outPlane.y);
+  return relativeTo(max(beside, outPlane.z) - least, least, map);
+#else
+  return relativeTo(abs(beside - outPlane.x - dot(outPlane.yz, step - 0.5)), outPlane.x, map);
+#endif
+}
+
 /// Difference to the neighbour that continues the surface better: the smaller of both, none if they disagree.
 float slopeOf(float before, float here, float after) {
   if (before <= 0.0) return after <= 0.0 ? 0.0 : after - here;
@@ -65,6 +114,9 @@ Child childAt(ivec2 pixel) {
   if (c.centre <= 0.0) return c;
   c.slope = vec2(slopeOf(depthAt(pixel - ivec2(1, 0), origin), c.centre, depthAt(pixel + ivec2(1, 0), origin)),
                  slopeOf(depthAt(pixel - ivec2(0, 1), origin), c.centre, depthAt(pixel + ivec2(0, 1), origin)));
+#ifdef DEPTH_RANGE
+  c.slope = vec2(c.centre);
+#endif
   c.lo = c.hi = texelFetch(normalMap, pixel, 0).xyz;
   return c;
 }
@@ -79,41 +131,21 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * 2;
   Child children[4];
   int surfaces = 0, inside = 0;
-  vec2 slope = vec2(0.0);
   vec3 lo = vec3(2.0), hi = vec3(-2.0);
   for (int i = 0; i < 4; ++i) {
     children[i] = childAt(first + ivec2(i & 1, i >> 1));
     inside += children[i].centre >= 0.0 ? 1 : 0;
     if (!(children[i].centre > 0.0)) continue;
     ++surfaces;
-    slope += children[i].slope;
     lo = min(lo, children[i].lo);
     hi = max(hi, children[i].hi);
   }
   outPlane = vec4(inside > 0 ? 0.0 : -1.0, 0.0, 0.0, 0.0);
   outNormalLo = outNormalHi = vec4(0.0);
   if (surfaces > 0) {
-    slope /= float(surfaces);
-    float centre = 0.0;
-    for (int i = 0; i < 4; ++i) {
-      if (!(children[i].centre > 0.0)) continue;
-      vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
-      centre += children[i].centre - dot(slope, offset);
-    }
-    centre /= float(surfaces);
-    // Pixel centres of a child lie within half of its pixels less one of its centre.
-    float reach = 0.5 * float(childPixels - 1);
-    float deviation = surfaces < inside || !(centre > 0.0) ? kSplit : 0.0;
-    for (int i = 0; i < 4; ++i) {
-      if (!(children[i].centre > 0.0)) continue;
-      vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(childPixels);
-      vec2 turn = abs(children[i].slope - slope);
-      deviation = max(deviation, children[i].deviation + abs(children[i].centre - centre - dot(slope, offset)) +
-                                     (turn.x + turn.y) * reach);
-    }
-    outPlane = vec4(max(centre, 1e-30), slope, deviation);
+    outPlane = mergedPlane(children, surfaces, inside);
     ivec2 map = first / cell;
-    bool split = relativeTo(deviation, outPlane.x, map) >= depthThreshold || turns(lo, hi);
+    bool split = relativeTo(outPlane.w, outPlane.x, map) >= depthThreshold || turns(lo, hi);
     outNormalLo.xyz = lo;
     outNormalHi.xyz = hi;
     outNormalLo.a = split ? 1.0 : 0.0;
@@ -127,9 +159,8 @@ void main() {
         ivec2 step = ivec2(i & 3, i >> 2) - 1;
         float beside = depthAt(first + step, origin);
         if (beside < 0.0) continue;
-        float off = abs(beside - outPlane.x - dot(slope, vec2(step) - 0.5));
         vec3 normal = texelFetch(normalMap, first + step, 0).xyz;
-        edge = edge || beside == 0.0 || relativeTo(off, outPlane.x, map) >= depthThreshold ||
+        edge = edge || beside == 0.0 || offThePatch(beside, vec2(step), map) >= depthThreshold ||
                turns(min(lo, normal), max(hi, normal));
       }
       outNormalHi.a = edge ? 1.0 : 0.0;
@@ -137,17 +168,19 @@ void main() {
 #endif
   }
 #ifndef FIRST
-  // A split child makes this one split, as does one with an edge along its border, and, for balance, a split one beside.
+  // A child that is split, or would be if it might, makes this one split, as does one with an edge along its border, and,
+  // for balance, a split one beside.
   ivec2 origin = first / cell * cell;
   int ring = balance;
   for (int y = -ring; y < 2 + ring; ++y) {
     for (int x = -ring; x < 2 + ring; ++x) {
       ivec2 texel = first + ivec2(x, y), within = texel - origin;
       if (any(lessThan(within, ivec2(0))) || any(greaterThanEqual(within, cell))) continue;
-      outNormalLo.a = max(outNormalLo.a, texelFetch(normalsLo, texel, 0).a);
-      if (all(greaterThanEqual(ivec2(x, y), ivec2(0))) && all(lessThan(ivec2(x, y), ivec2(2))))
-        outNormalLo.a = max(outNormalLo.a, texelFetch(normalsHi, texel, 0).a);
+      bool own = all(greaterThanEqual(ivec2(x, y), ivec2(0))) && all(lessThan(ivec2(x, y), ivec2(2)));
+      if (texelFetch(normalsLo, texel, 0).a > (own ? 0.0 : 0.5) || (own && texelFetch(normalsHi, texel, 0).a > 0.0))
+        outNormalLo.a = 1.0;
     }
   }
 #endif
+  if (mayBeSplit == 0) outNormalLo.a *= kWhole;
 }

@@ -1,7 +1,7 @@
 #version 450
 // The light of one VPL at one patch, to be added up. Variants of lib/vpl_shading.glsl.
 #include "lib/vpl_shading.glsl"
-#include "shared/patches.h"
+#include "lib/patch_sample.glsl"
 
 uniform int blockClass; // class that the block starts with
 flat in ivec3 subsplat;
@@ -12,7 +12,7 @@ layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
 #endif
 
 void main() {
-  ivec2 pixel = patchPixel(subsplat.xy, subsplat.z, 1, ivec2(0), ivec2(camera.size.xy));
+  ivec2 pixel = patchSample(subsplat.xy, subsplat.z, 1, ivec2(0));
   Surface surface = surfaceAt(pixel, texelFetch(gbufferDepth, pixel, 0).r);
   Received sum = receivedNothing();
   int layer = light % kLightsPerClass * kLightClasses + blockClass + light / kLightsPerClass;

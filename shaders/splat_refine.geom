@@ -5,7 +5,7 @@
 layout(points) in;
 layout(points, max_vertices = 4) out;
 #include "lib/gbuffer.glsl"
-#include "shared/patches.h"
+#include "lib/patch_sample.glsl"
 #ifdef PER_VPL
 #include "lib/vpl_shading.glsl"
 #endif
@@ -35,7 +35,7 @@ bool differs(ivec2 texel, int at) {
   vec3 lo = vec3(1e30), hi = vec3(0.0);
   VplLight vpl = lights[light];
   for (int k = 0; k < 4; ++k) {
-    ivec2 pixel = patchPixel(texel * 2 + ivec2(k & 1, k >> 1), at - 1, 1, ivec2(0), ivec2(camera.size.xy));
+    ivec2 pixel = patchSample(texel * 2 + ivec2(k & 1, k >> 1), at - 1, 1, ivec2(0));
     float depth = texelFetch(gbufferDepth, pixel, 0).r;
     if (depth == 0.0) continue;
     Surface surface = surfaceAt(pixel, depth);
@@ -72,7 +72,7 @@ void main() {
   if (!shows(texel, at)) return;
   bool split = level > 0 && texelFetch(normalsLo, texel, at - 1).a > 0.5;
 #ifdef PER_VPL
-  split = split || (level > 0 && differs(texel, at));
+  split = split || (level > finestPatch && differs(texel, at));
 #endif
   if (!split) {
     pass(texel, at);

@@ -8,7 +8,7 @@
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
-#include "shared/patches.h"
+#include "lib/patch_sample.glsl"
 
 layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 3) uniform sampler2D normals;
@@ -48,7 +48,7 @@ int evenBits(int m) {
 
 void main() {
 #ifdef PATCHES
-  ivec2 pixel = patchPixel(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset, ivec2(camera.size.xy));
+  ivec2 pixel = patchSample(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset);
 #else
   ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
 #endif

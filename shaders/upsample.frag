@@ -3,9 +3,10 @@
 // at this level it stays; where it belongs to a coarser one, that level is interpolated; where it is split it stays empty.
 // What is interpolated holds light and lies on the same surface: weights as in filter.frag. A neighbour that was split
 // counts with its parts. Weights are divided by their sum, so a constant stays one. FINAL: to the pixels themselves. GLOSSY:
-// glossy light too, with weights by roughness and metalness besides.
+// glossy light too, with weights by roughness and metalness besides. BILINEAR: without weights for surfaces, and between
+// whole patches only, as the paper.
 #include "lib/gbuffer.glsl"
-#include "shared/patches.h"
+#include "lib/patch_sample.glsl"
 
 layout(binding = 2) uniform sampler2D atlas;  // as gathered; a > 0: holds light
 layout(binding = 3) uniform sampler2D coarse; // the next coarser level, whole; a as above
@@ -28,6 +29,9 @@ vec2 finish;
 
 /// Lobes of other shape hold other light: as in filter.frag.
 float likeLobe(ivec2 pixel) {
+#ifdef BILINEAR
+  return 1.0;
+#endif
   vec2 difference = texelFetch(gbufferFinish, pixel, 0).rg - finish;
   return exp2(-72.13475 * dot(difference, difference));
 }
@@ -38,6 +42,9 @@ float inverseSigma;
 
 /// How much of the light at `pixel` is meant for this patch's surface.
 float alike(ivec2 pixel) {
+#ifdef BILINEAR
+  return 1.0;
+#endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return 0.0;
   float height = dot(normal, positionFromDepth(pixel, depth) - position) * inverseSigma;
@@ -59,7 +66,7 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) return;
 #else
   ivec2 subset = at / sub, texel = at - subset * sub;
-  ivec2 pixel = patchPixel(texel, level, grid, subset, size);
+  ivec2 pixel = patchSample(texel, level, grid, subset);
   if (any(greaterThanEqual(texel * (1 << level) * grid + subset, size))) return;
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
@@ -95,7 +102,7 @@ void main() {
       if (weight == 0.0 || any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, subCoarse))) continue;
       vec4 value = texelFetch(coarse, subset * subCoarse + q, 0);
       if (value.a > 0.0) {
-        ivec2 there = patchPixel(q, level + 1, grid, subset, size);
+        ivec2 there = patchSample(q, level + 1, grid, subset);
         weight *= max(alike(there), i == 0 ? 1e-3 : 0.0);
         sum += weight * value.rgb;
         weights += weight;
@@ -106,6 +113,7 @@ void main() {
 #endif
         continue;
       }
+#ifndef BILINEAR
       float parts = 0.0;
       for (int k = 0; k < 4; ++k)
         parts += texelFetch(atlas, origin + q * 2 + ivec2(k & 1, k >> 1), 0).a > 0.0 ? 1.0 : 0.0;
@@ -113,7 +121,7 @@ void main() {
         ivec2 part = q * 2 + ivec2(k & 1, k >> 1);
         vec4 light = texelFetch(atlas, origin + part, 0);
         if (light.a == 0.0) continue;
-        ivec2 there = patchPixel(part, level, grid, subset, size);
+        ivec2 there = patchSample(part, level, grid, subset);
         float portion = weight / parts * alike(there);
         sum += portion * light.rgb;
         weights += portion;
@@ -123,6 +131,7 @@ void main() {
         glossyWeights += portion;
 #endif
       }
+#endif
     }
     outIrradiance = vec4(sum / weights, 1.0);
 #ifdef GLOSSY

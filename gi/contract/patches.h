@@ -16,9 +16,10 @@ class Texture;
 /// divide evenly.
 struct PatchPyramid {
   const gl::Texture* plane = nullptr;    // RGBA32F: see pyramid.frag
-  const gl::Texture* normalLo = nullptr; // RGBA16F: least normal; a: 1 where the patch is to be split
+  const gl::Texture* normalLo = nullptr; // RGBA16F: least normal; a: above 0.5 where the patch is to be split
   const gl::Texture* normalHi = nullptr; // RGBA16F: largest normal
   int levels = 0;                        // 0: single pixels only, no textures
+  int finest = 0;                        // level of the smallest patches: what they hold need not be smooth
   glm::ivec2 padded{0};                  // pixels
 };
 

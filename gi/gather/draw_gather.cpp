@@ -51,6 +51,7 @@ void setShading(const gl::Program& program, const GatherDraw& draw) {
   program.set("diskFactor", draw.bounds.disk / kPi);
   program.set("largestG", draw.bounds.clamp > 0 ? draw.bounds.clamp : kInfinity);
   program.set("spread", draw.bounds.spread);
+  program.set("finestPatch", draw.finestPatch);
   if (!draw.seen.maps) return;
   program.set("farDistance", draw.seen.maps->farDistance);
   program.set("mapResolution", float(draw.seen.maps->resolution));

@@ -22,6 +22,7 @@ struct GatherDraw {
   std::span<const GatherArea> areas = {};
   int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
+  int finestPatch = 0;      // AtlasShape::finest
   bool addToTarget = false; // instead of overwriting it
   float biasTexels = 1;
   std::span<const gl::Framebuffer> checks = {}; // MapChecks::begin

@@ -11,6 +11,7 @@ void PatchAtlas::fit(const GBuffer& surfaces, const PatchPyramid& patches, bool 
   // Patches of 4 × 4 pixels are what interleaving makes anyway.
   const int levels = subsets && patches.levels < 3 ? 0 : patches.levels;
   shape.coarsest = std::max(0, levels - shape.gridLevel());
+  shape.finest = std::max(0, patches.finest - shape.gridLevel());
   const int multiple = std::max(1 << levels, shape.grid);
   shape.base = (glm::ivec2(surfaces.width, surfaces.height) + multiple - 1) / multiple * multiple;
   target_.fit(surfaces, subsets ? 4 * tileSize(surfaces) : glm::ivec2(surfaces.width, surfaces.height));
@@ -51,12 +52,14 @@ void PatchAtlas::upsample(const GBuffer& surfaces, const Settings& settings, boo
   for (int level = shape_.coarsest; level >= 0; --level) {
     gl::ProgramDesc desc{.fragment = "upsample.frag", .defines = receivers};
     if (level == 0) desc.defines.push_back("FINAL");
+    if (settings.multires.upsample == PatchUpsample::Bilinear) desc.defines.push_back("BILINEAR");
     const gl::Program& program = context_.programs.get(desc);
     program.use();
     program.set("base", shape_.base);
     program.set("level", level);
     program.set("coarsest", shape_.coarsest);
     program.set("grid", shape_.grid);
+    program.set("finestPatch", shape_.finest);
     program.set("tile", shape_.grid == 4 ? tileSize(surfaces) : glm::ivec2(surfaces.width, surfaces.height));
     program.set("normalPower", settings.filter.normalPower);
     program.set("distanceSigma", settings.filter.distance);

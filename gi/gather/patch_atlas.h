@@ -11,6 +11,7 @@ namespace lambent {
 struct AtlasShape {
   glm::ivec2 base{0}; // level 0, texels
   int coarsest = 0;   // level
+  int finest = 0;     // as PatchPyramid, of a sub-image
   int grid = 1;       // sub-images per axis
   bool glossy = false;
 

@@ -84,6 +84,7 @@ class PatchGather : public IndirectStage {
                 .areas = areas,
                 .grid = shape.grid,
                 .patches = true,
+                .finestPatch = shape.finest,
                 .addToTarget = true,
                 .biasTexels = in.settings.shadow.bias,
                 .bounds = in.settings.gather});

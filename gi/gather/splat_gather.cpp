@@ -14,8 +14,11 @@ class SplatGather : public IndirectStage {
   LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, false);
-    const GatherDraw draw{
-        .surfaces = in.surfaces, .seen = in.seen, .biasTexels = in.settings.shadow.bias, .bounds = in.settings.gather};
+    const GatherDraw draw{.surfaces = in.surfaces,
+                          .seen = in.seen,
+                          .finestPatch = atlas_.shape().finest,
+                          .biasTexels = in.settings.shadow.bias,
+                          .bounds = in.settings.gather};
     const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
     if (in.settings.gather.mode == GatherMode::SplatPerVpl)
       splatEach(in, splats);

@@ -113,14 +113,24 @@ class Table {
            "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     number("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, {1, 1024, "patches", PowersOfTwo},
            Nothing, "patches along the picture's longer side at the coarsest level");
-    number("multires.depth", &Settings::multires, &MultiresSettings::depth, {0, kNoLimit}, Nothing,
-           "deviation from its plane that splits a patch, share of the view distance; 0 = every pixel is gathered");
+    number("multires.finest", &Settings::multires, &MultiresSettings::finest, {1, 1024, "pixels", PowersOfTwo}, Nothing,
+           "side of the smallest patch, whatever it holds, a power of two (paper 2, fig. 8); 4x4 subsets: from 8 on");
+    choice("multires.criterion", &Settings::multires, &MultiresSettings::criterion, {"plane", "depth"}, Nothing,
+           "what splits a patch: distance of its pixels from its plane, or largest less least depth (papers 2 and 3), "
+           "which fires on floors seen at a grazing angle");
+    number(
+        "multires.depth", &Settings::multires, &MultiresSettings::depth, {0, kNoLimit}, Nothing,
+        "plane: deviation that splits a patch, share of the view distance; depth: range of view depths, share of the "
+        "least; 0 = every pixel is gathered");
     number("multires.normal", &Settings::multires, &MultiresSettings::normal, {0, kNoLimit}, Nothing,
            "range of a component of the normal, 0 to 2, that splits a patch");
     flag("multires.balance", &Settings::multires, &MultiresSettings::balance, Nothing,
          "patches side by side differ by one level at most");
     flag("multires.edges", &Settings::multires, &MultiresSettings::edges, Nothing,
          "patches beside an edge are 2x2 pixels at most; off: light that an edge bounds is spread over larger ones");
+    choice("multires.upsample", &Settings::multires, &MultiresSettings::upsample, {"bilateral", "bilinear"}, Nothing,
+           "between patches: by distance and by how alike their surfaces are, a split one through its parts; or by "
+           "distance alone between those that hold light (papers 2 and 3), over edges too");
     number(
         "multires.detail", &Settings::multires, &MultiresSettings::detail, {0, 1}, Nothing,
         "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");

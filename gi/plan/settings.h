@@ -15,6 +15,10 @@ namespace lambent {
 enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
+// What splits a patch: distance from its plane | largest less least depth (papers 2 and 3).
+enum class PatchCriterion : int { Plane, Depth };
+// Between patches: bilinear weights times how alike their surfaces are | bilinear alone (papers 2 and 3).
+enum class PatchUpsample : int { Bilateral, Bilinear };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -104,11 +108,14 @@ struct GatherSettings {
 
 /// Patches of the picture that gather as one (papers 2 and 3).
 struct MultiresSettings {
-  int coarsest = 16;   // patches along the picture's longer side at the coarsest level
-  float depth = 0.02f; // deviation from the patch's plane that splits it, share of the view distance; 0 splits all
+  int coarsest = 16; // patches along the picture's longer side at the coarsest level
+  int finest = 1;    // side of the smallest patch, pixels
+  PatchCriterion criterion = PatchCriterion::Plane;
+  float depth = 0.02f; // what the criterion allows at most, share of the view distance; 0 splits all
   float normal = 0.2f; // range of a component of the normal that splits it
   bool balance = true; // neighbours differ by one level at most
   bool edges = true;   // patches beside an edge are 2×2 pixels at most
+  PatchUpsample upsample = PatchUpsample::Bilateral;
   float detail = 0;    // α of paper 2's surface detail
   float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
   bool operator==(const MultiresSettings&) const = default;

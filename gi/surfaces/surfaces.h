@@ -47,8 +47,10 @@ struct PatchInputs {
   glm::ivec2 size;           // pixels
   glm::ivec2 cell;           // of one map; `size` for a picture
   int levels = 0;
-  float orthoScale = 0;    // depth range over half the width of maps by parallel rays
-  int orthoFrom = 1 << 20; // the first of these, row by row; all before it have a perspective
+  float orthoScale = 0;                             // depth range over half the width of maps by parallel rays
+  int orthoFrom = 1 << 20;                          // the first of these, row by row; all before it have a perspective
+  PatchCriterion criterion = PatchCriterion::Plane; // as MultiresSettings
+  int finest = 1;                                   // pixels, as MultiresSettings
   float depthThreshold, normalThreshold;
   bool balance = true; // as MultiresSettings
   bool edges = true;

@@ -37,6 +37,10 @@ TEST(Settings, RangesReadAsTheyAreTyped) {
   EXPECT_EQ(settingRow("vpl.visibility").range(), "maps|rays|none");
   EXPECT_EQ(settingRow("filter.distance").range(), "1e-06..10");
   EXPECT_EQ(settingText({}, "multires.depth"), "0.02");
+  EXPECT_EQ(settingRow("multires.finest").range(), "1..1024");
+  EXPECT_EQ(settingText({}, "multires.finest"), "1");
+  EXPECT_EQ(settingText({}, "multires.criterion"), "plane");
+  EXPECT_EQ(settingText({}, "multires.upsample"), "bilateral");
 }
 
 TEST(Settings, PresetsSetWhatTheySayAndNoMore) {

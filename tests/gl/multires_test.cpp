@@ -1,76 +1,7 @@
 // The multiresolution buffer: which patches it takes, what it gathers there, and how pixels get their light back.
-#include "gl_fixture.h"
-
-#include <random>
+#include "multires_fixture.h"
 
 namespace lambent::test {
-
-class MultiresTest : public GatherTest {
- protected:
-  Image gathered(const GBuffer& gbuffer, const std::vector<VirtualLight>& lights, GatherMode mode) {
-    return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, with(mode)));
-  }
-  Image multires(const GBuffer& gbuffer, const std::vector<VirtualLight>& lights, const MultiresSettings& settings,
-                 GatherMode mode = GatherMode::Multires) {
-    Settings all = with(mode);
-    all.multires = settings;
-    return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, all));
-  }
-  /// Patches that the stencil marked in a gather with these settings.
-  uint64_t patchesMarked(const GBuffer& gbuffer, const MultiresSettings& settings,
-                         GatherMode mode = GatherMode::Multires) {
-    for (int frame = 0; frame < 2; ++frame) { // the count comes late
-      multires(gbuffer, {lightAt(vec3(0), vec3(0, 1, 0), vec3(1), 1)}, settings, mode);
-      glFinish();
-    }
-    return stats.patches;
-  }
-  /// Level of the patch that each pixel belongs to, from the top; −1 on background.
-  std::vector<int> patchLevels(const GBuffer& gbuffer) {
-    const PatchPyramid& p = *patches;
-    std::vector<int> levels(size_t(gbuffer.width) * gbuffer.height, 0);
-    for (int level = 1; level <= p.levels; ++level) {
-      const glm::ivec2 size = p.padded / (1 << level);
-      std::vector<vec4> lo(size_t(size.x) * size.y);
-      glGetTextureImage(p.normalLo->name(), level - 1, GL_RGBA, GL_FLOAT, GLsizei(lo.size() * sizeof(vec4)), lo.data());
-      for (int y = 0; y < gbuffer.height; ++y)
-        for (int x = 0; x < gbuffer.width; ++x)
-          if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f) levels[size_t(y) * gbuffer.width + x] = level;
-    }
-    std::vector<float> depth(levels.size());
-    glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
-    for (size_t i = 0; i < depth.size(); ++i)
-      if (depth[i] == 0) levels[i] = -1;
-    return levels;
-  }
-  static uint64_t patchesOf(const std::vector<int>& levels, int width, int height) {
-    uint64_t count = 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const int level = levels[size_t(y) * width + x];
-        count += level >= 0 && x % (1 << level) == 0 && y % (1 << level) == 0;
-      }
-    return count;
-  }
-};
-
-std::vector<VirtualLight> lightsIn(const vec3& lo, const vec3& hi, int count) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> u(0, 1);
-  std::vector<VirtualLight> lights;
-  for (int i = 0; i < count; ++i) {
-    VirtualLight v;
-    v.position = lo + vec3(u(random), u(random), u(random)) * (hi - lo);
-    v.normal = v.geometricNormal = glm::normalize(vec3(u(random), u(random), u(random)) - 0.5f);
-    v.radiance = vec3(u(random), u(random), u(random));
-    v.area = 0.05f;
-    v.alive = true;
-    lights.push_back(v);
-  }
-  return lights;
-}
-
-std::vector<VirtualLight> roomLights() { return lightsIn(vec3(-0.9f), vec3(0.9f), 40); }
 
 TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
   Room room;

@@ -61,6 +61,9 @@ class StrictFetchTest : public GlTest {
         if (needs == grid) modes.insert(modes.end(), {GatherMode::Splat, GatherMode::SplatPerVpl});
         for (const GatherMode mode : modes) {
           settings.gather.mode = mode;
+          settings.multires.finest = mode == GatherMode::Multires ? 4 : 1;
+          settings.multires.upsample =
+              mode == GatherMode::MultiresInterleaved ? PatchUpsample::Bilinear : PatchUpsample::Bilateral;
           IndirectStages stages{context};
           PatchPass patchPass{context, StageId::Patches};
           FilterPass filterPass{context};

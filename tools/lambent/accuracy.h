@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace lambent {
 
@@ -14,9 +15,8 @@ struct AccuracyOptions {
   OutputOptions output;
   std::vector<std::string> scenes;
   int slots = 64, points = 1024;
-  std::string curve; // empty: none
-  int figure = 0;    // 0: none
-  int frame = 0;     // of a shot
+  std::string curve, figure; // empty: none
+  int frame = 0;             // of a shot
   bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false,
        report = false, joint = false, quick = false;
   std::optional<int> samples, seeds;
@@ -39,8 +39,12 @@ void accuracyDirect(const AccuracyOptions& options);
 void accuracyReport(const AccuracyOptions& options);
 /// Error against time of the presets.
 void accuracyPresets(const AccuracyOptions& options);
-/// Paper 1's figures 8, 9 and 10 for any scene.
+/// Figures of the papers for any scene: of paper 1 those here, of papers 2 and 3 those of reflective_figures.h.
+std::vector<std::string> figureNames();
 void accuracyFigure(const AccuracyOptions& options);
+
+/// Throws InputError where no bound of the geometry term is given.
+void needClamp(const AccuracyOptions& options);
 
 /// Still pictures of the stage's first view; what is measured of them is the buffer after the last frame.
 RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer);

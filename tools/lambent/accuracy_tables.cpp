@@ -1,4 +1,4 @@
-// lambent accuracy SCENE --convergence, --gathers, --light, --direct, --presets, --figure 8|9|10: tables of pictures of
+// lambent accuracy SCENE --convergence, --gathers, --light, --direct, --presets: tables of pictures of
 // one view under changing settings, held to path tracing or to one among them.
 #include "engine/core/error.h"
 #include "tools/lambent/linear_picture.h"
@@ -12,17 +12,6 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-void needClamp(const AccuracyOptions& options) {
-  if (!(options.clamp.value_or(0) > 0))
-    throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
-}
-
-const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100}, kRelMse{"rel_mse", "relMSE", "%.4f"},
-    kBias{"bias", "bias", "%+.1f %%", 100};
-
-} // namespace
 
 void accuracyConvergence(const AccuracyOptions& options) {
   needClamp(options);
@@ -188,61 +177,6 @@ void accuracyPresets(const AccuracyOptions& options) {
                 kRelMse,
                 kBias},
                rows);
-}
-
-void accuracyFigure(const AccuracyOptions& options) {
-  if (options.figure != 9) needClamp(options);
-  const fs::path folder = reportFolder(options.output.out, format("out/figure-%d", options.figure));
-  Study study(options, "320x180", {{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}});
-  const bool quick = options.quick;
-
-  // What pictures are held to comes first.
-  std::vector<Variant> variants;
-  if (options.figure == 8) {
-    variants.push_back(study.variant("interleaved", {}));
-    variants.push_back(study.variant("all-maps", {{"gather.mode", "full"}}));
-    variants.push_back(study.variant("all-rays", {{"vpl.visibility", "rays"}}));
-  } else if (options.figure == 9) {
-    variants.push_back(study.variant("rays", {{"vpl.visibility", "rays"}}));
-    for (const char* texels : {"128", "256", "512", "1024"}) {
-      if (quick && variants.size() > 2) break;
-      variants.push_back(
-          study.variant(std::string("maps-") + texels, {{"gather.mode", "full"}, {"shadow.resolution", texels}}));
-    }
-  } else {
-    for (const char* vpls : quick ? std::vector{"64", "256"} : std::vector{"2000", "8000", "40000"})
-      variants.push_back(study.variant(std::string("vpls-") + vpls, {{"vpl.visibility", "rays"}, {"smc.vpls", vpls}}));
-  }
-  std::vector<std::pair<std::string, Image>> truths;
-  const auto path = [&](const std::string& name, bool clamped) {
-    truths.emplace_back(name,
-                        study.trace(1024, ReferenceBuffer::Indirect, clamped, folder / (name + ".state")).picture.mean);
-  };
-  if (options.figure == 8) path("path-tracing", false);
-  if (options.figure != 9) path("clamped-path-tracing", true);
-  std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
-  const float exposure = study.truth ? study.truth->exposure : runs[0].exposure;
-  if (options.figure == 9) {
-    truths.emplace_back(runs[0].variant.name, runs[0].picture);
-    runs.erase(runs.begin());
-  }
-  const auto write = [&](const std::string& name, const Image& picture) {
-    for (const char* extension : {".exr", ".png"})
-      writePicture((folder / (name + extension)).string(), picture, exposure);
-  };
-  nlohmann::json rows;
-  for (const auto& [name, picture] : truths) write(name, picture);
-  for (const Measured& m : runs) {
-    write(m.variant.name, m.picture);
-    for (const auto& [name, truth] : truths) {
-      rows.push_back(rowOf(pictureError(m.picture, truth)));
-      rows.back().update({{"picture", m.variant.name}, {"against", name}});
-      writePicture((folder / (m.variant.name + "-minus-" + name + ".png")).string(),
-                   absoluteDifference(m.picture, truth), midGreyAt(pictureError(truth, truth).meanTruth));
-    }
-  }
-  study.report({{"picture", "picture"}, {"against", "against"}, kRmseShare, kRelMse, kBias}, rows);
-  if (!options.output.quiet) std::printf("pictures: %s\n", folder.c_str());
 }
 
 } // namespace lambent

@@ -15,9 +15,6 @@
 
 namespace lambent {
 
-/// Settings by name, as on the command line.
-using Assignments = std::vector<std::pair<std::string, std::string>>;
-
 /// A view that is drawn, traced and reported on.
 class Study {
  public:
@@ -50,6 +47,9 @@ class Study {
 };
 
 nlohmann::json rowOf(const PictureError& e);
+/// Columns of such a row.
+inline const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100},
+    kRelMse{"rel_mse", "relMSE", "%.4f"}, kBias{"bias", "bias", "%+.1f %%", 100};
 
 /// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the
 /// truth's own variance and pace. May be less than a sample of every pixel takes; none where one sample is all the
