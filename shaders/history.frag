@@ -80,7 +80,9 @@ void main() {
   vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
   kept = weights > 0.0 ? kept / weights : vec4(now, 0.0);
   if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one picture, not of all that follow
-  kept.a = min(kept.a, stands ? pictures : min(pictures, kMoving - 1.0));
+  // Of a smaller picture a pixel is a blur of several of ours: it counts as fewer.
+  float finer = min(before.size.x / camera.size.x, 1.0);
+  kept.a = min(kept.a, stands ? pictures : min(pictures, (kMoving - 1.0) * finer * finer));
 #ifdef CHANGES
   outIrradiance = kept;
   bool known = !any(isnan(now)) && !any(isinf(now));

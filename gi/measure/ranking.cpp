@@ -33,11 +33,11 @@ UncertainValue meanOver(std::span<const double> runs) {
   return mean;
 }
 
-std::vector<UncertainValue> estimatesOf(std::span<const AgainstTruth> techniques) {
+std::vector<UncertainValue> estimatesOf(std::span<const StatisticRuns> techniques) {
   std::vector<UncertainValue> out;
   double ofTruth = 0; // variance
   size_t halved = 0;
-  for (const AgainstTruth& t : techniques) {
+  for (const StatisticRuns& t : techniques) {
     out.push_back(meanOver(t.seeds));
     if (t.halves.empty()) continue;
     CHECK_EQ(t.halves.size(), size_t(2));

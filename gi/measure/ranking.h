@@ -19,7 +19,7 @@ UncertainValue meanOver(std::span<const double> runs);
 
 /// A statistic of one technique, as mean |E|, against a truth that is noisy: over the seeds against the truth, and
 /// means over the seeds against each half of the truth's samples alone.
-struct AgainstTruth {
+struct StatisticRuns {
   std::vector<double> seeds;
   std::vector<double> halves; // two; none of an exact truth
 };
@@ -28,7 +28,7 @@ struct AgainstTruth {
 /// half the difference between its halves (all techniques share the truth: root of the mean square over them); and by
 /// how much the truth's noise may raise or lower the statistic itself. What the statistic gains when the truth has half
 /// the samples is about what the whole truth's noise has brought, and brings to each technique in its own measure.
-std::vector<UncertainValue> estimatesOf(std::span<const AgainstTruth> techniques);
+std::vector<UncertainValue> estimatesOf(std::span<const StatisticRuns> techniques);
 
 enum class Order { Less, Greater, WithinNoise, Unknown };
 /// Whether a is less than b: their difference is beyond what noise makes in one of twenty cases, about two standard

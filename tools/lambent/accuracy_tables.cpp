@@ -10,9 +10,6 @@
 
 namespace lambent {
 
-namespace fs = std::filesystem;
-
-
 void accuracyConvergence(const AccuracyOptions& options) {
   needClamp(options);
   Study study(options, "64x36",

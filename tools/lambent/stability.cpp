@@ -37,8 +37,8 @@ struct StabilityOptions {
 /// Keeps each seed's, and means over the seeds against the halves of the truth.
 void addSeed(ErrorRuns& all, const ErrorRuns& run, int seeds) {
   for (auto error : {&ErrorRuns::error, &ErrorRuns::change}) {
-    AgainstTruth& to = all.*error;
-    const AgainstTruth& from = run.*error;
+    StatisticRuns& to = all.*error;
+    const StatisticRuns& from = run.*error;
     to.seeds.insert(to.seeds.end(), from.seeds.begin(), from.seeds.end());
     to.halves.resize(from.halves.size());
     for (size_t h = 0; h < from.halves.size(); ++h) to.halves[h] += from.halves[h] / seeds;

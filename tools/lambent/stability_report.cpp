@@ -31,7 +31,7 @@ const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
 struct Statistic {
   const char *key, *title;
   ErrorRuns TechniqueRun::*pixels;
-  AgainstTruth ErrorRuns::*error;
+  StatisticRuns ErrorRuns::*error;
 };
 constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::runsMarked, &ErrorRuns::error},
                                      {"change_marked", "|E'| marked", &TechniqueRun::runsMarked, &ErrorRuns::change},
@@ -45,7 +45,7 @@ bool measured(const ShotRun& s, const Statistic& statistic) {
 
 /// Beside the shot's techniques.
 std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& statistic) {
-  std::vector<AgainstTruth> all;
+  std::vector<StatisticRuns> all;
   for (const TechniqueRun& t : s.techniques) all.push_back(t.*statistic.pixels.*statistic.error);
   return estimatesOf(all);
 }

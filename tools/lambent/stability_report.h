@@ -15,7 +15,7 @@ namespace lambent {
 
 /// |E| and |E'| of each seed, and against halves of the truth: what rankings are made from.
 struct ErrorRuns {
-  AgainstTruth error, change;
+  StatisticRuns error, change;
 };
 
 /// One technique over one shot.

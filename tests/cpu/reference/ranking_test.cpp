@@ -29,17 +29,17 @@ TEST(Ranking, MeanOverSeedsAndItsError) {
 TEST(Ranking, ErrorsHoldSeedsTruthAndWhatItsNoiseBrings) {
   // Halves 0.4 apart and equal ones: variance (0.2² + 0)/2 for both. The second gains 0.3 where the truth is halved.
   const std::vector<UncertainValue> e =
-      estimatesOf(std::vector<AgainstTruth>{{{1.1, 0.9}, {1.2, 0.8}}, {{2, 2}, {2.3, 2.3}}});
+      estimatesOf(std::vector<StatisticRuns>{{{1.1, 0.9}, {1.2, 0.8}}, {{2, 2}, {2.3, 2.3}}});
   EXPECT_NEAR(e[0].value, 1, 1e-12);
   EXPECT_NEAR(e[0].error, std::sqrt(0.01 + 0.02), 1e-12);
   EXPECT_NEAR(e[1].error, std::sqrt(0.02 + 0.09), 1e-12);
   EXPECT_NEAR(e[0].degrees, 9, 1e-9); // the one of two seeds, of a third of the variance
-  EXPECT_NEAR(estimatesOf(std::vector<AgainstTruth>{{{1.1, 0.9}, {}}})[0].error, 0.1, 1e-12); // an exact truth
+  EXPECT_NEAR(estimatesOf(std::vector<StatisticRuns>{{{1.1, 0.9}, {}}})[0].error, 0.1, 1e-12); // an exact truth
 }
 
 TEST(Ranking, OfOneSeedNothingIsKnown) {
   const std::vector<UncertainValue> e =
-      estimatesOf(std::vector<AgainstTruth>{{{0.1}, {0.1, 0.1}}, {{0.9}, {0.9, 0.9}}});
+      estimatesOf(std::vector<StatisticRuns>{{{0.1}, {0.1, 0.1}}, {{0.9}, {0.9, 0.9}}});
   EXPECT_EQ(compared(e[0], e[1]), Order::Unknown);
   const std::string text = rankingText(std::vector<Ranked>{{"smc", e[0]}, {"ir", e[1]}});
   EXPECT_EQ(text.rfind("not ranked", 0), 0u) << text;
@@ -89,9 +89,9 @@ Outcome outcome(const Experiment& x, uint32_t trial) {
       whole[size_t(f)].push_back(float(0.5 + 0.5 * (first + second)));
     }
   }
-  std::vector<AgainstTruth> techniques;
+  std::vector<StatisticRuns> techniques;
   for (bool b : {false, true}) {
-    AgainstTruth& t = techniques.emplace_back();
+    StatisticRuns& t = techniques.emplace_back();
     t.halves = {0, 0};
     for (int k = 0; k < x.seeds; ++k) {
       PixelSeries series = whole;
