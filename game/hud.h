@@ -16,7 +16,7 @@ namespace lambent {
 /// What panel and keys change and the main loop obeys.
 struct HudModel {
   Buffer buffer = Buffer::Beauty;
-  std::string preset = "medium"; // the last one chosen; single settings may differ from it
+  std::string preset = {}; // the last one chosen, empty: none; single settings may differ from it
   bool panel = true, help = false;
 
   double time = 0, duration = 1; // seconds of the scene; the slider's length
@@ -26,7 +26,7 @@ struct HudModel {
   bool lamp = false;
   vec3 lampIntensity{1};  // W/sr
   float speed = 1;        // of the player, m/s
-  Pacer pacer{{}, false}; // picture size as a share of the window's
+  Pacer pacer{{}, false}; // of frames, by the picture's scale
 };
 
 class Hud {

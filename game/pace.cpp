@@ -1,6 +1,5 @@
 #include "game/pace.h"
 
-#include <algorithm>
 #include <cstdio>
 
 namespace lambent {
@@ -13,13 +12,10 @@ void Pacer::took(const FrameStats& stats, bool moved, Settings& settings) {
   const bool asGoverned = moving(); // else it was drawn at full scale
   stillFrames_ = moved ? 0 : stillFrames_ + 1;
   if (!governs_ || !asGoverned || !stats.plan[EffectId::Redraw].on) return;
-  if (!moved && governed_.calibrated) return; // cheaper than frames in motion will be
-  double gpuMs = 0;
-  for (const StageTime& stage : stats.stages) gpuMs += stage.gpuMs;
-  // Not the time between frames: that is the display's where it waits for it.
+  if (!moved) return; // cheaper than frames in motion will be
   governed_.settings = settings;
   const std::string before = governed_.preset;
-  governed_ = governed(std::move(governed_), std::max(stats.wallMs, gpuMs), targetMs_);
+  governed_ = governed(std::move(governed_), stats.costMs(), targetMs_);
   if (governed_.preset != before) settings = governed_.settings;
 }
 

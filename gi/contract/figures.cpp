@@ -63,6 +63,12 @@ std::string underscored(std::string name) {
 
 } // namespace
 
+double FrameStats::costMs() const {
+  double gpuMs = 0;
+  for (const StageTime& stage : stages) gpuMs += stage.gpuMs;
+  return std::max(wallMs, gpuMs);
+}
+
 double FrameStats::ms(StageId stage) const {
   double ms = 0;
   for (const StageTime& t : stages)

@@ -38,6 +38,8 @@ struct FrameStats {
   std::string timing;                    // how GPU times were taken
 
   uint64_t& of(EffectId id) { return work[size_t(id)]; }
+  /// Milliseconds that the machine was at it: the longer of the frame's wall time and the GPU's passes.
+  double costMs() const;
   /// Milliseconds of a stage, the longer of CPU and GPU; 0 if it did not run.
   double ms(StageId stage) const;
 };

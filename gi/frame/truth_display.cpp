@@ -19,6 +19,8 @@ void TruthDisplay::take(const Image& truth, const FrameResults& frame) {
 const gl::Texture& TruthDisplay::run(Buffer buffer, const FrameResults& frame, const Look& look) {
   CHECK_EQ(linear_.width(), frame.surfaces.width);
   CHECK_EQ(linear_.height(), frame.surfaces.height);
+  CHECK(buffer == Buffer::Beauty || buffer == Buffer::Direct || buffer == Buffer::Indirect ||
+        buffer == Buffer::Irradiance);
   FrameResults shown;
   shown.surfaces = frame.surfaces;
   // Irradiance is drawn over π. The others are radiance with all that belongs to it, as beauty is.

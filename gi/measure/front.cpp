@@ -33,8 +33,10 @@ std::vector<size_t> frontOf(std::span<const CostError> points) {
 }
 
 bool offFront(std::span<const CostError> points, size_t index) {
-  return std::ranges::any_of(points,
-                             [&](const CostError& p) { return cheaper(p, points[index]) && nearer(p, points[index]); });
+  const CostError& own = points[index];
+  return std::ranges::any_of(points, [&](const CostError& p) {
+    return (cheaper(p, own) && p.error <= own.error) || (nearer(p, own) && p.cost <= own.cost);
+  });
 }
 
 std::vector<size_t> ladderOf(std::span<const CostError> points, const LadderRule& rule) {
@@ -56,10 +58,8 @@ std::vector<size_t> ladderOf(std::span<const CostError> points, const LadderRule
 KnobVerdict knobVerdict(std::span<const CostError> points) {
   CHECK(points.size() >= 2);
   KnobVerdict verdict{points.back().cost / points.front().cost, points.back().error / points.front().error};
-  for (size_t i = 1; i < points.size(); ++i) {
-    verdict.monotone &= !cheaper(points[i], points[i - 1]);
-    verdict.buys |= nearer(points[i], points.front());
-  }
+  for (size_t i = 1; i < points.size(); ++i) verdict.monotone &= !cheaper(points[i], points[i - 1]);
+  verdict.buys = nearer(points.back(), points.front());
   return verdict;
 }
 

@@ -17,8 +17,8 @@ struct CostError {
 /// Indices of the points that no other beats (as cheap and as near, and better in one), by ascending cost.
 std::vector<size_t> frontOf(std::span<const CostError> points);
 
-/// Whether some other point is cheaper and nearer at once, each by more than noise: two standard errors of the
-/// difference.
+/// Whether some other point is better in one by more than noise, two standard errors of the difference, and no worse in
+/// the other.
 bool offFront(std::span<const CostError> points, size_t index);
 
 /// What a step up must cost at least, and what error it may leave at most, both of the step below.
@@ -34,7 +34,7 @@ std::vector<size_t> ladderOf(std::span<const CostError> points, const LadderRule
 struct KnobVerdict {
   double dearer = 1, nearer = 1; // of the last point over the first: cost, error
   bool monotone = true;          // no point is cheaper than the one before by more than noise
-  bool buys = false;             // some later point is nearer than the first by more than noise
+  bool buys = false;             // the last point is nearer than the first by more than noise
 };
 /// Of two points at least.
 KnobVerdict knobVerdict(std::span<const CostError> points);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lambent {
 
@@ -18,24 +19,32 @@ double medianOf(std::vector<double> values) {
 /// Scale at which a frame that takes `ms` at this one would take `targetMs`, if all its cost were the pixels'.
 double scaleFor(double scale, double ms, double targetMs) { return scale * std::sqrt(targetMs / ms); }
 
-double timeOf(const Settings& settings) {
+/// Time of a frame, of the default's, where the settings are a preset's or the default's; none where somebody has set
+/// them otherwise.
+std::optional<double> timeOf(const Settings& settings) {
   for (const Preset& preset : presetTable()) {
     Settings same = settings;
     applyPreset(same, preset.name);
     if (same == settings) return preset.time;
   }
-  return 1; // as the default's
+  const bool ownGather = !rowOf(settings.vpl.source).sampled;
+  for (const auto& [name, value] : presetTable().front().set) {
+    const SettingRow& row = settingRow(name);
+    if (row.get(settings) != row.standard && !(ownGather && name == "gather.mode")) return {};
+  }
+  return 1;
 }
 
-/// The dearest preset whose picture need not be too small for the target, else the cheapest.
-void choosePreset(Governed& g, double ms, double targetMs, const GovernorGains& gains) {
-  const double now = timeOf(g.settings);
+/// From settings of this time to the dearest preset whose picture need not be too small for the target, else to the
+/// cheapest.
+void choosePreset(Governed& g, double time, double ms, double targetMs, const GovernorGains& gains) {
+  const auto scaleOf = [&](const Preset& p) { return scaleFor(g.scale, ms * p.time / time, targetMs); };
   const Preset* chosen = &presetTable().front();
   for (const Preset& preset : presetTable())
-    if (scaleFor(g.scale, ms * preset.time / now, targetMs) >= double(gains.easy)) chosen = &preset;
+    if (scaleOf(preset) >= double(gains.easy)) chosen = &preset;
   g.preset = chosen->name;
+  g.scale = float(scaleOf(*chosen));
   applyPreset(g.settings, g.preset);
-  g.scale = float(scaleFor(g.scale, ms * chosen->time / now, targetMs));
 }
 
 } // namespace
@@ -59,8 +68,8 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
   if (!g.calibrated) {
     if (int(g.ms.size()) < std::min(gains.calibration, int(window))) return g;
     const double least = *std::ranges::min_element(g.ms);
-    if (g.choosesPreset)
-      choosePreset(g, least, target, gains);
+    if (const std::optional<double> time = g.choosesPreset ? timeOf(g.settings) : std::nullopt)
+      choosePreset(g, *time, least, target, gains);
     else
       g.scale = float(scaleFor(g.scale, least, target));
     g.calibrated = true;
@@ -80,7 +89,8 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
   g.scale = std::clamp(g.scale, gains.least, 1.0f);
   const bool end = g.scale == 1 || g.scale == gains.least; // is worth a small step
   if (std::abs(g.scale - before) < gains.step * before && !(end && g.scale != before)) g.scale = before;
-  if (g.scale != before || !(g.settings == settingsBefore)) g.ms.clear(), g.frames = 0;
+  const bool anew = !(g.settings == settingsBefore); // as at the start, shaders and maps are prepared first
+  if (g.scale != before || anew) g.ms.clear(), g.frames = anew ? gains.after - gains.warmup : 0;
   return g;
 }
 

@@ -25,13 +25,18 @@ struct GovernorGains {
 };
 
 /// What the governor says of itself.
-enum class Pace { Calibrating, Holding, TooSlow, Idle }; // TooSlow: at the least scale; Idle: the target is not reached
+enum class Pace {
+  Calibrating,
+  Holding,
+  TooSlow,
+  Idle
+}; // TooSlow: at the least scale; Idle: faster than the target at full scale
 const char* paceText(Pace pace);
 
 struct Governed {
   Settings settings;
   float scale = 1;           // of width and height of the picture
-  bool choosesPreset = true; // else the settings stay as they are
+  bool choosesPreset = true; // else, and where they are no preset's, the settings stay as they are
   std::string preset = {};   // the one chosen; empty before the calibration, or where none is
 
   // What it remembers.

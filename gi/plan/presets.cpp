@@ -20,10 +20,8 @@ Assignments worth(const char* vpls, const char* points, const char* paths, const
 
 const std::vector<Preset>& presetTable() {
   static const std::vector<Preset> table{
-      {"low", worth("512", "1024", "8", "64", "interleaved")},
-      {"medium", worth("2048", "2048", "16", "128", "interleaved")},
-      {"high", worth("8192", "4096", "16", "128", "interleaved")},
-      {"ultra", worth("2048", "4096", "16", "128", "multires")},
+      {"low", worth("256", "1024", "8", "64", "interleaved"), 0.490, 2.055},
+      {"medium", worth("1024", "2048", "16", "128", "interleaved"), 0.748, 1.057},
   };
   return table;
 }

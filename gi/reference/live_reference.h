@@ -22,7 +22,7 @@ struct LiveTruth {
   ReferencePicture picture;
   uint32_t samples = 0; // of each pixel
   int bounces = 0;
-  double ms = 0; // of tracing, by all threads together, beside whatever else ran
+  double ms = 0; // of tracing, wall time, beside whatever else ran
 };
 
 class LiveReference {

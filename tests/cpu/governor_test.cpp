@@ -133,6 +133,26 @@ TEST(Governor, LeavesThePresetToThePerson) {
   EXPECT_LT(g.scale, 0.7f);
 }
 
+TEST(Governor, LeavesWhatSomebodySetOtherwise) {
+  Governed g;
+  g.settings.smc.vpls = 777;
+  const Settings before = g.settings;
+  run(g, {.pixels = 100}, kTarget, 3);
+  EXPECT_TRUE(g.settings == before);
+}
+
+/// A machine whose time grows with a preset as measured: each preset is chosen where the next is too dear.
+TEST(Governor, ChoosesTheDearestPresetThatFits) {
+  for (size_t i = 0; i < presetTable().size(); ++i) {
+    // Of the default's frames: at the least easy scale preset i takes a little less than the target.
+    const double easy = double(GovernorGains{}.easy);
+    const double ms = 0.98 * GovernorGains{}.aim * kTarget / (easy * easy * presetTable()[i].time);
+    Governed g;
+    for (int frame = 0; frame < 20 && !g.calibrated; ++frame) g = governed(std::move(g), ms, kTarget);
+    EXPECT_EQ(g.preset, presetTable()[i].name);
+  }
+}
+
 TEST(Governor, IsAPureFunction) {
   Governed g;
   run(g, {.pixels = 60}, kTarget, 2);

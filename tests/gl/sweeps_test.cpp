@@ -80,10 +80,10 @@ TEST(Presets, AreTheLadderOfWhatWasMeasured) {
   }
 }
 
-TEST(Presets, MediumIsTheDefault) {
-  Settings settings;
-  applyPreset(settings, "medium");
-  EXPECT_TRUE(settings == Settings{});
+TEST(Presets, ArePointsOfTheJointSweep) {
+  const std::vector<SweepPoint> points = sweepPoints(SweepPart::Joint);
+  for (const Preset& preset : presetTable())
+    EXPECT_TRUE(std::ranges::count(points, presetPoint(preset), &SweepPoint::name)) << preset.name;
 }
 
 } // namespace

@@ -106,7 +106,7 @@ void declareAccuracy(CLI::App& app) {
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--clamp", options->clamp,
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
-  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --presets (2)")
+  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --presets (2); --report (1)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--frame", options->frame, "--light: of a shot, with all that moves before it")
       ->check(CLI::Range(1, 1000000));

@@ -24,9 +24,10 @@ enum class State { Moving, Still };
 CostError of(const PointFigures& f, State state) { return state == State::Moving ? f.moving : f.still; }
 const char* titleOf(State state) { return state == State::Moving ? "in motion" : "standing still"; }
 
+/// Without those that were measured over a few frames alone: their histories are shorter than the others'.
 Choice indirectPoints(const Figures& figures, State state) {
   return choiceOf(figures, [&](const PointFigures& f) {
-    return f.point.light == KnobLight::Indirect ? of(f, state) : CostError{};
+    return f.point.light == KnobLight::Indirect && !f.point.slow ? of(f, state) : CostError{};
   });
 }
 
@@ -94,7 +95,7 @@ std::vector<KnobCurve> curvesOf(const Knob& knob, const std::vector<std::string>
     KnobCurve curve{scenes[s], {}, {}};
     for (const char* value : knob.values) {
       const auto found = figures[s].find(knobPoint(knob, value));
-      if (found == figures[s].end() || of(found->second, state).cost <= 0) continue;
+      if (found == figures[s].end() || of(found->second, state).cost <= 0 || found->second.point.slow) continue;
       curve.values.push_back(value);
       curve.points.push_back(of(found->second, state));
     }
@@ -126,6 +127,8 @@ Scatter knobPlot(const Knob& knob, const std::vector<KnobCurve>& curves, State s
 /// What a knob does in each scene, in words.
 nlohmann::json verdictsOf(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
   nlohmann::json rows;
+  const SettingRow& setting = settingRow(knob.setting);
+  const std::string standard = setting.text(setting.standard);
   for (const KnobCurve& curve : curves) {
     const KnobVerdict v = knobVerdict(curve.points);
     rows.push_back({{"knob", knob.setting},
@@ -135,19 +138,16 @@ nlohmann::json verdictsOf(const Knob& knob, const std::vector<KnobCurve>& curves
                     {"dearer", v.dearer},
                     {"nearer", v.nearer},
                     {"buys", v.buys ? "less error" : "nothing here"},
+                    {"default", standard + (v.buys || standard == curve.values.front() ? "" : ", not the cheap end")},
                     {"monotone", v.monotone ? "yes" : "no"}});
   }
   return rows;
 }
 
-const std::vector<TableColumn> kVerdictColumns{{"knob", "setting"},
-                                               {"values", "from, to"},
-                                               {"scene", "scene"},
-                                               {"state", "state"},
-                                               {"dearer", "time", "%.2f x"},
-                                               {"nearer", "error", "%.2f x"},
-                                               {"buys", "buys"},
-                                               {"monotone", "dearer at each step"}};
+const std::vector<TableColumn> kVerdictColumns{
+    {"knob", "setting"}, {"values", "from, to"},       {"scene", "scene"},
+    {"state", "state"},  {"dearer", "time", "%.2f x"}, {"nearer", "error", "%.2f x"},
+    {"buys", "buys"},    {"default", "default"},       {"monotone", "dearer at each step"}};
 
 /// Relative error as relMSE counts it: white 0, black kBlackAt and more.
 Image heatOf(const Image& picture, const Image& truth) {
@@ -206,18 +206,24 @@ nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
 
 /// Milliseconds of path tracing over those of the default's frame, for the same relMSE.
 nlohmann::json pathRow(const SweptScene& scene, const Figures& figures, State state) {
+  constexpr double kBar = 20;
   const CostError p = of(figures.at(sweepPoints(SweepPart::Quick)[0].name), state);
   const nlohmann::json& truth = scene.truth["indirect"];
-  const double ms =
-      truth["sample_ms"].get<double>() * truth["spp"].get<double>() * truth["rel_mse"].get<double>() / p.error;
+  const double ofTruth = truth["rel_mse"];
+  const double times = truth["sample_ms"].get<double>() * truth["spp"].get<double>() * ofTruth / p.error / p.cost;
+  const double noise = 1 + 2 * std::hypot(p.costNoise, p.errorNoise);
   return {{"scene", scene.name},
           {"state", titleOf(state)},
           {"ms", p.cost},
           {"rel_mse", p.error},
-          {"paths_ms", ms},
-          {"times", ms / p.cost},
-          {"holds", ms / p.cost >= 20 ? "yes" : "no"}};
+          {"paths_ms", times * p.cost},
+          {"times", times},
+          {"holds", p.error < ofTruth       ? "the truth is too noisy"
+                    : times >= kBar * noise ? "yes"
+                    : times <= kBar / noise ? "no"
+                                            : "within noise"}};
 }
+
 const std::vector<TableColumn> kPathColumns{{"scene", "scene"},
                                             {"state", "state"},
                                             {"ms", "ms a frame", "%.1f"},
@@ -291,22 +297,32 @@ void accuracyReport(const AccuracyOptions& options) {
     }
     for (State state : {State::Moving, State::Still}) paths.push_back(pathRow(scenes[s], figures[s], state));
   }
+  std::vector<std::string> together = names;
+  std::vector<Figures> withAll = figures;
+  together.push_back("all together"), withAll.push_back(all);
   for (const Knob& knob : knobTable())
     for (State state : {State::Moving, State::Still})
-      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, names, figures, state), state))
+      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, together, withAll, state), state))
         verdicts.push_back(std::move(row));
 
   const std::string front =
       svgOf({frontPlot("All scenes", all, State::Moving, true), frontPlot("All scenes", all, State::Still, true)}, 2,
             540, 380);
+  std::string slow, command = "lambent accuracy";
+  for (const SweepPoint& p : sweepPoints(options.sweepPart()))
+    if (p.slow) slow += (slow.empty() ? "" : ", ") + p.name;
+  for (const std::string& file : options.scenes) command += " " + file;
   std::string page = htmlHead("What accuracy costs in time") + "<p>";
   for (const std::string& name : names) page += (name == names[0] ? "" : ", ") + escaped(name);
   page +=
       format(". %d frames along each shot, then %d standing where these end; error is relMSE of indirect irradiance "
              "against path tracing of that view, time the median of a frame. Bars: one standard error. ",
              frames.moving, frames.still) +
-      escaped(machineText()) + ".</p>\n<p>Made by <code>lambent accuracy SHOT... --report</code>.</p>\n" + front +
+      escaped(machineText()) + ".</p>\n<p>Made by <code>" + escaped(command) + " --report</code>.</p>\n" + front +
       "<p>Points of the front, left of and below which there is none:</p>";
+  if (!slow.empty())
+    page += format("<p>Over %d frames alone, with shorter histories, and so in no plot: ", frames.slow) +
+            escaped(slow) + " (all points).</p>";
   const std::vector<TableColumn> relativeColumns{
       {"number", ""}, {"point", "point"}, {"time", "time", "%.2f x"}, {"error", "error", "%.2f x"}};
   for (State state : {State::Moving, State::Still})

@@ -220,7 +220,9 @@ void declareBench(CLI::App& app) {
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output,
                    "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");
-  command->add_option("--frames", options->frames, "only the first so many (60 of a scene)")
+  command
+      ->add_option("--frames", options->frames,
+                   "only the first so many (60 of a scene; --growth 32; not with --equal-error)")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
       ->check(CLI::Range(1, 1000000));

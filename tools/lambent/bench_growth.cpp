@@ -225,8 +225,9 @@ void benchGrowth(const BenchOptions& options) {
                                   {"sweeps", sweeps}});
   const std::string conditions =
       options.launch.scene + ", " + std::to_string(stage->camera.width) + " x " + std::to_string(stage->camera.height) +
-      ", " + machine +
-      "; camera and punctual lights waver. Time grows as value^exponent: slope of least squares of the " +
+      ", " + machine + "; " +
+      (stage->shot ? "the camera follows the shot, punctual lights waver" : "camera and punctual lights waver") +
+      ". Time grows as value^exponent: slope of least squares of the " +
       "logarithms of medians, ± its standard error; stages below " + format("%g", kShortestMs) +
       " ms at some value are too short to fit.\n";
   writeText(folder / "growth.svg", svgOf(plots, 2));

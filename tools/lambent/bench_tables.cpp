@@ -22,7 +22,7 @@ struct Column {
   std::vector<StageId> stages;
 };
 /// Paper 1's "generating candidate VPLs, detecting undersampled regions and replacing invalidated VPLs" is three stages
-/// here; its G-buffer is part of the shading. Stages that only other techniques have stand where theirs would be.
+/// here; its G-buffer is part of the shading. Stages of other techniques count where their like does.
 const std::vector<Column>& sampling() {
   using enum StageId;
   static const std::vector<Column> columns{

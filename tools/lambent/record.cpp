@@ -153,8 +153,8 @@ void record(const RecordOptions& options) {
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
       log.add(t, stats, writing.count(), governor ? &*governor : nullptr);
-      if (governor) {
-        governor = governed(std::move(*governor), stats.wallMs, *options.targetMs);
+      if (governor && stats.plan.on(EffectId::Redraw)) {
+        governor = governed(std::move(*governor), stats.costMs(), *options.targetMs);
         gi.settings() = governor->settings;
       }
       progress.update(done + 1, total);

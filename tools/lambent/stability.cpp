@@ -164,15 +164,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     for (const TrackedValue& v : truth[0]) first.push_back(v.radiance);
     exposure = exposureFor(first);
   }
-  const auto toneMapped = [&](const ValueSeries& series) {
-    PixelSeries out;
-    for (size_t f = 0; f < series.size(); ++f) {
-      out.emplace_back();
-      for (size_t i = 0; i < series[f].size(); ++i)
-        out[f].push_back(seen[f][i] ? toneMappedLuminance(series[f][i].radiance, exposure) : std::nanf(""));
-    }
-    return out;
-  };
+  const auto toneMapped = [&](const ValueSeries& series) { return toneMappedSeries(series, seen, exposure); };
   double variance = 0;
   size_t values = 0;
   for (size_t f = 0; f < truth.size(); ++f)

@@ -11,7 +11,7 @@ namespace lambent {
 
 /// Frames of a run. What is slow (SweepPoint::slow) joins for the last frames in motion, and does not stand.
 struct SweepFrames {
-  int moving = 16, slow = 3, still = 48;
+  int moving = 12, slow = 3, still = 24;
 };
 
 /// What is known of one scene: its runs, their truth, and the conditions.
@@ -26,7 +26,7 @@ struct SweptScene {
 };
 
 /// Measures what is not yet in `folder`. The default is measured again and again between the others: the machine's own
-/// changes of pace are taken out of every time (docs: "control"). Throws RunError when interrupted; the same call goes
+/// changes of pace are taken out of every time. Throws RunError when interrupted; the same call goes
 /// on.
 SweptScene sweepScene(const AccuracyOptions& options, const std::string& file, const std::filesystem::path& folder,
                       const SweepFrames& frames);

@@ -20,6 +20,8 @@ double relativeDeviation(const std::vector<double>& values) {
   return values.size() > 1 && mean > 0 ? std::sqrt(square / double(values.size() - 1)) / mean : 0;
 }
 
+constexpr double kUnknown = 0.25; // share, where too little was measured to know a noise
+
 bool isControl(const Json& run) { return run.contains("control"); }
 
 /// What brings a run's times to the pace of all: the median control over those before and after it, of its session.
@@ -39,6 +41,25 @@ double paceOf(const Json& runs, size_t index, double all) {
   return count ? all / (sum / count) : 1;
 }
 
+/// Relative spread of relMSE over seeds, root of the mean square over the points that have several.
+double pooledSpread(const std::map<std::string, std::vector<Json>>& runs, const char* state, KnobLight light) {
+  std::map<std::string, KnobLight> lights;
+  for (const SweepPoint& p : sweepPoints(SweepPart::All)) lights[p.name] = p.light;
+  double squares = 0, degrees = 0;
+  for (const auto& [name, own] : runs) {
+    std::map<int, double> errors; // by seed
+    for (const Json& run : own)
+      if (run.contains(state)) errors[run["seed"]] = run[state]["rel_mse"];
+    const auto known = lights.find(name);
+    if (errors.size() < 2 || known == lights.end() || known->second != light) continue;
+    std::vector<double> values;
+    for (const auto& [seed, error] : errors) values.push_back(error);
+    squares += std::pow(relativeDeviation(values), 2) * double(values.size() - 1);
+    degrees += double(values.size() - 1);
+  }
+  return degrees > 0 ? std::sqrt(squares / degrees) : kUnknown;
+}
+
 /// Mean of a figure over runs, "moving/ms".
 double meanOf(const std::vector<Json>& runs, const char* path) {
   double sum = 0;
@@ -51,33 +72,29 @@ double meanOf(const std::vector<Json>& runs, const char* path) {
 const std::vector<TableColumn> kPointColumns{{"point", "point"},
                                              {"moving_ms", "ms", "%.1f"},
                                              {"moving_rel_mse", "relMSE", "%.4f"},
+                                             {"moving_noise", "±", "%.0f %%", 100},
                                              {"moving_bias", "bias", "%+.1f %%", 100},
                                              {"error", "\\|E\\|", "%.4f"},
                                              {"change", "\\|E'\\|", "%.4f"},
                                              {"still_ms", "still: ms", "%.1f"},
                                              {"still_rel_mse", "still: relMSE", "%.4f"},
+                                             {"still_noise", "±", "%.0f %%", 100},
                                              {"still_bias", "still: bias", "%+.1f %%", 100},
                                              {"rays", "rays a frame", "%.0f"},
                                              {"gpu_mib", "GPU MiB", "%.0f"},
                                              {"seeds", "seeds"}};
 
 Figures figuresOf(const SweptScene& scene) {
-  std::vector<double> controlMs, turns, spreads[3]; // relMSE of the default over seeds: moving, still, direct
-  std::map<int, bool> seeds;
+  std::vector<double> controlMs;
   for (const Json& run : scene.runs)
-    if (isControl(run)) {
-      controlMs.push_back(run["moving"]["ms"]);
-      if (std::exchange(seeds[run["seed"]], true)) continue;
-      spreads[0].push_back(run["moving"]["rel_mse"]);
-      spreads[1].push_back(run["still"]["rel_mse"]);
-    }
+    if (isControl(run)) controlMs.push_back(run["moving"]["ms"]);
   const double all = spreadOf(controlMs).median;
-  // Neighbouring controls differ by what is left once the slow changes of pace are out.
-  for (size_t i = 1; i < controlMs.size(); ++i) turns.push_back(std::log(controlMs[i] / controlMs[i - 1]));
-  double square = 0;
-  for (double t : turns) square += t * t;
-  const double costNoise = turns.empty() ? 0 : std::sqrt(0.5 * square / double(turns.size()));
-  const double movingNoise = relativeDeviation(spreads[0]), stillNoise = relativeDeviation(spreads[1]);
+  // Neighbouring controls differ by what is left once the slow changes of pace are out; a run's time has its own noise
+  // and that of the two controls beside it.
+  double turns = 0;
+  for (size_t i = 1; i < controlMs.size(); ++i) turns += std::pow(std::log(controlMs[i] / controlMs[i - 1]), 2);
+  const double costNoise =
+      controlMs.size() > 1 ? std::sqrt(1.5 * 0.5 * turns / double(controlMs.size() - 1)) : kUnknown;
 
   std::map<std::string, std::vector<Json>> runs;
   for (size_t i = 0; i < scene.runs.size(); ++i) {
@@ -90,6 +107,10 @@ Figures figuresOf(const SweptScene& scene) {
     runs[run["point"]].push_back(std::move(run));
   }
 
+  const double movingNoise = pooledSpread(runs, "moving", KnobLight::Indirect);
+  const double stillNoise = pooledSpread(runs, "still", KnobLight::Indirect);
+  const double directNoise = pooledSpread(runs, "moving", KnobLight::Direct);
+
   Figures figures;
   for (const SweepPoint& point : sweepPoints(SweepPart::All)) {
     const auto found = runs.find(point.name);
@@ -100,8 +121,9 @@ Figures figuresOf(const SweptScene& scene) {
     const double perTime = costNoise / std::sqrt(double(own.size())), perSeed = 1 / std::sqrt(double(ownSeeds.size()));
     PointFigures& f = figures[point.name];
     f.point = point;
-    const bool direct = point.light == KnobLight::Direct; // of which nothing is drawn by chance but samples of emitters
-    f.moving = {meanOf(own, "/moving/ms"), meanOf(own, "/moving/rel_mse"), perTime, direct ? 0 : perSeed * movingNoise};
+    const bool direct = point.light == KnobLight::Direct;
+    f.moving = {meanOf(own, "/moving/ms"), meanOf(own, "/moving/rel_mse"), perTime,
+                perSeed * (direct ? directNoise : movingNoise)};
     Json& row = f.row;
     row = {{"point", point.name},
            {"seeds", ownSeeds.size()},

@@ -19,8 +19,8 @@ struct PointFigures {
 };
 using Figures = std::map<std::string, PointFigures>; // by name
 
-/// Times are brought to one pace by the controls beside them. Noise of errors is the default's spread over seeds, of
-/// times that of the controls, each over the root of the runs.
+/// Times are brought to one pace by the controls beside them. Noise of errors is the relative spread over seeds, pooled
+/// over all points that have several, of times that of the controls beside them, each over the root of the runs.
 Figures figuresOf(const SweptScene& scene);
 /// Of the points that all scenes have.
 Figures overScenes(const std::vector<Figures>& scenes);

@@ -150,7 +150,7 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
       if (quick && value != knob.values.front() && value != knob.values.back()) continue;
       Assignments set = knob.with;
       set.emplace_back(name, value);
-      // A ray for every pair of pixel and light takes seconds; with all lights at every pixel, map by map, less.
+      // A ray for every pair of pixel and light takes seconds.
       add({.name = knobPoint(knob, value),
            .kind = Alone,
            .set = set,

@@ -18,10 +18,11 @@ TEST(Front, APointIsOffItOnlyByMoreThanNoise) {
   EXPECT_TRUE(offFront(points, 1));
   EXPECT_FALSE(offFront(points, 0));
   for (CostError& p : points) p.errorNoise = 0.12; // ln 1.3 = 0.26 is less than two of 0.17
-  EXPECT_FALSE(offFront(points, 1));
-  for (CostError& p : points) p.errorNoise = 0, p.costNoise = 0.12;
+  EXPECT_TRUE(offFront(points, 1)) << "cheaper, and no farther";
+  for (CostError& p : points) p.costNoise = 0.12;
   EXPECT_FALSE(offFront(points, 1));
   EXPECT_FALSE(offFront(std::vector<CostError>{{1, 1}, {1.3, 0.9}}, 1)); // dearer, and nearer
+  EXPECT_TRUE(offFront(std::vector<CostError>{{1, 1}, {3, 1}}, 1));      // three times the price for nothing
 }
 
 TEST(Ladder, IsAsLongAsItsRuleAllows) {
@@ -50,6 +51,7 @@ TEST(Knob, BuysWhatIsMoreThanNoise) {
   EXPECT_DOUBLE_EQ(knobVerdict(paying).nearer, 0.5);
   const std::vector<CostError> idle{{1, 1, 0.02, 0.1}, {2, 0.8, 0.02, 0.1}};
   EXPECT_FALSE(knobVerdict(idle).buys);
+  EXPECT_FALSE(knobVerdict(std::vector<CostError>{{1, 1}, {2, 0.5}, {4, 2}}).buys);
   const std::vector<CostError> saving{{2, 1, 0.02, 0.1}, {1, 0.5, 0.02, 0.1}};
   EXPECT_FALSE(knobVerdict(saving).monotone);
   EXPECT_TRUE(knobVerdict(std::vector<CostError>{{1.02, 1, 0.02}, {1, 0.5, 0.02}}).monotone);
