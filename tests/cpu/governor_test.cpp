@@ -97,7 +97,7 @@ TEST(Governor, DoesNotOscillateWhateverTheCostIsMadeOf) {
 
 TEST(Governor, SaysWhatCannotBeReached) {
   Governed slow;
-  run(slow, {.pixels = 2000}, kTarget, 20);
+  run(slow, {.pixels = 2000}, kTarget, 60);
   EXPECT_EQ(slow.scale, GovernorGains{}.least);
   EXPECT_EQ(slow.preset, presetTable().front().name);
   EXPECT_EQ(slow.pace, Pace::TooSlow);

@@ -66,7 +66,7 @@ TEST(Settings, PresetsSetWhatTheySayAndNoMore) {
   isr.gather.mode = GatherMode::Multires;
   applyPreset(isr, "low");
   EXPECT_EQ(isr.gather.mode, GatherMode::Multires);
-  EXPECT_EQ(isr.smc.vpls, 512);
+  EXPECT_EQ(isr.smc.vpls, 256);
   EXPECT_THROW(applyPreset(isr, "lowest"), InputError);
 }
 
