@@ -57,7 +57,7 @@ std::string csvText(const nlohmann::json& rows) {
     std::string cells;
     for (const auto& [key, structured] : keys)
       if (!structured) cells += "," + cell(key);
-    text += cells.substr(1) + "\n";
+    if (!cells.empty()) text += cells.substr(1) + "\n"; // of no rows nothing
   };
   line([](const std::string& key) { return key; });
   for (const nlohmann::json& row : rows) line([&](const std::string& key) { return cellText({key.c_str(), ""}, row); });
