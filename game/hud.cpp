@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "game/interaction.h"
+#include "gi/plan/presets.h"
 
 #include <imgui/backends/imgui_impl_glfw.h>
 #include <imgui/backends/imgui_impl_opengl3.h>

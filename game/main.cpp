@@ -109,7 +109,7 @@ class Walkthrough {
     }
     if (model_.followPath) player_.place(shotCamera(*shot_, model_.time, scene_.origin));
     const SceneView view =
-        extractor_.extract(scene_, scaled(player_.view(windowWidth, windowHeight), model_.pacer.scale()), model_.time);
+        extractor_.extract(scene_, player_.view(windowWidth, windowHeight).scaled(model_.pacer.scale()), model_.time);
     const FrameStats& stats = gi_.run(view, [this](int done, int total) { showProgress(done, total); });
 
     const SceneChanges& c = view.changes;

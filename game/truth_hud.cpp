@@ -107,7 +107,7 @@ void drawTruthFigures(TruthView& view) {
     ImGui::EndTable();
   }
   ImGui::TextUnformatted(verdict(a).c_str());
-  if (const std::optional<double> ms = a.pathTracingMs(truth->ms))
+  if (const std::optional<double> ms = pathTracingMs(a.error.relMse, a.truthRelMse, truth->ms))
     ImGui::Text("path tracing comes as near in %s s", number(1e-3 * *ms).c_str());
   ImGui::TextDisabled("each takes time from the other while both run");
   if (view.mode() == TruthMode::Heat) {

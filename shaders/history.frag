@@ -26,7 +26,7 @@ layout(location = 2) out vec4 outGlossy;
 #endif
 #endif
 
-const float kOnPlane = 0.25; // deviation from the pixel's plane, pixels
+const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
 const float kAlike = 0.3;    // cosine between normals: mouldings mix, corners do not
 const float kMoving = 16.0;  // pictures in the mean of a place that moves over the pixels: looking up blurs a little
 

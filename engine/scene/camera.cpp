@@ -2,6 +2,7 @@
 
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lambent {
@@ -13,6 +14,13 @@ CameraRay cameraRay(const CameraView& camera, float u, float v) {
     return {camera.position() + rotation * (camera.orthoHalfHeight * vec3(x, y, 0)), rotation * vec3(0, 0, -1)};
   const float halfHeight = std::tan(0.5f * camera.fovY);
   return {camera.position(), glm::normalize(rotation * vec3(x * halfHeight, y * halfHeight, -1))};
+}
+
+CameraView CameraView::scaled(float side) const {
+  CameraView camera = *this;
+  camera.width = std::max(1, int(std::lround(float(width) * side)));
+  camera.height = std::max(1, int(std::lround(float(height) * side)));
+  return camera;
 }
 
 mat4 clipFromView(const CameraView& camera, float orthoFar) {

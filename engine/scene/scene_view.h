@@ -58,6 +58,8 @@ struct CameraView {
 
   vec3 position() const { return vec3(worldFromView[3]); }
   float aspect() const { return float(width) / float(height); }
+  /// Of a picture so many times as wide and as high, in whole pixels; one at least.
+  CameraView scaled(float side) const;
 };
 
 struct SceneChanges {

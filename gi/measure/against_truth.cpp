@@ -9,9 +9,9 @@ std::optional<double> AgainstTruth::pictureRmse() const {
   return std::sqrt(error.rmse * error.rmse - truthRmse * truthRmse);
 }
 
-std::optional<double> AgainstTruth::pathTracingMs(double truthMs) const {
-  if (!known() || !(error.relMse > truthRelMse)) return {};
-  return truthMs * truthRelMse / (error.relMse - truthRelMse); // squared errors fall as samples rise
+std::optional<double> pathTracingMs(double relMse, double ofTruth, double truthMs) {
+  if (!(ofTruth > 0) || !(relMse > 2 * ofTruth)) return {};
+  return truthMs * ofTruth / (relMse - ofTruth);
 }
 
 AgainstTruth againstTruth(const Image& picture, const ReferencePicture& truth) {

@@ -59,6 +59,7 @@ KnobVerdict knobVerdict(std::span<const CostError> points) {
   CHECK(points.size() >= 2);
   KnobVerdict verdict{points.back().cost / points.front().cost, points.back().error / points.front().error};
   for (size_t i = 1; i < points.size(); ++i) verdict.monotone &= !cheaper(points[i], points[i - 1]);
+  verdict.costs = cheaper(points.front(), points.back());
   verdict.buys = nearer(points.back(), points.front());
   return verdict;
 }

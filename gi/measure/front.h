@@ -34,6 +34,7 @@ std::vector<size_t> ladderOf(std::span<const CostError> points, const LadderRule
 struct KnobVerdict {
   double dearer = 1, nearer = 1; // of the last point over the first: cost, error
   bool monotone = true;          // no point is cheaper than the one before by more than noise
+  bool costs = false;            // the last point is dearer than the first by more than noise
   bool buys = false;             // the last point is nearer than the first by more than noise
 };
 /// Of two points at least.

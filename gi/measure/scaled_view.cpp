@@ -173,10 +173,17 @@ SceneView SplitInstances::of(SceneView view) {
   return view;
 }
 
-SceneView ResizedPicture::of(SceneView view) {
-  const auto scaled = [&](int pixels) { return std::max(1, int(std::lround(float(pixels) * side_))); };
-  view.camera.width = scaled(view.camera.width);
-  view.camera.height = scaled(view.camera.height);
+SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
+  constexpr float kShare = 1e-4f;
+  lights.assign(view.lights.begin(), view.lights.end());
+  for (LightView& light : lights) {
+    const vec3 aside = frame % 2 == 0 ? vec3(0) : vec3(kShare, 0, kShare);
+    light.position += view.boundsWorld.diameter() * aside;
+    if (light.type == LightType::Directional) light.direction = glm::normalize(light.direction + aside);
+    light.changed = true;
+  }
+  view.lights = lights;
+  view.changes.lights = true;
   return view;
 }
 

@@ -1,4 +1,5 @@
-// Views with more of one thing and the same light on the picture, to measure what it costs.
+// Views changed to measure what something costs: with more of one thing and the same light on the picture, or never at
+// rest.
 #pragma once
 
 #include "engine/scene/scene_view.h"
@@ -22,6 +23,10 @@ Pieces inPieces(const SceneAssets& assets, uint32_t parts);
 
 /// Placed triangles.
 size_t trianglesOf(const SceneView& view);
+
+/// The view with every punctual light a ten-thousandth of the scene aside in every other frame, so that no map is kept
+/// and every stage that follows them runs in every frame. `lights` holds them.
+SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights);
 
 /// A view changed in one way. What it gives points into itself and into the view given, until the next call.
 class ScaledView {
@@ -68,7 +73,10 @@ class SplitTriangles final : public ScaledView {
 class ResizedPicture final : public ScaledView {
  public:
   explicit ResizedPicture(float side) : side_(side) {}
-  SceneView of(SceneView view) override;
+  SceneView of(SceneView view) override {
+    view.camera = view.camera.scaled(side_);
+    return view;
+  }
 
  private:
   float side_; // times as wide and as high

@@ -94,10 +94,4 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
   return g;
 }
 
-CameraView scaled(CameraView camera, float scale) {
-  camera.width = std::max(1, int(std::lround(float(camera.width) * scale)));
-  camera.height = std::max(1, int(std::lround(float(camera.height) * scale)));
-  return camera;
-}
-
 } // namespace lambent

@@ -51,7 +51,4 @@ struct Governed {
 /// falls short of the target and never overshoots, and the next one closes in: nothing oscillates.
 Governed governed(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
 
-/// The camera of a picture of this scale; a pixel at least.
-CameraView scaled(CameraView camera, float scale);
-
 } // namespace lambent

@@ -22,5 +22,9 @@ struct Preset {
 /// Cheapest first. The rule that chose them: ladderOf, gi/measure/front.h. Without a preset the defaults hold, which
 /// cost more than the last.
 const std::vector<Preset>& presetTable();
+const std::vector<std::string>& presetNames();
+/// Sets what the preset is about (numbers of VPLs, paths, map texels; of a technique that samples its lights also the
+/// gather) and leaves everything else. Throws InputError that names the presets.
+void applyPreset(Settings& settings, const std::string& name);
 
 } // namespace lambent

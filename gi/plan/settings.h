@@ -221,11 +221,4 @@ void applySetting(Settings& settings, std::string_view name, std::string_view va
 /// Text of the present value.
 std::string settingText(const Settings& settings, std::string_view name);
 
-/// Names of the presets, cheapest first. Each is a point of the measured front of error against time
-/// (docs/measurements).
-const std::vector<std::string>& presetNames();
-/// Sets what the preset is about (numbers of VPLs, paths, map texels; of a technique that samples its lights also the
-/// gather) and leaves everything else. Throws InputError that names the presets.
-void applyPreset(Settings& settings, const std::string& name);
-
 } // namespace lambent

@@ -2,6 +2,7 @@
 #include "gi/plan/settings.h"
 
 #include "engine/core/error.h"
+#include "gi/plan/presets.h"
 
 #include <gtest/gtest.h>
 

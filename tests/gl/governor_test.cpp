@@ -46,7 +46,7 @@ TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
     double before = 0;
     float scale = g.scale;
     for (int i = 0; i < frames; ++i) {
-      room.scene.camera = scaled(whole, g.scale);
+      room.scene.camera = whole.scaled(g.scale);
       SceneView view = room.scene.view();
       view.changes = {
           .first = begins, .camera = g.scale != scale, .lights = i == 0, .geometry = begins, .instances = begins};

@@ -1,5 +1,6 @@
 // Every preset draws.
 #include "gi/frame/gi_frame.h"
+#include "gi/plan/presets.h"
 #include "gl_fixture.h"
 
 #include <set>

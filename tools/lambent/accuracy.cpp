@@ -89,7 +89,6 @@ void declareAccuracy(CLI::App& app) {
                   "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
                   "every technique, along each shot and standing at its end: front, curves, pictures on one page "
                   "(index.html), points.csv; interrupted, the same command goes on");
-  forms->add_flag("--presets", options->presets, "error of the presets against path tracing, and their time");
   forms
       ->add_option(
           "--figure", options->figure,
@@ -100,13 +99,12 @@ void declareAccuracy(CLI::App& app) {
           "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3")
       ->check(CLI::IsMember(figureNames()));
   command
-      ->add_option(
-          "--spp", options->samples,
-          "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --presets 8192, --figure 1024)")
+      ->add_option("--spp", options->samples,
+                   "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --figure 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--clamp", options->clamp,
                       "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
-  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --presets (2); --report (1)")
+  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --report (1)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--frame", options->frame, "--light: of a shot, with all that moves before it")
       ->check(CLI::Range(1, 1000000));
@@ -131,7 +129,6 @@ void declareAccuracy(CLI::App& app) {
     if (o.light) return accuracyLight(o);
     if (o.direct) return accuracyDirect(o);
     if (o.report) return accuracyReport(o);
-    if (o.presets) return accuracyPresets(o);
     if (!o.figure.empty()) return accuracyFigure(o);
     accuracy(o);
   });

@@ -17,8 +17,8 @@ struct AccuracyOptions {
   int slots = 64, points = 1024;
   std::string curve, figure; // empty: none
   int frame = 0;             // of a shot
-  bool convergence = false, light = false, direct = false, alone = false, gathers = false, presets = false,
-       report = false, joint = false, quick = false;
+  bool convergence = false, light = false, direct = false, alone = false, gathers = false, report = false,
+       joint = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 
@@ -37,8 +37,6 @@ void accuracyLight(const AccuracyOptions& options);
 void accuracyDirect(const AccuracyOptions& options);
 /// What accuracy costs in time: all knobs and techniques, in several scenes, on one page.
 void accuracyReport(const AccuracyOptions& options);
-/// Error against time of the presets.
-void accuracyPresets(const AccuracyOptions& options);
 /// Figures of the papers for any scene: of paper 1 those here, of papers 2 and 3 those of reflective_figures.h.
 std::vector<std::string> figureNames();
 void accuracyFigure(const AccuracyOptions& options);

@@ -4,6 +4,7 @@
 #include "tools/lambent/html.h"
 #include "tools/lambent/linear_picture.h"
 #include "tools/lambent/scatter.h"
+#include "tools/lambent/study.h"
 #include "tools/lambent/sweep_figures.h"
 #include "tools/lambent/text.h"
 
@@ -22,6 +23,7 @@ constexpr float kBlackAt = 0.5f; // of heat maps: relative error
 
 enum class State { Moving, Still };
 CostError of(const PointFigures& f, State state) { return state == State::Moving ? f.moving : f.still; }
+constexpr State kStates[] = {State::Moving, State::Still};
 const char* titleOf(State state) { return state == State::Moving ? "in motion" : "standing still"; }
 
 /// Without those that were measured over a few frames alone: their histories are shorter than the others'.
@@ -131,15 +133,18 @@ nlohmann::json verdictsOf(const Knob& knob, const std::vector<KnobCurve>& curves
   const std::string standard = setting.text(setting.standard);
   for (const KnobCurve& curve : curves) {
     const KnobVerdict v = knobVerdict(curve.points);
-    rows.push_back({{"knob", knob.setting},
-                    {"scene", curve.scene},
-                    {"state", titleOf(state)},
-                    {"values", curve.values.front() + " to " + curve.values.back()},
-                    {"dearer", v.dearer},
-                    {"nearer", v.nearer},
-                    {"buys", v.buys ? "less error" : "nothing here"},
-                    {"default", standard + (v.buys || standard == curve.values.front() ? "" : ", not the cheap end")},
-                    {"monotone", v.monotone ? "yes" : "no"}});
+    rows.push_back(
+        {{"knob", knob.setting},
+         {"scene", curve.scene},
+         {"state", titleOf(state)},
+         {"values", curve.values.front() + " to " + curve.values.back()},
+         {"dearer", v.dearer},
+         {"nearer", v.nearer},
+         {"buys", v.buys    ? "less error"
+                  : v.costs ? "nothing here"
+                            : "nothing, and costs nothing"},
+         {"default", standard + (v.buys || !v.costs || standard == curve.values.front() ? "" : ", not the cheap end")},
+         {"monotone", v.monotone ? "yes" : "no"}});
   }
   return rows;
 }
@@ -206,22 +211,19 @@ nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
 
 /// Milliseconds of path tracing over those of the default's frame, for the same relMSE.
 nlohmann::json pathRow(const SweptScene& scene, const Figures& figures, State state) {
-  constexpr double kBar = 20;
   const CostError p = of(figures.at(sweepPoints(SweepPart::Quick)[0].name), state);
   const nlohmann::json& truth = scene.truth["indirect"];
   const double ofTruth = truth["rel_mse"];
-  const double times = truth["sample_ms"].get<double>() * truth["spp"].get<double>() * ofTruth / p.error / p.cost;
-  const double noise = 1 + 2 * std::hypot(p.costNoise, p.errorNoise);
-  return {{"scene", scene.name},
-          {"state", titleOf(state)},
-          {"ms", p.cost},
-          {"rel_mse", p.error},
-          {"paths_ms", times * p.cost},
-          {"times", times},
-          {"holds", p.error < ofTruth       ? "the truth is too noisy"
-                    : times >= kBar * noise ? "yes"
-                    : times <= kBar / noise ? "no"
-                                            : "within noise"}};
+  nlohmann::json row{{"scene", scene.name}, {"state", titleOf(state)}, {"ms", p.cost}, {"rel_mse", p.error}};
+  const std::optional<double> ms = pathTracingMs(
+      p.error + ofTruth, ofTruth, truth["sample_ms"].get<double>() * truth["spp"].get<double>()); // it was taken off
+  row["holds"] = "the truth is too noisy";
+  if (!ms) return row;
+  const double times = *ms / p.cost;
+  row.update({{"paths_ms", *ms},
+              {"times", times},
+              {"holds", holdsBar({times, times * std::hypot(p.costNoise, p.errorNoise)})}});
+  return row;
 }
 
 const std::vector<TableColumn> kPathColumns{{"scene", "scene"},
@@ -271,106 +273,131 @@ nlohmann::json presetRows(const Choice& choice) {
   return rows;
 }
 
-} // namespace
-
-void accuracyReport(const AccuracyOptions& options) {
-  const fs::path folder = reportFolder(options.output.out, "out/accuracy");
-  const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};
+/// What the page is about: one scene each, and all together.
+struct Report {
   std::vector<SweptScene> scenes;
-  std::vector<Figures> figures;
+  std::vector<Figures> figures; // by scene
   std::vector<std::string> names;
-  for (const std::string& file : options.scenes) {
-    scenes.push_back(sweepScene(options, file, folder, frames));
-    if (std::ranges::count(names, scenes.back().name))
-      throw InputError(file, "another scene has this name (rename one: files are named by them)");
-    names.push_back(scenes.back().name);
-    figures.push_back(figuresOf(scenes.back()));
-  }
-  const Figures all = overScenes(figures);
-  const Choice presets = presetChoice(all);
+  Figures all;
+};
 
-  nlohmann::json points, verdicts, paths;
-  for (size_t s = 0; s < scenes.size(); ++s) {
-    for (const auto& [name, f] : figures[s]) {
-      points.push_back(f.row);
-      points.back()["scene"] = names[s];
-    }
-    for (State state : {State::Moving, State::Still}) paths.push_back(pathRow(scenes[s], figures[s], state));
-  }
-  std::vector<std::string> together = names;
-  std::vector<Figures> withAll = figures;
-  together.push_back("all together"), withAll.push_back(all);
+nlohmann::json verdictRows(const Report& r) {
+  std::vector<std::string> names = r.names;
+  std::vector<Figures> figures = r.figures;
+  names.push_back("all together"), figures.push_back(r.all);
+  nlohmann::json rows;
   for (const Knob& knob : knobTable())
-    for (State state : {State::Moving, State::Still})
-      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, together, withAll, state), state))
-        verdicts.push_back(std::move(row));
+    for (State state : kStates)
+      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, names, figures, state), state))
+        rows.push_back(std::move(row));
+  return rows;
+}
 
-  const std::string front =
-      svgOf({frontPlot("All scenes", all, State::Moving, true), frontPlot("All scenes", all, State::Still, true)}, 2,
-            540, 380);
+std::string openingOf(const Report& r, const AccuracyOptions& options, const SweepFrames& frames,
+                      const std::string& front) {
   std::string slow, command = "lambent accuracy";
   for (const SweepPoint& p : sweepPoints(options.sweepPart()))
     if (p.slow) slow += (slow.empty() ? "" : ", ") + p.name;
   for (const std::string& file : options.scenes) command += " " + file;
   std::string page = htmlHead("What accuracy costs in time") + "<p>";
-  for (const std::string& name : names) page += (name == names[0] ? "" : ", ") + escaped(name);
+  for (const std::string& name : r.names) page += (name == r.names[0] ? "" : ", ") + escaped(name);
   page +=
       format(". %d frames along each shot, then %d standing where these end; error is relMSE of indirect irradiance "
              "against path tracing of that view, time the median of a frame. Bars: one standard error. ",
              frames.moving, frames.still) +
-      escaped(machineText()) + ".</p>\n<p>Made by <code>" + escaped(command) + " --report</code>.</p>\n" + front +
-      "<p>Points of the front, left of and below which there is none:</p>";
+      escaped(machineText(GlContext::headless())) + ".</p>\n<p>Made by <code>" + escaped(command) +
+      " --report</code>.</p>\n" + front + "<p>Points of the front, left of and below which there is none:</p>";
   if (!slow.empty())
     page += format("<p>Over %d frames alone, with shorter histories, and so in no plot: ", frames.slow) +
             escaped(slow) + " (all points).</p>";
-  const std::vector<TableColumn> relativeColumns{
+  const std::vector<TableColumn> columns{
       {"number", ""}, {"point", "point"}, {"time", "time", "%.2f x"}, {"error", "error", "%.2f x"}};
-  for (State state : {State::Moving, State::Still})
-    page += "<p>" + std::string(titleOf(state)) + "</p>" + htmlTable(relativeColumns, frontRows(all, state, true));
-  page +=
-      "<h2>Presets by rule</h2><p>Among the default and the joint sweep: the longest ladder of the front whose steps "
-      "take at least 1.5 times the time and leave at most 0.75 times the error, over all scenes, moving and "
-      "still.</p>" +
-      htmlTable(kLadderColumns, ladderRows(presets)) +
-      "<h2>Beside path tracing</h2><p>Time in which our own path tracer comes as near as a frame of the default.</p>" +
-      htmlTable(kPathColumns, paths);
-  for (size_t s = 0; s < scenes.size(); ++s) {
-    std::vector<TableColumn> columns{{"number", ""}};
-    columns.insert(columns.end(), kPointColumns.begin(), kPointColumns.end());
-    page += "<h2>" + escaped(names[s]) + "</h2>" +
-            svgOf({frontPlot(names[s], figures[s], State::Moving, false),
-                   frontPlot(names[s], figures[s], State::Still, false)},
-                  2, 540, 340) +
-            "<p>The front in motion</p>" + htmlTable(columns, frontRows(figures[s], State::Moving, false)) +
-            "<p>Milliseconds of its stages</p>" + frontStages(figures[s]) + "<p>The front standing still</p>" +
-            htmlTable(columns, frontRows(figures[s], State::Still, false)) +
-            format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
-                   "and more.</p>",
-                   scenes[s].truth["indirect"]["spp"].get<int>(), scenes[s].truth["indirect"]["rel_mse"].get<double>(),
-                   100 * kBlackAt) +
-            frontPictures(scenes[s], figures[s], folder);
-    for (const std::string& left : scenes[s].leftOut) page += "<p>Left out: " + escaped(left) + "</p>";
-    nlohmann::json rows;
-    for (const auto& [name, f] : figures[s]) rows.push_back(f.row);
-    page += "<details open><summary>All points</summary>" + htmlTable(kPointColumns, rows) + "</details>\n";
-  }
-  page +=
+  for (State state : kStates)
+    page += "<p>" + std::string(titleOf(state)) + "</p>" + htmlTable(columns, frontRows(r.all, state, true));
+  return page;
+}
+
+/// Writes the pictures of its front.
+std::string sectionOf(const std::string& name, const SweptScene& scene, const Figures& figures,
+                      const fs::path& folder) {
+  std::vector<TableColumn> columns{{"number", ""}};
+  columns.insert(columns.end(), kPointColumns.begin(), kPointColumns.end());
+  std::string page =
+      "<h2>" + escaped(name) + "</h2>" +
+      svgOf({frontPlot(name, figures, State::Moving, false), frontPlot(name, figures, State::Still, false)}, 2, 540,
+            340) +
+      "<p>The front in motion</p>" + htmlTable(columns, frontRows(figures, State::Moving, false)) +
+      "<p>Milliseconds of its stages</p>" + frontStages(figures) + "<p>The front standing still</p>" +
+      htmlTable(columns, frontRows(figures, State::Still, false)) +
+      format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
+             "and more.</p>",
+             scene.truth["indirect"]["spp"].get<int>(), scene.truth["indirect"]["rel_mse"].get<double>(),
+             100 * kBlackAt) +
+      frontPictures(scene, figures, folder);
+  for (const std::string& left : scene.leftOut) page += "<p>Left out: " + escaped(left) + "</p>";
+  nlohmann::json rows;
+  for (const auto& [point, f] : figures) rows.push_back(f.row);
+  return page + "<details open><summary>All points</summary>" + htmlTable(kPointColumns, rows) + "</details>\n";
+}
+
+std::string knobSection(const Report& r, const nlohmann::json& verdicts) {
+  std::string page =
       "<h2>Setting by setting</h2><p>Each alone, the others at their defaults; values from those that should be "
       "cheap to those that should be dear. A setting that buys nothing leaves errors within their noise (two standard "
       "errors).</p>";
   for (KnobLight light : {KnobLight::Indirect, KnobLight::Direct}) {
     std::vector<Scatter> plots;
     for (const Knob& knob : knobTable())
-      for (State state : {State::Moving, State::Still}) {
+      for (State state : kStates) {
         if (knob.light != light) continue;
-        const std::vector<KnobCurve> curves = curvesOf(knob, names, figures, state);
+        const std::vector<KnobCurve> curves = curvesOf(knob, r.names, r.figures, state);
         if (!curves.empty()) plots.push_back(knobPlot(knob, curves, state));
       }
     if (plots.empty()) continue;
     page += std::string("<h3>") + (light == KnobLight::Direct ? "Direct light" : "Indirect light") + "</h3>" +
             svgOf(plots, 3, 340, 230);
   }
-  page += htmlTable(kVerdictColumns, verdicts) + "</html>\n";
+  return page + htmlTable(kVerdictColumns, verdicts);
+}
+
+} // namespace
+
+void accuracyReport(const AccuracyOptions& options) {
+  const fs::path folder = reportFolder(options.output.out, "out/accuracy");
+  const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};
+  Report r;
+  for (const std::string& file : options.scenes) {
+    r.scenes.push_back(sweepScene(options, file, folder, frames));
+    if (std::ranges::count(r.names, r.scenes.back().name))
+      throw InputError(file, "another scene has this name (rename one: files are named by them)");
+    r.names.push_back(r.scenes.back().name);
+    r.figures.push_back(figuresOf(r.scenes.back()));
+  }
+  r.all = overScenes(r.figures);
+  const Choice presets = presetChoice(r.all);
+  const nlohmann::json verdicts = verdictRows(r);
+  nlohmann::json points, paths;
+  for (size_t s = 0; s < r.scenes.size(); ++s) {
+    for (const auto& [name, f] : r.figures[s]) {
+      points.push_back(f.row);
+      points.back()["scene"] = r.names[s];
+    }
+    for (State state : kStates) paths.push_back(pathRow(r.scenes[s], r.figures[s], state));
+  }
+  const std::string front =
+      svgOf({frontPlot("All scenes", r.all, State::Moving, true), frontPlot("All scenes", r.all, State::Still, true)},
+            2, 540, 380);
+  std::string page =
+      openingOf(r, options, frames, front) +
+      format("<h2>Presets by rule</h2><p>Among the default and the joint sweep: the longest ladder of the front whose "
+             "steps take at least %g times the time and leave at most %g times the error, over all scenes, moving and "
+             "still.</p>",
+             LadderRule{}.dearer, LadderRule{}.nearer) +
+      htmlTable(kLadderColumns, ladderRows(presets)) +
+      "<h2>Beside path tracing</h2><p>Time in which our own path tracer comes as near as a frame of the default.</p>" +
+      htmlTable(kPathColumns, paths);
+  for (size_t s = 0; s < r.scenes.size(); ++s) page += sectionOf(r.names[s], r.scenes[s], r.figures[s], folder);
+  page += knobSection(r, verdicts) + "</html>\n";
 
   writeText(folder / "index.html", page);
   writeText(folder / "front.svg", front);
@@ -382,8 +409,8 @@ void accuracyReport(const AccuracyOptions& options) {
                                   {"ladder", ladderRows(presets)},
                                   {"presets", presetRows(presets)},
                                   {"paths", paths},
-                                  {"front_moving", frontRows(all, State::Moving, true)},
-                                  {"front_still", frontRows(all, State::Still, true)}});
+                                  {"front_moving", frontRows(r.all, State::Moving, true)},
+                                  {"front_still", frontRows(r.all, State::Still, true)}});
   if (options.output.quiet) return;
   std::printf("%s\n%s\nreport: %s\n", tableText(kLadderColumns, ladderRows(presets)).c_str(),
               tableText(kPathColumns, paths).c_str(), (folder / "index.html").c_str());

@@ -150,30 +150,4 @@ void accuracyDirect(const AccuracyOptions& options) {
                rows);
 }
 
-void accuracyPresets(const AccuracyOptions& options) {
-  Study study(options, "160x90");
-  const Image truth = study.trace(8192, ReferenceBuffer::Irradiance, false).picture.mean;
-  const int seeds = options.seeds.value_or(options.quick ? 1 : 2);
-  std::vector<Variant> variants;
-  for (const std::string& preset : presetNames()) {
-    LaunchOptions launch = study.launch;
-    launch.preset = preset; // under what the command line sets
-    for (int k = 0; k < seeds; ++k)
-      variants.push_back({preset, openStage(launch)->settings, launch.seed + uint32_t(k)});
-  }
-  nlohmann::json rows;
-  const int frames = options.quick ? 4 : std::max(4, study.stage->settings.history.frames); // as many as are averaged
-  for (const Measured& m : study.draw(variants, Buffer::Irradiance, frames, frames - 1)) {
-    rows.push_back(rowOf(pictureError(m.picture, truth)));
-    rows.back().update({{"preset", m.variant.name}, {"seed", m.variant.seed}, {"ms", m.frames.back().wallMs}});
-  }
-  study.report({{"preset", "preset"},
-                {"seed", "seed"},
-                {"ms", "ms per frame", "%.0f"},
-                {"rmse", "RMSE", "%.4f"},
-                kRelMse,
-                kBias},
-               rows);
-}
-
 } // namespace lambent

@@ -178,29 +178,9 @@ std::vector<Line> timeLines(const std::vector<Measured>& sides) {
   return lines;
 }
 
-SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {
-  constexpr float kShare = 1e-4f;
-  lights.assign(view.lights.begin(), view.lights.end());
-  for (LightView& light : lights) {
-    const vec3 aside = frame % 2 == 0 ? vec3(0) : vec3(kShare, 0, kShare);
-    light.position += view.boundsWorld.diameter() * aside;
-    if (light.type == LightType::Directional) light.direction = glm::normalize(light.direction + aside);
-    light.changed = true;
-  }
-  view.lights = lights;
-  view.changes.lights = true;
-  return view;
-}
-
 std::string spreadText(const Spread& s) {
   const int digits = s.median < 10 ? 2 : s.median < 100 ? 1 : 0;
   return format("%.*f (%.*f to %.*f)", digits, s.median, digits, s.quarter, digits, s.threeQuarters);
-}
-
-std::string rendererName(const GlContext& context) {
-  for (const auto& [name, value] : context.info())
-    if (name == "renderer") return value;
-  return "an unknown renderer";
 }
 
 RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress, int frames) {

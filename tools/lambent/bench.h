@@ -35,15 +35,8 @@ struct Line {
 /// Of each stage that ran on any side, of updating the virtual lights, and of the frame: milliseconds.
 std::vector<Line> timeLines(const std::vector<Measured>& sides);
 
-/// The view with every punctual light a ten-thousandth of the scene aside in every other frame, so that no map is kept
-/// and every stage that follows them runs in every frame. `lights` holds them.
-SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights);
-
 /// "12.3 (11.9 to 13.0)": median and quartiles.
 std::string spreadText(const Spread& spread);
-
-/// Who draws: the renderer's name, as the current GL context says.
-std::string rendererName(const GlContext& context);
 
 /// Techniques multires-gather and multires-splat, scene by scene (paper 3, table 1).
 void benchMultires(const BenchOptions& options);

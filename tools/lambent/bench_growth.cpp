@@ -217,10 +217,10 @@ void benchGrowth(const BenchOptions& options) {
     plots.push_back(plotOf(sweep, rows));
     tables += tableOf(sweep, rows) + "\n";
   }
-  const std::string machine = rendererName(context);
+  const std::string machine = machineText(context);
   writeJson(options.output.json, {{"scene", options.launch.scene},
                                   {"size", {stage->camera.width, stage->camera.height}},
-                                  {"renderer", machine},
+                                  {"machine", machine},
                                   {"shortest_ms", kShortestMs},
                                   {"sweeps", sweeps}});
   const std::string conditions =

@@ -4,6 +4,7 @@
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/measure/picture_error.h"
+#include "gi/measure/scaled_view.h"
 #include "tools/lambent/bench.h"
 #include "tools/lambent/text.h"
 

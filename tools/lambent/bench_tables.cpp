@@ -207,8 +207,8 @@ void benchTable2(const BenchOptions& options) {
   const GlContext context = GlContext::headless();
   nlohmann::json rows;
   for (const std::string& file : options.scenes) rows.push_back(rowOf(options, file));
-  const std::string machine = rendererName(context);
-  writeJson(options.output.json, {{"renderer", machine}, {"rows", rows}});
+  const std::string machine = machineText(context);
+  writeJson(options.output.json, {{"machine", machine}, {"rows", rows}});
   const std::string conditions =
       std::to_string(rows[0]["size"][0].get<int>()) + " x " + std::to_string(rows[0]["size"][1].get<int>()) + ", " +
       std::to_string(rows[0]["frames"].get<size_t>()) + " frames of the first shot, " + machine +

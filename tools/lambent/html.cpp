@@ -1,12 +1,9 @@
 #include "tools/lambent/html.h"
 
-#include "engine/platform/gl_context.h"
 #include "tools/lambent/linear_picture.h"
 
-#include <ctime>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 namespace lambent {
 
@@ -71,23 +68,6 @@ std::string htmlPicture(const fs::path& folder, const std::string& name, const I
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   return "<figure><img alt='" + escaped(under) + "' src='data:image/png;base64," + base64(bytes) + "'><figcaption>" +
          escaped(under) + "</figcaption></figure>\n";
-}
-
-std::string machineText() {
-  std::string renderer = "?", cpu = "?";
-  for (const auto& [name, value] : GlContext::headless().info())
-    if (name == "renderer") renderer = value;
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) {
-      cpu = line.substr(line.find(':') + 2);
-      break;
-    }
-  const std::time_t now = std::time(nullptr);
-  char date[16] = "";
-  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
-  return std::to_string(std::thread::hardware_concurrency()) + " threads of " + cpu + "; OpenGL: " + renderer + "; " +
-         date;
 }
 
 } // namespace lambent

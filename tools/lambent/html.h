@@ -17,7 +17,5 @@ std::string htmlTable(const std::vector<TableColumn>& columns, const nlohmann::j
 /// A picture (values as shown, 0 to 1) inside the page, and as folder/NAME.png.
 std::string htmlPicture(const std::filesystem::path& folder, const std::string& name, const Image& shown,
                         const std::string& under);
-/// Processor, OpenGL renderer, day.
-std::string machineText();
 
 } // namespace lambent

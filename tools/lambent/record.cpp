@@ -143,7 +143,7 @@ void record(const RecordOptions& options) {
     Progress progress("recording", options.output.quiet);
     for (; done < total && !interrupted; ++done) {
       const double t = done / stage->shot->fps;
-      if (governor) stage->camera = scaled(whole, governor->scale);
+      if (governor) stage->camera = whole.scaled(governor->scale);
       const FrameStats& stats = gi.run(stage->at(t));
       const auto begin = std::chrono::steady_clock::now();
       if (options.format != "none") {

@@ -1,13 +1,13 @@
 // lambent accuracy SCENE --figure 2.N, 3.N, criterion, upsampling: what papers 2 and 3 draw of light from reflective
 // shadow maps, each figure a row of the table below. Their figs. 9 and 13 of paper 3 are --curve, its table 1 is
 // `bench --multires`.
+#include "gi/measure/scaled_view.h"
 #include "tools/lambent/reflective_figures.h"
 
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/measure/picture_error.h"
-#include "tools/lambent/bench.h"
 #include "tools/lambent/linear_picture.h"
 #include "tools/lambent/plot.h"
 #include "tools/lambent/reflective_truth.h"

@@ -79,10 +79,21 @@ nlohmann::json rowOf(const PictureError& e) {
 }
 
 std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
-  const double ofTruth = expectedRelMse(truth.picture.mean, truth.picture.error);
-  const double ofPicture = std::max(relMse - ofTruth, 1e-6); // what the truth does not know is no error of it
-  if (!(ofTruth > 0)) return {};
-  return 1000 * truth.sampleSeconds * truth.samples * ofTruth / ofPicture;
+  return pathTracingMs(relMse, expectedRelMse(truth.picture.mean, truth.picture.error),
+                       1000 * truth.sampleSeconds * truth.samples);
+}
+
+const char* holdsBar(const UncertainValue& times) {
+  switch (compared(times, {kPathTracingTimes, 0})) {
+  case Order::Greater:
+    return "yes";
+  case Order::Less:
+    return "no";
+  case Order::Unknown:
+    return "one seed";
+  default:
+    return "within noise";
+  }
 }
 
 std::optional<double> steadyMs(const std::vector<FrameStats>& frames) {

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "engine/platform/gl_context.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/against_truth.h"
+#include "gi/measure/ranking.h"
 #include "gi/reference/traced_picture.h"
 #include "tools/lambent/accuracy.h"
 #include "tools/lambent/text.h"
@@ -51,10 +52,10 @@ nlohmann::json rowOf(const PictureError& e);
 inline const TableColumn kRmseShare{"rmse_share", "RMSE over mean", "%.2f %%", 100},
     kRelMse{"rel_mse", "relMSE", "%.4f"}, kBias{"bias", "bias", "%+.1f %%", 100};
 
-/// Milliseconds in which path tracing would come as near as a picture with this relMSE against the truth, by the
-/// truth's own variance and pace. May be less than a sample of every pixel takes; none where one sample is all the
-/// truth has.
+/// pathTracingMs by the truth's own variance and pace. May be less than a sample of every pixel takes.
 std::optional<double> pathsMs(const TracedPicture& truth, double relMse);
+/// Whether path tracing takes kPathTracingTimes a frame or more: "yes", "no", "within noise", "one seed".
+const char* holdsBar(const UncertainValue& times);
 
 /// Median over the second half: warm-up and what a first frame makes are past. Not of one frame.
 std::optional<double> steadyMs(const std::vector<FrameStats>& frames);

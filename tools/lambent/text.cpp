@@ -2,12 +2,15 @@
 
 #include "engine/core/error.h"
 #include "engine/core/image.h"
+#include "engine/platform/gl_context.h"
 
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <map>
+#include <thread>
 
 namespace lambent {
 
@@ -78,6 +81,23 @@ fs::path reportFolder(const std::string& out, const std::string& unnamed) {
   fs::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
   return folder;
+}
+
+std::string machineText(const GlContext& context) {
+  std::string renderer = "?", cpu = "?";
+  for (const auto& [name, value] : context.info())
+    if (name == "renderer") renderer = value;
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      cpu = line.substr(line.find(':') + 2);
+      break;
+    }
+  const std::time_t now = std::time(nullptr);
+  char date[16] = "";
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  return std::to_string(std::thread::hardware_concurrency()) + " threads of " + cpu + "; OpenGL: " + renderer + "; " +
+         date;
 }
 
 } // namespace lambent

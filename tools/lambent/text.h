@@ -9,6 +9,8 @@
 
 namespace lambent {
 
+class GlContext;
+
 /// As printf, up to 255 characters.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
@@ -25,6 +27,9 @@ std::string cellText(const TableColumn& column, const nlohmann::json& row);
 std::string tableText(const std::vector<TableColumn>& columns, const nlohmann::json& rows);
 /// All that is one number or text, by key.
 std::string csvText(const nlohmann::json& rows);
+
+/// Processor, OpenGL renderer, day.
+std::string machineText(const GlContext& context);
 
 /// In one step: the file is the old or the new one. Throws RunError.
 void writeText(const std::filesystem::path& file, const std::string& text);

@@ -7,6 +7,7 @@
 #include "engine/core/sampling.h"
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
+#include "gi/plan/presets.h"
 
 #include <CLI/CLI.hpp>
 

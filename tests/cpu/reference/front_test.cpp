@@ -51,6 +51,8 @@ TEST(Knob, BuysWhatIsMoreThanNoise) {
   EXPECT_DOUBLE_EQ(knobVerdict(paying).nearer, 0.5);
   const std::vector<CostError> idle{{1, 1, 0.02, 0.1}, {2, 0.8, 0.02, 0.1}};
   EXPECT_FALSE(knobVerdict(idle).buys);
+  EXPECT_TRUE(knobVerdict(idle).costs);
+  EXPECT_FALSE(knobVerdict(std::vector<CostError>{{1, 1, 0.02}, {1.02, 0.5}}).costs);
   EXPECT_FALSE(knobVerdict(std::vector<CostError>{{1, 1}, {2, 0.5}, {4, 2}}).buys);
   const std::vector<CostError> saving{{2, 1, 0.02, 0.1}, {1, 0.5, 0.02, 0.1}};
   EXPECT_FALSE(knobVerdict(saving).monotone);

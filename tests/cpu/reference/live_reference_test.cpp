@@ -190,11 +190,11 @@ TEST_F(LiveReferenceTest, ErrorsAreThoseOfThePicturesAndKnowTheTruthsOwn) {
   const double alone = pictureError(darker, exact.picture.mean).rmse;
   EXPECT_NEAR(*far.pictureRmse(), alone, 0.05 * alone) << "without the noise of the truth";
   EXPECT_GT(std::abs(far.error.rmse - alone), 0) << "or the test shows nothing";
-  EXPECT_LT(*far.pathTracingMs(1000), 1000) << "the truth is nearer than that already";
+  EXPECT_LT(*pathTracingMs(far.error.relMse, far.truthRelMse, 1000), 1000) << "the truth is nearer than that already";
 
   const AgainstTruth near = againstTruth(exact.picture.mean, truth->picture);
   EXPECT_FALSE(near.known()) << "all that is left is the truth's own noise";
-  EXPECT_FALSE(near.pictureRmse() || near.pathTracingMs(1000));
+  EXPECT_FALSE(near.pictureRmse() || pathTracingMs(near.error.relMse, near.truthRelMse, 1000));
   EXPECT_NEAR(near.truthRmse, near.error.rmse, 0.25 * near.error.rmse) << "which it expects";
   EXPECT_NEAR(near.truthRelMse, near.error.relMse, 0.5 * near.error.relMse);
   EXPECT_FALSE(againstTruth(darker, traced(buffer, 1).picture).known()) << "one sample does not know its error";
