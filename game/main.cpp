@@ -45,7 +45,7 @@ class Walkthrough {
         context_(GlContext::window("Lambent", stage_->camera.width, stage_->camera.height)),
         gi_(stage_->settings, stage_->seed), hud_(context_.handle()), interaction_(context_.handle()),
         recorder_(scene_.file), truth_(stage_->seed) {
-    for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << warning << "\n";
+    for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
     for (const std::string& note : stage_->notes) hud_.say(note);
     // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
     model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter_ * diameter_, 1e-6f);
@@ -258,6 +258,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("--frames", options.frames)->check(CLI::Range(0, 1000000))->group("");
   app.add_option("--screenshot", options.screenshot)->group("");
   app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");
+  refuseNotANumber(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
@@ -276,6 +277,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
 } // namespace lambent
 
 int main(int argc, char** argv) {
+  lambent::prepareStreams();
   try {
     if (const auto options = lambent::readOptions(argc, argv)) lambent::Walkthrough(*options).run();
     return 0;

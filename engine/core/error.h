@@ -2,6 +2,8 @@
 // line `error: FILE: what is wrong (what would be right)` and exit code 2. A failure at run time is a RunError, exit 1.
 #pragma once
 
+#include "engine/core/text.h"
+
 #include <cstdlib>
 #include <iostream>
 #include <stdexcept>
@@ -11,7 +13,8 @@ namespace lambent {
 
 /// What the user gave is wrong: a file, an option, a value. `what()` is the whole line without the leading "error: ".
 struct InputError : std::runtime_error {
-  InputError(const std::string& place, const std::string& reason) : std::runtime_error(place + ": " + reason) {}
+  InputError(const std::string& place, const std::string& reason)
+      : std::runtime_error(printable(place + ": " + reason)) {}
 };
 
 /// The machine failed us: no context, disk full, a shader that does not compile at start.

@@ -8,6 +8,8 @@
 #include <random>
 #include <system_error>
 
+#include <unistd.h>
+
 #include <stb/stb_image_resize.h>
 #include <stb/stb_image_write.h>
 
@@ -23,6 +25,16 @@ float linearFromSrgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+void checkWritable(const fs::path& file) {
+  std::error_code none;
+  const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
+  const auto refuse = [&](const std::string& why) { throw RunError(file.string() + ": cannot be written: " + why); };
+  if (!fs::is_directory(folder, none)) refuse("there is no folder " + folder.string());
+  if (fs::is_directory(file, none)) refuse("it is a folder");
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none)) return; // a device or a pipe
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
+}
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code none;
   const fs::path resolved = fs::canonical(named, none); // a link stays one, and what it leads to is written
@@ -32,11 +44,11 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
   fs::path temporary = file;
-  temporary.replace_filename("." + file.stem().string() + "." + std::to_string(std::random_device{}()) +
-                             file.extension().string());
+  constexpr size_t kLongest = 100; // of 255 bytes that a name may have, so that ours fits where the target's does
+  temporary.replace_filename("." + file.stem().string().substr(0, kLongest) + "." +
+                             std::to_string(std::random_device{}()) + file.extension().string());
   std::error_code ignored;
-  if (!file.parent_path().empty() && !fs::is_directory(file.parent_path(), ignored))
-    throw RunError(file.string() + ": cannot be written: there is no folder " + file.parent_path().string());
+  checkWritable(file);
   try {
     write(temporary);
     fs::rename(temporary, file);
@@ -90,6 +102,11 @@ Image readPfm(const fs::path& file) {
   if (scale == 0 || !std::isfinite(scale))
     throw InputError(file.string(), "the scale in the PFM header is not a number");
   in.get(); // exactly one white-space character ends the header
+  const auto begin = in.tellg();
+  const size_t needed = size_t(width) * size_t(height) * (kind == "PF" ? 12 : 4); // before there is memory for it
+  if (size_t(in.seekg(0, std::ios::end).tellg() - begin) < needed)
+    throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
+  in.seekg(begin);
 
   const int channels = kind == "PF" ? 3 : 1;
   const bool swapBytes = (scale < 0) != (std::endian::native == std::endian::little);

@@ -44,6 +44,10 @@ Image readExr(const std::filesystem::path& file, const std::string& layer = {});
 Image readPfm(const std::filesystem::path& file);
 void writePng(const std::filesystem::path& file, const Image8& image);
 
+/// Throws RunError where a file could not be written: no such folder, one that is not writable, a folder by its name.
+/// To ask before long work.
+void checkWritable(const std::filesystem::path& file);
+
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
 /// the folder cannot be written.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);

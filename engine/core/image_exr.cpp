@@ -8,6 +8,9 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
+
+#include <fstream>
 
 namespace lambent {
 
@@ -43,9 +46,15 @@ void writeExr(const std::filesystem::path& file, const Image& image) {
       frame.insert(kChannels[c], slice(image.pixels.data(), c, image.width));
     }
     try {
-      Imf::OutputFile out(temporary.c_str(), header);
-      out.setFrameBuffer(frame);
-      out.writePixels(image.height);
+      std::ofstream stream(temporary, std::ios::binary);
+      {
+        Imf::StdOFStream to(stream, temporary.c_str());
+        Imf::OutputFile out(to, header);
+        out.setFrameBuffer(frame);
+        out.writePixels(image.height);
+      } // its destructor writes the table of lines, and tells nobody when it cannot
+      stream.close();
+      if (!stream) throw RunError("is the folder writable, the disk full?");
     } catch (const std::exception& e) {
       throw RunError(file.string() + ": cannot be written: " + e.what());
     }
@@ -62,6 +71,11 @@ Image readExr(const std::filesystem::path& file, const std::string& layer) {
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
       throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
                                           " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+    // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
+    // memory.
+    constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;
+    if (uint64_t(width) * uint64_t(height) * sizeof(vec3) > kAlways + kDeflate * std::filesystem::file_size(file))
+      throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
     Image image{int(width), int(height)};
     // Arithmetic on addresses as integers: the origin of a shifted data window is not inside the array.
     const auto origin =

@@ -55,6 +55,10 @@ inline Aabb transformed(const Aabb& box, const mat4& m) {
 /// Rec.709 luminance of a linear colour.
 inline float luminance(const vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
+/// Of the fourth row, to what rounding in files leaves of it.
+inline bool isAffine(const mat4& m) {
+  return std::abs(m[0][3]) + std::abs(m[1][3]) + std::abs(m[2][3]) + std::abs(m[3][3] - 1) < 1e-3f;
+}
 inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 inline float maxComponent(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
 

@@ -28,6 +28,28 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
+std::string printable(std::string_view text) {
+  std::string out;
+  const auto escape = [&](unsigned char c) {
+    constexpr char digits[] = "0123456789abcdef";
+    (out += "\\x") += digits[c >> 4];
+    out += digits[c & 15];
+  };
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const unsigned char next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if (c < 0x20 || c == 0x7f) {
+      escape(c);
+    } else if (c == 0xc2 && next >= 0x80 && next < 0xa0) { // U+0080 to U+009F in UTF-8
+      escape(next);
+      ++i;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
 std::string nearestName(std::string_view name, std::span<const std::string> candidates) {
   const std::string* best = nullptr;
   size_t bestDistance = 0;

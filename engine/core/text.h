@@ -7,6 +7,9 @@
 
 namespace lambent {
 
+/// Text from a file as a terminal may show it: control characters (line feeds too) become \xNN, other bytes stay.
+std::string printable(std::string_view text);
+
 /// The candidate with the fewest single-letter edits to `name` (case ignored), the first of equals; empty when there
 /// are no candidates or when even the best would have to be mostly rewritten, so that a guess would mislead.
 std::string nearestName(std::string_view name, std::span<const std::string> candidates);

@@ -61,6 +61,9 @@ struct MorphWeights {
   std::vector<float> weights;
 };
 
+/// The most of a light in any channel: what a picture sums up must stay finite.
+inline constexpr float kMostLight = 1e30f;
+
 /// Stands at the entity's origin and shines along its -Z. Units as in LightView.
 struct PunctualLight {
   LightType type = LightType::Point;

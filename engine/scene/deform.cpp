@@ -150,6 +150,7 @@ void forEachPosed(const Scene& scene, const std::function<void(const Mesh&, cons
     if (!placed) return;
     const bool posed = deforms(mesh, placed->pose);
     if (posed) deform(mesh, placed->pose, deformed);
+    if (!isNear(transformed(posed ? deformed.boundsObject : mesh.boundsObject, placed->worldFromObject))) return;
     visit(mesh, posed ? &deformed : nullptr, placed->worldFromObject);
   });
 }

@@ -81,6 +81,9 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
   for (InstanceView& v : instances) {
     const Aabb& box = v.deformed ? v.deformed->boundsObject : scene.assets.meshes[v.mesh].boundsObject;
     v.boundsWorld = v.boundsWorldBefore = transformed(box, v.worldFromObject);
+  }
+  std::erase_if(instances, [](const InstanceView& v) { return !isNear(v.boundsWorld); });
+  for (InstanceView& v : instances) {
     if (const auto before = instancesBefore.find(v.id);
         before != instancesBefore.end() && before->second->mesh == v.mesh) {
       v.worldFromObjectBefore = before->second->worldFromObject;
@@ -105,10 +108,10 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     v.id = e.id();
     v.type = l.type;
     v.position = scene.fromOrigin(dvec3(w.worldFromNode[3]));
-    const vec3 forward = -vec3(w.worldFromNode[2]);
-    const float length = glm::length(forward);
-    if (!isFinite(v.position) || !std::isfinite(length)) return;
-    v.direction = length > 0 ? forward / length : vec3(0, 0, -1);
+    const dvec3 forward = -dvec3(w.worldFromNode[2]); // of a node as large as single precision goes
+    const double length = glm::length(forward);
+    if (!isNear(v.position) || !std::isfinite(length)) return;
+    v.direction = length > 0 ? vec3(forward / length) : vec3(0, 0, -1);
     v.intensity = l.intensity;
     v.range = l.range;
     v.innerConeCos = l.innerConeCos;

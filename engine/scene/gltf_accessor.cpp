@@ -8,9 +8,6 @@ namespace lambent::gltf {
 
 namespace {
 
-/// Bounds what a file without data behind its counts can make us allocate.
-constexpr size_t kMaxElements = size_t(1) << 28, kMaxZeroElements = size_t(1) << 24;
-
 size_t componentSize(const Document& doc, int type, const std::string& place) {
   switch (ComponentType(type)) {
   case ComponentType::Int8:
@@ -95,8 +92,9 @@ Run elementRun(const Document& doc, int view, size_t offset, size_t count, size_
 /// Calls put(element, pointer to its components) for all elements, base first, then the sparse ones.
 template <class Put> void forElements(const Document& doc, const Accessor& a, const std::string& place, Put&& put) {
   const size_t elementSize = componentSize(doc, a.componentType, place) * size_t(a.components);
-  if (a.count > (a.bufferView < 0 ? kMaxZeroElements : kMaxElements))
+  if (a.count > std::numeric_limits<uint32_t>::max())
     doc.fail(place, "has " + std::to_string(a.count) + " elements, more than this program reads");
+  doc.spend(a.count, sizeof(float) * size_t(a.components), place);
   if (a.bufferView >= 0) {
     const Run run = elementRun(doc, a.bufferView, a.byteOffset, a.count, elementSize, place);
     for (size_t i = 0; i < a.count; ++i) put(i, run.data + i * run.stride);

@@ -1,4 +1,4 @@
-// The outside of a glTF file: its bytes, the chunks of a .glb, the nesting of the JSON.
+// The outside of a glTF file: its bytes, the chunks of a .glb.
 
 #include "engine/scene/gltf_document.h"
 
@@ -24,41 +24,17 @@ std::vector<uint8_t> readFileBytes(const fs::path& file) {
 
 namespace {
 
-constexpr size_t kMaxNesting = 200; // real files nest about ten deep
-
 uint32_t littleEndian32(const uint8_t* p) {
   return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
 }
 
-void checkNesting(const fs::path& file, const uint8_t* json, size_t size) {
-  size_t depth = 0;
-  bool inString = false;
-  for (size_t i = 0; i < size; ++i) {
-    const uint8_t c = json[i];
-    if (inString) {
-      if (c == '\\')
-        ++i;
-      else if (c == '"')
-        inString = false;
-    } else if (c == '"') {
-      inString = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMaxNesting)
-        throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxNesting) + " levels deep");
-    } else if ((c == ']' || c == '}') && depth > 0) {
-      --depth;
-    }
-  }
-}
-
 } // namespace
 
-bool checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes) {
+Container checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes) {
   const auto fail = [&](const std::string& reason) { throw InputError(file.string(), reason); };
   if (bytes.size() < 4) fail("is empty (glTF JSON or a .glb expected)");
   if (std::memcmp(bytes.data(), "glTF", 4) != 0) {
-    checkNesting(file, bytes.data(), bytes.size());
-    return false;
+    return {false, checkJson(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()})};
   }
 
   constexpr size_t kHeader = 12, kChunkHeader = 8;
@@ -68,6 +44,7 @@ bool checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes) {
   if (length > bytes.size())
     fail("the .glb is cut off: its header says " + std::to_string(length) + " bytes, the file has " +
          std::to_string(bytes.size()));
+  Container out{true, {}};
   for (size_t at = kHeader, chunk = 0; at < length; ++chunk) {
     if (length - at < kChunkHeader) fail("the .glb is cut off within the header of chunk " + std::to_string(chunk));
     const size_t size = littleEndian32(&bytes[at]);
@@ -76,15 +53,21 @@ bool checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes) {
            std::to_string(length - at - kChunkHeader) + " follow");
     if (chunk == 0) {
       if (std::memcmp(&bytes[at + 4], "JSON", 4) != 0) fail("the first chunk of the .glb is not JSON");
-      checkNesting(file, &bytes[at + kChunkHeader], size);
+      out.json = checkJson(file, {reinterpret_cast<const char*>(&bytes[at + kChunkHeader]), size});
     }
     at += kChunkHeader + size;
   }
-  return true;
+  return out;
 }
 
 void Document::fail(const std::string& place, const std::string& reason) const {
   throw InputError(file.string(), place + ": " + reason);
+}
+
+void Document::spend(size_t count, size_t each, const std::string& place) const {
+  if (!budget.take(count, each))
+    fail(place, "needs more memory than a file of " + std::to_string(budget.read) + " bytes may ask for (" +
+                    std::to_string(budget.limit() >> 20) + " MiB in all)");
 }
 
 void Document::checkIndex(int index, size_t size, const char* what, const std::string& place) const {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include <tiny_gltf.h>
 
@@ -25,9 +27,47 @@ bool fileExists(const std::string& file, void*) {
   std::error_code error;
   return fs::is_regular_file(file, error);
 }
-std::string samePath(const std::string& file, void*) { return file; }
-bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void*) {
+
+/// What the callbacks know of the file that is read.
+struct Reading {
+  Budget* budget;
+  std::map<std::string, std::string> uris; // decoded as the parser does → as RFC 3986 says
+  std::set<std::string> files;             // read before
+};
+
+/// %XX as bytes; `spaces`: also + as a space, as in forms on the web, which the parser takes uris for.
+std::string decoded(const std::string& uri, bool spaces) {
+  const auto digit = [&](size_t i) {
+    const char c = i < uri.size() ? uri[i] : 'x';
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
+  std::string out;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    const bool escape = uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0;
+    out += escape ? char(16 * digit(i + 1) + digit(i + 2)) : spaces && uri[i] == '+' ? ' ' : uri[i];
+    if (escape) i += 2;
+  }
+  return out;
+}
+
+std::string rightPath(const std::string& file, void* data) {
+  for (const auto& [wrong, right] : static_cast<Reading*>(data)->uris)
+    if (file.ends_with(wrong)) return file.substr(0, file.size() - wrong.size()) + right;
+  return file;
+}
+bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
+  auto& [budget, uris, files] = *static_cast<Reading*>(data);
   try {
+    std::error_code none;
+    const size_t size = fs::file_size(file, none);
+    if (files.insert(fs::weakly_canonical(file, none).string()).second) {
+      budget->read += size;
+    } else if (!budget->take(size, 1)) {
+      throw InputError(file, "is read so often that it needs more memory than the scene may ask for");
+    }
     *out = readFileBytes(file);
     return true;
   } catch (const std::exception& e) {
@@ -195,6 +235,8 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
       m[i / 4][i % 4] = n.matrix[size_t(i)];
       if (!std::isfinite(float(m[i / 4][i % 4]))) doc.fail(place, "matrix holds a number beyond single precision");
     }
+    if (!isAffine(mat4(m))) doc.fail(place, "matrix is not affine (its last row is 0, 0, 0, 1)");
+    m[0][3] = m[1][3] = m[2][3] = 0, m[3][3] = 1;
     t.matrix = m;
   }
   return out;
@@ -218,17 +260,18 @@ void takeCamerasAndLights(Document& doc, const tinygltf::Model& model) {
     const std::string place = label("camera", doc.cameras.size(), c.name);
     Camera out{c.name, {}};
     const bool ortho = c.type == "orthographic";
+    constexpr double kNearest = 1e-9, kFarthest = 1e12, kNarrowest = 0.001, kWidest = 179.9 / 180 * double(kPi);
     const double near = ortho ? c.orthographic.znear : c.perspective.znear;
-    if (ortho && std::abs(c.orthographic.ymag) > 0)
+    if (ortho && std::abs(c.orthographic.ymag) >= kNearest && std::abs(c.orthographic.ymag) <= kFarthest)
       out.lens.orthoHalfHeight = float(std::abs(c.orthographic.ymag));
-    else if (!ortho && c.perspective.yfov > 0 && c.perspective.yfov < double(kPi))
+    else if (!ortho && c.perspective.yfov >= kNarrowest && c.perspective.yfov <= kWidest)
       out.lens.fovY = float(c.perspective.yfov);
     else
       doc.warn(place + ": the size of its view is out of range; taken as a perspective view of 57 degrees");
-    if (near > 0 || (ortho && near == 0))
+    if ((near >= kNearest || (ortho && near == 0)) && near <= kFarthest)
       out.lens.near = float(near);
     else
-      doc.warn(place + ": the near plane is not in front of it; taken as 0.05 m");
+      doc.warn(place + ": the near plane is out of range; taken as 0.05 m");
     doc.cameras.push_back(out);
   }
   for (const auto& l : model.lights) {
@@ -236,7 +279,8 @@ void takeCamerasAndLights(Document& doc, const tinygltf::Model& model) {
     Light out{l.name, l.type, {}};
     const vec3 intensity = numbers<3>(doc, l.color, place, "color", vec3(1)) * float(l.intensity);
     out.light.intensity = glm::max(intensity, vec3(0));
-    if (!isFinite(intensity)) doc.fail(place, "the intensity is a number beyond single precision");
+    if (!(maxComponent(glm::abs(intensity)) <= kMostLight)) // NaN too
+      doc.fail(place, "the intensity is beyond what pictures can hold (1e30)");
     if (out.light.intensity != intensity) doc.warn(place + ": negative light is left out");
     if (l.range > 0) out.light.range = float(l.range);
     const double outer = std::clamp(l.spot.outerConeAngle, 0.0, double(kPi) / 2);
@@ -267,11 +311,15 @@ Document readDocument(const fs::path& file) {
   Document doc;
   doc.file = file;
   const std::vector<uint8_t> bytes = readFileBytes(file);
-  const bool binary = checkContainer(file, bytes);
+  const auto [binary, json] = checkContainer(file, bytes);
+  doc.budget.read = bytes.size();
+  Reading reading{&doc.budget, {}, {}};
+  for (const std::string& uri : json.uris)
+    if (uri.find('+') != std::string::npos) reading.uris[decoded(uri, true)] = decoded(uri, false);
 
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keepEncoded, nullptr);
-  parser.SetFsCallbacks({fileExists, samePath, readWholeFile, nullptr, nullptr});
+  parser.SetFsCallbacks({fileExists, rightPath, readWholeFile, nullptr, &reading});
   tinygltf::Model model;
   std::string error, warning; // warnings only tell of pictures that could not be read: reported where they are used
   const std::string folder = file.parent_path().empty() ? "." : file.parent_path().string();

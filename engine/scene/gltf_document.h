@@ -4,7 +4,9 @@
 #pragma once
 
 #include "engine/scene/components.h"
+#include "engine/scene/json_text.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -116,8 +118,26 @@ struct SceneRoots {
   std::vector<int> nodes;
 };
 
+/// Memory that reading a file may ask for: a few bytes can name millions of elements or texels, and one buffer can be
+/// read for every primitive. Counted is what is decoded: elements of accessors, triangles, vertices of one's own,
+/// texels, and files read again. The program needs up to four times as much for a moment.
+struct Budget {
+  static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
+  size_t read = 0;  // bytes of the file and of those that it names, each once
+  size_t spent = 0; // bytes
+  /// False where that is too much.
+  bool take(size_t count, size_t each) {
+    const size_t left = limit() - std::min(spent, limit());
+    const bool fits = each == 0 || count <= left / each;
+    spent = fits ? spent + count * each : limit() + 1;
+    return fits;
+  }
+  size_t limit() const { return kBase + kPerByte * read; }
+};
+
 struct Document {
   std::filesystem::path file;
+  mutable Budget budget;
   std::vector<std::vector<uint8_t>> buffers;
   std::vector<BufferView> bufferViews;
   std::vector<Accessor> accessors;
@@ -136,6 +156,8 @@ struct Document {
 
   /// Throws InputError: `place` in this file, for example "mesh 3 'Wall', primitive 0".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
+  /// Takes from the budget, or throws InputError.
+  void spend(size_t count, size_t each, const std::string& place) const;
   void warn(std::string text) { warnings.push_back(std::move(text)); }
 
   /// items[index], or an InputError that says which index of `what` is out of range at `place`.
@@ -156,9 +178,13 @@ std::string label(const char* what, size_t index, const std::string& name);
 /// The bytes of a file; InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const std::filesystem::path& file);
 
-/// Checks what the parser takes on trust: a .glb's chunk sizes, and JSON nested so deeply that a parser may run out of
-/// stack. True for a binary file.
-bool checkContainer(const std::filesystem::path& file, const std::vector<uint8_t>& bytes);
+/// Checks what the parser takes on trust: a .glb's chunk sizes, JSON nested so deeply that a parser may run out of
+/// stack, keys given twice.
+struct Container {
+  bool binary = false;
+  JsonText json; // what was seen of it
+};
+Container checkContainer(const std::filesystem::path& file, const std::vector<uint8_t>& bytes);
 
 // Accessors -----------------------------------------------------------------------------------------------------------
 

@@ -16,22 +16,53 @@ struct StbFree {
   void operator()(stbi_uc* p) const { stbi_image_free(p); }
 };
 
-TextureImage decode(const Document& doc, int index, bool srgb) {
-  const Image& image = doc.images[size_t(index)];
-  const std::string place = label("image", size_t(index), image.uri.empty() ? image.name : image.uri);
-  Bytes bytes{image.encoded.data(), image.encoded.size()};
-  if (image.bufferView >= 0) bytes = viewBytes(doc, image.bufferView, place);
-  if (bytes.size == 0) doc.fail(place, "cannot be read (no such file, or it is empty)");
-  if (bytes.size > size_t(std::numeric_limits<int>::max())) doc.fail(place, "is larger than 2 GiB");
+constexpr int kMostTexels = 16384; // per side, that OpenGL 4.5 guarantees
 
+std::string placeOf(const Image& image, int index) {
+  return label("image", size_t(index), image.uri.empty() ? image.name : image.uri);
+}
+
+Bytes encodedBytes(const Document& doc, int index) {
+  const Image& image = doc.images[size_t(index)];
+  if (image.bufferView >= 0) return viewBytes(doc, image.bufferView, placeOf(image, index));
+  return {image.encoded.data(), image.encoded.size()};
+}
+
+/// Why the image cannot be decoded; empty: it may be.
+std::string defectOf(Bytes bytes, int& width, int& height) {
+  int channels = 0;
+  if (bytes.size == 0) return "cannot be read (no such file, or it is empty)";
+  if (bytes.size > size_t(std::numeric_limits<int>::max())) return "is larger than 2 GiB";
+  if (!stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels))
+    return std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG or JPEG expected)";
+  if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)
+    return "is " + std::to_string(width) + "x" + std::to_string(height) + " texels (1 to " +
+           std::to_string(kMostTexels) + " each way)";
+  return {};
+}
+
+/// One texel: what is multiplied by it stays.
+TextureImage white(bool srgb) {
+  TextureImage out;
+  out.width = out.height = 1;
+  out.srgb = srgb;
+  out.texels = {{255, 255, 255, 255}};
+  out.averageLinear = vec4(1);
+  return out;
+}
+
+/// Without texels: it could not be decoded, `defect` says why.
+TextureImage decode(const Document& doc, int index, bool srgb, std::string& defect) {
+  const Bytes bytes = encodedBytes(doc, index);
   int width = 0, height = 0, channels = 0;
   // 16 bits per channel are rounded to 8 by the decoder.
   const std::unique_ptr<stbi_uc, StbFree> texels(
       stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4));
-  if (!texels) doc.fail(place, std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG or JPEG expected)");
-
   TextureImage out;
-  out.name = !image.name.empty() ? image.name : !image.uri.empty() ? image.uri : "image " + std::to_string(index);
+  if (!texels) {
+    defect = std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG or JPEG expected)";
+    return out;
+  }
   out.width = width;
   out.height = height;
   out.srgb = srgb;
@@ -52,18 +83,33 @@ TextureImage decode(const Document& doc, int index, bool srgb) {
 void decodeImages(Import& import) {
   std::vector<std::pair<int, bool>> order(import.images.size());
   for (const auto& [image, slot] : import.images) order[slot] = image;
+  Document& doc = import.doc;
   auto& images = import.scene.assets.images;
   images.resize(order.size());
-  std::vector<std::string> errors(order.size()); // the first by index is thrown, whichever thread met one first
+  std::vector<std::string> defects(order.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    int width = 0, height = 0;
+    defects[i] = defectOf(encodedBytes(doc, order[i].first), width, height);
+    if (defects[i].empty()) // the decoder's and ours
+      doc.spend(size_t(width) * size_t(height), 2 * sizeof(u8vec4),
+                placeOf(doc.images[size_t(order[i].first)], order[i].first));
+  }
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) try {
-        images[i] = decode(import.doc, order[i].first, order[i].second);
-      } catch (const InputError& e) {
-        errors[i] = e.what();
-      }
+    for (size_t i = begin; i < end; ++i)
+      if (defects[i].empty()) images[i] = decode(doc, order[i].first, order[i].second, defects[i]);
   });
-  for (const std::string& error : errors)
-    if (!error.empty()) throw InputError(import.doc.file.string(), error.substr(import.doc.file.string().size() + 2));
+  for (size_t i = 0; i < order.size(); ++i) {
+    const auto [index, srgb] = order[i];
+    const Image& image = doc.images[size_t(index)];
+    const std::string name = !image.name.empty()  ? image.name
+                             : !image.uri.empty() ? image.uri
+                                                  : "image " + std::to_string(index);
+    if (!defects[i].empty()) {
+      doc.warn(placeOf(image, index) + ": " + defects[i] + "; white instead");
+      images[i] = white(srgb);
+    }
+    images[i].name = name;
+  }
 }
 
 } // namespace lambent::gltf

@@ -71,7 +71,8 @@ uint32_t importMaterial(Import& import, int index) {
   out.metalness = factor(in.metalness, "metalness");
   out.finishTexture = importTexture(import, in.finishTexture, place + ", roughness and metalness", false);
   out.emission = glm::max(in.emissive * in.emissiveStrength, vec3(0));
-  if (!isFinite(out.emission)) doc.fail(place, "the emission is a number beyond single precision");
+  if (!(maxComponent(out.emission) <= kMostLight) || !isFinite(out.emission))
+    doc.fail(place, "the emission is beyond what pictures can hold (1e30)");
   if (out.emits()) out.emissiveTexture = importTexture(import, in.emissiveTexture, place + ", emission");
   if (maxComponent(in.emissive) > 1)
     doc.warn(place + ": emissiveFactor is above 1 (KHR_materials_emissive_strength is meant for that); used as it is");

@@ -29,6 +29,7 @@ std::vector<uvec3> readTriangles(const Document& doc, const Primitive& primitive
   }
   std::vector<uvec3> triangles;
   const size_t n = corners.size();
+  doc.spend(n, sizeof(uvec3), place);
   if (primitive.mode == Triangles) {
     for (size_t i = 0; i + 2 < n; i += 3) triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
   } else if (primitive.mode == TriangleStrip) {
@@ -82,6 +83,12 @@ void noteJoints(HighestJoint& highest, const std::vector<JointSet>& sets, const 
           highest = {set.joints[i][c], place + ", vertex " + std::to_string(i)};
 }
 
+/// Bytes of a vertex with all that it may have.
+size_t bytesPerVertex(const Vertices& v) {
+  return 2 * sizeof(vec3) + 2 * sizeof(vec2) + sizeof(vec4) + v.jointSets.size() * 2 * sizeof(vec4) +
+         v.targets.size() * 2 * sizeof(vec3);
+}
+
 } // namespace
 
 uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
@@ -133,9 +140,11 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
     if (known != shared.end()) {
       first = known->second.first;
     } else if (flat) {
+      doc.spend(3 * triangles.size(), bytesPerVertex(vertices), place);
       makeFlat(vertices, triangles);
       first = appendVertices(mesh, vertices);
     } else {
+      doc.spend(vertices.positions.size(), bytesPerVertex(vertices), place); // what others have is filled up
       std::vector<vec3> asRead = vertices.positions;
       repairNormals(vertices, triangles);
       first = appendVertices(mesh, vertices);

@@ -16,7 +16,6 @@ namespace {
 void decompose(Transform& t) {
   if (!t.matrix) return;
   const mat4 m(*t.matrix);
-  if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return;
   Transform parts;
   parts.translation = dvec3((*t.matrix)[3]);
   for (int c = 0; c < 3; ++c) parts.scale[c] = glm::length(vec3(m[c]));
@@ -184,6 +183,11 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName)
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
+  size_t far = 0;
+  scene.registry.each<MeshInstance, WorldTransform>(
+      [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });
+  forEachPosed(scene, [&](const Mesh&, const DeformedMesh*, const mat4&) { --far; });
+  if (far > 0) scene.warnings.push_back(std::to_string(far) + " object(s) that reach beyond 1e12 m left out");
   return scene;
 }
 

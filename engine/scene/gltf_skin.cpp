@@ -10,6 +10,7 @@ lambent::Skin readSkin(const Import& import, const Skin& in, const std::string& 
   const Document& doc = import.doc;
   lambent::Skin skin;
   if (in.joints.empty()) doc.fail(place, "has no joints");
+  doc.spend(in.joints.size(), sizeof(Entity) + sizeof(mat4), place);
   for (const int node : in.joints) {
     doc.checkIndex(node, doc.nodes.size(), "node", place);
     if (!import.reached(node)) doc.fail(place, "joint node " + std::to_string(node) + " is not part of the scene");
@@ -20,10 +21,15 @@ lambent::Skin readSkin(const Import& import, const Skin& in, const std::string& 
   skin.jointFromBind = readAccessor<mat4>(doc, in.inverseBindMatrices, place + ", inverse bind matrices");
   if (skin.jointFromBind.size() < in.joints.size()) doc.fail(place, "has fewer inverse bind matrices than joints");
   skin.jointFromBind.resize(in.joints.size());
-  for (size_t j = 0; j < skin.jointFromBind.size(); ++j)
+  for (size_t j = 0; j < skin.jointFromBind.size(); ++j) {
+    mat4& m = skin.jointFromBind[j];
+    if (!isAffine(m))
+      doc.fail(place, "inverse bind matrix " + std::to_string(j) + " is not affine (its last row is 0, 0, 0, 1)");
     for (int c = 0; c < 4; ++c)
-      if (!isFinite(vec3(skin.jointFromBind[j][c])))
+      if (!isFinite(vec3(m[c])))
         doc.fail(place, "inverse bind matrix " + std::to_string(j) + " holds a number that is not finite");
+    m[0][3] = m[1][3] = m[2][3] = 0, m[3][3] = 1;
+  }
   return skin;
 }
 
@@ -62,6 +68,10 @@ void addMorphWeights(Import& import, int node, uint32_t slot) {
 } // namespace
 
 void importDeformation(Import& import, int node, uint32_t slot) {
+  const Node& in = import.doc.nodes[size_t(node)];
+  const lambent::Mesh& mesh = import.scene.assets.meshes[slot];
+  if (in.skin >= 0 || !mesh.morphTargets.empty()) // a shape of its own
+    import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3), label("node", size_t(node), in.name));
   if (import.doc.nodes[size_t(node)].skin >= 0) addSkin(import, node, slot);
   addMorphWeights(import, node, slot);
 }

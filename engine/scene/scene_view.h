@@ -49,6 +49,12 @@ struct LightView {
   bool changed = false; // anything of it differs from the previous extraction
 };
 
+/// Places farther than this from the scene's origin (metres, along an axis) are left out, so that squares and cubes of
+/// distances stay finite.
+inline constexpr float kFarthest = 1e12f;
+inline bool isNear(const vec3& place) { return maxComponent(glm::abs(place)) <= kFarthest && isFinite(place); }
+inline bool isNear(const Aabb& box) { return box.empty() || (isNear(box.lo) && isNear(box.hi)); }
+
 struct CameraView {
   mat4 worldFromView{1}; // camera looks along -Z of view space, rigid (no scale)
   float fovY = 1.0f;     // radians; ignored when orthoHalfHeight > 0

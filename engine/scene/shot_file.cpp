@@ -2,6 +2,8 @@
 
 #include "engine/core/image.h"
 #include "engine/core/text.h"
+#include "engine/scene/json_text.h"
+#include "engine/scene/scene_view.h"
 #include "engine/scene/shot.h"
 
 #include <cmath>
@@ -113,12 +115,17 @@ std::vector<CameraKey> readCamera(const Field& camera) {
     k.checkKeys({"t", "eye", "target", "fov"});
     CameraKey key;
     key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
-    key.eye = k["eye"].vector<3, double>();
-    key.target = k["target"].vector<3, double>();
+    const auto place = [&](const char* name) {
+      const dvec3 at = k[name].vector<3, double>();
+      if (!isNear(vec3(at))) k[name].fail("is farther than 1e12 m away");
+      return at;
+    };
+    key.eye = place("eye");
+    key.target = place("target");
     if (key.eye == key.target) k["target"].fail("is the same point as the eye");
     if (k.has("fov")) {
       const float degrees = k["fov"].single();
-      if (!(degrees > 0 && degrees < 180)) k["fov"].fail("is out of range (degrees, between 0 and 180)");
+      if (!(degrees >= 0.1f && degrees <= 179.9f)) k["fov"].fail("is out of range (0.1 to 179.9 degrees)");
       key.fovY = degrees * kDegree;
     } else {
       key.fovY = keys.empty() ? 60 * kDegree : keys.back().fovY;
@@ -141,13 +148,15 @@ std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool l
       if (k.has("position")) key.position = k["position"].vector<3, double>();
       if (k.has("rotation")) key.rotation = k["rotation"].vector<3>();
       if (k.has("direction")) {
-        key.direction = k["direction"].vector<3>();
-        if (glm::length(*key.direction) == 0) k["direction"].fail("has no length");
+        const auto direction = k["direction"].vector<3, double>();
+        if (!(glm::length(direction) > 0)) k["direction"].fail("has no length");
+        key.direction = vec3(glm::normalize(direction));
       }
       if (k.has("intensity")) {
         key.intensity = k["intensity"].vector<3>();
         if (glm::min(key.intensity->x, glm::min(key.intensity->y, key.intensity->z)) < 0)
           k["intensity"].fail("is negative");
+        if (maxComponent(*key.intensity) > kMostLight) k["intensity"].fail("is beyond what pictures can hold (1e30)");
       }
       keys.push_back(key);
     });
@@ -161,8 +170,10 @@ json parse(const fs::path& file) {
   if (!fs::is_regular_file(file, error)) throw InputError(file.string(), "is not a file (a shot in JSON expected)");
   std::ifstream in(file);
   if (!in) throw InputError(file.string(), "cannot be opened for reading");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  checkJson(file, text);
   try {
-    return json::parse(in);
+    return json::parse(text);
   } catch (const json::exception& e) {
     std::string reason = e.what();
     if (const size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);

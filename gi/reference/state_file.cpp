@@ -172,7 +172,8 @@ ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceIn
   uint64_t checksum = 0;
   stream.read(reinterpret_cast<char*>(sums.pixels.data()), std::streamsize(sums.pixels.size() * sizeof(PixelSums)));
   stream.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
-  if (!stream || checksum != checksumOf(sums)) throw InputError(file.string(), "is damaged (begin again without it)");
+  if (!stream || stream.peek() != std::ifstream::traits_type::eof() || checksum != checksumOf(sums))
+    throw InputError(file.string(), "is damaged (begin again without it)");
   return sums;
 }
 

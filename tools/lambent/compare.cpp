@@ -47,10 +47,16 @@ void compare(const CompareOptions& options) {
                                   {"mean_b", e.meanTruth},
                                   {"pixels", e.pixels},
                                   {"not_finite_pixels", e.notFinite}});
-  if (options.output.quiet) return;
+  const auto refuse = [&] { // figures of the others are right, but this is no picture to be content with
+    if (e.notFinite > 0)
+      throw RunError(options.a + " or " + options.b + ": " + std::to_string(e.notFinite) +
+                     " pixels are NaN or infinite");
+  };
+  if (options.output.quiet || e.pixels == 0) return refuse();
   std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", e.rmse,
               e.relMse, 100 * e.bias, e.largest, e.meanTruth);
-  if (e.notFinite) std::printf("%zu pixels with NaN or infinity left out\n", e.notFinite);
+  if (e.notFinite > 0) std::printf("%zu pixels with NaN or infinity left out\n", e.notFinite);
+  refuse();
 }
 
 } // namespace

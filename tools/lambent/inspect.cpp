@@ -94,9 +94,9 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   std::printf("effects, with the VPLs settled\n");
   for (const auto& e : j["effects"])
     std::printf("  %-11s %-3s  %s\n", e["name"].get<std::string>().c_str(), e["on"].get<bool>() ? "on" : "off",
-                e["reason"].get<std::string>().c_str());
-  for (const std::string& w : stage->scene.warnings) std::printf("warning: %s\n", w.c_str());
-  for (const std::string& n : stage->notes) std::printf("note: %s\n", n.c_str());
+                printable(e["reason"].get<std::string>()).c_str());
+  for (const std::string& w : stage->scene.warnings) std::printf("warning: %s\n", printable(w).c_str());
+  for (const std::string& n : stage->notes) std::printf("note: %s\n", printable(n).c_str());
 }
 
 void inspectPresets(const OutputOptions& output) {

@@ -1,5 +1,7 @@
 #include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "tools/lambent/commands.h"
+#include "tools/launch/streams.h"
 
 #include <csignal>
 #include <cstdio>
@@ -22,9 +24,11 @@ int runProgram(int argc, char** argv) {
   declareCompare(app);
   declareStability(app);
   declareBench(app);
+  declareSoak(app);
   declareContent(app);
   declareSettings(app);
   declareTechniques(app);
+  for (CLI::App* command : app.get_subcommands({})) refuseNotANumber(*command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
@@ -33,7 +37,7 @@ int runProgram(int argc, char** argv) {
     std::string text = e.what();
     for (char& c : text)
       if (c == '\n') c = ' ';
-    std::fprintf(stderr, "error: command line: %s (see lambent --help)\n", text.c_str());
+    std::fprintf(stderr, "error: command line: %s (see lambent --help)\n", printable(text).c_str());
     return 2;
   } catch (const InputError& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
@@ -49,10 +53,12 @@ int runProgram(int argc, char** argv) {
 } // namespace lambent
 
 int main(int argc, char** argv) {
-  // The first Ctrl-C ends after the present frame, the second at once.
-  std::signal(SIGINT, [](int) {
-    lambent::interrupted = true;
-    std::signal(SIGINT, SIG_DFL);
-  });
-  return lambent::runProgram(argc, argv);
+  lambent::prepareStreams();
+  // The first Ctrl-C, or request to end, ends after the present frame, the second at once.
+  for (int request : {SIGINT, SIGTERM})
+    std::signal(request, [](int signal) {
+      lambent::interrupted = true;
+      std::signal(signal, SIG_DFL);
+    });
+  return lambent::finishStreams(lambent::runProgram(argc, argv));
 }

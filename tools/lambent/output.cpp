@@ -8,21 +8,25 @@ namespace lambent {
 
 void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp) {
   if (!outHelp.empty()) command.add_option("--out", options.out, outHelp);
-  command.add_option("--json", options.json, "write the figures to this file, for programs");
+  command.add_option("--json", options.json, "write the figures to this file, for programs")
+      ->check([](const std::string& file) { // before the work
+        checkWritable(file);
+        return std::string();
+      });
   command.add_flag("--quiet", options.quiet, "print nothing but errors");
 }
 
 void say(const Stage& stage, bool quiet) {
   if (quiet) return;
-  for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
-  for (const std::string& n : stage.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
+  for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());
+  for (const std::string& n : stage.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
 }
 
 void writeJson(const std::string& file, const nlohmann::json& figures) {
   if (file.empty()) return;
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary);
-    out << figures.dump(2) << "\n";
+    out << figures.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
     if (!out.flush()) throw RunError(file + ": cannot be written");
   });
 }
@@ -31,6 +35,7 @@ void checkPictureName(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".png" && extension != ".exr")
     throw InputError(file, "not a picture format that can be written (.png or .exr)");
+  checkWritable(file);
 }
 
 void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer, int width, int height) {

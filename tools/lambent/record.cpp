@@ -84,16 +84,25 @@ class FrameLog {
   std::array<bool, kStages> stages_{}; // that ran in any frame
 };
 
-/// Runs ffmpeg without a shell. Throws RunError when it is missing or fails.
-void encodeVideo(const fs::path& folder, double fps, const fs::path& video) {
-  const fs::path temporary = folder / ".video.mp4";
+/// A path as ffmpeg's image readers take it: neither an option nor a pattern of its own.
+std::string forFfmpeg(const fs::path& path) {
+  std::string out;
+  for (char c : fs::absolute(path).string()) out += c == '%' ? std::string("%%") : std::string(1, c);
+  return out;
+}
+
+/// Of the first `frames` pictures: an earlier, longer recording may have left more. Runs ffmpeg without a shell. Throws
+/// RunError when it is missing or fails.
+void encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
+  const fs::path temporary = fs::absolute(folder) / ".video.mp4";
   const pid_t child = fork();
   if (child == 0) {
     std::ostringstream rate;
     rate << fps;
-    execlp("ffmpeg", "ffmpeg", "-y", "-loglevel", "error", "-framerate", rate.str().c_str(), "-i",
-           (folder / "%06d.png").c_str(), "-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18",
-           temporary.c_str(), static_cast<char*>(nullptr));
+    const std::string pictures = forFfmpeg(folder) + "/%06d.png";
+    execlp("ffmpeg", "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", rate.str().c_str(), "-i",
+           pictures.c_str(), "-frames:v", std::to_string(frames).c_str(), "-pix_fmt", "yuv420p", "-vf",
+           "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18", temporary.c_str(), static_cast<char*>(nullptr));
     _exit(127);
   }
   int status = 0;
@@ -164,7 +173,7 @@ void record(const RecordOptions& options) {
   std::string video;
   if (options.video && done > 0) {
     video = (folder / "video.mp4").string();
-    encodeVideo(folder, stage->shot->fps, video);
+    encodeVideo(folder, done, stage->shot->fps, video);
   }
   writeJson(options.output.json, {{"folder", folder.string()},
                                   {"frames", done},

@@ -49,6 +49,7 @@ void checkClamp(const ReferenceOptions& options, const Settings& settings) {
 /// Indirect radiance at the tracked pixels of every frame of a shot.
 void trackPixels(const ReferenceOptions& options) {
   if (fs::path(options.pixels).extension() != ".csv") throw InputError(options.pixels, "not a table (.csv)");
+  checkWritable(options.pixels);
   const auto stage = openStage(options.launch);
   say(*stage, options.output.quiet);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
@@ -97,6 +98,7 @@ void reference(const ReferenceOptions& options) {
   const std::string out = options.output.out.empty() ? "reference.exr" : options.output.out;
   checkPictureName(out);
   if (!options.errors.empty()) checkPictureName(options.errors);
+  if (!options.state.empty()) checkWritable(options.state);
   const auto stage = openStage(options.launch);
   say(*stage, options.output.quiet);
   const Settings& settings = stage->settings;

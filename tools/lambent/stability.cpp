@@ -114,7 +114,7 @@ Image markedPicture(Stage& stage, std::span<const vec2> marked, int samples) {
       {.buffer = ReferenceBuffer::Beauty, .samples = uint32_t(samples), .seed = stage.seed, .cancelled = [] {
          return interrupted.load();
        }});
-  if (interrupted) throw RunError("interrupted: nothing is written");
+  if (interrupted) throw RunError("interrupted before there was a result");
   Image shown = shownImage(traced.picture.mean, traced.exposure);
   drawMarks(shown, marked);
   return shown;

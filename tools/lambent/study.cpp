@@ -54,7 +54,7 @@ const TracedPicture& Study::trace(int samples, ReferenceBuffer buffer, bool clam
                         .cancelled = plan.cancelled,
                         .progress = plan.progress});
   if (interrupted)
-    throw RunError(state.empty() ? "interrupted: nothing is written" : "interrupted: the same command goes on");
+    throw RunError(state.empty() ? "interrupted before there was a result" : "interrupted: the same command goes on");
   return *truth;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
 #include "gi/plan/presets.h"
+#include "tools/launch/memory.h"
 
 #include <CLI/CLI.hpp>
 
@@ -48,16 +49,17 @@ dvec3 threeNumbers(const std::string& option, const std::string& text) {
 /// Radiometric values are not negative.
 vec3 lightValue(const std::string& option, const std::string& text, const vec3& v) {
   if (v.x < 0 || v.y < 0 || v.z < 0) throw InputError(option + " " + text, "light is negative (0 or more)");
+  if (maxComponent(v) > kMostLight) throw InputError(option + " " + text, "light is beyond what pictures hold (1e30)");
   return v;
 }
 
 LightView sunLight(const std::string& text) {
   const std::vector<double> n = numbers("--sun", text, 6, 6);
-  const vec3 direction(n[0], n[1], n[2]);
+  const dvec3 direction(n[0], n[1], n[2]);
   if (!(glm::length(direction) > 0)) throw InputError("--sun " + text, "the direction has no length");
   LightView light;
   light.type = LightType::Directional;
-  light.direction = glm::normalize(direction);
+  light.direction = vec3(glm::normalize(direction));
   light.intensity = lightValue("--sun", text, {n[3], n[4], n[5]});
   return light;
 }
@@ -66,6 +68,7 @@ LightView pointLight(const std::string& text, const Scene& scene) {
   const std::vector<double> n = numbers("--point", text, 6, 6);
   LightView light;
   light.position = scene.fromOrigin(dvec3(n[0], n[1], n[2]));
+  if (!isNear(light.position)) throw InputError("--point " + text, "is farther than 1e12 m away");
   light.intensity = lightValue("--point", text, {n[3], n[4], n[5]});
   return light;
 }
@@ -139,11 +142,8 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
   if (eye) {
     const dvec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
     if (from == to) throw InputError("--target " + options.target, "is where --eye is");
-    constexpr float kFarthest = 1e12f; // squares and cubes of distances must stay finite
-    if (maxComponent(glm::abs(vec3(from))) > kFarthest)
-      throw InputError("--eye " + options.eye, "is farther than 1e12 m away");
-    if (maxComponent(glm::abs(vec3(to))) > kFarthest)
-      throw InputError("--target " + options.target, "is farther than 1e12 m away");
+    if (!isNear(vec3(from))) throw InputError("--eye " + options.eye, "is farther than 1e12 m away");
+    if (!isNear(vec3(to))) throw InputError("--target " + options.target, "is farther than 1e12 m away");
     stage.camera = lookAt(stage.scene.fromOrigin(from), stage.scene.fromOrigin(to), glm::radians(60.0f));
     stage.camera.near = std::min(stage.camera.near, 1e-3f * worldBounds(stage.scene).diameter()); // of small scenes
   } else if (!options.camera.empty()) {
@@ -155,10 +155,13 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
     if (!stage.shot || stage.shot->camera.empty())
       stage.notes.push_back("the file has no camera: a default view was chosen (--eye, --target)");
   }
+  if (!isNear(stage.camera.position()))
+    throw InputError(stage.scene.file.string(), "its camera is farther than 1e12 m away (--eye, --target)");
   if (options.fovDegrees) stage.camera.fovY = glm::radians(*options.fovDegrees);
   stage.camera.width = 320;
   stage.camera.height = 180;
   if (!options.size.empty()) readSize(options.size, stage.camera);
+  checkPictureFits(stage.camera);
 }
 
 bool hasEmitters(const Scene& scene) {
@@ -250,6 +253,17 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
       "to 10 (default 3)");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
+}
+
+void refuseNotANumber(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_type_name().starts_with("FLOAT"))
+      option->check(
+          [](const std::string& text) {
+            char* end = nullptr;
+            return std::isfinite(std::strtod(text.c_str(), &end)) ? "" : text + " is not a finite number";
+          },
+          "");
 }
 
 SceneView Stage::at(double t) {

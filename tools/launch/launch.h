@@ -28,6 +28,8 @@ struct LaunchOptions {
   int threads = 0; // 0 = all cores
 };
 
+/// Refuses "nan" and "inf" for every option of the command that takes a number: ranges let the first pass.
+void refuseNotANumber(CLI::App& command);
 /// Declares the common options on a command. `options` must outlive the parse.
 void addLaunchOptions(CLI::App& command, LaunchOptions& options);
 

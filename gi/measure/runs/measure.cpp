@@ -9,7 +9,7 @@ namespace lambent {
 namespace {
 
 void runFrame(Runner& runner, const SceneView& view, int frame, const RunPlan& plan, Measured& out) {
-  if (plan.cancelled && plan.cancelled()) throw RunError("interrupted: nothing is written");
+  if (plan.cancelled && plan.cancelled()) throw RunError("interrupted before there was a result");
   const FrameStats& stats = runner.run(view);
   if (frame >= plan.skip) out.frames.push_back(stats);
   if (!plan.points.empty()) out.series.push_back(runner.at(plan.points));

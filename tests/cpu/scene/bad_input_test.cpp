@@ -122,9 +122,22 @@ TEST_F(BadInput, TexturesAndPictures) {
   b.json["images"] = {{{"uri", "missing.png"}}};
   expectError(b, "refers to sampler 2");
   b.json["textures"][0].erase("sampler");
-  expectError(b, "image 0 'missing.png': cannot be read");
+  const auto expectWhite = [&](const std::string& reason) {
+    const Scene scene = b.load(folder);
+    EXPECT_TRUE(hasWarning(scene, "image 0 'missing.png': " + reason)) << reason;
+    EXPECT_EQ(sampleTexture(scene.assets, scene.assets.materials.at(0).baseColorTexture, vec2(0.3f)), vec4(1));
+  };
+  expectWhite("cannot be read");
   testing::writeBytes(folder / "missing.png", "no picture");
-  expectError(b, "image 0 'missing.png': cannot be decoded");
+  expectWhite("cannot be decoded");
+  // The header of a PNG of 20000×1 and of one beyond any memory.
+  const std::string header("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\0\x01\x08\x02\0\0\0\0\0\0\0", 33);
+  testing::writeBytes(folder / "missing.png", header);
+  expectWhite("is 20000x1 texels");
+  std::string large = header;
+  large.replace(16, 8, std::string("\0\0\x40\0\0\0\x40\0", 8)); // 16384 each way
+  testing::writeBytes(folder / "missing.png", large);
+  expectError(b, "needs more memory than a file of");
   b.json["images"] = {{{"bufferView", 44}, {"mimeType", "image/png"}}};
   expectError(b, "bufferView");
   b.json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 100000}, {"byteLength", 8}});
@@ -227,6 +240,99 @@ TEST_F(BadInput, ZeroElementsWithoutDataAreBounded) {
   GltfBuilder b;
   b.addMeshNode({{"attributes", {{"POSITION", b.accessor(-1, 5126, "VEC3", size_t(1) << 40)}}}});
   expectError(b, "more than this program reads");
+}
+
+/// One budget for the whole file, whatever asks for memory.
+TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
+  const size_t many = 1 << 22; // 50 MB of positions each
+  GltfBuilder zeros;
+  for (int i = 0; i < 40; ++i)
+    zeros.addMeshNode({{"attributes", {{"POSITION", zeros.accessor(-1, 5126, "VEC3", many)}}}});
+  expectError(zeros, "needs more memory than a file of");
+
+  GltfBuilder keys = oneTriangle();
+  for (int i = 0; i < 40; ++i) {
+    const int times = keys.accessor(-1, 5126, "SCALAR", many), values = keys.accessor(-1, 5126, "VEC4", many);
+    keys.push("animations", {{"samplers", {{{"input", times}, {"output", values}}}},
+                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}}}});
+  }
+  expectError(keys, "needs more memory than a file of");
+
+  GltfBuilder morphs; // the same targets for many nodes: each has a shape of its own
+  const int positions = morphs.accessor(-1, 5126, "VEC3", 3 << 18);
+  const std::vector<vec3> triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  morphs.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"targets", {{{"POSITION", positions}}}}});
+  for (int i = 0; i < 200; ++i) morphs.addRoot({{"mesh", 0}});
+  expectError(morphs, "needs more memory than a file of");
+
+  testing::writeBytes(folder / "data.bin", std::string(32 << 20, '\0'));
+  GltfBuilder again = oneTriangle();
+  json j = json::parse(again.text());
+  for (int i = 0; i < 90; ++i) j["buffers"].push_back({{"uri", "data.bin"}, {"byteLength", 32 << 20}});
+  testing::writeBytes(folder / "bad.gltf", j.dump());
+  expectError(folder / "bad.gltf", "read so often");
+}
+
+TEST_F(BadInput, KeysTwiceAndMatricesThatAreNotAffine) {
+  testing::writeBytes(folder / "twice.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scene": 1})");
+  expectError(folder / "twice.gltf", "'scene' twice");
+  GltfBuilder b = oneTriangle();
+  b.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  expectError(b, "not affine");
+}
+
+TEST_F(BadInput, LightBeyondPicturesIsRefused) {
+  GltfBuilder b = oneTriangle();
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 1e31}}};
+  b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  expectError(b, "beyond what pictures can hold");
+  b.json.erase("extensions");
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["materials"] = {{{"emissiveFactor", {1, 1, 1}},
+                          {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e31}}}}}}};
+  expectError(b, "beyond what pictures can hold");
+}
+
+TEST_F(BadInput, NamesCannotForgeLines) {
+  GltfBuilder b = oneTriangle();
+  b.json["nodes"][0]["name"] = "a\nerror: all is well\x1b[2J\xc2\x9b";
+  b.json["nodes"][0]["scale"] = {1, 2};
+  b.writeGltf(folder / "bad.gltf");
+  const std::string error = inputErrorOf([&] { loadScene(folder / "bad.gltf"); });
+  EXPECT_NE(error.find("a\\x0aerror: all is well\\x1b[2J\\x9b"), std::string::npos) << error;
+  for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
+}
+
+TEST_F(BadInput, APlusInAUriIsAPlus) {
+  json j = json::parse(oneTriangle().text());
+  const std::string uri = j["buffers"][0]["uri"];
+  testing::writeBytes(folder / "a+b c.bin", std::string(size_t(j["buffers"][0]["byteLength"]), '\0'));
+  j["buffers"][0]["uri"] = "a+b%20c.bin";
+  testing::writeBytes(folder / "plus.gltf", j.dump());
+  EXPECT_TRUE(hasWarning(loadScene(folder / "plus.gltf"), "without area")); // of zeros, as the file holds
+}
+
+TEST_F(BadInput, WhatIsFarAwayIsLeftOut) {
+  GltfBuilder b = oneTriangle();
+  b.addRoot({{"mesh", 0}, {"translation", {1e19, 0, 0}}});
+  const Scene scene = b.load(folder);
+  EXPECT_TRUE(hasWarning(scene, "1 object(s) that reach beyond 1e12 m"));
+  EXPECT_LT(worldBounds(scene).diameter(), 2);
+  SceneExtractor extractor;
+  EXPECT_EQ(extractor.extract(scene, defaultView(scene), 0).instances.size(), 1u);
+}
+
+TEST_F(BadInput, LensesOutOfRangeAreReplaced) {
+  for (const json& lens : {json{{"yfov", 3.1415926}, {"znear", 0.1}}, json{{"yfov", 1e-30}, {"znear", 0.1}},
+                           json{{"yfov", 1.0}, {"znear", 1e308}}, json{{"yfov", 1.0}, {"znear", 1e-300}}}) {
+    GltfBuilder b = oneTriangle();
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", lens}}};
+    b.addRoot({{"camera", 0}});
+    const Scene scene = b.load(folder);
+    EXPECT_TRUE(hasWarning(scene, "out of range")) << lens;
+    const CameraView view = sceneCameras(scene).at(0).view;
+    EXPECT_TRUE(view.near > 0 && view.near < 1 && view.fovY > 0.1f && view.fovY < 3) << lens;
+  }
 }
 
 TEST_F(BadInput, SparseAccessors) {

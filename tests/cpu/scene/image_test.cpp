@@ -199,6 +199,38 @@ TEST_F(TextureLookup, TransformSrgbAndStrangeCoordinates) {
   expectColor({0.3f, 0.3f}, vec4(1));
 }
 
+TEST(Pictures, AHeaderAloneAsksForNoMemory) {
+  TemporaryFolder folder;
+  testing::writeBytes(folder / "a.pfm", "PF 32768 32768 -1\n"); // 12 GiB
+  EXPECT_NE(inputErrorOf([&] { readPfm(folder / "a.pfm"); }).find("ends before the last"), std::string::npos);
+}
+
+TEST(Pictures, NamesMayBeAsLongAsTheDiskTakes) {
+  TemporaryFolder folder;
+  const std::string name = std::string(250, 'n') + ".exr";
+  writeExr(folder / name, gradient(3, 2));
+  EXPECT_EQ(readExr(folder / name).pixels, gradient(3, 2).pixels);
+  EXPECT_THROW(writeExr(folder / (std::string(300, 'n') + ".exr"), gradient(3, 2)), RunError);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "temporaries are left";
+}
+
+TEST(Pictures, FoldersAreAskedBeforeTheWork) {
+  TemporaryFolder folder;
+  EXPECT_NO_THROW(checkWritable(folder / "a.exr"));
+  EXPECT_NO_THROW(checkWritable("/dev/null"));
+  EXPECT_THROW(checkWritable(folder / "none/a.exr"), RunError);
+  EXPECT_THROW(checkWritable(folder.path()), RunError);
+}
+
+TEST(Printable, ShowsControlCharactersAsNumbers) {
+  EXPECT_EQ(printable("a\nb\t\x7f"), "a\\x0ab\\x09\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\x9b31m")
+      << "a terminal's own language in UTF-8";
+  EXPECT_EQ(printable("\xc3\xa4 \xe2\x82\xac \\"), "\xc3\xa4 \xe2\x82\xac \\");
+}
+
 TEST(NearestName, FindsTyposAndRefusesToGuess) {
   const std::vector<std::string> names = {"smc.vpls", "smc.seed", "gather.tile"};
   EXPECT_EQ(nearestName("smc.vpl", names), "smc.vpls");

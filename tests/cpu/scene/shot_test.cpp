@@ -93,6 +93,8 @@ TEST_F(ShotFile, ErrorsNamePlaceAndReason) {
   const auto camera = [](const std::string& keys) {
     return R"({"shot": 1, "scene": "a", "seconds": 1, "camera": {"keys": [)" + keys + "]}}";
   };
+  expectError(R"({"shot": 1, "scene": "a", "seconds": 1, "seconds": 2})", "'seconds' twice");
+  expectError(camera(R"({"t": 0, "eye": [1e13, 0, 1], "target": [0, 0, 1]})"), "eye: is farther than 1e12 m");
   expectError(camera(R"({"t": 0, "eye": [0, 0], "target": [0, 0, 1]})"),
               "camera.keys[0].eye: has 2 numbers (3 expected)");
   expectError(camera(R"({"t": 0, "eye": [0, 0, "x"], "target": [0, 0, 1]})"), "camera.keys[0].eye[2]: is not a number");

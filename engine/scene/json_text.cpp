@@ -1,0 +1,49 @@
+#include "engine/scene/json_text.h"
+
+#include "engine/core/error.h"
+
+#include <unordered_set>
+
+namespace lambent {
+
+namespace {
+
+constexpr size_t kMaxNesting = 200; // real files nest about ten deep
+
+bool isSpace(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+} // namespace
+
+JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
+  JsonText out;
+  std::vector<std::unordered_set<std::string_view>> open; // keys of the objects (of lists: none) around
+  std::string_view key;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      const size_t begin = i + 1;
+      for (++i; i < text.size() && text[i] != '"'; ++i)
+        if (text[i] == '\\') ++i;
+      const std::string_view inside = text.substr(begin, std::min(i, text.size()) - begin);
+      size_t next = i + 1;
+      while (next < text.size() && isSpace(text[next])) ++next;
+      if (next < text.size() && text[next] == ':') {
+        key = inside;
+        if (!open.empty() && !open.back().insert(key).second)
+          throw InputError(file.string(),
+                           "gives the key '" + std::string(key) + "' twice in one object (once expected)");
+      } else if (key == "uri" && !inside.starts_with("data:")) {
+        out.uris.emplace_back(inside);
+      }
+    } else if (c == '[' || c == '{') {
+      if (open.size() >= kMaxNesting)
+        throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxNesting) + " levels deep");
+      open.emplace_back();
+    } else if ((c == ']' || c == '}') && !open.empty()) {
+      open.pop_back();
+    }
+  }
+  return out;
+}
+
+} // namespace lambent

@@ -1,0 +1,18 @@
+// What parsers of JSON let pass: text nested so deeply that they run out of stack, and keys given twice, of which one
+// would silently win.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambent {
+
+struct JsonText {
+  std::vector<std::string> uris; // values of keys "uri" that are not data themselves, as written
+};
+/// Throws InputError. Whether the text is JSON at all is the parser's to say.
+JsonText checkJson(const std::filesystem::path& file, std::string_view text);
+
+} // namespace lambent

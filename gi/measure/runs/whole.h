@@ -1,0 +1,15 @@
+// What must hold after every frame, whatever the scene is.
+#pragma once
+
+#include "gi/frame/gi_frame.h"
+
+#include <string>
+
+namespace lambent {
+
+/// The first thing that does not hold; empty: light and shares of it are finite and not negative at every pixel,
+/// normals and depths finite; virtual lights are no more than there may be, and each that is alive has a place, a unit
+/// normal, and finite radiance and area that are not negative.
+std::string defectOf(const GiFrame& gi, const Settings& settings);
+
+} // namespace lambent

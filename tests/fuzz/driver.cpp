@@ -1,0 +1,141 @@
+// fuzz [TARGET...] [--runs N] [--seed S] [--seeds FOLDER]: targets.h with mutations of its seeds, without libFuzzer,
+// the same for the same numbers: what tests run. A finding ends the program; its input is fuzz-TARGET in the current
+// folder, and `fuzz TARGET --input FILE` runs that alone. --seeds writes the seeds, as a corpus to begin with.
+#include "engine/core/rng.h"
+#include "tests/fuzz/targets.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace lambent::fuzz {
+
+namespace {
+
+class Mutator {
+ public:
+  Mutator(const Target& target, uint32_t seed) : target_(target), pool_(target.seeds()), rng_(seed, Stream::Test, 0) {}
+
+  std::string next() {
+    std::string bytes = pool_[below(pool_.size())];
+    for (size_t times = 1 + below(6); times > 0; --times) mutate(bytes);
+    if (below(8) == 0) { // builds on what it found
+      if (pool_.size() < 64)
+        pool_.push_back(bytes);
+      else
+        pool_[8 + below(56)] = bytes;
+    }
+    return bytes;
+  }
+
+ private:
+  size_t below(size_t n) { return rng_.below(uint32_t(n)); }
+
+  void mutate(std::string& bytes) {
+    if (bytes.empty()) bytes = "x";
+    const size_t at = below(bytes.size()), length = std::min(bytes.size() - at, 1 + below(16));
+    switch (below(7)) {
+    case 0:
+      bytes[at] = char(below(256));
+      break;
+    case 1:
+      bytes[at] = char(bytes[at] ^ (1 << below(8)));
+      break;
+    case 2:
+      bytes.erase(at, length);
+      break;
+    case 3:
+      bytes.insert(at, bytes.substr(below(bytes.size()), length));
+      break;
+    case 4:
+      if (!target_.words.empty()) bytes.replace(at, below(length + 1), target_.words[below(target_.words.size())]);
+      break;
+    case 5: { // another number in the place of one
+      size_t digit = bytes.find_first_of("0123456789", at);
+      if (digit == std::string::npos) break;
+      const size_t end = std::min(bytes.find_first_not_of("0123456789.eE+-", digit), bytes.size());
+      constexpr const char* numbers[] = {"0",    "-1",    "1",  "255", "65536", "2147483648", "18446744073709551616",
+                                         "1e39", "1e-46", "0.1"};
+      bytes.replace(digit, end - digit, numbers[below(std::size(numbers))]);
+      break;
+    }
+    default: { // the end of another
+      const std::string& other = pool_[below(pool_.size())];
+      if (!other.empty()) bytes = bytes.substr(0, at) + other.substr(below(other.size()));
+    }
+    }
+    if (bytes.size() > 1 << 16) bytes.resize(1 << 16);
+  }
+
+  const Target& target_;
+  std::vector<std::string> pool_;
+  Rng rng_;
+};
+
+void writeFile(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+void run(const Target& target, long runs, uint32_t seed) {
+  const auto begin = std::chrono::steady_clock::now();
+  Mutator mutator(target, seed);
+  const std::string found = std::string("fuzz-") + target.name;
+  for (const std::string& bytes : target.seeds()) target.run(bytes);
+  for (long i = 0; i < runs; ++i) {
+    const std::string bytes = mutator.next();
+    writeFile(found, bytes); // there when it ends the program
+    target.run(bytes);
+  }
+  std::filesystem::remove(found);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::printf("%s: %ld runs, seed %u, %.1f s, nothing found\n", target.name, runs, seed, seconds);
+}
+
+int runAll(int argc, char** argv) {
+  long runs = 2000;
+  uint32_t seed = 1;
+  std::string input, seeds;
+  std::vector<const Target*> chosen;
+  for (int i = 1; i < argc; ++i) {
+    const bool more = i + 1 < argc;
+    if (more && !std::strcmp(argv[i], "--runs"))
+      runs = std::atol(argv[++i]);
+    else if (more && !std::strcmp(argv[i], "--seed"))
+      seed = uint32_t(std::atol(argv[++i]));
+    else if (more && !std::strcmp(argv[i], "--input"))
+      input = argv[++i];
+    else if (more && !std::strcmp(argv[i], "--seeds"))
+      seeds = argv[++i];
+    else {
+      const auto found =
+          std::ranges::find_if(targets(), [&](const Target& t) { return !std::strcmp(t.name, argv[i]); });
+      if (found == targets().end()) return std::fprintf(stderr, "error: no target %s\n", argv[i]), 2;
+      chosen.push_back(&*found);
+    }
+  }
+  if (chosen.empty())
+    for (const Target& t : targets()) chosen.push_back(&t);
+  for (const Target* t : chosen) {
+    if (!seeds.empty()) {
+      std::filesystem::create_directories(std::filesystem::path(seeds) / t->name);
+      int n = 0;
+      for (const std::string& bytes : t->seeds())
+        writeFile(std::filesystem::path(seeds) / t->name / std::to_string(n++), bytes);
+    } else if (!input.empty()) {
+      std::ifstream in(input, std::ios::binary);
+      t->run(std::string{std::istreambuf_iterator<char>(in), {}});
+    } else {
+      run(*t, runs, seed);
+    }
+  }
+  return 0;
+}
+
+} // namespace
+} // namespace lambent::fuzz
+
+int main(int argc, char** argv) { return lambent::fuzz::runAll(argc, argv); }

@@ -1,0 +1,267 @@
+#include "tests/fuzz/targets.h"
+
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/shot.h"
+#include "engine/trace/analytic_query.h"
+#include "gi/plan/presets.h"
+#include "gi/reference/state_file.h"
+#include "gi/vpl/light_set.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <unistd.h>
+
+namespace lambent::fuzz {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// In memory where there is such a folder.
+fs::path fileWith(std::string_view bytes, const std::string& extension) {
+  static const fs::path folder = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+  const fs::path file = folder / ("lambent-fuzz-" + std::to_string(getpid()) + extension);
+  std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+  return file;
+}
+
+/// Runs a reader of a file and removes it.
+template <class Read> void reading(std::string_view bytes, const std::string& extension, const Read& read) {
+  const fs::path file = fileWith(bytes, extension);
+  try {
+    read(file);
+  } catch (const InputError&) {
+  } catch (const RunError&) {
+  }
+  fs::remove(file);
+}
+
+bool finite(const mat4& m) {
+  for (int c = 0; c < 4; ++c)
+    if (!isFinite(vec3(m[c]))) return false;
+  return true;
+}
+
+// glTF ----------------------------------------------------------------------------------------------------------------
+
+void gltf(std::string_view bytes) {
+  reading(bytes, bytes.starts_with("glTF") ? ".glb" : ".gltf", [](const fs::path& file) {
+    Scene scene = loadScene(file);
+    SceneExtractor extractor;
+    for (const double t : {0.0, 0.7}) {
+      animate(scene, t);
+      const SceneView view = extractor.extract(scene, defaultView(scene), t);
+      CHECK(view.boundsWorld.empty() || (isFinite(view.boundsWorld.lo) && isFinite(view.boundsWorld.hi)));
+      for (const InstanceView& i : view.instances) {
+        CHECK(finite(i.worldFromObject));
+        const Mesh& mesh = scene.assets.meshes.at(i.mesh);
+        for (const vec3& n : mesh.normals) CHECK(std::abs(glm::length(n) - 1) < 1e-3f);
+        for (const vec3& p : i.deformed ? i.deformed->positions : mesh.positions) CHECK(isFinite(p));
+      }
+      for (const LightView& l : view.lights)
+        CHECK(isFinite(l.position) && isFinite(l.intensity) && isFinite(l.direction));
+    }
+    for (const NamedCamera& c : sceneCameras(scene)) CHECK(finite(c.view.worldFromView) && c.view.near > 0);
+    for (const Material& m : scene.assets.materials) {
+      CHECK(isFinite(m.baseColor) && isFinite(m.emission));
+      CHECK(isFinite(vec3(sampleTexture(scene.assets, m.baseColorTexture, vec2(0.3f, 1.7f)))));
+    }
+  });
+}
+
+/// A quad with all that the importer reads: texture, second primitive, skin, morph target, animation, light, camera.
+constexpr const char* kScene = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,2,3]}],
+"extensionsUsed":["KHR_lights_punctual","KHR_materials_emissive_strength"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":3,"color":[1,0.5,1],"range":9,
+"spot":{"innerConeAngle":0.1,"outerConeAngle":0.4}},{"type":"point","intensity":2},{"type":"directional"}]}},
+"nodes":[{"mesh":0,"skin":0,"children":[1],"rotation":[0,0,0.7071,0.7071],"scale":[1,2,1]},
+{"translation":[0,1,0],"name":"joint"},{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,2,0,0,1],"weights":[0.5]},
+{"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1,"aspectRatio":1.5}}],
+"skins":[{"joints":[0,1],"inverseBindMatrices":7}],
+"meshes":[{"weights":[0.25],"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"JOINTS_0":3,"WEIGHTS_0":4},
+"indices":5,"material":0,"targets":[{"POSITION":0}]},{"attributes":{"POSITION":0},"mode":5,"targets":[{"POSITION":0}]}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1],"baseColorTexture":{"index":0},"roughnessFactor":0.4},
+"emissiveFactor":[1,0,0],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":4}},"alphaMode":"MASK"}],
+"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"magFilter":9728}],
+"images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC"}],
+"animations":[{"samplers":[{"input":6,"output":0,"interpolation":"LINEAR"}],
+"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}]}],
+"buffers":[{"byteLength":320,"uri":"data:application/octet-stream;base64,BYTES"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":48},
+{"buffer":0,"byteOffset":96,"byteLength":32},{"buffer":0,"byteOffset":128,"byteLength":16},{"buffer":0,"byteOffset":144,"byteLength":16},
+{"buffer":0,"byteOffset":160,"byteLength":12},{"buffer":0,"byteOffset":172,"byteLength":16},{"buffer":0,"byteOffset":192,"byteLength":128}],
+"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":4},{"bufferView":1,"componentType":5126,"type":"VEC3","count":4},
+{"bufferView":2,"componentType":5126,"type":"VEC2","count":4},{"bufferView":3,"componentType":5121,"type":"VEC4","count":4},
+{"bufferView":4,"componentType":5121,"type":"VEC4","count":4,"normalized":true},{"bufferView":5,"componentType":5123,"type":"SCALAR","count":6},
+{"bufferView":6,"componentType":5126,"type":"SCALAR","count":4},{"bufferView":7,"componentType":5126,"type":"MAT4","count":2},
+{"componentType":5126,"type":"VEC3","count":9,"sparse":{"count":1,"indices":{"bufferView":5,"componentType":5123},"values":{"bufferView":0}}}]})";
+
+std::string base64(const std::string& bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t three = 0;
+    for (size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+template <class T> void append(std::string& bytes, std::initializer_list<T> values) {
+  for (const T v : values) bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+}
+
+std::vector<std::string> gltfSeeds() {
+  std::string bytes;
+  append<float>(bytes, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});                         // positions
+  append<float>(bytes, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});                         // normals
+  append<float>(bytes, {0, 0, 1, 0, 1, 1, 0, 1});                                     // texture coordinates
+  append<uint8_t>(bytes, {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});           // joints
+  append<uint8_t>(bytes, {255, 0, 0, 0, 128, 127, 0, 0, 0, 255, 0, 0, 255, 0, 0, 0}); // weights
+  append<uint16_t>(bytes, {0, 1, 2, 0, 2, 3});
+  append<float>(bytes, {0, 0.5f, 1, 2}); // times
+  append<float>(bytes, {0});             // to 192
+  for (int m = 0; m < 2; ++m) append<float>(bytes, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  std::string text = kScene;
+  text.replace(text.find("BYTES"), 5, base64(bytes));
+  std::string json = text;
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string glb = "glTF";
+  append<uint32_t>(glb, {2u, uint32_t(20 + json.size()), uint32_t(json.size())});
+  glb += "JSON" + json;
+  return {text, glb, R"({"asset":{"version":"2.0"}})"};
+}
+
+// Shots, settings, pictures, states -----------------------------------------------------------------------------------
+
+void shot(std::string_view bytes) {
+  reading(bytes, ".json", [](const fs::path& file) {
+    const Shot shot = loadShot(file);
+    CHECK(shot.frameCount() >= 1);
+    if (shot.camera.empty()) return;
+    for (const double t : {0.0, 0.3, shot.seconds}) {
+      const CameraView view = shotCamera(shot, t, dvec3(0));
+      CHECK(finite(view.worldFromView) && view.fovY > 0 && view.fovY < kPi);
+    }
+  });
+}
+
+std::vector<std::string> shotSeeds() {
+  return {R"({"shot": 1, "scene": "room.glb", "fps": 24, "seconds": 2.5,
+  "camera": {"keys": [{"t": 0, "eye": [0, 1, 5], "target": [0, 1, 0], "fov": 60}, {"t": 2, "eye": [4, 1, 5], "target": [0, 1, 0]},
+                      {"t": 3, "eye": [4, 1, 6], "target": [0, 1, 1]}]},
+  "lights": {"lamp": {"keys": [{"t": 0, "intensity": [0, 0, 0], "direction": [0, -1, 0]}, {"t": 2, "intensity": [4, 2, 0]}]}},
+  "objects": {"door": {"keys": [{"t": 1, "rotation": [0, 90, 0]}, {"t": 0.5e1, "position": [1, 2, 3]}]}},
+  "pixels": [[0.25, 0.75]], "set": {"smc.vpls": 4096, "vpl.source": "smc", "filter.on": true}})"};
+}
+
+/// Lines of name=value, or names of presets.
+void settings(std::string_view bytes) {
+  std::istringstream lines{std::string(bytes)};
+  Settings settings;
+  for (std::string line; std::getline(lines, line);) try {
+      const size_t equals = line.find('=');
+      equals == std::string::npos ? applyPreset(settings, line)
+                                  : applySetting(settings, line.substr(0, equals), line.substr(equals + 1));
+    } catch (const InputError&) {
+    }
+  for (const SettingRow& row : settingsTable()) { // what was taken can be said and taken again
+    Settings again = settings;
+    applySetting(again, row.name, settingText(settings, row.name));
+    CHECK(again == settings);
+  }
+  (void)whyNot(settings);
+}
+
+std::vector<std::string> settingsSeeds() {
+  std::string all;
+  for (const SettingRow& row : settingsTable())
+    all += row.name + std::string("=") + settingText(Settings{}, row.name) + "\n";
+  return {all, "low\nsmc.vpls=1\ngather.clamp=0.5\nshadow.bias=1e1\n"};
+}
+
+void picture(std::string_view bytes) {
+  reading(bytes, bytes.starts_with("P") ? ".pfm" : ".exr", [&](const fs::path& file) {
+    const Image image = bytes.starts_with("P") ? readPfm(file) : readExr(file);
+    CHECK_EQ(image.pixels.size(), size_t(image.width) * size_t(image.height));
+  });
+}
+
+std::vector<std::string> pictureSeeds() {
+  std::string pfm = "PF\n2 2\n-1.0\n";
+  append<float>(pfm, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  std::string grey = "Pf 3 1 1\n";
+  append<float>(grey, {1, 2, 3});
+  const fs::path file = fileWith("", ".exr");
+  writeExr(file, Image(5, 4, vec3(0.5f)));
+  std::ifstream in(file, std::ios::binary);
+  const std::string exr{std::istreambuf_iterator<char>(in), {}};
+  fs::remove(file);
+  return {pfm, grey, exr};
+}
+
+/// Of a reference of this size, by this key.
+struct State {
+  AnalyticQuery rays;
+  LightSet lights;
+  CameraView camera;
+  ReferenceInputs in{rays, lights, camera};
+  static constexpr uint64_t kKey = 42;
+  State() { camera.width = 4, camera.height = 3; }
+};
+
+void state(std::string_view bytes) {
+  reading(bytes, ".state", [](const fs::path& file) {
+    const State s;
+    const ReferenceSums sums = loadReference(file, s.in, State::kKey);
+    CHECK_EQ(sums.pixels.size(), size_t(12));
+  });
+}
+
+std::vector<std::string> stateSeeds() {
+  const fs::path file = fileWith("", ".state");
+  ReferenceSums sums(4, 3);
+  sums.samples = 7;
+  saveReference(file, sums, State::kKey);
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  fs::remove(file);
+  return {bytes};
+}
+
+} // namespace
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> all{
+      {"gltf",
+       gltf,
+       gltfSeeds,
+       {"\"count\":", "\"byteOffset\":", "\"byteStride\":", "\"componentType\":5125", "\"mode\":6", "\"uri\":", "null",
+        "[]", "{}", "-1", "4294967296", "1e39", "1e-39", "0.5", "\"MAT4\"", "\"CUBICSPLINE\"", "\"path\":\"weights\"",
+        "\"sparse\":"}},
+      {"shot", shot, shotSeeds, {"\"t\":", "\"fov\":", "null", "[]", "{}", "-1", "1e308", "1e-308", "180", "\"set\":"}},
+      {"settings",
+       settings,
+       settingsSeeds,
+       {"=on", "=off", "=-1", "=nan", "=inf", "=1e39", "=auto", "\n", "vpl.source=hisr"}},
+      {"picture",
+       picture,
+       pictureSeeds,
+       {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"}},
+      {"state", state, stateSeeds, {}},
+  };
+  return all;
+}
+
+} // namespace lambent::fuzz
+
+#ifdef FUZZ_TARGET // of libFuzzer: an index
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  lambent::fuzz::targets()[FUZZ_TARGET].run({reinterpret_cast<const char*>(data), size});
+  return 0;
+}
+#endif

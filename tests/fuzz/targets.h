@@ -1,0 +1,19 @@
+// What is fuzzed: readers of files and text from elsewhere. Whatever the bytes are, a reader gives a result that holds
+// what it promises, or throws InputError or RunError; anything else ends the program.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lambent::fuzz {
+
+struct Target {
+  const char* name;
+  void (*run)(std::string_view bytes);
+  std::vector<std::string> (*seeds)(); // valid inputs, with as much of the format in them as fits
+  std::vector<std::string> words;      // of its language
+};
+const std::vector<Target>& targets();
+
+} // namespace lambent::fuzz

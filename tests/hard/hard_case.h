@@ -1,0 +1,45 @@
+// Hard cases: scenes and edits on which global illumination goes wrong. Each is a row: what it is, why it is hard, the
+// world, and between what its light must lie. All run with every technique (hard_test.cpp).
+#pragma once
+
+#include "gi/plan/settings.h"
+#include "tests/support/hand_scene.h"
+
+#include <functional>
+#include <limits>
+
+namespace lambent::test {
+
+/// A world that may change from frame to frame.
+struct HardWorld {
+  HardWorld();
+
+  HandScene scene;
+  Settings settings; // few lights, small maps
+  int frames = 3;
+  std::function<void(int frame)> step; // before each frame but the first; what it changes, all may be
+  std::vector<Aabb> addedOrRemoved;    // by the step
+
+  /// A closed room from `lo` to `hi` of this albedo, seen from inside.
+  void room(const vec3& lo = vec3(-1), const vec3& hi = vec3(1), const vec3& albedo = vec3(0.7f));
+  LightView& lamp(const vec3& position, float intensity = 1); // W/sr
+  /// Mirrored, scaled, moved: the instance as it stands from now on.
+  void place(uint32_t instance, const mat4& worldFromObject);
+};
+
+/// Of the mean irradiance by indirect light, W/m², in the last frame.
+struct HardBounds {
+  double least = 0;                                      // of smc
+  double most = std::numeric_limits<double>::infinity(); // of every technique
+  double change =
+      std::numeric_limits<double>::infinity(); // mean |difference| of the last two frames over the mean, smc
+};
+
+struct HardCase {
+  const char *name, *reason;
+  void (*make)(HardWorld&);
+  HardBounds bounds;
+};
+const std::vector<HardCase>& hardCases();
+
+} // namespace lambent::test

@@ -1,0 +1,444 @@
+#include "hard_case.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace lambent::test {
+
+namespace {
+
+CameraView look(const vec3& eye, const vec3& target, float fovY = 1.2f) {
+  CameraView camera = lookAt(eye, target, fovY);
+  camera.width = 32, camera.height = 18;
+  return camera;
+}
+
+} // namespace
+
+HardWorld::HardWorld() {
+  settings.smc.vpls = 64;
+  settings.smc.points = 128;
+  settings.smc.warmup = 4;
+  settings.smc.moves = 8;
+  settings.shadow.resolution = 32;
+  settings.shadow.maker = ShadowMaker::Rays;
+  settings.vpl.mirCandidates = 4;
+  settings.rsm.resolution = 32;
+  settings.image.exposure = 1;
+  scene.camera = look({0.1f, 0.1f, 0.9f}, {0, -0.1f, -1});
+}
+
+void HardWorld::room(const vec3& lo, const vec3& hi, const vec3& albedo) {
+  scene.box(lo, hi, scene.material(albedo), true);
+}
+
+LightView& HardWorld::lamp(const vec3& position, float intensity) {
+  LightView light;
+  light.id = uint32_t(scene.lights.size());
+  light.position = position;
+  light.intensity = vec3(intensity);
+  light.changed = true;
+  scene.lights.push_back(light);
+  return scene.lights.back();
+}
+
+void HardWorld::place(uint32_t index, const mat4& worldFromObject) {
+  InstanceView& i = scene.instances[index];
+  i.worldFromObjectBefore = i.worldFromObject;
+  i.boundsWorldBefore = i.boundsWorld;
+  i.worldFromObject = worldFromObject;
+  i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, worldFromObject);
+  i.moved = true;
+}
+
+namespace {
+
+// A lamp of 1 W/sr in the middle of room() sends 4π W to its 24 m²: three bounces at an albedo of 0.7 make 0.80 W/m².
+constexpr HardBounds kRoom{0.35, 1.8, 0.5};
+
+/// The room and its lamp `unit` times as large, around `centre`.
+void roomOf(HardWorld& w, float unit, const vec3& centre = vec3(0), float light = 1) {
+  w.room(centre - vec3(unit), centre + vec3(unit));
+  w.lamp(centre + unit * vec3(0.1f, 0.3f, 0.2f), light * unit * unit);
+  w.scene.camera = look(centre + unit * vec3(0.1f, 0.1f, 0.9f), centre - unit * vec3(0, 0.1f, 1));
+  w.scene.camera.near = 0.01f * unit;
+}
+
+/// The room with settings of its own.
+void roomWith(HardWorld& w, std::initializer_list<std::pair<const char*, const char*>> set) {
+  roomOf(w, 1);
+  for (const auto& [name, value] : set) applySetting(w.settings, name, value);
+}
+
+/// Two rooms side by side, a wall of this thickness between them; the lamp in the one that the camera is not in.
+void twoRooms(HardWorld& w, float wall) {
+  w.room(vec3(-1), vec3(1));
+  w.room(vec3(1 + wall, -1, -1), vec3(3 + wall, 1, 1));
+  w.lamp({2 + wall, 0.3f, 0});
+  w.scene.camera = look({-0.9f, 0, 0}, {1, 0, 0});
+}
+
+void spot(LightView& light, const vec3& direction, float cosine) {
+  light.type = LightType::Spot;
+  light.direction = glm::normalize(direction);
+  light.innerConeCos = light.outerConeCos = cosine;
+}
+
+} // namespace
+
+const std::vector<HardCase>& hardCases() {
+  static const std::vector<HardCase> cases{
+      // Where lights are.
+      {"Room", "nothing hard: what the others are measured by", [](HardWorld& w) { roomOf(w, 1); }, kRoom},
+      {"CoincidentLights",
+       "a beam as thin as a thread lights one point: densities divide by the distance of lights",
+       [](HardWorld& w) {
+         w.room();
+         spot(w.lamp({0, 0.9f, 0}, 100), {0, -1, 0}, 0.9999999f);
+       },
+       {0, 0.1, 5}},
+      {"LightsAtTheEye", "lights on the shaded points: 1/r² without bound",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.camera = look({0.999f, 0, 0}, {1, 0.01f, 0.3f});
+         w.scene.camera.near = 1e-5f;
+       },
+       kRoom},
+      {"FlatWorld",
+       "all receivers lie in the plane of all lights: there is no indirect light",
+       [](HardWorld& w) {
+         w.scene.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, w.scene.material(vec3(0.7f)));
+         w.lamp({0, 1, 0});
+         w.scene.camera = look({0, 1.5f, 1.5f}, vec3(0));
+       },
+       {0, 1e-5}},
+      {"GrazingLamp",
+       "a lamp a tenth of a millimetre above the floor: cosines near 0 over distances near 0",
+       [](HardWorld& w) {
+         w.room();
+         w.lamp({0, -0.9999f, 0});
+       },
+       {0.1, 2.5}},
+      {"LampInTheCorner",
+       "light paths end on three walls at once",
+       [](HardWorld& w) {
+         w.room();
+         w.lamp({-0.999f, -0.999f, -0.999f});
+       },
+       {0.05, 4}},
+      {"LampInAWall",
+       "behind every front side",
+       [](HardWorld& w) {
+         w.room();
+         w.scene.box(vec3(-1.2f), vec3(1.2f), w.scene.material(vec3(0.7f)), false);
+         w.lamp({-1.1f, 0, 0});
+       },
+       {0, 1e-4}},
+      {"LampInABox",
+       "a lit box that nothing leaves",
+       [](HardWorld& w) {
+         w.room();
+         w.scene.box(vec3(-0.2f), vec3(0.2f), w.scene.material(vec3(0.7f)), false);
+         w.room(vec3(-0.19f), vec3(0.19f));
+         w.lamp(vec3(0));
+         w.scene.camera = look({0.5f, 0.5f, 0.9f}, vec3(0));
+       },
+       {0, 1e-3}},
+      {"Wire", "lights on a wire of 0.1 mm: areas that stand for almost nothing",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.box({-5e-5f, -1, -5e-5f}, {5e-5f, 1, 5e-5f}, w.scene.material(vec3(0.9f)), false);
+       },
+       kRoom},
+      {"Leaves",
+       "two hundred leaves of one triangle pair: every light has neighbours on other surfaces",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         const uint32_t green = w.scene.material(vec3(0.2f, 0.6f, 0.1f), vec3(0), true);
+         for (int i = 0; i < 200; ++i) {
+           const vec3 at(std::sin(float(i) * 12.99f), std::sin(float(i) * 78.23f), std::sin(float(i) * 37.72f));
+           w.scene.quad(0.6f * at, {0.05f, 0.01f * at.x, 0}, {0, 0.01f * at.z, -0.05f}, green);
+         }
+       },
+       {0.1, 2}},
+      {"BrightSpeck",
+       "a glowing speck of 1 mm² and 10⁶ W/(m² sr)",
+       [](HardWorld& w) {
+         w.room();
+         w.scene.quad({0, 0.5f, 0}, {1e-3f, 0, 0}, {0, 0, 1e-3f}, w.scene.material(vec3(0), vec3(1e6f), true));
+       },
+       {0.02, 2}},
+      {"OneHit",
+       "of all camera rays one or none meets a surface",
+       [](HardWorld& w) {
+         w.scene.quad({-1e-3f, -1e-3f, -1}, {2e-3f, 0, 0}, {0, 2e-3f, 0}, w.scene.material(vec3(0.7f)));
+         w.lamp({0, 0, 1});
+         w.scene.camera = look({0, 0, 1}, {0, 0, -1});
+       },
+       {0, 1e-4}},
+      {"TenThousandLamps",
+       "more lights than any loop should run over",
+       [](HardWorld& w) {
+         w.room();
+         for (int i = 0; i < 10000; ++i)
+           w.lamp(0.9f * vec3(std::sin(float(i) * 12.99f), std::sin(float(i) * 78.23f), std::sin(float(i) * 37.72f)),
+                  1e-4f);
+         w.frames = 2;
+       },
+       {0.3, 2}},
+      // How much light there is.
+      {"LightOf1e-20",
+       "products of small numbers",
+       [](HardWorld& w) { roomOf(w, 1, vec3(0), 1e-20f); },
+       {0.35e-20, 1.8e-20, 0.5}},
+      {"LightOf1e30",
+       "sums beyond half and near the end of single precision",
+       [](HardWorld& w) { roomOf(w, 1, vec3(0), 1e30f); },
+       {0.35e30, 1.8e30, 0.5}},
+      {"NoLight", "nothing to divide by", [](HardWorld& w) { w.room(); }, {0, 0}},
+      {"NoGeometry",
+       "nothing to hit",
+       [](HardWorld& w) {
+         w.lamp({0, 1, 0});
+       },
+       {0, 0}},
+      {"NothingAtAll", "no light, no surface", [](HardWorld&) {}, {0, 0}},
+      {"Black",
+       "albedo 0: no light is reflected",
+       [](HardWorld& w) {
+         w.room(vec3(-1), vec3(1), vec3(0));
+         w.lamp(vec3(0));
+       },
+       {0, 0}},
+      {"White",
+       "albedo 1: light paths never end by themselves",
+       [](HardWorld& w) {
+         w.room(vec3(-1), vec3(1), vec3(1));
+         w.lamp({0.1f, 0.3f, 0.2f});
+       },
+       {0.8, 3.5}},
+      // Sizes and places.
+      {"ATenthOfAMillimetre", "a room of 0.2 mm", [](HardWorld& w) { roomOf(w, 1e-4f); }, kRoom},
+      {"AThousandKilometres", "a room of 2000 km", [](HardWorld& w) { roomOf(w, 1e6f); }, kRoom},
+      {"FarFromTheOrigin",
+       "200 m at 1000 km: positions in steps of 6 cm",
+       [](HardWorld& w) { roomOf(w, 100, vec3(1e6f, 0, -1e6f)); },
+       {0.3, 2}},
+      {"LongCorridor",
+       "200 m by 2 m, the lamp at the far end",
+       [](HardWorld& w) {
+         w.room({-1, -1, -200}, {1, 1, 1});
+         w.lamp({0, 0, -199}, 100);
+       },
+       {0, 0.5}},
+      // What must not leak.
+      {"TwoRooms", "a wall of 10 cm between light and eye", [](HardWorld& w) { twoRooms(w, 0.1f); }, {0, 8e-4}},
+      {"PaperWall", "a wall of 0.1 mm between light and eye", [](HardWorld& w) { twoRooms(w, 1e-4f); }, {0, 8e-4}},
+      {"LitOnBothSides",
+       "a sheet of paper between two lamps of unlike strength",
+       [](HardWorld& w) {
+         twoRooms(w, 1e-4f);
+         w.lamp({-0.2f, 0.3f, 0}, 0.01f);
+       },
+       {0.0035, 0.019, 0.6}},
+      {"Slit",
+       "light through 2 mm from far behind",
+       [](HardWorld& w) {
+         const uint32_t white = w.scene.material(vec3(0.7f), vec3(0), true);
+         w.room({-1, -1, -1}, {1, 1, 3});
+         w.scene.quad({-1, -1, 1}, {0.999f, 0, 0}, {0, 2, 0}, white);
+         w.scene.quad({0.001f, -1, 1}, {0.999f, 0, 0}, {0, 2, 0}, white);
+         w.lamp({0, 0, 2.9f}, 10);
+         w.scene.camera = look({0, 0, 0.9f}, {0, 0, -1});
+       },
+       {0, 0.5}},
+      // Surfaces.
+      {"Degenerate", "triangles without area, and every triangle twice",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         for (Mesh& mesh : w.scene.assets.meshes) {
+           mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 2}, {0, 2, 3}, {0, 0, 1}, {2, 2, 2}});
+           mesh.primitives[0].triangleCount = 6;
+         }
+       },
+       kRoom},
+      {"Mirrored", "instances of negative scale: the front is still the front",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         for (uint32_t i = 0; i < 6; ++i) w.place(i, glm::scale(mat4(1), vec3(-1, 1, 1)));
+       },
+       kRoom},
+      {"Flattened",
+       "an object scaled to nothing and to a sheet in turn",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.box(vec3(-0.2f), vec3(0.2f), w.scene.material(vec3(0.5f)), false);
+         w.step = [&w](int frame) {
+           for (uint32_t i = 6; i < 12; ++i) w.place(i, glm::scale(mat4(1), vec3(1, frame % 2 ? 1e-6f : 1, 1)));
+         };
+       },
+       {0.3, 2}},
+      // Eyes.
+      {"EyeInAWall",
+       "the camera sees back sides only",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.camera = look({0, 0, 1.5f}, vec3(0));
+       },
+       {0, 5}},
+      {"FacingTheSky",
+       "not one surface in view",
+       [](HardWorld& w) {
+         w.scene.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, w.scene.material(vec3(0.7f)));
+         w.scene.sky = Sky(vec3(1));
+         w.scene.camera = look({0, 1, 0}, {0, 2, -0.01f});
+       },
+       {0, 0}},
+      {"Teleport",
+       "no frame sees what the one before saw",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.frames = 6;
+         w.step = [&w](int frame) {
+           const float side = frame % 2 ? -0.9f : 0.9f;
+           w.scene.camera = look({side, 0.1f, side}, {-side, -0.1f, -side});
+         };
+       },
+       {0.3, 2}},
+      {"NarrowView",
+       "a field of view of 0.1°",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.camera.fovY = glm::radians(0.1f);
+       },
+       {0.3, 2}},
+      {"WideView",
+       "a field of view of 179°",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.camera.fovY = glm::radians(179.0f);
+       },
+       {0.3, 2}},
+      {"OnePixel",
+       "a picture of 1×1",
+       [](HardWorld& w) { roomOf(w, 1), w.scene.camera.width = w.scene.camera.height = 1; },
+       {0.1, 3}},
+      {"SevenByFive",
+       "a picture that 4×4 subsets do not divide",
+       [](HardWorld& w) { roomOf(w, 1), w.scene.camera.width = 7, w.scene.camera.height = 5; },
+       {0.3, 2}},
+      {"Resized",
+       "another size in every frame",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.frames = 5;
+         w.step = [&w](int frame) { w.scene.camera.width = 9 * frame + 3, w.scene.camera.height = 37 - 8 * frame; };
+       },
+       {0.3, 2}},
+      // What comes and goes.
+      {"LampsComeAndGo",
+       "another set of lights in every frame",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.frames = 6;
+         w.step = [&w](int frame) {
+           w.scene.lights.clear();
+           for (int i = 0; i < frame % 3; ++i) w.lamp({0.2f * float(i), 0.3f, 0.2f}).id = uint32_t(10 * frame + i);
+         };
+       },
+       {0, 4}},
+      {"ObjectsComeAndGo",
+       "a block is there in every other frame",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.box(vec3(-0.3f), vec3(0.3f), w.scene.material(vec3(0.5f)), false);
+         w.frames = 6;
+         w.step = [&w, block = std::vector<InstanceView>(w.scene.instances.begin() + 6, w.scene.instances.end())](
+                      int frame) {
+           w.scene.instances.resize(6);
+           if (frame % 2 == 0) w.scene.instances.insert(w.scene.instances.end(), block.begin(), block.end());
+           w.addedOrRemoved = {Aabb{vec3(-0.3f), vec3(0.3f)}};
+         };
+       },
+       {0.2, 2}},
+      {"AllLightsRide",
+       "every virtual light is on one object, and that moves",
+       [](HardWorld& w) {
+         w.room(vec3(-1), vec3(1), vec3(0));
+         w.scene.quad({-0.5f, -0.9f, 0.5f}, {1, 0, 0}, {0, 0, -1}, w.scene.material(vec3(0.9f)));
+         w.lamp({0, 0, 0});
+         w.frames = 6;
+         w.step = [&w](int frame) {
+           w.place(6, glm::translate(mat4(1), vec3(0.05f * float(frame), 0.02f * float(frame), 0)));
+         };
+       },
+       {0.01, 1}},
+      {"HugeSteps",
+       "an object jumps through the room, out of it, and far away",
+       [](HardWorld& w) {
+         roomOf(w, 1);
+         w.scene.box(vec3(-0.2f), vec3(0.2f), w.scene.material(vec3(0.5f)), false);
+         w.frames = 5;
+         w.step = [&w](int frame) {
+           for (uint32_t i = 6; i < 12; ++i) w.place(i, glm::translate(mat4(1), vec3(0, frame % 2 ? 1e5f : 0.0f, 0)));
+         };
+       },
+       {0.2, 2}},
+      // Settings at their ends.
+      {"OneVpl",
+       "N = 1",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.vpls", "1"}});
+       },
+       {0, 10}},
+      {"ThreeVpls",
+       "N = 3: fewer lights than neighbours and subsets",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.vpls", "3"}});
+       },
+       {0.05, 5}},
+      {"MoreNeighboursThanLights",
+       "k = 1024 of 16",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.vpls", "16"}, {"smc.density", "knn"}, {"smc.neighbours", "1024"}});
+       },
+       {0.01, 20}},
+      {"NoMoves", "M_max = 0",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.moves", "0"}});
+       },
+       kRoom},
+      {"AllMove",
+       "M_max = N",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.moves", "64"}});
+       },
+       {0.35, 1.8, 0.8}},
+      {"NoBounce",
+       "B = 0: direct light alone",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.bounces", "0"}});
+       },
+       {0, 0}},
+      {"ManyBounces",
+       "B = 32",
+       [](HardWorld& w) {
+         roomWith(w, {{"smc.bounces", "32"}});
+       },
+       {0.4, 3}},
+      {"NoBoundOfEnergy",
+       "1/r² as it is: no disk, no rays for what it takes",
+       [](HardWorld& w) {
+         roomWith(w, {{"gather.disk", "0"}, {"gather.near", "0"}});
+       },
+       {0.2, 20}},
+      {"NoHistory",
+       "every picture by itself",
+       [](HardWorld& w) {
+         roomWith(w, {{"history.frames", "0"}});
+       },
+       {0.3, 2}},
+  };
+  return cases;
+}
+
+} // namespace lambent::test

@@ -1,0 +1,70 @@
+// Every hard case with every technique: all that can be read is finite and not negative, energy lies between bounds,
+// frames follow each other, the set of virtual lights is whole, and GL has nothing to say.
+#include "engine/core/error.h"
+#include "gi/measure/runs/whole.h"
+#include "hard_case.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace lambent::test {
+namespace {
+
+class HardTest : public GlTest, public ::testing::WithParamInterface<HardCase> {};
+
+double meanOf(const Image& image) {
+  double sum = 0;
+  for (const vec3& p : image.pixels) sum += (double(p.x) + p.y + p.z) / 3;
+  return image.pixels.empty() ? 0 : sum / double(image.pixels.size());
+}
+
+double changeOf(const Image& a, const Image& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i)
+    sum += glm::length(dvec3(a.pixels[i]) - dvec3(b.pixels[i])) / std::sqrt(3.0);
+  return sum / double(a.pixels.size());
+}
+
+/// Runs a case with one technique, or with the settings as they are.
+void run(const HardCase& c, const char* technique) {
+  SCOPED_TRACE(std::string(technique) + ": " + c.reason);
+  HardWorld w;
+  c.make(w);
+  applyTechnique(w.settings, technique);
+  if (!whyNot(w.settings).empty()) return; // what the case asks for does not go with the technique
+  GiFrame gi(w.settings);
+  Image last, before;
+  for (int frame = 0; frame < w.frames; ++frame) {
+    w.addedOrRemoved.clear();
+    for (InstanceView& i : w.scene.instances) i.moved = false;
+    if (frame > 0 && w.step) w.step(frame);
+    SceneView view = w.scene.view();
+    const bool all = frame == 0 || w.step;
+    view.changes = {frame == 0, all, all, all, frame == 0 || !w.addedOrRemoved.empty()};
+    view.addedOrRemoved = w.addedOrRemoved;
+    for (LightView& l : w.scene.lights) l.changed = all;
+    gi.run(view);
+    ASSERT_EQ(defectOf(gi, w.settings), "") << "frame " << frame;
+    before = std::move(last);
+    last = gi.read(Buffer::Irradiance);
+  }
+  const double mean = meanOf(last);
+  EXPECT_LE(mean, c.bounds.most * (1 + 1e-6)) << "too much light";
+  if (std::string(technique) != "smc") return;
+  EXPECT_GE(mean, c.bounds.least) << "too little light";
+  if (before.pixels.size() == last.pixels.size() && mean > 0) EXPECT_LE(changeOf(last, before), c.bounds.change * mean);
+}
+
+TEST_P(HardTest, StaysWhole) {
+  for (const Technique& t : techniqueTable()) {
+    run(GetParam(), t.name);
+    if (HasFatalFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, HardTest, ::testing::ValuesIn(hardCases()), [](const auto& info) {
+  std::string name;
+  for (char c : std::string(info.param.name)) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return name;
+});
+
+} // namespace
+} // namespace lambent::test

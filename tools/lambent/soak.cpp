@@ -1,0 +1,177 @@
+// lambent soak SCENE: many frames in which anything may change, through the whole frame. After each all must be whole
+// (gi/measure/runs/whole.h); memory, of the program and of OpenGL, must not grow.
+#include "engine/core/error.h"
+#include "engine/core/rng.h"
+#include "engine/gl/objects.h"
+#include "engine/platform/gl_context.h"
+#include "gi/measure/runs/whole.h"
+#include "tools/lambent/commands.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace lambent {
+
+namespace {
+
+struct SoakOptions {
+  LaunchOptions launch;
+  OutputOptions output;
+  int frames = 2000;
+};
+
+/// Random changes of a stage, the same for the same seed.
+class Edits {
+ public:
+  Edits(Stage& stage, uint32_t seed) : stage_(stage), random_(seed, Stream::Test, 0) {
+    Registry& registry = stage.scene.registry;
+    bounds_ = worldBounds(stage.scene);
+    registry.each<MeshInstance, Transform>([&](Entity e, const MeshInstance&, const Transform& t) {
+      if (!t.matrix) objects_.emplace_back(e, t);
+    });
+    registry.each<PunctualLight>([&](Entity e, const PunctualLight& l) { lights_.emplace_back(e, l.intensity); });
+    stage.cameraGiven = true;
+  }
+
+  /// Some frames change nothing, most one thing, some several.
+  void next(Settings& settings) {
+    for (size_t n = below(4) == 0 ? 0 : 1 + below(3) * below(2); n > 0; --n) edit(settings);
+  }
+
+ private:
+  size_t below(size_t n) { return random_.below(uint32_t(n)); }
+  float between(float lo, float hi) { return lo + (hi - lo) * random_.next(); }
+  vec3 place() {
+    return {between(bounds_.lo.x, bounds_.hi.x), between(bounds_.lo.y, bounds_.hi.y),
+            between(bounds_.lo.z, bounds_.hi.z)};
+  }
+
+  void edit(Settings& settings) {
+    Registry& registry = stage_.scene.registry;
+    CameraView& camera = stage_.camera;
+    switch (below(8)) {
+    case 0: // a cut
+    case 1: {
+      const int width = camera.width, height = camera.height;
+      const vec3 from = place();
+      camera = lookAt(from, place(), between(0.2f, 2));
+      camera.near = 1e-3f * bounds_.diameter();
+      camera.width = width, camera.height = height;
+      break;
+    }
+    case 2:
+      camera.worldFromView[3] += vec4(0.002f * (place() - bounds_.centre()), 0);
+      break;
+    case 3:
+      camera.width = 8 + int(below(64)), camera.height = 5 + int(below(40));
+      break;
+    case 4:
+      if (objects_.empty()) break;
+      if (const auto& [e, home] = objects_[below(objects_.size())]; below(3) == 0)
+        registry.get<Transform>(e) = home;
+      else
+        registry.get<Transform>(e).translation = home.translation + 0.1 * dvec3(place() - bounds_.centre());
+      break;
+    case 5:
+      if (lights_.empty()) break;
+      if (const auto& [e, home] = lights_[below(lights_.size())]; true)
+        registry.get<PunctualLight>(e).intensity = home * std::exp2(between(-4, 4));
+      break;
+    case 6:
+      if (lamps_.size() > below(8)) {
+        registry.destroy(lamps_.back());
+        lamps_.pop_back();
+      } else {
+        LightView lamp;
+        lamp.position = place();
+        lamp.intensity = vec3(0.01f * bounds_.diameter() * bounds_.diameter());
+        lamps_.push_back(addLight(stage_.scene, lamp, "soak"));
+      }
+      break;
+    default:
+      if (below(16) > 0) break;
+      applyTechnique(settings, techniqueTable()[below(techniqueTable().size())]);
+    }
+  }
+
+  Stage& stage_;
+  Rng random_;
+  Aabb bounds_;
+  std::vector<std::pair<Entity, Transform>> objects_;
+  std::vector<std::pair<Entity, vec3>> lights_;
+  std::vector<Entity> lamps_;
+};
+
+double residentMiB() {
+  size_t all = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return double(resident) * double(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+double openGlMiB() {
+  uint64_t bytes = 0;
+  for (const auto& [owner, of] : gl::memoryByOwner()) bytes += of;
+  return double(bytes) / (1 << 20);
+}
+
+/// Largest over the second and over the last quarter of the frames.
+struct Growth {
+  double early = 0, late = 0;
+  void add(double value, int frame, int frames) {
+    if (4 * frame >= frames && 2 * frame < frames) early = std::max(early, value);
+    if (4 * frame >= 3 * frames) late = std::max(late, value);
+  }
+  bool flat() const { return late <= 1.1 * early + 16; } // MiB
+};
+
+void soak(const SoakOptions& options) {
+  const auto stage = openStage(options.launch);
+  say(*stage, options.output.quiet);
+  needPunctualLight(*stage);
+  GlContext context = GlContext::headless();
+  GiFrame gi(stage->settings, stage->seed);
+  Edits edits(*stage, stage->seed);
+  Growth program, openGl;
+  int frame = 0;
+  {
+    Progress progress("soaking", options.output.quiet);
+    for (; frame < options.frames && !interrupted; ++frame) {
+      if (frame > 0) edits.next(gi.settings());
+      const std::string at = "frame " + std::to_string(frame) + ", " + techniqueOf(gi.settings()).name + ": ";
+      gi.run(stage->at(frame / 30.0));
+      if (const std::string defect = defectOf(gi, gi.settings()); !defect.empty()) throw RunError(at + defect);
+      if (glDebugErrors() > 0) throw RunError(at + "OpenGL reported errors (logged above)");
+      program.add(residentMiB(), frame, options.frames);
+      openGl.add(openGlMiB(), frame, options.frames);
+      progress.update(frame + 1, options.frames);
+    }
+  }
+  writeJson(
+      options.output.json,
+      {{"frames", frame}, {"program_mib", {program.early, program.late}}, {"opengl_mib", {openGl.early, openGl.late}}});
+  if (!options.output.quiet)
+    std::printf(
+        "%d frames whole; largest in the second and in the last quarter: program %.0f and %.0f MiB, OpenGL %.1f "
+        "and %.1f MiB\n",
+        frame, program.early, program.late, openGl.early, openGl.late);
+  if (interrupted) throw RunError("interrupted: " + std::to_string(frame) + " frames were whole");
+  if (!program.flat() || !openGl.flat()) throw RunError("memory grows (figures above)");
+}
+
+} // namespace
+
+void declareSoak(CLI::App& app) {
+  auto options = std::make_shared<SoakOptions>();
+  CLI::App* command =
+      app.add_subcommand("soak", "many frames in which anything changes: each is checked, memory must not grow");
+  command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
+  addLaunchOptions(*command, options->launch);
+  addOutputOptions(*command, options->output, "");
+  command->add_option("--frames", options->frames, "so many (2000)")->check(CLI::Range(1, 100000000));
+  command->callback([options] { soak(*options); });
+}
+
+} // namespace lambent
