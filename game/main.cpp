@@ -10,6 +10,7 @@
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 #include "tools/launch/launch.h"
+#include "tools/launch/streams.h"
 
 #include <epoxy/gl.h>
 

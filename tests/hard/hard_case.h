@@ -2,6 +2,7 @@
 // world, and between what its light must lie. All run with every technique (hard_test.cpp).
 #pragma once
 
+#include "engine/scene/scene.h"
 #include "gi/plan/settings.h"
 #include "tests/support/hand_scene.h"
 
@@ -29,10 +30,12 @@ struct HardWorld {
 
 /// Of the mean irradiance by indirect light, W/m², in the last frame.
 struct HardBounds {
-  double least = 0;                                      // of smc
-  double most = std::numeric_limits<double>::infinity(); // of every technique
+  double least = 0; // of smc
+  double most =
+      std::numeric_limits<double>::infinity(); // of every technique; a leak: of those that know who sees a light
   double change =
       std::numeric_limits<double>::infinity(); // mean |difference| of the last two frames over the mean, smc
+  bool leak = false;                           // `most` is what may pass through walls
 };
 
 struct HardCase {

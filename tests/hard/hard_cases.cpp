@@ -142,7 +142,7 @@ const std::vector<HardCase>& hardCases() {
          w.lamp(vec3(0));
          w.scene.camera = look({0.5f, 0.5f, 0.9f}, vec3(0));
        },
-       {0, 1e-3}},
+       {.most = 1e-3, .leak = true}},
       {"Wire", "lights on a wire of 0.1 mm: areas that stand for almost nothing",
        [](HardWorld& w) {
          roomOf(w, 1);
@@ -175,13 +175,13 @@ const std::vector<HardCase>& hardCases() {
          w.scene.camera = look({0, 0, 1}, {0, 0, -1});
        },
        {0, 1e-4}},
-      {"TenThousandLamps",
-       "more lights than any loop should run over",
+      {"ManyLamps",
+       "three hundred: more than one block of lights, and trees over them",
        [](HardWorld& w) {
          w.room();
-         for (int i = 0; i < 10000; ++i)
+         for (int i = 0; i < 300; ++i)
            w.lamp(0.9f * vec3(std::sin(float(i) * 12.99f), std::sin(float(i) * 78.23f), std::sin(float(i) * 37.72f)),
-                  1e-4f);
+                  1.0f / 300);
          w.frames = 2;
        },
        {0.3, 2}},
@@ -231,15 +231,21 @@ const std::vector<HardCase>& hardCases() {
        },
        {0, 0.5}},
       // What must not leak.
-      {"TwoRooms", "a wall of 10 cm between light and eye", [](HardWorld& w) { twoRooms(w, 0.1f); }, {0, 8e-4}},
-      {"PaperWall", "a wall of 0.1 mm between light and eye", [](HardWorld& w) { twoRooms(w, 1e-4f); }, {0, 8e-4}},
+      {"TwoRooms",
+       "a wall of 10 cm between light and eye",
+       [](HardWorld& w) { twoRooms(w, 0.1f); },
+       {.most = 8e-4, .leak = true}},
+      {"PaperWall",
+       "a wall of 0.1 mm between light and eye",
+       [](HardWorld& w) { twoRooms(w, 1e-4f); },
+       {.most = 8e-4, .leak = true}},
       {"LitOnBothSides",
        "a sheet of paper between two lamps of unlike strength",
        [](HardWorld& w) {
          twoRooms(w, 1e-4f);
          w.lamp({-0.2f, 0.3f, 0}, 0.01f);
        },
-       {0.0035, 0.019, 0.6}},
+       {0.0035, 0.019, 0.6, true}},
       {"Slit",
        "light through 2 mm from far behind",
        [](HardWorld& w) {
@@ -317,7 +323,7 @@ const std::vector<HardCase>& hardCases() {
          roomOf(w, 1);
          w.scene.camera.fovY = glm::radians(179.0f);
        },
-       {0.3, 2}},
+       {0.25, 2}},
       {"OnePixel",
        "a picture of 1×1",
        [](HardWorld& w) { roomOf(w, 1), w.scene.camera.width = w.scene.camera.height = 1; },

@@ -47,7 +47,8 @@ void run(const HardCase& c, const char* technique) {
     last = gi.read(Buffer::Irradiance);
   }
   const double mean = meanOf(last);
-  EXPECT_LE(mean, c.bounds.most * (1 + 1e-6)) << "too much light";
+  if (!c.bounds.leak || axesOf(w.settings).visibility != VplVisibility::None)
+    EXPECT_LE(mean, c.bounds.most * (1 + 1e-6)) << "too much light";
   if (std::string(technique) != "smc") return;
   EXPECT_GE(mean, c.bounds.least) << "too little light";
   if (before.pixels.size() == last.pixels.size() && mean > 0) EXPECT_LE(changeOf(last, before), c.bounds.change * mean);
@@ -65,6 +66,41 @@ INSTANTIATE_TEST_SUITE_P(Cases, HardTest, ::testing::ValuesIn(hardCases()), [](c
   for (char c : std::string(info.param.name)) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
 });
+
+class WalkIn : public GlTest {};
+
+/// The set that a camera brings along gives the light of one that begins where it arrives.
+TEST_F(WalkIn, GivesTheLightOfAFreshStart) {
+  HardWorld w;
+  w.room({-1, -1, -6}, {1, 1, 1}); // its far end is not seen at first
+  w.lamp({0, 0.6f, -5}, 4);
+  w.lamp({0, 0.6f, 0.5f}, 1);
+  w.settings.smc.vpls = 512;
+  w.settings.smc.points = 512;
+  w.settings.smc.moves = 64;
+  const CameraView there = lookAt({0.1f, 0, -3}, {0, -0.1f, -6}, 1.2f);
+  const auto meanAfter = [&](bool walks, uint32_t seed) {
+    GiFrame gi(w.settings, seed);
+    double mean = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      const float way = walks ? std::min(1.0f, float(frame) / 30) : 1;
+      w.scene.camera =
+          lookAt(glm::mix(vec3(0.1f, 0, 0.9f), there.position(), way), {0, -0.1f, walks && way < 0.2f ? 6 : -6}, 1.2f);
+      w.scene.camera.width = 32, w.scene.camera.height = 18;
+      SceneView view = w.scene.view();
+      const bool moves = walks && frame <= 31;
+      view.changes = {frame == 0, frame == 0 || moves, frame == 0, frame == 0, frame == 0};
+      for (LightView& l : w.scene.lights) l.changed = frame == 0;
+      gi.run(view);
+      EXPECT_EQ(defectOf(gi, w.settings), "");
+      if (frame >= 50) mean += meanOf(gi.read(Buffer::Irradiance)) / 10;
+    }
+    return mean;
+  };
+  double walked = 0, fresh = 0;
+  for (uint32_t seed = 1; seed <= 4; ++seed) walked += meanAfter(true, seed), fresh += meanAfter(false, seed);
+  EXPECT_NEAR(walked, fresh, 0.05 * fresh);
+}
 
 } // namespace
 } // namespace lambent::test
