@@ -69,8 +69,13 @@ void roomWith(HardWorld& w, std::initializer_list<std::pair<const char*, const c
   for (const auto& [name, value] : set) applySetting(w.settings, name, value);
 }
 
+/// Maps as fine as leaks ask for: at 32² the texels at a wall's edge let 0.2 to 0.4 % of the light of ir's few lights
+/// through, at 64² a quarter of that, at 128² 0.005 %.
+void fineMaps(HardWorld& w) { w.settings.shadow.resolution = 128; }
+
 /// Two rooms side by side, a wall of this thickness between them; the lamp in the one that the camera is not in.
 void twoRooms(HardWorld& w, float wall) {
+  fineMaps(w);
   w.room(vec3(-1), vec3(1));
   w.room(vec3(1 + wall, -1, -1), vec3(3 + wall, 1, 1));
   w.lamp({2 + wall, 0.3f, 0});
@@ -131,8 +136,9 @@ const std::vector<HardCase>& hardCases() {
          w.room();
          w.scene.box(vec3(-1.2f), vec3(1.2f), w.scene.material(vec3(0.7f)), false);
          w.lamp({-1.1f, 0, 0});
+         fineMaps(w);
        },
-       {0, 1e-4}},
+       {.most = 1e-4, .leak = true}},
       {"LampInABox",
        "a lit box that nothing leaves",
        [](HardWorld& w) {
@@ -243,9 +249,9 @@ const std::vector<HardCase>& hardCases() {
        "a sheet of paper between two lamps of unlike strength",
        [](HardWorld& w) {
          twoRooms(w, 1e-4f);
-         w.lamp({-0.2f, 0.3f, 0}, 0.01f);
+         w.lamp({-0.2f, 0.3f, 0}, 0.1f);
        },
-       {0.0035, 0.019, 0.6, true}},
+       {0.035, 0.18, 0.6, true}},
       {"Slit",
        "light through 2 mm from far behind",
        [](HardWorld& w) {
@@ -256,7 +262,7 @@ const std::vector<HardCase>& hardCases() {
          w.lamp({0, 0, 2.9f}, 10);
          w.scene.camera = look({0, 0, 0.9f}, {0, 0, -1});
        },
-       {0, 0.5}},
+       {.most = 0.5, .leak = true}},
       // Surfaces.
       {"Degenerate", "triangles without area, and every triangle twice",
        [](HardWorld& w) {
@@ -369,15 +375,16 @@ const std::vector<HardCase>& hardCases() {
       {"AllLightsRide",
        "every virtual light is on one object, and that moves",
        [](HardWorld& w) {
-         w.room(vec3(-1), vec3(1), vec3(0));
-         w.scene.quad({-0.5f, -0.9f, 0.5f}, {1, 0, 0}, {0, 0, -1}, w.scene.material(vec3(0.9f)));
-         w.lamp({0, 0, 0});
+         w.room();
+         w.scene.quad({-0.8f, -0.9f, 0.8f}, {1.6f, 0, 0}, {0, 0, -1.6f}, w.scene.material(vec3(0.9f)));
+         spot(w.lamp({0, 0.5f, 0}, 20), {0, -1, 0}, 0.95f);
+         w.settings.smc.bounces = 1;
          w.frames = 6;
          w.step = [&w](int frame) {
            w.place(6, glm::translate(mat4(1), vec3(0.05f * float(frame), 0.02f * float(frame), 0)));
          };
        },
-       {0.01, 1}},
+       {0.1, 0.6, 1}},
       {"HugeSteps",
        "an object jumps through the room, out of it, and far away",
        [](HardWorld& w) {
