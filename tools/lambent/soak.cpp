@@ -37,8 +37,8 @@ class Edits {
   }
 
   /// Some frames change nothing, most one thing, some several.
-  void next(Settings& settings) {
-    for (size_t n = below(4) == 0 ? 0 : 1 + below(3) * below(2); n > 0; --n) edit(settings);
+  void next() {
+    for (size_t n = below(4) == 0 ? 0 : 1 + below(3) * below(2); n > 0; --n) edit();
   }
 
  private:
@@ -49,10 +49,10 @@ class Edits {
             between(bounds_.lo.z, bounds_.hi.z)};
   }
 
-  void edit(Settings& settings) {
+  void edit() {
     Registry& registry = stage_.scene.registry;
     CameraView& camera = stage_.camera;
-    switch (below(8)) {
+    switch (below(7)) {
     case 0: // a cut
     case 1: {
       const int width = camera.width, height = camera.height;
@@ -66,7 +66,7 @@ class Edits {
       camera.worldFromView[3] += vec4(0.002f * (place() - bounds_.centre()), 0);
       break;
     case 3:
-      camera.width = 8 + int(below(64)), camera.height = 5 + int(below(40));
+      camera.width = 3 + int(below(40)), camera.height = 2 + int(below(24));
       break;
     case 4:
       if (objects_.empty()) break;
@@ -80,7 +80,7 @@ class Edits {
       if (const auto& [e, home] = lights_[below(lights_.size())]; true)
         registry.get<PunctualLight>(e).intensity = home * std::exp2(between(-4, 4));
       break;
-    case 6:
+    default:
       if (lamps_.size() > below(8)) {
         registry.destroy(lamps_.back());
         lamps_.pop_back();
@@ -91,9 +91,6 @@ class Edits {
         lamps_.push_back(addLight(stage_.scene, lamp, "soak"));
       }
       break;
-    default:
-      if (below(16) > 0) break;
-      applyTechnique(settings, techniqueTable()[below(techniqueTable().size())]);
     }
   }
 
@@ -115,6 +112,12 @@ double openGlMiB() {
   uint64_t bytes = 0;
   for (const auto& [owner, of] : gl::memoryByOwner()) bytes += of;
   return double(bytes) / (1 << 20);
+}
+
+/// Each technique is at work eight times, twice in each quarter of the frames.
+const Technique& techniqueAt(int frame, int frames) {
+  const int64_t count = int64_t(techniqueTable().size());
+  return techniqueTable()[size_t(8 * count * frame / frames % count)];
 }
 
 /// Largest over the second and over the last quarter of the frames.
@@ -139,7 +142,8 @@ void soak(const SoakOptions& options) {
   {
     Progress progress("soaking", options.output.quiet);
     for (; frame < options.frames && !interrupted; ++frame) {
-      if (frame > 0) edits.next(gi.settings());
+      if (frame > 0) edits.next();
+      applyTechnique(gi.settings(), techniqueAt(frame, options.frames));
       const std::string at = "frame " + std::to_string(frame) + ", " + techniqueOf(gi.settings()).name + ": ";
       gi.run(stage->at(frame / 30.0));
       if (const std::string defect = defectOf(gi, gi.settings()); !defect.empty()) throw RunError(at + defect);
