@@ -34,6 +34,21 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
     }
 }
 
+/// Eye, pixel and light are on one axis, so that the light is on the shaded point to the last bit.
+TEST_F(IndirectTest, AVplOnTheShadedPointIsNoDivisionByZero) {
+  HandScene scene;
+  scene.quad({-4, -4, -2}, {8, 0, 0}, {0, 8, 0}, scene.material(vec3(0.5f)));
+  scene.camera = cameraAt(vec3(0), {0, 0, -1}, 1, 17, 17);
+  const GBuffer gbuffer = surfaces(scene);
+  Settings settings = with(GatherMode::Full);
+  settings.gather.disk = 0;
+  for (const float side : {1.0f, -1.0f}) {
+    const std::vector lights{lamp({0, 0, -2}, {0, 0, side}, 4, 0.2f)};
+    const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, lights, settings));
+    EXPECT_EQ(image.at(8, 8), vec3(0)) << side;
+  }
+}
+
 /// 40 VPLs that make every class of 16 different, over several sizes that 4 does not divide.
 TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
   Floor floor;

@@ -4,6 +4,7 @@
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"
 #include "tools/lambent/commands.h"
+#include "tools/lambent/conditions.h"
 #include "tools/lambent/text.h"
 
 #include <sys/resource.h>
@@ -27,7 +28,7 @@ struct RecordOptions {
   OutputOptions output;
   std::string buffer = "beauty", format = "png";
   int frames = 0; // 0 = the whole shot
-  bool video = false;
+  bool video = false, resume = false;
   std::optional<double> targetMs;
 };
 
@@ -84,6 +85,35 @@ class FrameLog {
   std::array<bool, kStages> stages_{}; // that ran in any frame
 };
 
+/// In the folder: whose pictures they are, and how many are whole.
+class Mark {
+ public:
+  Mark(const fs::path& folder, std::string conditions)
+      : file_(folder / "recording.json"), conditions_(std::move(conditions)) {}
+
+  /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.
+  int kept() const {
+    const nlohmann::json mark = nlohmann::json::parse(std::ifstream(file_), nullptr, false);
+    if (mark.is_discarded()) return 0;
+    if (mark.value("conditions", "") != conditions_)
+      throw InputError("--resume", file_.parent_path().string() + " holds a recording of another shot, size, buffer, " +
+                                       "setting or program (without --resume it is recorded anew)");
+    return mark.value("frames", 0);
+  }
+
+  void write(int frames) const {
+    writeAtomically(file_, [&](const fs::path& temporary) {
+      std::ofstream out(temporary);
+      out << nlohmann::json{{"conditions", conditions_}, {"frames", frames}} << '\n';
+      if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
+    });
+  }
+
+ private:
+  const fs::path file_;
+  const std::string conditions_;
+};
+
 /// A path as ffmpeg's image readers take it: neither an option nor a pattern of its own.
 std::string forFfmpeg(const fs::path& path) {
   std::string out;
@@ -130,6 +160,8 @@ void record(const RecordOptions& options) {
   if (options.video && options.format != "png") throw InputError("--video", "needs --format png");
   if (options.targetMs && options.format == "exr")
     throw InputError("--target-ms", "changes the size at which pictures are computed (--format png or none)");
+  if (options.targetMs && options.resume)
+    throw InputError("--resume", "cannot go on with --target-ms: what a frame costs is never the same");
   const auto stage = openStage(options.launch);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   say(*stage, options.output.quiet);
@@ -141,6 +173,9 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
+  const Mark mark(folder, conditionsOf(*stage, options.launch, options.buffer + options.format));
+  const int kept = options.resume ? mark.kept() : 0;
+  if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
   FrameLog log;
@@ -155,10 +190,11 @@ void record(const RecordOptions& options) {
       if (governor) stage->camera = whole.scaled(governor->scale);
       const FrameStats& stats = gi.run(stage->at(t));
       const auto begin = std::chrono::steady_clock::now();
-      if (options.format != "none") {
+      if (options.format != "none" && done >= kept) { // frames of before are computed: later ones build on them
         char name[32];
         std::snprintf(name, sizeof name, "%06d.%s", done, options.format.c_str());
         writeBuffer((folder / name).string(), gi, buffer, whole.width, whole.height);
+        mark.write(done + 1);
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
       log.add(t, stats, writing.count(), governor ? &*governor : nullptr);
@@ -186,7 +222,9 @@ void record(const RecordOptions& options) {
                 done, total, log.framesPerSecond(), peakMemoryMiB());
     if (!video.empty()) std::printf("video: %s\n", video.c_str());
   }
-  if (interrupted) throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole");
+  if (interrupted)
+    throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole" +
+                   (options.targetMs ? "" : " (--resume goes on)"));
 }
 
 } // namespace
@@ -201,6 +239,9 @@ void declareRecord(CLI::App& app) {
   command->add_option("--format", options->format, "png, exr or none (default png)");
   command->add_option("--frames", options->frames, "only the first so many")->check(CLI::Range(1, 1000000));
   command->add_flag("--video", options->video, "also make video.mp4 with ffmpeg");
+  command->add_flag("--resume", options->resume,
+                    "go on where the same command was interrupted: pictures that are there stay, frames before them "
+                    "are computed but not written");
   command
       ->add_option(
           "--target-ms", options->targetMs,

@@ -9,6 +9,7 @@
 #include "gi/measure/stability.h"
 #include "gi/plan/techniques.h"
 #include "gi/reference/traced_picture.h"
+#include "tools/lambent/conditions.h"
 #include "tools/lambent/text.h"
 
 #include <algorithm>
@@ -26,27 +27,6 @@ namespace {
 constexpr int kGrid = 16;            // watched pixels besides the shot's own, squared
 constexpr int kBetweenControls = 10; // runs
 constexpr int kControlSeeds = 4;     // of the default: what chance does to an error
-
-uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
-  for (char c : text) hash = mix64(hash ^ uint8_t(c));
-  return hash;
-}
-
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// The program with its shaders: what another one measured is not ours.
-uint64_t hashOfProgram() {
-  uint64_t hash = hashOf(textOf("/proc/self/exe"));
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& e : fs::recursive_directory_iterator(gl::findShaderFolder()))
-    if (e.is_regular_file()) files.push_back(e.path());
-  std::ranges::sort(files);
-  for (const fs::path& file : files) hash = hashOf(textOf(file), hash);
-  return hash;
-}
 
 /// Lines of JSON that are kept as they come. A line that a kill left half written is left out.
 class RunLog {
@@ -102,8 +82,9 @@ class SceneSweep {
     punctual_ = std::ranges::any_of(stage_->at(0).lights,
                                     [](const LightView& light) { return maxComponent(light.intensity) > 0; });
     out_.name = name_;
-    conditions_ = format("%016llx", (unsigned long long)hashOf(launch.size + file + textOf(file) + conditionsOf(launch),
-                                                               hashOfProgram()));
+    conditions_ =
+        conditionsOf(*stage_, launch,
+                     format("%d %d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow, launch.threads));
     out_.pictures = folder_ / ("pictures-" + name_ + "-" + conditions_); // not beside another program's
     reportFolder(out_.pictures.string(), {});
   }
@@ -138,16 +119,6 @@ class SceneSweep {
   }
 
  private:
-  /// Whatever else a result depends on.
-  std::string conditionsOf(const LaunchOptions& l) const {
-    std::string text = format("%d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow) + l.camera + l.eye +
-                       l.target + l.sky + l.daylight + l.sceneName + format("%u %d", l.seed, l.threads);
-    for (const SettingRow& row : settingsTable()) text += " " + settingText(stage_->settings, row.name);
-    for (const auto* list : {&l.suns, &l.points})
-      for (const std::string& light : *list) text += " " + light;
-    return text + textOf(stage_->scene.file);
-  }
-
   static size_t controls(const RunLog& log) {
     return size_t(std::ranges::count_if(log.runs(), [](const nlohmann::json& run) { return run.contains("control"); }));
   }

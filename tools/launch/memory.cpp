@@ -12,7 +12,8 @@ namespace lambent {
 namespace {
 
 constexpr size_t kUnknown = std::numeric_limits<size_t>::max();
-/// Of a frame with all that the defaults ask for, and of what reads it back (measured at 1920x1080 on llvmpipe).
+/// Of a frame with all that the defaults ask for, and of what reads it back; measured: 346 (1920x1080 less 640x360,
+/// llvmpipe).
 constexpr size_t kBytesPerPixel = 400;
 
 /// The number that a file begins with.
