@@ -305,6 +305,17 @@ const std::vector<HardCase>& hardCases() {
          w.scene.camera = look({0, 1, 0}, {0, 2, -0.01f});
        },
        {0, 0}},
+      {"Horizon",
+       "rays at the height of the eye are parallel to the floor below, and beside them is the sky",
+       [](HardWorld& w) {
+         const uint32_t white = w.scene.material(vec3(0.7f));
+         w.scene.quad({-50, -1, 50}, {100, 0, 0}, {0, 0, -100}, white);
+         w.scene.box({-1.5f, -0.99f, -7}, {-0.5f, -0.2f, -6}, white, false);
+         w.lamp({0.5f, 0.5f, -5}, 20);
+         w.scene.camera = look(vec3(0), {0, 0, -1});
+         w.scene.camera.height = 21; // where that is so to the last bit
+       },
+       {1e-3, 1, 1}},
       {"Teleport",
        "no frame sees what the one before saw",
        [](HardWorld& w) {
