@@ -83,6 +83,7 @@ PhotonSource::PhotonSource(const LightSet& lights, const Aabb& boundsWorld, floa
   for (const Emitter& e : lights.emitters) powers.push_back((e.doubleSided ? 2 : 1) * kPi * e.power);
   const float radius = 0.5f * bounds_.diameter();
   powers.push_back(4 * kPi * kPi * radius * radius * lights.sky.meanLuminance());
+  for (float power : powers) power_ += power;
   choice_ = Distribution(powers);
 }
 

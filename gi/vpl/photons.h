@@ -35,6 +35,8 @@ class PhotonSource {
 
   /// No light has power, or nothing is there to be lit.
   bool empty() const { return choice_.empty(); }
+  /// Of all lights, W as a luminance.
+  float power() const { return power_; }
   /// Requires !empty().
   Photon emit(const PhotonNumbers& u) const;
 
@@ -49,6 +51,7 @@ class PhotonSource {
   Aabb bounds_;
   float grain_;         // of the ray query
   Distribution choice_; // punctual lights, then emitters, then the sky
+  float power_ = 0;
 };
 
 /// Flux that a photon brings to what it met: within the light's range, and seen under the shading normal as the

@@ -88,6 +88,7 @@ struct VplSet {
   std::vector<VplCell> cells;                      // by slot; empty with densities by nearest neighbours
   uint32_t drawings = 0;                           // of cells, so far
   float cellLimit = 0;                             // m: the limit on radii that their densities are for
+  float mostFlux = kInfinity;                      // W as a luminance: no VPL reflects more, see lightsOf
   std::vector<KeptPaths> samplerPaths, lightPaths; // by slot: of samplerRadiance and radiance; empty without path cache
   std::vector<Vpl> pool;                           // candidates that may yet be wanted, oldest first
   std::vector<KeptPaths> poolPaths;                // of their samplerRadiance
@@ -100,14 +101,19 @@ struct VplSet {
   bool sampledLate = false; // something changed while the sampler was left out
 };
 
-/// By slot.
-inline std::vector<VirtualLight> lightsOf(std::span<const Vpl> slots) {
+/// By slot. An estimate of radiance that met a spot much smaller than the area it stands for is right on average, by
+/// one VPL in thousands that would light the whole picture: none reflects more than could arrive. The error is that of
+/// the set that had it; elsewhere nothing is taken.
+inline std::vector<VirtualLight> lightsOf(const VplSet& set) {
   std::vector<VirtualLight> lights;
-  lights.reserve(slots.size());
-  for (const Vpl& v : slots) lights.push_back(lightOf(v));
+  lights.reserve(set.slots.size());
+  for (const Vpl& v : set.slots) {
+    VirtualLight& light = lights.emplace_back(lightOf(v));
+    const float flux = kPi * luminance(light.radiance) * light.area;
+    if (flux > set.mostFlux) light.radiance *= set.mostFlux / flux;
+  }
   return lights;
 }
-inline std::vector<VirtualLight> lightsOf(const VplSet& set) { return lightsOf(set.slots); }
 
 /// What one update did: which slots need a new shadow map, and figures for the frame log.
 struct VplChanges {

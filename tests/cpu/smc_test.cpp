@@ -381,6 +381,18 @@ double shareOfTheRoomsLight(const LightView& lamp) {
   return set / truth;
 }
 
+TEST(Smc, NoVplReflectsMoreThanTheLampsSend) {
+  Room room;
+  room.view.boundsWorld = {{-3, 0, -3}, {3, 3, 3}};
+  room.update();
+  const float lamps = 4 * kPi * luminance(room.lights.punctual[0].intensity); // W
+  EXPECT_NEAR(room.set.mostFlux, lamps * float(room.settings.bounces), 1e-3f * lamps);
+  room.set.slots[0].radiance = vec3(1e6f);
+  const std::vector<VirtualLight> lights = lightsOf(room.set);
+  EXPECT_NEAR(kPi * luminance(lights[0].radiance) * lights[0].area, room.set.mostFlux, 1e-3f * room.set.mostFlux);
+  for (size_t i = 1; i < lights.size(); ++i) ASSERT_EQ(lights[i].radiance, room.set.slots[i].radiance);
+}
+
 TEST(Smc, TheSetCarriesTheRoomsLight) {
   // The set spreads VPLs apart, where the nearest neighbour alone would find 35 % too much light.
   LightView lamp;

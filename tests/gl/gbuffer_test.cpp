@@ -56,6 +56,21 @@ TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
   EXPECT_NEAR(normal.at(32, 47).y, 1, 1e-3f);
 }
 
+/// The product of what positions differ by between pixels is nothing in single precision; a direction is still needed.
+TEST_F(GBufferTest, PixelsOfALengthWithoutSquareHaveNormals) {
+  SurfacePass pass(passes);
+  HandScene scene;
+  scene.quad({-4e-11f, -4e-11f, -2e-11f}, {8e-11f, 0, 0}, {0, 8e-11f, 0}, scene.material(vec3(0.5f)));
+  scene.assets.meshes[0].normals.assign(4, vec3(1, 0, 0)); // no help
+  scene.camera = cameraAt(vec3(0), {0, 0, -1}, 1);
+  scene.camera.near = 1e-13f;
+  GpuScene gpu(programs, scene.assets);
+  const FrameResults frame = drawn(pass, gpu, scene);
+  const Image normal = readBuffer(Buffer::Normal, frame);
+  for (const vec3& n : normal.pixels) ASSERT_NEAR(glm::length(n), 1, 1e-3f);
+  EXPECT_GT(readBuffer(Buffer::Depth, frame).at(32, 24).x, 0);
+}
+
 TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   HandScene scene;
   const uint32_t single = scene.material(vec3(0.5f), vec3(2)), twofold = scene.material(vec3(0.5f), vec3(3), true);

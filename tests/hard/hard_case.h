@@ -13,10 +13,11 @@ namespace lambent::test {
 
 /// A world that may change from frame to frame.
 struct HardWorld {
-  HardWorld();
+  /// Few lights and small maps, or what the preset says.
+  explicit HardWorld(const char* preset = nullptr);
 
   HandScene scene;
-  Settings settings; // few lights, small maps
+  Settings settings;
   int frames = 3;
   std::function<void(int frame)> step; // before each frame but the first; what it changes, all may be
   std::vector<Aabb> addedOrRemoved;    // by the step
@@ -44,5 +45,7 @@ struct HardCase {
   HardBounds bounds;
 };
 const std::vector<HardCase>& hardCases();
+/// Those that take minutes: with LAMBENT_LONG alone.
+const std::vector<HardCase>& longCases();
 
 } // namespace lambent::test

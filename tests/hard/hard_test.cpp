@@ -2,6 +2,7 @@
 // frames follow each other, the set of virtual lights is whole, and GL has nothing to say.
 #include "engine/core/error.h"
 #include "gi/measure/runs/whole.h"
+#include "gi/plan/presets.h"
 #include "hard_case.h"
 #include "tests/gl/gl_fixture.h"
 
@@ -23,10 +24,9 @@ double changeOf(const Image& a, const Image& b) {
   return sum / double(a.pixels.size());
 }
 
-/// Runs a case with one technique, or with the settings as they are.
-void run(const HardCase& c, const char* technique) {
-  SCOPED_TRACE(std::string(technique) + ": " + c.reason);
-  HardWorld w;
+void run(const HardCase& c, const char* technique, const char* preset = nullptr) {
+  SCOPED_TRACE(std::string(preset ? preset : "") + ' ' + technique + ": " + c.reason);
+  HardWorld w(preset);
   c.make(w);
   applyTechnique(w.settings, technique);
   if (!whyNot(w.settings).empty()) return; // what the case asks for does not go with the technique
@@ -42,16 +42,20 @@ void run(const HardCase& c, const char* technique) {
     view.addedOrRemoved = w.addedOrRemoved;
     for (LightView& l : w.scene.lights) l.changed = all;
     gi.run(view);
+    if (frame % 1000 >= 100 && frame + 2 < w.frames) continue; // of very many, some
     ASSERT_EQ(defectOf(gi, w.settings), "") << "frame " << frame;
     before = std::move(last);
     last = gi.read(Buffer::Irradiance);
   }
   const double mean = meanOf(last);
-  if (!c.bounds.leak || axesOf(w.settings).visibility != VplVisibility::None)
+  if (!c.bounds.leak || axesOf(w.settings).visibility != VplVisibility::None) {
     EXPECT_LE(mean, c.bounds.most * (1 + 1e-6)) << "too much light";
+  }
   if (std::string(technique) != "smc") return;
   EXPECT_GE(mean, c.bounds.least) << "too little light";
-  if (before.pixels.size() == last.pixels.size() && mean > 0) EXPECT_LE(changeOf(last, before), c.bounds.change * mean);
+  if (before.pixels.size() == last.pixels.size() && mean > 0) {
+    EXPECT_LE(changeOf(last, before), c.bounds.change * mean);
+  }
 }
 
 TEST_P(HardTest, StaysWhole) {
@@ -61,11 +65,27 @@ TEST_P(HardTest, StaysWhole) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, HardTest, ::testing::ValuesIn(hardCases()), [](const auto& info) {
+bool isLong() { return std::getenv("LAMBENT_LONG") != nullptr; }
+
+TEST_P(HardTest, StaysWholeWithEveryPreset) {
+  if (!isLong()) GTEST_SKIP() << "takes minutes: LAMBENT_LONG=1 runs it (tools/test --long)";
+  for (const std::string& preset : presetNames()) run(GetParam(), "smc", preset.c_str());
+}
+
+std::string nameOf(const ::testing::TestParamInfo<HardCase>& info) {
   std::string name;
   for (char c : std::string(info.param.name)) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, HardTest, ::testing::ValuesIn(hardCases()), nameOf);
+
+class LongHardTest : public HardTest {};
+TEST_P(LongHardTest, StaysWhole) {
+  if (!isLong()) GTEST_SKIP() << "takes minutes: LAMBENT_LONG=1 runs it (tools/test --long)";
+  run(GetParam(), "smc");
+}
+INSTANTIATE_TEST_SUITE_P(Cases, LongHardTest, ::testing::ValuesIn(longCases()), nameOf);
 
 class WalkIn : public GlTest {};
 
