@@ -52,7 +52,7 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
   return cosine;
 #else
   vec3 toLight = light.positionRange.xyz - position;
-  float distance2 = max(dot(toLight, toLight), 1e-20);
+  float distance2 = squaredLength(toLight);
   towardsLight = toLight * inversesqrt(distance2);
   cosine = dot(normal, towardsLight);
 #ifdef EMITTER_MAPS
@@ -82,7 +82,7 @@ bool seesSky(vec3 position, vec3 normal) {
 float wideningOf(LightRecord light, vec3 position) {
 #ifdef EMITTER_MAPS
   vec3 fromLight = position - light.positionRange.xyz;
-  float distance2 = max(dot(fromLight, fromLight), 1e-20);
+  float distance2 = squaredLength(fromLight);
   float cosine = max(dot(light.directionTexel.xyz, fromLight) * inversesqrt(distance2), 0.0);
   return lobeSpread(spread, light.positionRange.w, cosine, distance2);
 #else

@@ -29,7 +29,7 @@ void main() {
     return;
   }
   vec3 fromLight = position - lightPosition;
-  float distance2 = max(dot(fromLight, fromLight), 1e-20);
+  float distance2 = squaredLength(fromLight);
   float solidAngle = texelMean;
   if (exact != 0) {
     vec2 lo = (vec2(pixel - origin) * camera.size.zw * 2.0 - 1.0) * camera.lens.xy;

@@ -75,7 +75,7 @@ void main() {
       ivec2 cluster = (origin >> at) + ivec2(evenBits(m >> (2 * shift)), evenBits(m >> (2 * shift + 1)));
       vec4 place = texelFetch(positions, cluster, at);
       vec3 fromLight = position - place.xyz;
-      float distance2 = max(dot(fromLight, fromLight), 1e-20);
+      float distance2 = squaredLength(fromLight);
       if (place.a > 0.0 && at > finest && distance2 <= threshold * place.a) {
         --at;
         continue;

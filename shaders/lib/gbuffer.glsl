@@ -9,3 +9,6 @@ layout(binding = 1) uniform sampler2D gbufferNormal;
 vec3 positionFromDepth(ivec2 pixel, float depth) {
   return (camera.worldFromView * vec4(positionViewFromDepth(camera, vec2(pixel) + 0.5, depth), 1.0)).xyz;
 }
+
+/// Of a way from or to a light, which may stand on what it lights: never 0, so that its direction is a number.
+float squaredLength(vec3 way) { return max(dot(way, way), 1e-20); }

@@ -101,7 +101,7 @@ vec3 inFrame(VplLight light, vec3 lightNormal, vec3 v) {
 /// mask. An empty slot has no power. `layer` is its map's.
 void receive(inout Received sum, Surface s, VplLight light, int layer) {
   vec3 fromLight = s.position - light.positionArea.xyz;
-  float distance2 = max(dot(fromLight, fromLight), 1e-20);
+  float distance2 = squaredLength(fromLight);
   float inverseDistance = inversesqrt(distance2);
   vec3 direction = fromLight * inverseDistance;
   float cosineReceiver = -dot(s.normal, direction);

@@ -1,8 +1,8 @@
 // lambent accuracy SCENE --figure 2.N, 3.N, criterion, upsampling: what papers 2 and 3 draw of light from reflective
 // shadow maps, each figure a row of the table below. Their figs. 9 and 13 of paper 3 are --curve, its table 1 is
 // `bench --multires`.
-#include "gi/measure/scaled_view.h"
 #include "tools/lambent/reflective_figures.h"
+#include "gi/measure/scaled_view.h"
 
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
@@ -213,7 +213,7 @@ std::vector<Plot> plotsOf(const PaperFigure& figure, const nlohmann::json& rows)
   std::vector<Plot> plots;
   for (const std::string& technique : figure.techniques)
     for (const Curve& curve : figure.curves) {
-      Plot plot{technique, xLabel(figure), curve.label, {}, {}, figure.overTime, {}};
+      Plot plot{technique, xLabel(figure), curve.label, {}, {}, figure.overTime, {}, {}};
       for (const nlohmann::json& row : rows) {
         if (row["technique"] != technique || !row.contains("x") || !row.contains(curve.key)) continue;
         const double x = row["x"];

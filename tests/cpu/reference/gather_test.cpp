@@ -49,7 +49,9 @@ struct Room {
     std::vector<Vpl*> all;
     for (Vpl& v : vpls) all.push_back(&v);
     estimateRadiance(all, *rays, lights, 16, kBounces, 1, counts);
-    return lightsOf(vpls);
+    VplSet set;
+    set.slots = std::move(vpls);
+    return lightsOf(set);
   }
 
   /// Mean irradiance of the picture by the reference, and its standard error.

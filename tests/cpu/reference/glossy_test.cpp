@@ -147,8 +147,10 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
       std::vector<Vpl*> all;
       for (Vpl& v : vpls) all.push_back(&v);
       estimateRadiance(all, rays, lights, 16, 2, 1, counts);
+      VplSet whole;
+      whole.slots = std::move(vpls);
       GlossyGather glossy{view, {}};
-      const std::vector<vec3> irradiance = gatherByRays(rays, view.camera, lightsOf(vpls), gather, counts, &glossy);
+      const std::vector<vec3> irradiance = gatherByRays(rays, view.camera, lightsOf(whole), gather, counts, &glossy);
       double sum = 0;
       for (size_t i = 0; i < seen.size(); ++i) {
         const Receiver receiver = receiverOf(view, seen[i]);
