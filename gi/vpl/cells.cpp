@@ -177,7 +177,8 @@ class CellSampler {
         const SurfaceHit& h = hits_[i];
         if (!h.valid()) continue;
         addSides(slot, cell.radius, h);
-        const float step = h.t + 2e-4f * ray.tMax;
+        // Beyond what was met, also where positions are coarse: else it is met, and counts, twice.
+        const float step = h.t + std::max(2e-4f * ray.tMax, 0x1p-20f * maxComponent(glm::abs(h.position)));
         if (step < ray.tMax) batch_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
       }
       batch_.resize(alive);

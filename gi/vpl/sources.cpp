@@ -1,6 +1,7 @@
 #include "gi/vpl/sources.h"
 
 #include "engine/core/error.h"
+#include "gi/vpl/photons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,10 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
     set.source = source;
     set.nextId = nextId;
   }
+  // Every bounce brings a place the lights' power at most.
+  const Aabb& bounds = in.view.boundsWorld;
+  const float power = bounds.empty() ? kInfinity : PhotonSource(in.lights, bounds, 0).power();
+  set.mostFlux = power * float(std::max(1, in.settings.bounces));
   switch (source) {
   case VplSource::Ir:
     return placeByPhotons(set, in, log);

@@ -5,7 +5,6 @@
 #include "gi/vpl/smc.h"
 
 #include "engine/scene/surface_point.h"
-#include "gi/vpl/photons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -396,10 +395,6 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   moved.insert(moved.end(), all.placedSlots.begin(), all.placedSlots.end());
   ascending(moved);
   estimateLight(set, in, since, moved, relight || estimatorChanged, log);
-  // Every bounce brings a place the lights' power at most.
-  const Aabb& bounds = in.view.boundsWorld;
-  const float power = bounds.empty() ? kInfinity : PhotonSource(in.lights, bounds, 0).power();
-  set.mostFlux = power * float(std::max(1, settings.bounces));
   all.movedSlots = std::move(moved);
   all.kept = all.alive - std::min<uint32_t>(all.alive, uint32_t(all.movedSlots.size()));
   mergeStages(log.stages);

@@ -3,6 +3,7 @@
 #include "engine/core/rng.h"
 #include "engine/trace/analytic_query.h"
 #include "gi/vpl/smc.h"
+#include "gi/vpl/sources.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -384,7 +385,7 @@ double shareOfTheRoomsLight(const LightView& lamp) {
 TEST(Smc, NoVplReflectsMoreThanTheLampsSend) {
   Room room;
   room.view.boundsWorld = {{-3, 0, -3}, {3, 3, 3}};
-  room.update();
+  placeVpls(VplSource::Smc, room.set, {room.view, room.rays, room.lights, room.settings, 1}, room.log);
   const float lamps = 4 * kPi * luminance(room.lights.punctual[0].intensity); // W
   EXPECT_NEAR(room.set.mostFlux, lamps * float(room.settings.bounces), 1e-3f * lamps);
   room.set.slots[0].radiance = vec3(1e6f);

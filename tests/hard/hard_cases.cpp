@@ -58,8 +58,9 @@ void HardWorld::place(uint32_t index, const mat4& worldFromObject) {
 
 namespace {
 
-// A lamp of 1 W/sr in the middle of room() sends 4π W to its 24 m²: three bounces at an albedo of 0.7 make 0.80 W/m².
-constexpr HardBounds kRoom{0.35, 1.8, 0.5};
+// A lamp of 1 W/sr in the middle of room() sends 4π W to its 24 m²: three bounces at an albedo of 0.7 make 0.80 W/m²
+// (paths: 0.797 ± 0.0004 from this camera, 0.70 to 0.86 from others).
+constexpr HardBounds kRoom{0.65, 1.05, 0.5};
 
 /// The room and its lamp `unit` times as large, around `centre`.
 void roomOf(HardWorld& w, float unit, const vec3& centre = vec3(0), float light = 1) {
@@ -111,7 +112,7 @@ const std::vector<HardCase>& longCases() {
          lamps(w, 10000);
          w.frames = 2;
        },
-       {0.3, 2}},
+       {0.65, 1.05}},
       {"ManyVpls", "N = 65536: more layers than an array of textures holds",
        [](HardWorld& w) {
          roomWith(w, {{"smc.vpls", "65536"}, {"smc.points", "65536"}, {"shadow.resolution", "16"}});
@@ -124,7 +125,7 @@ const std::vector<HardCase>& longCases() {
          w.scene.camera.width = 8, w.scene.camera.height = 5;
          w.frames = 100000;
        },
-       {0.35, 1.8, 0.01}},
+       {0.65, 1.05, 0.01}},
   };
   return cases;
 }
@@ -139,7 +140,7 @@ const std::vector<HardCase>& hardCases() {
          w.room();
          spot(w.lamp({0, 0.9f, 0}, 100), {0, -1, 0}, 0.9999999f);
        },
-       {0, 0.1, 5}},
+       {0, 1e-3, 5}},
       {"LightsAtTheEye", "lights on the shaded points: 1/r² without bound",
        [](HardWorld& w) {
          roomOf(w, 1);
@@ -156,12 +157,14 @@ const std::vector<HardCase>& hardCases() {
        },
        {0, 1e-5}},
       {"GrazingLamp",
-       "a lamp a tenth of a millimetre above the floor: cosines near 0 over distances near 0",
+       "a lamp a tenth of a millimetre above the floor: half its light falls on a spot that paths from the eye do not "
+       "find "
+       "(they bring 0.43 W/m², photons 0.83)",
        [](HardWorld& w) {
          w.room();
          w.lamp({0, -0.9999f, 0});
        },
-       {0.1, 2.5}},
+       {0.3, 0.6}},
       {"LampInTheCorner",
        "most light falls on three spots of a millimetre; path tracing: 0.40 ± 0.04 W/m² (65,536 paths)",
        [](HardWorld& w) {
@@ -204,14 +207,14 @@ const std::vector<HardCase>& hardCases() {
            w.scene.quad(0.6f * at, {0.05f, 0.01f * at.x, 0}, {0, 0.01f * at.z, -0.05f}, green);
          }
        },
-       {0.1, 2}},
+       {0.55, 1}},
       {"BrightSpeck",
        "a glowing speck of 1 mm² and 10⁶ W/(m² sr)",
        [](HardWorld& w) {
          w.room();
          w.scene.quad({0, 0.5f, 0}, {1e-3f, 0, 0}, {0, 0, 1e-3f}, w.scene.material(vec3(0), vec3(1e6f), true));
        },
-       {0.02, 2}},
+       {0.3, 0.6}},
       {"OneHit",
        "of all camera rays one or none meets a surface",
        [](HardWorld& w) {
@@ -228,16 +231,16 @@ const std::vector<HardCase>& hardCases() {
          w.settings.rsm.resolution = 16; // trees of so many lamps take long
          w.frames = 2;
        },
-       {0.3, 2}},
+       {0.65, 1.05}},
       // How much light there is.
       {"LightOf1e-20",
        "products of small numbers",
        [](HardWorld& w) { roomOf(w, 1, vec3(0), 1e-20f); },
-       {0.35e-20, 1.8e-20, 0.5}},
+       {0.65e-20, 1.05e-20, 0.5}},
       {"LightOf1e30",
        "sums beyond half and near the end of single precision",
        [](HardWorld& w) { roomOf(w, 1, vec3(0), 1e30f); },
-       {0.35e30, 1.8e30, 0.5}},
+       {0.65e30, 1.05e30, 0.5}},
       {"NoLight", "nothing to divide by", [](HardWorld& w) { w.room(); }, {0, 0}},
       {"NoGeometry",
        "nothing to hit",
@@ -259,28 +262,28 @@ const std::vector<HardCase>& hardCases() {
          w.room(vec3(-1), vec3(1), vec3(1));
          w.lamp({0.1f, 0.3f, 0.2f});
        },
-       {0.8, 3.5}},
+       {1.2, 2}},
       {"MoreThanWhite",
-       "albedo 1.5: every reflection adds light",
+       "albedo 1.5, taken as 1: every reflection would add light",
        [](HardWorld& w) {
          w.room(vec3(-1), vec3(1), vec3(1.5f));
          w.lamp({0.1f, 0.3f, 0.2f});
        },
-       {1.5, 10}},
+       {1.2, 2}},
       // Sizes and places.
       {"ATenthOfAMillimetre", "a room of 0.2 mm", [](HardWorld& w) { roomOf(w, 1e-4f); }, kRoom},
       {"AThousandKilometres", "a room of 2000 km", [](HardWorld& w) { roomOf(w, 1e6f); }, kRoom},
       {"FarFromTheOrigin",
        "200 m at 1000 km: positions in steps of 6 cm",
        [](HardWorld& w) { roomOf(w, 100, vec3(1e6f, 0, -1e6f)); },
-       {0.3, 2}},
+       {0.6, 1.1}},
       {"LongCorridor",
        "200 m by 2 m, the lamp at the far end",
        [](HardWorld& w) {
          w.room({-1, -1, -200}, {1, 1, 1});
          w.lamp({0, 0, -199}, 100);
        },
-       {0, 0.5}},
+       {1e-4, 1.5e-3}},
       // What must not leak.
       {"TwoRooms",
        "a wall of 10 cm between light and eye",
@@ -296,7 +299,7 @@ const std::vector<HardCase>& hardCases() {
          twoRooms(w, 1e-4f);
          w.lamp({-0.2f, 0.3f, 0}, 0.1f);
        },
-       {0.035, 0.18, 0.6, true}},
+       {0.05, 0.12, 0.6, true}},
       {"Slit",
        "light through 2 mm from far behind",
        [](HardWorld& w) {
@@ -307,7 +310,7 @@ const std::vector<HardCase>& hardCases() {
          w.lamp({0, 0, 2.9f}, 10);
          w.scene.camera = look({0, 0, 0.9f}, {0, 0, -1});
        },
-       {.most = 0.5, .leak = true}},
+       {5e-4, 1e-2, kInfinity, true}},
       // Surfaces.
       {"Degenerate", "triangles without area, and every triangle twice",
        [](HardWorld& w) {
@@ -326,7 +329,7 @@ const std::vector<HardCase>& hardCases() {
          w.scene.assets.meshes[2].normals.assign(4, vec3(0, 10, 0));
          w.scene.assets.meshes[4].normals.assign(4, vec3(0, 0, -1));
        },
-       {0.2, 2}},
+       {0.65, 1.05}},
       {"Mirrored", "instances of negative scale: the front is still the front",
        [](HardWorld& w) {
          roomOf(w, 1);
@@ -342,7 +345,7 @@ const std::vector<HardCase>& hardCases() {
            for (uint32_t i = 6; i < 12; ++i) w.place(i, glm::scale(mat4(1), vec3(1, frame % 2 ? 1e-6f : 1, 1)));
          };
        },
-       {0.3, 2}},
+       {0.55, 1.1}},
       // Eyes.
       {"EyeInAWall",
        "the camera sees back sides only",
@@ -350,7 +353,7 @@ const std::vector<HardCase>& hardCases() {
          roomOf(w, 1);
          w.scene.camera = look({0, 0, 1.5f}, vec3(0));
        },
-       {0, 5}},
+       {0, 1e-6}},
       {"FacingTheSky",
        "not one surface in view",
        [](HardWorld& w) {
@@ -367,9 +370,10 @@ const std::vector<HardCase>& hardCases() {
          w.scene.box({-1.5f, -0.99f, -7}, {-0.5f, -0.2f, -6}, white, false);
          w.lamp({0.5f, 0.5f, -5}, 20);
          w.scene.camera = look(vec3(0), {0, 0, -1});
+         w.settings.smc.vpls = 512;  // mir: 50 times too bright with 64, twice with 512, right with 2048
          w.scene.camera.height = 21; // where that is so to the last bit
        },
-       {1e-3, 1, 1}},
+       {0.006, 0.03, 1}},
       {"Teleport",
        "no frame sees what the one before saw",
        [](HardWorld& w) {
@@ -380,29 +384,29 @@ const std::vector<HardCase>& hardCases() {
            w.scene.camera = look({side, 0.1f, side}, {-side, -0.1f, -side});
          };
        },
-       {0.3, 2}},
+       {0.65, 1.1}},
       {"NarrowView",
        "a field of view of 0.1°",
        [](HardWorld& w) {
          roomOf(w, 1);
          w.scene.camera.fovY = glm::radians(0.1f);
        },
-       {0.3, 2}},
+       {0.65, 1.15}},
       {"WideView",
        "a field of view of 179°",
        [](HardWorld& w) {
          roomOf(w, 1);
          w.scene.camera.fovY = glm::radians(179.0f);
        },
-       {0.25, 2}},
+       {0.22, 0.42}},
       {"OnePixel",
        "a picture of 1×1",
        [](HardWorld& w) { roomOf(w, 1), w.scene.camera.width = w.scene.camera.height = 1; },
-       {0.1, 3}},
+       {0.5, 1.5}},
       {"SevenByFive",
        "a picture that 4×4 subsets do not divide",
        [](HardWorld& w) { roomOf(w, 1), w.scene.camera.width = 7, w.scene.camera.height = 5; },
-       {0.3, 2}},
+       {0.6, 1}},
       {"Resized",
        "another size in every frame",
        [](HardWorld& w) {
@@ -410,7 +414,7 @@ const std::vector<HardCase>& hardCases() {
          w.frames = 5;
          w.step = [&w](int frame) { w.scene.camera.width = 9 * frame + 3, w.scene.camera.height = 37 - 8 * frame; };
        },
-       {0.3, 2}},
+       {0.65, 1.1}},
       // What comes and goes.
       {"LampsComeAndGo",
        "another set of lights in every frame",
@@ -422,7 +426,7 @@ const std::vector<HardCase>& hardCases() {
            for (int i = 0; i < frame % 3; ++i) w.lamp({0.2f * float(i), 0.3f, 0.2f}).id = uint32_t(10 * frame + i);
          };
        },
-       {0, 4}},
+       {1.2, 2.1}},
       {"ObjectsComeAndGo",
        "a block is there in every other frame",
        [](HardWorld& w) {
@@ -436,7 +440,7 @@ const std::vector<HardCase>& hardCases() {
            w.addedOrRemoved = {Aabb{vec3(-0.3f), vec3(0.3f)}};
          };
        },
-       {0.2, 2}},
+       {0.6, 1.05}},
       {"AllLightsRide",
        "every virtual light is on one object, and that moves",
        [](HardWorld& w) {
@@ -449,7 +453,7 @@ const std::vector<HardCase>& hardCases() {
            w.place(6, glm::translate(mat4(1), vec3(0.05f * float(frame), 0.02f * float(frame), 0)));
          };
        },
-       {0.1, 0.6, 1}},
+       {0.18, 0.4, 1}},
       {"HugeSteps",
        "an object jumps through the room, out of it, and far away",
        [](HardWorld& w) {
@@ -460,26 +464,26 @@ const std::vector<HardCase>& hardCases() {
            for (uint32_t i = 6; i < 12; ++i) w.place(i, glm::translate(mat4(1), vec3(0, frame % 2 ? 1e5f : 0.0f, 0)));
          };
        },
-       {0.2, 2}},
+       {0.6, 1.05}},
       // Settings at their ends.
       {"OneVpl",
        "N = 1",
        [](HardWorld& w) {
          roomWith(w, {{"smc.vpls", "1"}});
        },
-       {0, 10}},
+       {0, 3}},
       {"ThreeVpls",
        "N = 3: fewer lights than neighbours and subsets",
        [](HardWorld& w) {
          roomWith(w, {{"smc.vpls", "3"}});
        },
-       {0.05, 5}},
+       {0.2, 2}},
       {"MoreNeighboursThanLights",
        "k = 1024 of 16",
        [](HardWorld& w) {
          roomWith(w, {{"smc.vpls", "16"}, {"smc.density", "knn"}, {"smc.neighbours", "1024"}});
        },
-       {0.01, 20}},
+       {0.5, 1.1}},
       {"NoMoves", "M_max = 0",
        [](HardWorld& w) {
          roomWith(w, {{"smc.moves", "0"}});
@@ -490,7 +494,7 @@ const std::vector<HardCase>& hardCases() {
        [](HardWorld& w) {
          roomWith(w, {{"smc.moves", "64"}});
        },
-       {0.35, 1.8, 0.8}},
+       {0.65, 1.05, 0.8}},
       {"NoBounce",
        "B = 0: direct light alone",
        [](HardWorld& w) {
@@ -502,19 +506,19 @@ const std::vector<HardCase>& hardCases() {
        [](HardWorld& w) {
          roomWith(w, {{"smc.bounces", "32"}});
        },
-       {0.4, 3}},
+       {0.9, 1.6}},
       {"NoBoundOfEnergy",
        "1/r² as it is: no disk, no rays for what it takes",
        [](HardWorld& w) {
          roomWith(w, {{"gather.disk", "0"}, {"gather.near", "0"}});
        },
-       {0.2, 20}},
+       {0.5, 1.5}},
       {"NoHistory",
        "every picture by itself",
        [](HardWorld& w) {
          roomWith(w, {{"history.frames", "0"}});
        },
-       {0.3, 2}},
+       {0.5, 1.1}},
   };
   return cases;
 }
