@@ -23,10 +23,6 @@ uniform bool fresh; // light of one picture, whatever its a
 /// What a neighbour counts for, by the pictures in this pixel's mean: one that holds every class needs none.
 float shareOf(float pictures) { return fresh ? 1.0 : clamp((16.0 - pictures) / 15.0, 0.0, 1.0); }
 
-/// Differences that rays add to single pictures (gi/gather/map_checks.h) may leave less than nothing: means need that, what
-/// is shown does not. NaN stays.
-vec3 shown(vec3 light) { return mix(light, vec3(0.0), lessThan(light, vec3(0.0))); }
-
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   outIrradiance = vec4(0.0);
@@ -90,13 +86,12 @@ void main() {
 #endif
     }
   }
-  outIrradiance = vec4(shown(weights > 0.0 ? sum / weights : own.rgb), own.a);
+  outIrradiance = vec4(weights > 0.0 ? sum / weights : own.rgb, own.a);
 #ifdef GLOSSY
   outGlossy = vec4(glossyWeights > 0.0 ? glossySum / glossyWeights : ownGlossy.rgb, ownGlossy.a);
 #endif
 #else
   outIrradiance = irradianceAt(pixel);
-  outIrradiance.rgb = shown(outIrradiance.rgb);
 #ifdef GLOSSY
   outGlossy = texelFetch(glossy, placeOf(pixel), 0);
 #endif

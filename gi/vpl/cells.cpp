@@ -416,14 +416,17 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
       if (p.owner != kNone && touched[p.owner]) all.push_back({p.owner, &p});
   std::stable_sort(all.begin(), all.end(), [](const Share& a, const Share& b) { return a.owner < b.owner; });
   std::vector<uint32_t> changed;
-  for (uint32_t slot = 0; slot < slots; ++slot)
-    if (touched[slot]) changed.push_back(slot);
+  std::vector<std::span<Share>> shared; // of `all`, by place in `changed`; found before any of them is sorted
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    if (!touched[slot]) continue;
+    const auto mine = std::ranges::equal_range(all, slot, {}, &Share::owner);
+    changed.push_back(slot);
+    shared.emplace_back(mine.begin(), mine.end());
+  }
   perBlock.resize(std::max(perBlock.size(), blocks(changed.size())));
   parallelFor(changed.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const auto [first, last] = std::equal_range(all.begin(), all.end(), Share{changed[i], nullptr},
-                                                  [](const Share& a, const Share& b) { return a.owner < b.owner; });
-      assemble(set.slots[changed[i]], set.cells[changed[i]], {first, last}, rays, perBlock[begin / kGrain]);
+      assemble(set.slots[changed[i]], set.cells[changed[i]], shared[i], rays, perBlock[begin / kGrain]);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;

@@ -15,8 +15,7 @@ bool isLight(const vec3& v) { return isFinite(v) && v.x >= 0 && v.y >= 0 && v.z 
 } // namespace
 
 std::string defectOf(const GiFrame& gi, const Settings& settings) {
-  constexpr Buffer kLight[] = {Buffer::Beauty,     Buffer::Direct, Buffer::Indirect,
-                               Buffer::Irradiance, Buffer::Albedo, Buffer::Emission};
+  constexpr Buffer kLight[] = {Buffer::Beauty, Buffer::Direct, Buffer::Albedo, Buffer::Emission};
   const auto look = [&](Buffer buffer, bool (*holds)(const vec3&)) -> std::string {
     const Image image = gi.read(buffer);
     for (size_t i = 0; i < image.pixels.size(); ++i)
@@ -27,7 +26,7 @@ std::string defectOf(const GiFrame& gi, const Settings& settings) {
   };
   for (const Buffer buffer : kLight)
     if (const std::string defect = look(buffer, isLight); !defect.empty()) return defect;
-  for (const Buffer buffer : {Buffer::Unfiltered, Buffer::Normal, Buffer::Depth})
+  for (const Buffer buffer : {Buffer::Indirect, Buffer::Irradiance, Buffer::Unfiltered, Buffer::Normal, Buffer::Depth})
     if (const std::string defect = look(buffer, isFinite); !defect.empty()) return defect;
   const VplSet& set = gi.vpls();
   if (set.slots.size() > size_t(settings.smc.vpls))

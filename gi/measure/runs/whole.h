@@ -8,8 +8,9 @@
 namespace lambent {
 
 /// The first thing that does not hold; empty: light and shares of it are finite and not negative at every pixel,
-/// normals and depths finite; virtual lights are no more than there may be, and each that is alive has a place, a unit
-/// normal, and finite radiance and area that are not negative.
+/// normals and depths finite. Indirect light by itself is an estimate with differences that rays add
+/// (gi/gather/map_checks.h), and may be less than nothing. Virtual lights are no more than there
+/// may be, and each that is alive has a place, a unit normal, and finite radiance and area that are not negative.
 std::string defectOf(const GiFrame& gi, const Settings& settings);
 
 } // namespace lambent
