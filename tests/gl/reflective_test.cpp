@@ -294,6 +294,49 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
   }
 }
 
+/// Where a light or the camera moves by a centimetre, some clusters come to be refined and some no longer are. One of
+/// them brings its exitance times τ at most, and its parts about as much, so no pixel's error jumps by more.
+TEST_F(ReflectiveTest, ASmallMoveChangesTheCutByLittle) {
+  Room room;
+  place(room.scene);
+  constexpr float kTau = RsmSettings{}.tau;
+  RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64};
+  for (const bool camera : {false, true}) {
+    Image before;
+    double changes = 0, light = 0;
+    for (int step = 0; step <= 6; ++step) {
+      const vec3 moved(0.01f * float(step), 0, 0);
+      room.scene.camera =
+          cameraAt(vec3(0.1f, 0.1f, 0.95f) + (camera ? moved : vec3(0)), vec3(0, -0.1f, -1), 1.4f, 32, 24);
+      const vec3 lamp = vec3(-0.2f, 0.9f, 0.5f) + (camera ? vec3(0) : moved);
+      rsm.tau = kTau;
+      const ReflectiveMaps sheet = maps({spotLight(lamp, vec3(0.1f, -1, -0.4f))}, rsm, kTrees);
+      Image error = gathered(room.scene, sheet, rsm, kTrees);
+      rsm.tau = 0;
+      const Image whole = gathered(room.scene, sheet, rsm, kTrees);
+      double exitance = 0; // the largest
+      std::vector<vec4> texels(size_t(rsm.resolution) * rsm.resolution);
+      glGetTextureImage(sheet.flux->name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
+      for (const vec4& t : texels)
+        if (t.a > 0) exitance = std::max(exitance, double(t.x) / double(t.a));
+      double largest = 0, sum = 0;
+      for (size_t i = 0; i < whole.pixels.size(); ++i) {
+        error.pixels[i] -= whole.pixels[i];
+        if (step == 0) continue;
+        const double change = std::abs(double(error.pixels[i].x) - double(before.pixels[i].x));
+        largest = std::max(largest, change);
+        sum += change;
+        light += whole.pixels[i].x;
+      }
+      changes += sum;
+      EXPECT_LT(largest, double(kTau) * exitance) << "step " << step << (camera ? " of the camera" : " of the light");
+      before = error;
+    }
+    EXPECT_GT(changes, 0) << "or the cut is the same everywhere";
+    EXPECT_LT(changes, (camera ? 0.0003 : 0.004) * light);
+  }
+}
+
 /// A spot over a dark floor with one bright cluster, which a ceiling faces from many distances. Where the picture is
 /// the one of coarsest clusters, the cluster was not refined, and its contribution (paper 3, eq. 6) must be below τ.
 TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
