@@ -2,6 +2,7 @@
 #include "engine/core/rng.h"
 #include "engine/trace/analytic_query.h"
 #include "gi/vpl/smc.h"
+#include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -168,8 +169,8 @@ TEST(Cells, AWallBetweenASampleAndItsOwnerPartsThem) {
   EXPECT_EQ(after, 0);
 }
 
-/// The limit on radii follows an average. Little by little it changes nothing; far from what samples were drawn with, all
-/// are drawn anew, for chords end where it was.
+/// The limit on radii follows an average. Little by little it changes nothing; far from what samples were drawn with,
+/// all are drawn anew, for chords end where it was.
 TEST(Cells, ALimitThatDriftsDrawsThemAnew) {
   const vec3 half(2, 1, 3);
   AnalyticQuery rays;
@@ -200,18 +201,26 @@ TEST(Cells, TwoVplsInOnePlaceShareNothing) {
   EXPECT_NEAR(areas[1] / areas[0], 1, 0.1); // neighbours are half as many: cells reach less far
 }
 
+/// Paper 1, fig. 10: a clothes line; disks about its VPLs are many times as large as the line. Seen from above, only
+/// its upper face counts. (From not far above: shadow segments end a ten-thousandth short, so that from 3 m the inside
+/// of the sides counts down to 0.3 mm, which is 3 % of this line.)
 TEST(Cells, AThinStripHasItsOwnArea) {
-  // Paper 1, fig. 10: a clothes line; disks about its VPLs are many times as large as the line.
   AnalyticQuery rays;
   rays.addBox({-2, 1, -0.01f}, {2, 1.01f, 0.01f}, {vec3(0.5f)});
-  VplSet set;
-  for (int i = 0; i < 40; ++i)
-    set.slots.push_back(vplAt({-1.95f + 0.1f * float(i), 1.01f, 0}, {0, 1, 0}, uint64_t(i) + 1, {0, 4, 0}));
-  RayCounts counts;
-  updateCells(set, rays, {}, allSlots(set), 1, 1, counts);
-  double area = 0;
-  for (const Vpl& v : set.slots) area += v.area;
-  EXPECT_NEAR(area, 4 * 0.02, 0.4 * 4 * 0.02); // seen from above, only its upper face counts
+  std::vector<double> areas;
+  for (uint32_t seed = 1; seed <= 400; ++seed) {
+    VplSet set;
+    for (int i = 0; i < 40; ++i)
+      set.slots.push_back(vplAt({-1.95f + 0.1f * float(i), 1.01f, 0}, {0, 1, 0}, uint64_t(i) + 1, {0, 1.11f, 0}));
+    RayCounts counts;
+    updateCells(set, rays, {}, allSlots(set), 1, seed, counts);
+    double area = 0;
+    for (const Vpl& v : set.slots) area += v.area / (4 * 0.02);
+    areas.push_back(area);
+  }
+  const test::Mean m = test::meanOf(areas);
+  EXPECT_LT(std::abs(m.mean - 1), test::kDeviateLimit * m.error);
+  EXPECT_LT(m.error, 0.005) << "too noisy to tell";
 }
 
 TEST(Cells, DoNotReachThroughAWall) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gl_fixture.h"
+#include "shaders/shared/patches.h"
 
 #include <random>
 
@@ -44,6 +45,23 @@ class MultiresTest : public GatherTest {
     for (size_t i = 0; i < depth.size(); ++i)
       if (depth[i] == 0) levels[i] = -1;
     return levels;
+  }
+  /// Where a patch was gathered.
+  struct GatheredPatch {
+    glm::ivec2 pixel; // from the bottom
+    int level;
+  };
+  std::vector<GatheredPatch> gatheredPatches(const GBuffer& gbuffer) {
+    const std::vector<int> levels = patchLevels(gbuffer);
+    std::vector<GatheredPatch> patches;
+    for (int y = 0; y < gbuffer.height; ++y)
+      for (int x = 0; x < gbuffer.width; ++x) {
+        const int level = levels[size_t(y) * gbuffer.width + x];
+        if (level < 0 || x % (1 << level) || y % (1 << level)) continue;
+        const glm::ivec2 size(gbuffer.width, gbuffer.height);
+        patches.push_back({patchPixel(glm::ivec2(x >> level, y >> level), level, 1, glm::ivec2(0), size), level});
+      }
+    return patches;
   }
   static uint64_t patchesOf(const std::vector<int>& levels, int width, int height) {
     uint64_t count = 0;

@@ -48,24 +48,41 @@ TEST_F(MultiresTest, AConstantStaysConstant) {
   }
 }
 
-TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGathered) {
-  const Room room;
+/// Each level is interpolated between the four patches of the next coarser one that are around it, so what comes to a
+/// pixel was gathered within one and a half sides of a patch, on surfaces that face its way.
+TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGatheredAroundIt) {
+  Room room;
+  room.scene.camera.width = 128;
+  room.scene.camera.height = 96;
   const GBuffer gbuffer = surfaces(room.scene);
   const std::vector<VirtualLight> lights = lightsIn(vec3(0, -0.5f, 0), vec3(0.5f), 40); // none close to a wall
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const Image image = multires(gbuffer, lights, {.coarsest = 4});
-  float lo = kInfinity, hi = 0;
+  FrameResults results;
+  results.surfaces = gbuffer;
+  const Image normal = readBuffer(Buffer::Normal, results);
+  const std::vector<GatheredPatch> places = gatheredPatches(gbuffer);
+  const std::vector<int> levels = patchLevels(gbuffer);
   double sumFull = 0, sum = 0;
-  for (size_t i = 0; i < full.pixels.size(); ++i) {
-    lo = std::min(lo, full.pixels[i].y);
-    hi = std::max(hi, full.pixels[i].y);
-    sumFull += full.pixels[i].y;
-    sum += image.pixels[i].y;
-  }
-  for (const vec3& e : image.pixels) {
-    ASSERT_GE(e.y, lo * 0.9999f);
-    ASSERT_LE(e.y, hi * 1.0001f);
-  }
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 128; ++x) {
+      float lo = kInfinity, hi = 0;
+      for (const GatheredPatch& p : places) {
+        const glm::ivec2 away = glm::abs(p.pixel - glm::ivec2(x, y));
+        const float side = float(1 << std::max(p.level, levels[size_t(y) * 128 + x]));
+        if (float(std::max(away.x, away.y)) > 1.5f * side ||
+            glm::dot(normal.at(x, 95 - y), normal.at(p.pixel.x, 95 - p.pixel.y)) < 0.5f)
+          continue;
+        const float light = full.at(p.pixel.x, 95 - p.pixel.y).y;
+        lo = std::min(lo, light);
+        hi = std::max(hi, light);
+      }
+      const float light = image.at(x, 95 - y).y;
+      ASSERT_GE(light, 0.9999f * lo) << x << ' ' << y;
+      ASSERT_LE(light, 1.0001f * hi) << x << ' ' << y;
+      sumFull += full.at(x, 95 - y).y;
+      sum += light;
+    }
   EXPECT_NEAR(sum / sumFull, 1, 0.02);
 }
 
@@ -87,27 +104,31 @@ TEST_F(MultiresTest, AFloorAtAGrazingAngleIsOnePatch) {
   EXPECT_GT(patchesMarked(stepped, {.coarsest = 4, .depth = 0.001f, .normal = 10}), 50u);
 }
 
-/// Straight edges along patch borders, where a plane fitted to four pixels would bridge the step.
+/// Straight edges along patch borders, where a plane fitted to four pixels would bridge the step, and bars that are
+/// thinner than a patch.
 TEST_F(MultiresTest, NoPatchSpansAStep) {
   HandScene scene;
   const uint32_t grey = scene.material(vec3(0.5f));
   scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-  scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 18, 0), grey); // nearer, over the left half
+  scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 9.1f, 0), grey); // nearer, lower left
+  scene.quad(vec3(1, -9, 0), vec3(0.08f, 0, 0), vec3(0, 18, 0), grey);
+  scene.quad(vec3(-9, 1, 0), vec3(18, 0, 0), vec3(0, 0.08f, 0), grey);
   scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 96);
   const GBuffer gbuffer = surfaces(scene);
-  multires(gbuffer, roomLights(), {.coarsest = 2});
-  const std::vector<int> levels = patchLevels(gbuffer);
   FrameResults results;
   results.surfaces = gbuffer;
   const Image depth = readBuffer(Buffer::Depth, results);
-  for (int y = 0; y < 96; ++y)
-    for (int x = 0; x < 128; ++x) {
-      const int side = 1 << levels[size_t(y) * 128 + x];
-      for (int k = 0; k < 4; ++k) { // corners of the patch
-        const int cx = x / side * side + (k & 1) * (side - 1), cy = y / side * side + (k >> 1) * (side - 1);
-        ASSERT_NEAR(depth.at(cx, 95 - cy).x, depth.at(x, 95 - y).x, 0.5f) << x << ' ' << y;
+  for (const auto& [balance, edges] : {std::pair(true, true), std::pair(false, false)}) {
+    multires(gbuffer, roomLights(), {.coarsest = 2, .balance = balance, .edges = edges});
+    const std::vector<int> levels = patchLevels(gbuffer);
+    EXPECT_GE(*std::max_element(levels.begin(), levels.end()), 3) << "or nothing could span a step";
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 128; ++x) { // against the first pixel of its patch
+        const int level = levels[size_t(y) * 128 + x];
+        ASSERT_NEAR(depth.at(x >> level << level, 95 - (y >> level << level)).x, depth.at(x, 95 - y).x, 0.5f)
+            << x << ' ' << y << ", level " << level;
       }
-    }
+  }
 }
 
 TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
