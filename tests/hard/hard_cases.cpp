@@ -321,6 +321,18 @@ const std::vector<HardCase>& hardCases() {
          }
        },
        kRoom},
+      {"NoExtent",
+       "every corner of every triangle is one point: a scene of no size",
+       [](HardWorld& w) {
+         const uint32_t quad = w.scene.quad({0, 0, -1}, {1, 0, 0}, {0, 1, 0}, w.scene.material(vec3(0.7f)));
+         Mesh& mesh = w.scene.assets.meshes[0];
+         mesh.positions.assign(4, vec3(0, 0, -1));
+         mesh.boundsObject = mesh.primitives[0].boundsObject = {vec3(0, 0, -1), vec3(0, 0, -1)};
+         w.place(quad, mat4(1));
+         w.lamp({0, 0, -1});
+         w.step = [&w, quad](int) { w.place(quad, mat4(1)); };
+       },
+       {0, 0}},
       {"OddNormals",
        "shading normals of length 0 and 10, and away from the front",
        [](HardWorld& w) {

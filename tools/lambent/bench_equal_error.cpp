@@ -4,6 +4,7 @@
 #include "engine/core/error.h"
 #include "gi/plan/presets.h"
 #include "tools/lambent/bench.h"
+#include "tools/lambent/html.h"
 #include "tools/lambent/study.h"
 
 #include <algorithm>
@@ -162,7 +163,7 @@ void benchEqualError(const BenchOptions& options) {
   writeJson(options.output.json,
             {{"rows", rows}, {"bar", kPathTracingTimes}, {"preset", judged}, {"holds", otherwise.empty() && of > 0}});
   writeText(folder / "equal-error.md",
-            "# Path tracing's time to the same error\n\n" + conditions + "\n" + table + "\n" + verdict);
+            escaped("# Path tracing's time to the same error\n\n" + conditions + "\n" + table + "\n" + verdict));
   writeText(folder / "equal-error.csv", csvText(rows));
   if (!options.output.quiet)
     std::printf("%s%s%sreport: %s\n", conditions.c_str(), table.c_str(), verdict.c_str(),

@@ -5,6 +5,7 @@
 #include "engine/platform/gl_context.h"
 #include "gi/measure/scaled_view.h"
 #include "tools/lambent/bench.h"
+#include "tools/lambent/html.h"
 #include "tools/lambent/plot.h"
 #include "tools/lambent/text.h"
 
@@ -233,7 +234,7 @@ void benchGrowth(const BenchOptions& options) {
   writeText(folder / "growth.svg", svgOf(plots, 2));
   writeText(folder / "growth.csv", csvOf(sweeps));
   writeText(folder / "growth.md",
-            "# How cost grows\n\n" + conditions + "\n" + tables + "![Median times over each](growth.svg)\n");
+            escaped("# How cost grows\n\n" + conditions + "\n" + tables + "![Median times over each](growth.svg)\n"));
   if (!options.output.quiet)
     std::printf("%s\n%sreport: %s\n", conditions.c_str(), tables.c_str(), (folder / "growth.md").c_str());
 }

@@ -5,6 +5,7 @@
 #include "engine/platform/gl_context.h"
 #include "gi/measure/scaled_view.h"
 #include "tools/lambent/bench.h"
+#include "tools/lambent/html.h"
 #include "tools/lambent/text.h"
 
 #include <algorithm>
@@ -215,7 +216,7 @@ void benchTable2(const BenchOptions& options) {
       "; medians (quartiles) in ms; medians of totals are not totals of medians. Paper 1: 1920 x 1080, GTX Titan X.\n" +
       mappingText() + "\n";
   const std::string table = tableOf(rows);
-  writeText(folder / "table2.md", "# Where the time of sequences goes\n\n" + conditions + "\n" + table);
+  writeText(folder / "table2.md", escaped("# Where the time of sequences goes\n\n" + conditions + "\n" + table));
   writeText(folder / "table2.csv", csvOf(rows));
   if (!options.output.quiet)
     std::printf("%s%sreport: %s\n", conditions.c_str(), table.c_str(), (folder / "table2.md").c_str());

@@ -1,4 +1,5 @@
 #include "tools/lambent/stability_report.h"
+#include "tools/lambent/html.h"
 
 #include "gi/plan/techniques.h"
 #include "tools/lambent/linear_picture.h"
@@ -191,7 +192,7 @@ void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& sh
     writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
     page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
   }
-  writeText(folder / "stability.md", page);
+  writeText(folder / "stability.md", escaped(page)); // names of files may look like HTML
 }
 
 } // namespace lambent
