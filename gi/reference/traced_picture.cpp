@@ -28,6 +28,7 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
   // A pass takes about a second: progress moves, and a wish to stop is heard.
   const uint32_t perPass = uint32_t(std::clamp<size_t>((1 << 19) / sums.pixels.size(), 1, 64));
   auto lastSave = Clock::now();
+  Clock::duration saving{}; // what the last took
   const uint32_t before = sums.samples;
   double seconds = 0;
   while (sums.samples < plan.samples && !(plan.cancelled && plan.cancelled())) {
@@ -41,9 +42,12 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
     addSamples(sums, in, std::min(perPass, plan.samples - sums.samples), out.rays);
     seconds += std::chrono::duration<double>(Clock::now() - start).count();
     if (plan.progress) plan.progress(int(sums.samples), int(std::max<double>(sums.samples, expected)));
-    if (Clock::now() - lastSave > std::chrono::seconds(60)) {
+    // Killed, it loses a second, or as much more as keeps the time to save below a twentieth.
+    if (const auto now = Clock::now();
+        now - lastSave > std::max<Clock::duration>(std::chrono::seconds(1), 20 * saving)) {
       save();
       lastSave = Clock::now();
+      saving = lastSave - now;
     }
   }
   save();
