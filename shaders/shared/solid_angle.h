@@ -4,11 +4,11 @@
 #include "interop.h"
 SHARED_BEGIN
 
-/// Steradians of [lo.x, hi.x] × [lo.y, hi.y]. The closed form takes differences of angles, which for a single texel leaves
+/// Steradians of [lo.x, hi.x] × [lo.y, hi.y], within 1e-4 of them for sides of up to twice each other's length. The closed form takes differences of angles, which for a single texel leaves
 /// no digits; there ∫ (1 + x² + y²)^(−3/2) by Gauss with 2 × 2 points is exact to rounding.
 SHARED_INLINE float rectSolidAngle(vec2 lo, vec2 hi) {
-  vec2 size = hi - lo;
-  if (size.x * size.y > 0.01f) {
+  vec2 size = hi - lo, middle = 0.5f * (lo + hi);
+  if (size.x * size.y > 0.01f * (1.0f + middle.x * middle.x + middle.y * middle.y)) {
     float sum = 0.0f;
     for (int i = 0; i < 4; ++i) {
       float x = (i & 1) == 0 ? lo.x : hi.x, y = (i & 2) == 0 ? lo.y : hi.y;

@@ -20,10 +20,14 @@ SHARED_INLINE vec3 pbrNeutral(vec3 c) {
   return mix(c * (compressed / peak), vec3(compressed), white);
 }
 
-/// Narkowicz's fit of the ACES film curve (2015), by component: contrast of film, bright colours go over to white.
-SHARED_INLINE vec3 filmic(vec3 c) { return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f); }
+/// Narkowicz's fit of the ACES film curve (2015), by component: contrast of film, bright colours go over to white. Squares
+/// end at 1e38; from 1e9 on it is flat to rounding.
+SHARED_INLINE vec3 filmic(vec3 c) {
+  c = min(c, vec3(1e9f));
+  return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f);
+}
 
-/// `toneMapper`: ToneMapper (gi/plan/settings.h).
+/// Finite, for grey rising, and above -1e-6, whatever finite c is. `toneMapper`: ToneMapper (gi/plan/settings.h).
 SHARED_INLINE vec3 toneMapped(vec3 c, int toneMapper) {
   return toneMapper == 1 ? pbrNeutral(c) : toneMapper == 2 ? filmic(c) : reinhard(c);
 }
