@@ -28,6 +28,9 @@ struct HardWorld {
   void place(uint32_t instance, const mat4& worldFromObject);
 };
 
+/// Looks from `eye` to `target`, 32 × 18 pixels.
+CameraView look(const vec3& eye, const vec3& target);
+
 /// Of the mean irradiance by indirect light, W/m², in the last frame: of smc. Other techniques, with few lights
 /// noisier, may bring twice the most; of a leak, the most.
 struct HardBounds {
