@@ -414,14 +414,15 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   for (VplCell& cell : set.cells)
     for (SurfaceSample& p : cell.samples)
       if (p.owner != kNone && touched[p.owner]) all.push_back({p.owner, &p});
-  std::stable_sort(all.begin(), all.end(), [](const Share& a, const Share& b) { return a.owner < b.owner; });
+  const auto byOwner = [](const Share& a, const Share& b) { return a.owner < b.owner; };
+  std::stable_sort(all.begin(), all.end(), byOwner);
   std::vector<uint32_t> changed;
   std::vector<std::span<Share>> shared; // of `all`, by place in `changed`; found before any of them is sorted
   for (uint32_t slot = 0; slot < slots; ++slot) {
     if (!touched[slot]) continue;
-    const auto mine = std::ranges::equal_range(all, slot, {}, &Share::owner);
+    const auto [first, last] = std::equal_range(all.begin(), all.end(), Share{slot, nullptr}, byOwner);
     changed.push_back(slot);
-    shared.emplace_back(mine.begin(), mine.end());
+    shared.emplace_back(first, last);
   }
   perBlock.resize(std::max(perBlock.size(), blocks(changed.size())));
   parallelFor(changed.size(), kGrain, [&](size_t begin, size_t end) {

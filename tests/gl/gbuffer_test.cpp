@@ -71,6 +71,19 @@ TEST_F(GBufferTest, PixelsOfALengthWithoutSquareHaveNormals) {
   EXPECT_GT(readBuffer(Buffer::Depth, frame).at(32, 24).x, 0);
 }
 
+/// Behind a surface its shading normal is turned, not given up for that of the triangle.
+TEST_F(GBufferTest, BackSidesTurnTheShadingNormal) {
+  SurfacePass pass(passes);
+  HandScene scene;
+  scene.quad({-4, -4, -2}, {0, 8, 0}, {8, 0, 0}, scene.material(vec3(0.5f), vec3(0), true)); // its front looks away
+  const vec3 tilted = glm::normalize(vec3(0.3f, 0, -1));
+  scene.assets.meshes[0].normals.assign(4, tilted);
+  scene.camera = cameraAt(vec3(0), {0, 0, -1}, 0.5f);
+  GpuScene gpu(programs, scene.assets);
+  const Image normal = readBuffer(Buffer::Normal, drawn(pass, gpu, scene));
+  for (const vec3& n : normal.pixels) ASSERT_LT(glm::length(n + tilted), 1e-3f);
+}
+
 TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   HandScene scene;
   const uint32_t single = scene.material(vec3(0.5f), vec3(2)), twofold = scene.material(vec3(0.5f), vec3(3), true);

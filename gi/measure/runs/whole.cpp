@@ -11,11 +11,12 @@ std::string textOf(const vec3& v) {
 }
 
 bool isLight(const vec3& v) { return isFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+bool isShare(const vec3& v) { return isLight(v) && v.x <= 1 && v.y <= 1 && v.z <= 1; }
 
 } // namespace
 
 std::string defectOf(const GiFrame& gi, const Settings& settings) {
-  constexpr Buffer kLight[] = {Buffer::Beauty, Buffer::Direct, Buffer::Albedo, Buffer::Emission};
+  constexpr Buffer kLight[] = {Buffer::Beauty, Buffer::Direct, Buffer::Emission};
   const auto look = [&](Buffer buffer, bool (*holds)(const vec3&)) -> std::string {
     const Image image = gi.read(buffer);
     for (size_t i = 0; i < image.pixels.size(); ++i)
@@ -26,6 +27,7 @@ std::string defectOf(const GiFrame& gi, const Settings& settings) {
   };
   for (const Buffer buffer : kLight)
     if (const std::string defect = look(buffer, isLight); !defect.empty()) return defect;
+  if (const std::string defect = look(Buffer::Albedo, isShare); !defect.empty()) return defect;
   for (const Buffer buffer : {Buffer::Indirect, Buffer::Irradiance, Buffer::Unfiltered, Buffer::Normal, Buffer::Depth})
     if (const std::string defect = look(buffer, isFinite); !defect.empty()) return defect;
   const VplSet& set = gi.vpls();

@@ -7,7 +7,7 @@
 
 namespace lambent {
 
-/// The first thing that does not hold; empty: light and shares of it are finite and not negative at every pixel,
+/// The first thing that does not hold; empty: light is finite and not negative at every pixel, albedo in [0, 1],
 /// normals and depths finite. Indirect light by itself is an estimate with differences that rays add
 /// (gi/gather/map_checks.h), and may be less than nothing. Virtual lights are no more than there
 /// may be, and each that is alive has a place, a unit normal, and finite radiance and area that are not negative.
