@@ -86,9 +86,9 @@ class FrameLog {
 };
 
 /// In the folder: whose pictures they are, and how many are whole.
-class Mark {
+class RecordingMark {
  public:
-  Mark(const fs::path& folder, std::string conditions)
+  RecordingMark(const fs::path& folder, std::string conditions)
       : file_(folder / "recording.json"), conditions_(std::move(conditions)) {}
 
   /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.
@@ -173,7 +173,7 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  const Mark mark(folder, conditionsOf(*stage, options.launch, options.buffer + options.format));
+  const RecordingMark mark(folder, conditionsOf(*stage, options.launch, options.buffer + options.format));
   const int kept = options.resume ? mark.kept() : 0;
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
