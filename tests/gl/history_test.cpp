@@ -178,6 +178,54 @@ TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
               0.05 * meanLuminance(allLights()));
 }
 
+/// The history alone, of light that is given.
+class HistoryPassTest : public GatherTest {
+ protected:
+  Image averaged(const GBuffer& gbuffer, std::span<const vec4> light, bool cameraMoved) {
+    const gl::Texture given("given", {.format = GL_RGBA32F, .width = gbuffer.width, .height = gbuffer.height});
+    glTextureSubImage2D(given.name(), 0, 0, 0, gbuffer.width, gbuffer.height, GL_RGBA, GL_FLOAT, light.data());
+    history.fit(gbuffer);
+    const LightOnSurfaces raw{&given, nullptr, false};
+    return read(Buffer::Irradiance, gbuffer, raw, history.run({gbuffer, raw, cameraMoved, false, {.frames = 64}, {}}));
+  }
+  HistoryPass history{passes};
+};
+
+TEST_F(HistoryPassTest, CornersDoNotMix) {
+  Room room;
+  for (int i = 0; i < 12; ++i) {
+    room.scene.camera.worldFromView[3].x += 0.003f; // part of a pixel
+    room.scene.camera.worldFromView[3].y += 0.002f;
+    const GBuffer gbuffer = surfaces(room.scene);
+    FrameResults results;
+    results.surfaces = gbuffer;
+    const Image normal = readBuffer(Buffer::Normal, results);
+    const auto lit = [&](int x, int y) { return normal.at(x, y).y > 0.5f ? 1.0f : 0.0f; };
+    std::vector<vec4> light(64 * 48);
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x) light[size_t(y) * 64 + x] = vec4(lit(x, 47 - y));
+    const Image mean = averaged(gbuffer, light, i > 0);
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x) ASSERT_NEAR(mean.at(x, y).x, lit(x, y), 1e-5f) << x << ' ' << y << ' ' << i;
+  }
+}
+
+TEST_F(HistoryPassTest, WhatIsNoNumberCountsForOnePicture) {
+  const Room room;
+  const GBuffer gbuffer = surfaces(room.scene);
+  std::vector<vec4> light(64 * 48, vec4(1));
+  light[100].y = std::numeric_limits<float>::quiet_NaN();
+  light[200].z = kInfinity;
+  averaged(gbuffer, light, false);
+  light.assign(light.size(), vec4(2));
+  const Image mean = averaged(gbuffer, light, false);
+  for (int i = 0; i < 64 * 48; ++i) {
+    const vec3& e = mean.at(i % 64, 47 - i / 64);
+    ASSERT_NEAR(e.x, i == 100 || i == 200 ? 2 : 1.5f, 1e-5f) << i;
+    ASSERT_TRUE(isFinite(e)) << i;
+  }
+}
+
 /// Forced on without need it does no work; switched off, everything is as with a history of no pictures.
 TEST_F(HistoryTest, IsAnEffectOfThePlan) {
   settings.effects[EffectId::History] = EffectMode::On;

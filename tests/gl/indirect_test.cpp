@@ -165,6 +165,33 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
       ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
 }
 
+TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same way
+  HandScene scene;
+  const uint32_t white = scene.material(vec3(0.7f));
+  scene.quad(vec3(-4, -4, -3), vec3(8, 0, 0), vec3(0, 8, 0), white);
+  scene.quad(vec3(-0.5f, -0.5f, -2), vec3(1, 0, 0), vec3(0, 1, 0), white);
+  scene.camera = cameraAt(vec3(0), vec3(0, 0, -1), 1.0f);
+  const GBuffer gbuffer = surfaces(scene);
+  FrameResults results;
+  results.surfaces = gbuffer;
+  const Image depth = readBuffer(Buffer::Depth, results);
+  std::vector<vec4> texels(64 * 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);
+  const gl::Texture light("light", {.format = GL_RGBA32F, .width = 64, .height = 48});
+  glTextureSubImage2D(light.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const LightOnSurfaces raw{&light, nullptr, false, true};
+  const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
+  int nearer = 0;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool lit = depth.at(x, y).x < 2.5f;
+      nearer += lit;
+      ASSERT_NEAR(image.at(x, y).x, lit ? 1 : 0, 1e-3f) << x << ' ' << y;
+    }
+  EXPECT_GT(nearer, 100);
+}
+
 TEST_F(IndirectTest, CompositeAddsUp) {
   HandScene scene;
   scene.quad(vec3(-1, -10, 0), vec3(2, 0, 0), vec3(0, 20, 0), scene.material(vec3(0.5f, 0.25f, 1), vec3(0, 2, 0)));

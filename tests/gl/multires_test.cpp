@@ -131,6 +131,67 @@ TEST_F(MultiresTest, NoPatchSpansAStep) {
   }
 }
 
+/// A patch's plane and its bound hold every pixel, also where the surface bends from patch to patch.
+TEST_F(MultiresTest, NoPixelLiesFartherFromItsPlaneThanThePatchSays) {
+  HandScene scene;
+  const uint32_t grey = scene.material(vec3(0.5f));
+  const auto height = [](float x) { return 0.2f * std::sin(4 * x); };
+  constexpr float kStep = 0.05f;
+  for (int i = -30; i < 30; ++i) {
+    const float x = kStep * float(i);
+    scene.quad(vec3(x, -2, height(x)), vec3(kStep, 0.5f * kStep, height(x + kStep) - height(x)), vec3(0, 4, 0.3f),
+               grey);
+  }
+  scene.camera = cameraAt(vec3(0.3f, 0, 2), vec3(0), 0.8f, 128, 96);
+  const GBuffer gbuffer = surfaces(scene);
+  multires(gbuffer, roomLights(), {.coarsest = 4});
+  std::vector<float> depth(128 * 96);
+  gbuffer.depth->read(std::span(depth), GL_DEPTH_COMPONENT, GL_FLOAT);
+  int bounded = 0;
+  for (int level = 1; level <= patches->levels; ++level) {
+    const glm::ivec2 size = patches->padded / (1 << level);
+    std::vector<vec4> planes(size_t(size.x) * size_t(size.y));
+    patches->plane->read(std::span(planes), GL_RGBA, GL_FLOAT, level - 1);
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 128; ++x) {
+        const vec4& plane = planes[size_t(y >> level) * size_t(size.x) + size_t(x >> level)];
+        const float d = depth[size_t(y) * 128 + size_t(x)];
+        if (plane.x <= 0 || plane.w > 1 || d == 0) continue;
+        const float middle = 0.5f * float((1 << level) - 1), mask = float((1 << level) - 1);
+        const vec2 offset(float(x & int(mask)) - middle, float(y & int(mask)) - middle);
+        ASSERT_LE(std::abs(d - plane.x - glm::dot(vec2(plane.y, plane.z), offset)), plane.w * 1.001f + 1e-7f)
+            << x << ' ' << y << ", level " << level;
+        bounded += level > 2;
+      }
+  }
+  EXPECT_GT(bounded, 1000);
+}
+
+TEST_F(MultiresTest, NoPatchHoldsBackground) {
+  HandScene scene;
+  scene.quad(vec3(-0.77f, -0.63f, 0), vec3(1.3f, 0.1f, 0), vec3(-0.1f, 1.2f, 0), scene.material(vec3(0.5f)));
+  scene.camera = cameraAt(vec3(0, 0, 2), vec3(0), 1.0f, 128, 96);
+  const GBuffer gbuffer = surfaces(scene);
+  multires(gbuffer, roomLights(), {.coarsest = 4, .edges = false});
+  std::vector<float> depth(128 * 96);
+  gbuffer.depth->read(std::span(depth), GL_DEPTH_COMPONENT, GL_FLOAT);
+  int whole = 0;
+  for (int level = 1; level <= patches->levels; ++level) {
+    const glm::ivec2 size = patches->padded / (1 << level);
+    std::vector<float> split(size_t(size.x) * size_t(size.y)), plane(split.size());
+    patches->normalLo->read(std::span(split), GL_ALPHA, GL_FLOAT, level - 1);
+    patches->plane->read(std::span(plane), GL_RED, GL_FLOAT, level - 1);
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 128; ++x) {
+        const size_t i = size_t(y >> level) * size_t(size.x) + size_t(x >> level);
+        if (split[i] > 0.5f || !(plane[i] > 0)) continue;
+        ASSERT_GT(depth[size_t(y) * 128 + size_t(x)], 0) << x << ' ' << y << ", level " << level;
+        ++whole;
+      }
+  }
+  EXPECT_GT(whole, 1000);
+}
+
 TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
   Room room;
   room.scene.camera.width = 256;
