@@ -1,6 +1,6 @@
 #version 450
-// Clusters of 2 × 2 of the level below: flux and area add up, position and normal are means weighted by flux (by area where
-// there is none). The bound of the area takes all four as large as the largest, as the papers take the largest distance from
+// Clusters of 2 × 2 of the level below: flux and area add up, position and normal are means weighted by flux (a dark
+// cluster has none). The bound of the area takes all four as large as the largest, as the papers take the largest distance from
 // the light: where a cluster spans a step, its mean would be refined too late for its far part.
 layout(binding = 0) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 1) uniform sampler2D normals;
@@ -18,11 +18,9 @@ void main() {
     outFlux += texelFetch(fluxes, child, 0);
     largest = max(largest, texelFetch(positions, child, 0).a);
   }
-  bool dark = !(dot(outFlux.rgb, vec3(1.0)) > 0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 child = first + ivec2(i & 1, i >> 1);
-    vec4 flux = texelFetch(fluxes, child, 0);
-    float weight = dark ? flux.a : dot(flux.rgb, vec3(1.0));
+    float weight = dot(texelFetch(fluxes, child, 0).rgb, vec3(1.0));
     outPosition.xyz += weight * texelFetch(positions, child, 0).xyz;
     outNormal.xyz += weight * texelFetch(normals, child, 0).xyz;
     weights += weight;

@@ -126,6 +126,18 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
   }
 }
 
+TEST_F(ReflectiveTest, ASpotReflectsWhatItsConeLetsThrough) {
+  HandScene scene;
+  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
+  place(scene);
+  const LightView spot = spotLight(vec3(0.1f, 0.3f, -0.2f), vec3(0.2f, -1, 0.4f));
+  const ReflectiveMaps sheet = maps({spot}, {.resolution = 256}, kGrid);
+  // glTF: the square of what falls from 1 at the inner cone to 0 at the outer, linear in the cosine.
+  const double inner = double(spot.innerConeCos), outer = double(spot.outerConeCos);
+  const double cone = 2 * double(kPi) * ((1 - inner) + (inner - outer) / 3);
+  EXPECT_NEAR(sum(*sheet.flux, 0).x, 0.5 * double(spot.intensity.x) * cone, 1e-3 * cone);
+}
+
 TEST(LightGrid, HardlyFewerVplsThanAskedFor) {
   for (int maps = 1; maps <= 40; ++maps)
     for (int vpls = maps; vpls <= 3000; ++vpls) {
@@ -199,6 +211,38 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
   EXPECT_GT(vpls.count, 8u * 64) << "steps are not";
   const glm::dvec3 ofLights = fluxOfLights();
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(ofLights[c], flux[c], 1e-5 * flux[c]);
+}
+
+/// Where a cluster's light seems to come from.
+TEST_F(ReflectiveTest, ClustersStandInTheMiddleOfTheirFlux) {
+  HandScene scene;
+  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
+  place(scene);
+  const ReflectiveMaps sheet =
+      maps({pointLight(vec3(0.8f, 0.3f, -0.6f), vec3(1))}, {.resolution = 16, .coarsest = 2}, kTrees);
+  const auto texels = [](const gl::Texture& t, int level) {
+    std::vector<vec4> out(size_t(t.width() >> level) * size_t(t.height() >> level));
+    t.read(std::span(out), GL_RGBA, GL_FLOAT, level);
+    return out;
+  };
+  const std::vector<vec4> positions = texels(*sheet.position, 0), fluxes = texels(*sheet.flux, 0);
+  const std::vector<vec4> means = texels(*sheet.position, 1);
+  const size_t width = size_t(sheet.flux->width());
+  double unweighted = 0;
+  for (size_t i = 0; i < means.size(); ++i) {
+    const size_t first = i / (width / 2) * 2 * width + i % (width / 2) * 2;
+    vec3 sum(0), plain(0);
+    float flux = 0;
+    for (const size_t k : {first, first + 1, first + width, first + width + 1}) {
+      sum += fluxes[k].x * vec3(positions[k]);
+      plain += 0.25f * vec3(positions[k]);
+      flux += fluxes[k].x;
+    }
+    ASSERT_GT(flux, 0);
+    ASSERT_LT(glm::distance(vec3(means[i]), sum / flux), 1e-5f) << i;
+    unweighted = std::max(unweighted, double(glm::distance(plain, sum / flux)));
+  }
+  EXPECT_GT(unweighted, 1e-3) << "or the weights say nothing";
 }
 
 TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
