@@ -245,6 +245,24 @@ TEST_F(ReflectiveTest, ClustersStandInTheMiddleOfTheirFlux) {
   EXPECT_GT(unweighted, 1e-3) << "or the weights say nothing";
 }
 
+/// Clusters around a corner face neither wall, and their mean normal is short. As long as it is, it would lose light.
+TEST_F(ReflectiveTest, CoarseClustersLoseNoLight) {
+  const Room room;
+  place(room.scene);
+  const RsmSettings fine{.resolution = 64, .coarsest = 4, .finest = 64, .tau = 1e-6f};
+  RsmSettings coarse = fine;
+  coarse.tau = 0.02f;
+  const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, 0.6f, 0.2f), vec3(1))}, fine, kTrees);
+  const auto mean = [&](const RsmSettings& rsm) {
+    const Image image = gathered(room.scene, sheet, rsm, kTrees);
+    double sum = 0;
+    for (const vec3& e : image.pixels) sum += double(luminance(e));
+    return sum / double(image.pixels.size());
+  };
+  const double all = mean(fine);
+  EXPECT_NEAR(mean(coarse) / all, 1, 0.013); // 1.008; of short normals 0.982
+}
+
 TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
   const Room room;
   place(room.scene);
