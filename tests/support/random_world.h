@@ -14,7 +14,7 @@
 
 namespace lambent::test {
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true; // everything takes ten times as long: fewer frames do
 #else
 constexpr bool kSanitized = false;
