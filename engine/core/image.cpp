@@ -35,6 +35,10 @@ void checkWritable(const fs::path& file) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
 }
 
+namespace {
+constexpr size_t kLongestStem = 100; // of 255 bytes that a name may have: a temporary's fits where the target's does
+}
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code none;
   const fs::path resolved = fs::canonical(named, none); // a link stays one, and what it leads to is written
@@ -44,8 +48,7 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
   fs::path temporary = file;
-  constexpr size_t kLongest = 100; // of 255 bytes that a name may have, so that ours fits where the target's does
-  temporary.replace_filename("." + file.stem().string().substr(0, kLongest) + "." +
+  temporary.replace_filename("." + file.stem().string().substr(0, kLongestStem) + "." +
                              std::to_string(std::random_device{}()) + file.extension().string());
   std::error_code ignored;
   checkWritable(file);
@@ -58,6 +61,18 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   } catch (...) {
     fs::remove(temporary, ignored);
     throw;
+  }
+}
+
+void removeLeftovers(const fs::path& file) {
+  const std::string begin = "." + file.stem().string().substr(0, kLongestStem) + ".", end = file.extension().string();
+  std::error_code ignored;
+  for (const fs::directory_entry& e :
+       fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), ignored)) {
+    const std::string name = e.path().filename().string();
+    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
+    const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (between.find_first_not_of("0123456789") == between.npos) fs::remove(e.path(), ignored);
   }
 }
 

@@ -52,4 +52,8 @@ void checkWritable(const std::filesystem::path& file);
 /// the folder cannot be written.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 
+/// Removes temporaries of `file` that a program left which was killed while it wrote. For who knows that nobody else is
+/// at it: one that goes on with what was begun.
+void removeLeftovers(const std::filesystem::path& file);
+
 } // namespace lambent

@@ -27,7 +27,7 @@ SHARED_INLINE vec3 filmic(vec3 c) {
   return c * (2.51f * c + 0.03f) / (c * (2.43f * c + 0.59f) + 0.14f);
 }
 
-/// Finite, for grey rising, and above -1e-6, whatever finite c is. `toneMapper`: ToneMapper (gi/plan/settings.h).
+/// Finite, for grey rising, and above -1e-6, for every finite c of which no channel is negative. `toneMapper`: ToneMapper (gi/plan/settings.h).
 SHARED_INLINE vec3 toneMapped(vec3 c, int toneMapper) {
   return toneMapper == 1 ? pbrNeutral(c) : toneMapper == 2 ? filmic(c) : reinhard(c);
 }

@@ -1,5 +1,6 @@
-// Every hard case with every technique: all that can be read is finite and not negative, energy lies between bounds,
-// frames follow each other, the set of virtual lights is whole, and GL has nothing to say.
+// Every hard case with every technique: all that can be read is finite, and not negative but for estimates of
+// irradiance; energy lies between bounds, where a case says so frames follow each other, positions, normals and light
+// of the virtual lights are whole, and GL has nothing to say.
 #include "engine/core/error.h"
 #include "gi/measure/runs/whole.h"
 #include "gi/plan/presets.h"
@@ -15,6 +16,10 @@ namespace lambent::test {
 namespace {
 
 class HardTest : public GlTest, public ::testing::WithParamInterface<HardCase> {};
+
+/// What other techniques that sample their lights must find of what smc must. (Reflective maps show one bounce, and
+/// neither emissive surfaces nor the sky.)
+constexpr double kLeastOfOthers = 0.3;
 
 double meanOf(const Image& image) {
   double sum = 0;
@@ -61,7 +66,13 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
     const double most = smc || c.bounds.leak ? c.bounds.most : 2 * c.bounds.most;
     EXPECT_LE(std::abs(mean), most * (1 + 1e-6)) << "too much light";
   }
-  if (!smc) return;
+  if (!smc) {
+    // tcas has one bounce; what comes through the gaps beside that wall has two.
+    const bool tooDark = w.settings.vpl.source == VplSource::Tcas && std::string(c.name) == "PaperWall";
+    if (rowOf(w.settings.vpl.source).sampled && !tooDark)
+      EXPECT_GE(mean, kLeastOfOthers * c.bounds.least) << "too little light";
+    return;
+  }
   for (const auto& [name, value] : {std::pair("least", c.bounds.least), {"most", c.bounds.most}, {"irradiance", mean}})
     ::testing::Test::RecordProperty(name, (std::ostringstream() << std::setprecision(2) << value).str());
   EXPECT_GE(mean, c.bounds.least) << "too little light";

@@ -4,6 +4,8 @@
 #include "engine/gl/program.h"
 #include "tools/lambent/text.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +25,17 @@ uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
 std::string textOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Buffers and images that a glTF file names: what it holds itself is of its own text.
+uint64_t hashOfNamedFiles(const fs::path& scene, uint64_t hash) {
+  const nlohmann::json document = nlohmann::json::parse(textOf(scene), nullptr, false);
+  if (!document.is_object()) return hash; // .glb
+  for (const char* list : {"buffers", "images"})
+    for (const nlohmann::json& entry : document.value(list, nlohmann::json::array()))
+      if (const std::string uri = entry.value("uri", ""); !uri.empty() && !uri.starts_with("data:"))
+        hash = hashOf(textOf(scene.parent_path() / uri), hash);
+  return hash;
 }
 
 /// The program with its shaders: what another one made is not ours.
@@ -46,7 +59,8 @@ std::string conditionsOf(const Stage& stage, const LaunchOptions& o, const std::
   for (const SettingRow& row : settingsTable()) text += '\n' + settingText(stage.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})
     for (const std::string& light : *list) text += '\n' + light;
-  return format("%016llx", static_cast<unsigned long long>(hashOf(text, hashOfProgram())));
+  return format("%016llx",
+                static_cast<unsigned long long>(hashOf(text, hashOfNamedFiles(stage.scene.file, hashOfProgram()))));
 }
 
 } // namespace lambent

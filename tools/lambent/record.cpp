@@ -93,15 +93,19 @@ class RecordingMark {
 
   /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.
   int kept() const {
+    removeLeftovers(file_);
     const nlohmann::json mark = nlohmann::json::parse(std::ifstream(file_), nullptr, false);
-    if (mark.is_discarded()) return 0;
-    if (mark.value("conditions", "") != conditions_)
+    const auto conditions = mark.is_object() ? mark.find("conditions") : mark.end();
+    const auto frames = mark.is_object() ? mark.find("frames") : mark.end();
+    if (conditions == mark.end() || frames == mark.end() || !frames->is_number_unsigned()) return 0;
+    if (*conditions != conditions_)
       throw InputError("--resume", file_.parent_path().string() + " holds a recording of another shot, size, buffer, " +
                                        "setting or program (without --resume it is recorded anew)");
-    return mark.value("frames", 0);
+    return frames->get<int>();
   }
 
   void write(int frames) const {
+
     writeAtomically(file_, [&](const fs::path& temporary) {
       std::ofstream out(temporary);
       out << nlohmann::json{{"conditions", conditions_}, {"frames", frames}} << '\n';
@@ -174,7 +178,15 @@ void record(const RecordOptions& options) {
   const int total =
       options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
   const RecordingMark mark(folder, conditionsOf(*stage, options.launch, options.buffer + options.format));
-  const int kept = options.resume ? mark.kept() : 0;
+  const auto picture = [&](int frame) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.%s", frame, options.format.c_str());
+    return folder / name;
+  };
+  int kept = 0;
+  for (const int marked = options.resume ? mark.kept() : 0; kept < marked; ++kept) // as far as none is missing
+    if (!fs::exists(picture(kept))) break;
+  if (options.resume) removeLeftovers(picture(kept));
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
@@ -191,9 +203,7 @@ void record(const RecordOptions& options) {
       const FrameStats& stats = gi.run(stage->at(t));
       const auto begin = std::chrono::steady_clock::now();
       if (options.format != "none" && done >= kept) { // frames of before are computed: later ones build on them
-        char name[32];
-        std::snprintf(name, sizeof name, "%06d.%s", done, options.format.c_str());
-        writeBuffer((folder / name).string(), gi, buffer, whole.width, whole.height);
+        writeBuffer(picture(done).string(), gi, buffer, whole.width, whole.height);
         mark.write(done + 1);
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;

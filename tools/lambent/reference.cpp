@@ -98,7 +98,10 @@ void reference(const ReferenceOptions& options) {
   const std::string out = options.output.out.empty() ? "reference.exr" : options.output.out;
   checkPictureName(out);
   if (!options.errors.empty()) checkPictureName(options.errors);
-  if (!options.state.empty()) checkWritable(options.state);
+  if (!options.state.empty()) {
+    checkWritable(options.state);
+    removeLeftovers(options.state);
+  }
   const auto stage = openStage(options.launch);
   say(*stage, options.output.quiet);
   const Settings& settings = stage->settings;

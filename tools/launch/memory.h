@@ -5,9 +5,6 @@
 
 namespace lambent {
 
-/// Bytes that may still be taken: what is free, or left to the group of processes that this one runs in.
-size_t freeMemory();
-
 /// Throws RunError with the largest picture of the same shape that fits, where a frame of this size would not. Of a GPU
 /// the memory is not known; a driver that draws on the CPU takes the machine's.
 void checkPictureFits(const CameraView& camera);
