@@ -45,6 +45,10 @@ void drawWithoutAttributes(GLenum mode, int count) {
 
 void drawFullscreen() { drawWithoutAttributes(GL_TRIANGLES, 3); }
 void drawPoints(int count) { drawWithoutAttributes(GL_POINTS, count); }
+void dispatch(int groups) {
+  glDispatchCompute(GLuint(groups), 1, 1);
+  ++detail::countsSoFar().draws;
+}
 
 void finishToMeasure() { glFinish(); }
 

@@ -40,7 +40,7 @@ GLuint compile(GLenum stage, const ShaderText& source) {
 } // namespace
 
 std::string ProgramDesc::key() const {
-  std::string key = vertex + '|' + geometry + '|' + fragment;
+  std::string key = compute.empty() ? vertex + '|' + geometry + '|' + fragment : compute;
   for (const std::string& define : defines) key += '|' + define;
   return key;
 }
@@ -79,8 +79,9 @@ const Program& ProgramCache::get(const ProgramDesc& desc) {
 
 void ProgramCache::build(Program& program) const {
   const ProgramDesc& desc = program.desc_;
-  const std::pair<GLenum, const std::string*> stages[] = {
+  std::vector<std::pair<GLenum, const std::string*>> stages = {
       {GL_VERTEX_SHADER, &desc.vertex}, {GL_GEOMETRY_SHADER, &desc.geometry}, {GL_FRAGMENT_SHADER, &desc.fragment}};
+  if (!desc.compute.empty()) stages = {{GL_COMPUTE_SHADER, &desc.compute}};
   std::vector<std::pair<GLenum, ShaderText>> sources;
   for (const auto& [stage, file] : stages)
     if (!file->empty()) sources.emplace_back(stage, loadShader(folder_, *file, desc.defines));
@@ -144,7 +145,9 @@ std::vector<std::string> ProgramCache::reloadChanged() {
     try {
       build(*program);
       const ProgramDesc& desc = program->desc_;
-      messages.push_back("reloaded " + (desc.fragment.empty() ? desc.vertex : desc.fragment));
+      messages.push_back("reloaded " + (!desc.compute.empty()    ? desc.compute
+                                        : desc.fragment.empty() ? desc.vertex
+                                                                : desc.fragment));
     } catch (const RunError& error) {
       messages.push_back(error.what());
     }

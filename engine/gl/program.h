@@ -18,6 +18,7 @@ struct ProgramDesc {
   std::vector<std::string> defines = {};
   std::string geometry = {};              // none if empty
   std::vector<std::string> captured = {}; // outputs for transform feedback, interleaved; then `fragment` may be empty
+  std::string compute = {};               // alone: the others are then not looked at
 
   std::string key() const;
 };
@@ -71,7 +72,7 @@ std::filesystem::path findShaderFolder();
 
 /// Programs of one context, compiled when first asked for. References stay valid for the life of the cache.
 /// LAMBENT_DUMP_SHADERS=FOLDER has every variant that compiles written there as the compiler got it, so that other
-/// compilers can be asked (tests/cli/shaders): PROGRAM-FILE.vert, .geom and .frag, with a number for the program.
+/// compilers can be asked (tests/cli/shaders): PROGRAM-FILE.vert, .geom, .frag and .comp, with a number for the program.
 class ProgramCache {
  public:
   explicit ProgramCache(std::filesystem::path folder = findShaderFolder()) : folder_(std::move(folder)) {}

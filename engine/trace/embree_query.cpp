@@ -1,6 +1,7 @@
 #include "engine/trace/embree_query.h"
 
 #include "engine/core/error.h"
+#include "engine/trace/surface_hit.h"
 
 #if EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -23,36 +24,6 @@ struct GeometryData {
   uint32_t mesh, primitive;
 };
 
-struct Corner {
-  uvec3 vertices;
-  float w0, u, v;
-
-  template <class T> T interpolate(const std::vector<T>& a) const {
-    return a[vertices.x] * w0 + a[vertices.y] * u + a[vertices.z] * v;
-  }
-};
-
-Corner cornerOf(const Mesh& mesh, const Primitive& primitive, uint32_t triangle, float u, float v) {
-  return {mesh.triangles[primitive.firstTriangle + triangle], 1 - u - v, u, v};
-}
-
-vec2 uvOf(const Mesh& mesh, const Corner& c, const TextureRef& ref) {
-  const auto& uv = ref.uvSet == 0 ? mesh.uv0 : mesh.uv1;
-  return uv.empty() ? vec2(0) : c.interpolate(uv);
-}
-
-/// `mean` (may be null) stands in for the texture.
-vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const Corner& c,
-                  const vec4* mean = nullptr) {
-  vec4 colour(material.baseColor, material.alpha);
-  if (mean)
-    colour *= *mean;
-  else if (material.baseColorTexture.image != kNone)
-    colour *= sampleTexture(assets, material.baseColorTexture, uvOf(mesh, c, material.baseColorTexture));
-  if (!mesh.colors.empty()) colour *= c.interpolate(mesh.colors);
-  return colour;
-}
-
 /// Of this thread, since they were last added up.
 thread_local uint64_t alphaTests = 0;
 
@@ -66,9 +37,10 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] != -1) continue;
     ++alphaTests;
     if (material.alphaMode != AlphaMode::Mask) continue;
-    const Corner c = cornerOf(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
-                              RTCHitN_v(args->hit, args->N, i));
-    if (baseColourAt(*data.assets, mesh, material, c).w < material.alphaCutoff) args->valid[i] = 0;
+    const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
+    if (alphaAt(*data.assets, mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric) <
+        material.alphaCutoff)
+      args->valid[i] = 0;
   }
 }
 
@@ -292,8 +264,7 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
   const size_t before = s.instances.size(), now = view.instances.size();
   uint32_t placed = 0;
   if (s.fresh && !view.boundsWorld.empty()) {
-    const Aabb& b = view.boundsWorld;
-    grain_ = 0x1p-19f * glm::max(maxComponent(glm::abs(b.lo)), maxComponent(glm::abs(b.hi)));
+    grain_ = grainOf(view.boundsWorld);
     s.fresh = false;
   }
   for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));
@@ -353,37 +324,12 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
 
     const State::Instance& instance = s.instances[rh.hit.instID[0]];
     const Mesh& mesh = s.assets.meshes[instance.mesh];
-    const Primitive& primitive = mesh.primitives[rh.hit.geomID];
-    const Material& material = s.assets.materials[primitive.material];
-    const Corner c = cornerOf(mesh, primitive, rh.hit.primID, rh.hit.u, rh.hit.v);
-    const std::vector<vec3>& positions = instance.deformed() ? instance.positions : mesh.positions;
-    const std::vector<vec3>& normals = instance.deformed() ? instance.normals : mesh.normals;
-    const vec3 p0 = positions[c.vertices.x];
-    const vec3 front =
-        instance.normalFromObject * glm::cross(positions[c.vertices.y] - p0, positions[c.vertices.z] - p0);
-    const float length = glm::length(front);
-    if (!(length > 0)) continue; // squashed to nothing by the instance's scale
-    const bool fromFront = glm::dot(front, rays[i].direction) < 0;
-    hit.t = rh.ray.tfar;
-    hit.position = rays[i].origin + rays[i].direction * hit.t;
-    hit.geometricNormal = front * ((fromFront ? 1.0f : -1.0f) / length);
-    const vec3 shading = instance.normalFromObject * c.interpolate(normals) * (fromFront ? 1.0f : -1.0f);
-    const float shadingLength = glm::length(shading);
-    // A shading normal that looks away from the ray would light the surface from behind.
-    hit.normal =
-        shadingLength > 0 && glm::dot(shading, rays[i].direction) < 0 ? shading / shadingLength : hit.geometricNormal;
-    const bool textured = material.baseColorTexture.image != kNone;
-    const vec4* mean =
-        textured && !s.textures ? &s.assets.images[material.baseColorTexture.image].averageLinear : nullptr;
-    lookups += textured && !mean;
-    hit.albedo = glm::clamp(vec3(baseColourAt(s.assets, mesh, material, c, mean)), 0.0f, 1.0f);
-    if (material.emits() && (fromFront || material.doubleSided))
-      hit.emission = material.emission *
-                     vec3(sampleTexture(s.assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
-    hit.instance = rh.hit.instID[0];
-    hit.primitive = rh.hit.geomID;
-    hit.triangle = rh.hit.primID;
-    hit.barycentric = {rh.hit.u, rh.hit.v};
+    const bool deformed = instance.deformed();
+    hit = surfaceAt(s.assets,
+                    {mesh, deformed ? instance.positions : mesh.positions, deformed ? instance.normals : mesh.normals,
+                     instance.normalFromObject},
+                    {rh.ray.tfar, rh.hit.instID[0], rh.hit.geomID, rh.hit.primID, {rh.hit.u, rh.hit.v}}, rays[i],
+                    s.textures, lookups);
   }
   if (lookups > 0) s.textureLookups += lookups;
   s.countAlphaTests();

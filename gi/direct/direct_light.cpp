@@ -68,13 +68,29 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 } // namespace
 
 DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
-    : context_(context), shadows_(context), emitters_(context), doubts_(std::min(mostDoubts, gl::mostBufferTexels())),
+    : context_(context), shadows_(context), emitters_(context), areas_(context), doubts_(std::min(mostDoubts, gl::mostBufferTexels())),
       depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   if (in.keep) return target_.light();
-  const bool allowed = in.shadow.rays && in.surfaces.depth->holdsSinglePrecision();
+  lightByMaps(in, stats);
+  if (byPatches(in)) {
+    areas_.add(in.world, in.surfaces, in.patches, in.settings, target_, stats);
+    stats.of(EffectId::Emissive) += stats.areaFragments;
+    stats.of(EffectId::SoftShadows) = stats.areaFragments;
+  }
+  return target_.light();
+}
+
+/// Whether emissive surfaces light patches. As one sample they are as good as points.
+bool DirectLight::byPatches(const DirectInputs& in) {
+  return in.settings.shadow.emitters == EmitterShadows::Patches && in.plan.on(EffectId::Emissive) &&
+         in.plan.on(EffectId::SoftShadows);
+}
+
+void DirectLight::lightByMaps(const DirectInputs& in, FrameStats& stats) {
+  const bool allowed = in.settings.shadow.rays && in.surfaces.depth->holdsSinglePrecision();
   const std::vector<LightBlock> blocks = shadowed(in, allowed, stats);
   const bool rays = allowed && !blocks.empty();
   const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};
@@ -85,7 +101,7 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
     target_.clear();
     for (const LightBlock& block : blocks) drawBlock(in.surfaces, block, whole, rays ? Noting::AlsoLight : Noting::Off);
   }
-  if (!rays || answer(in, blocks, stats)) return target_.light();
+  if (!rays || answer(in, blocks, stats)) return;
 
   // There are more doubts than the list holds: block by block, and in parts of the picture so small that it does.
   for (const LightBlock& block : blocks) {
@@ -103,7 +119,6 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
         for (const Area& half : halves(area)) areas.push_back(half);
     }
   }
-  return target_.light();
 }
 
 /// Asks rays about what was noted, and adds the light that they let through. False where the list had not room enough.
@@ -141,7 +156,7 @@ bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blo
 /// All lights, with maps that are up to date. Without `rays` those of suns cover all that is seen.
 std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, bool rays, FrameStats& stats) {
   const World& world = in.world;
-  const ShadowSettings shadow = resolved(in.shadow, world.view.camera.width);
+  const ShadowSettings shadow = resolved(in.settings.shadow, world.view.camera.width);
   fitReceivers(in, stats);
   std::vector<LightBlock> blocks =
       shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
@@ -149,7 +164,7 @@ std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, bool rays,
                     world.moved.boxes(), shadow});
   stats.lightMapsDrawn = shadows_.mapsDrawn();
   stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
-  if (in.plan.on(EffectId::Emissive)) {
+  if (in.plan.on(EffectId::Emissive) && !byPatches(in)) {
     const bool soft = in.plan.on(EffectId::SoftShadows);
     const uint32_t before = stats.mapsDrawn;
     for (const LightBlock& block : emitters_.run(world, shadow, soft ? shadow.emitterSamples : 1, stats))

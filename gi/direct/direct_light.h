@@ -5,6 +5,7 @@
 #include "gi/contract/figures.h"
 #include "gi/contract/light_on_surfaces.h"
 #include "gi/contract/world.h"
+#include "gi/direct/area_light_pass.h"
 #include "gi/direct/emitter_shadows.h"
 #include "gi/direct/light_shadows.h"
 #include "gi/direct/shadow_doubts.h"
@@ -15,7 +16,8 @@ struct DirectInputs {
   const World& world;
   const GBuffer& surfaces;
   const EffectPlan& plan;
-  const ShadowSettings& shadow;
+  const Settings& settings;
+  Patches& patches; // of the surfaces
   bool keep = false; // all of it is that of the last run
 };
 
@@ -32,6 +34,8 @@ class DirectLight {
   /// Whether doubts are noted, and light is drawn.
   enum class Noting { Off, AlsoLight, Only };
 
+  static bool byPatches(const DirectInputs& in);
+  void lightByMaps(const DirectInputs& in, FrameStats& stats);
   void fitReceivers(const DirectInputs& in, FrameStats& stats);
   std::vector<LightBlock> shadowed(const DirectInputs& in, bool rays, FrameStats& stats);
   const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
@@ -43,6 +47,7 @@ class DirectLight {
   PassContext context_;
   LightShadowPass shadows_;
   EmitterShadowPass emitters_;
+  AreaLightPass areas_;
   ShadowDoubts doubts_;
   Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest

@@ -109,7 +109,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     const bool keep = !plan.seenChanges();
     const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host, keep});
     Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
-    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings.shadow, keep}, stats);
+    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings, patches, keep}, stats);
     LightOnSurfaces gathered, indirect;
     if (plan.on(EffectId::Indirect)) {
       const DrawCount indirectDraws;

@@ -1,5 +1,6 @@
 #include "gi/gather/patch_atlas.h"
 
+#include "engine/core/error.h"
 #include "shaders/shared/patches.h"
 
 #include <algorithm>
@@ -43,6 +44,12 @@ void PatchAtlas::clear() const {
   const float nothing[4] = {};
   for (int i = 0; i < (shape_.glossy ? 2 : 1); ++i)
     glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, nothing);
+}
+
+void PatchAtlas::put(int level, std::span<const vec4> values) const {
+  const glm::ivec2 at = atlasOrigin(shape_.base, level), size = shape_.sub(level);
+  CHECK_EQ(values.size(), size_t(size.x) * size_t(size.y));
+  glTextureSubImage2D(atlas_.name(), 0, at.x, at.y, size.x, size.y, GL_RGBA, GL_FLOAT, values.data());
 }
 
 void PatchAtlas::upsample(const GBuffer& surfaces, const Settings& settings, bool add) {

@@ -32,6 +32,9 @@ class PatchAtlas {
 
   /// Black everywhere.
   void clear() const;
+  /// What the patches of a level hold, row by row over the padded picture.
+  void put(int level, std::span<const vec4> values) const;
+  void bind(int unit) const { atlas_.bind(unit); }
   void clearLight() const { target_.clear(); }
   /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
   void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);

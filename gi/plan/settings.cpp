@@ -87,6 +87,22 @@ class Table {
            {1, 1024, "samples", PowersOfTwo}, Maps, "shadowed samples for all emissive surfaces in direct light");
     number("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution,
            {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
+    choice("shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
+           "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
+           "from patches of the picture, split where the answers differ (paper 4)");
+    choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"sub-fragments", "neighbours"}, Nothing,
+           "what splits these patches: visibility within them, or that of the eight around (Nichols et al. 2010)");
+    number("area.rays", &Settings::area, &AreaSettings::rays, {1, 64, "rays", PowersOfTwo}, Nothing,
+           "from each quarter of a patch, and four times as many from a single pixel");
+    number("area.threshold", &Settings::area, &AreaSettings::threshold, {1, 256, "rays"}, Nothing,
+           "answers that differ and split a patch");
+    number("area.gradient", &Settings::area, &AreaSettings::gradient, {0, 64, "rays"}, Nothing,
+           "difference between quarters side by side beyond which both are split twice at once; 0 = never");
+    flag("area.extra", &Settings::area, &AreaSettings::extra, Nothing,
+         "three single pixels more in patches of 8x8 pixels and larger");
+    choice("area.upsample", &Settings::area, &AreaSettings::upsample, {"rbf", "bilateral", "bilinear"}, Nothing,
+           "between patches: radial basis functions around the three nearest samples, or level by level as "
+           "multires.upsample");
     number("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, {1, 512, "maps", PowersOfTwo}, Maps,
            "directions of the sky in direct light");
     number("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, {16, 2048, "texels", PowersOfTwo},

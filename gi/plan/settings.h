@@ -19,6 +19,12 @@ enum class DensityEstimator : int { Knn, KnnSide, Cells };
 enum class PatchCriterion : int { Plane, Depth };
 // Between patches: bilinear weights times how alike their surfaces are | bilinear alone (papers 2 and 3).
 enum class PatchUpsample : int { Bilateral, Bilinear };
+// Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
+enum class EmitterShadows : int { Samples, Patches };
+// What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
+enum class AreaRefinement : int { SubFragments, Neighbours };
+// Between them: three radial basis functions | level by level, as PatchUpsample.
+enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -88,10 +94,22 @@ struct ShadowSettings {
   int spotResolution = 0;  // w
   int emitterSamples = 16; // shadowed samples that stand for all emissive surfaces in direct light
   int emitterResolution = 256;
+  EmitterShadows emitters = EmitterShadows::Samples; // who says what of emissive surfaces is seen
   bool rays = true; // ask rays where maps of direct light are in doubt
   int skyMaps = 32; // directions that stand for the sky in direct light
   int skyResolution = 256;
   bool operator==(const ShadowSettings&) const = default;
+};
+
+/// Direct light of emissive surfaces by patches of the picture (paper 4).
+struct AreaSettings {
+  AreaRefinement refinement = AreaRefinement::SubFragments;
+  int rays = 16;     // per sub-fragment: a quarter of a patch, or of a pixel's rays
+  int threshold = 1; // bits of visibility that differ and split a patch
+  int gradient = 4;  // bits between neighbouring sub-fragments beyond which both are split twice; 0 = never twice
+  bool extra = true; // three single pixels more in patches of 8×8 pixels and larger
+  AreaUpsample upsample = AreaUpsample::Rbf;
+  bool operator==(const AreaSettings&) const = default;
 };
 
 struct GatherSettings {
@@ -173,6 +191,7 @@ struct Settings {
   VplSettings vpl;
   SmcSettings smc;
   ShadowSettings shadow;
+  AreaSettings area;
   GatherSettings gather;
   MultiresSettings multires;
   RsmSettings rsm;

@@ -33,6 +33,8 @@ enum class StageId : uint16_t {
   EmitterMaps,
   Direct,
   ShadowRays, // where maps are in doubt
+  AreaRays,   // between emissive surfaces and patches
+  AreaLight,
   // who sees whom
   VplMaps,
   MapComparison,
@@ -77,6 +79,8 @@ inline constexpr const char* kStageNames[] = {"scene",
                                               "emitter maps",
                                               "direct",
                                               "shadow rays",
+                                              "area rays",
+                                              "area light",
                                               "vpl maps",
                                               "map comparison",
                                               "gather",

@@ -6,12 +6,15 @@
 #define SHARED_INLINE inline
 #define SHARED_OUT(T) T&
 namespace lambent {
+using glm::abs;
 using glm::acos;
 using glm::atan;
 using glm::clamp;
+using glm::cross;
 using glm::dot;
 using glm::exp;
 using glm::ivec2;
+using glm::length;
 using glm::max;
 using glm::min;
 using glm::mix;

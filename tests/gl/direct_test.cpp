@@ -19,6 +19,7 @@ class DirectTest : public GlTest {
   Image irradianceOf(const HandScene& scene, const LightSet& emitters = {}) {
     Settings all;
     all.shadow = settings;
+    all.area = area;
     all.effects[EffectId::Emissive] = emitters.emitters.empty() ? EffectMode::Off : EffectMode::On;
     all.effects[EffectId::SoftShadows] = EffectMode::On;
     LightSet lights = emitters;
@@ -31,7 +32,9 @@ class DirectTest : public GlTest {
     FrameResults results;
     results.surfaces = surfaces.run({world.gpu, world.view.camera});
     // reads as irradiance, without albedo
-    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), settings}, stats);
+    PatchPass patchPass(passes, StageId::Patches);
+    Patches patches([&] { return patchPass.run(results.surfaces, all.multires); });
+    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all, patches}, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 
@@ -43,6 +46,7 @@ class DirectTest : public GlTest {
   }
 
   ShadowSettings settings = fixedResolutions();
+  AreaSettings area;
   uint32_t mostDoubts = ShadowDoubts::kMost;
   FrameStats stats; // of the last picture
 };

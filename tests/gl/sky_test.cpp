@@ -20,7 +20,8 @@ class SkyTest : public GlTest {
     FrameStats stats;
     FrameResults results;
     results.surfaces = surfaces.run({world.gpu, world.view.camera});
-    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all.shadow}, stats);
+    Patches patches;
+    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all, patches}, stats);
     return readBuffer(Buffer::Irradiance, results); // reads without albedo
   }
   /// Irradiance of a lone plate in the middle of the picture.

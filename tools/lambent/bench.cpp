@@ -1,6 +1,6 @@
 // lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against of two settings,
 // with --techniques of several techniques, frame by frame in turn. Other forms: bench_multires.cpp, bench_tables.cpp
-// (--table2), bench_growth.cpp, bench_equal_error.cpp.
+// (--table2), bench_growth.cpp, bench_equal_error.cpp, bench_rays.cpp.
 #include "tools/lambent/bench.h"
 
 #include "engine/core/error.h"
@@ -123,6 +123,7 @@ void bench(const BenchOptions& options) {
     throw InputError(options.scenes[1],
                      "one scene or shot is enough (several go with --multires, --table2 and --equal-error)");
   if (options.growth) return benchGrowth(options);
+  if (options.rays) return benchRays(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
     throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
   const auto stage = openStage(options.launch);
@@ -220,6 +221,8 @@ void declareBench(CLI::App& app) {
   forms->add_flag("--equal-error", options->equalError,
                   "the presets' error of indirect irradiance, still and in shots moving, and how long path tracing "
                   "takes to the same");
+  forms->add_flag("--rays", options->rays,
+                  "a million rays on the GPU and with Embree: where they differ, and how many a second");
   command->add_option("--along", options->along, "--growth: comma-separated, only these")
       ->delimiter(',')
       ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));

@@ -1,0 +1,80 @@
+#include "engine/trace/surface_hit.h"
+
+namespace lambent {
+
+namespace {
+
+struct Corner {
+  uvec3 vertices;
+  float w0, u, v;
+
+  template <class T> T interpolate(const std::vector<T>& a) const {
+    return a[vertices.x] * w0 + a[vertices.y] * u + a[vertices.z] * v;
+  }
+};
+
+Corner cornerOf(const Mesh& mesh, const Primitive& primitive, uint32_t triangle, float u, float v) {
+  return {mesh.triangles[primitive.firstTriangle + triangle], 1 - u - v, u, v};
+}
+
+vec2 uvOf(const Mesh& mesh, const Corner& c, const TextureRef& ref) {
+  const auto& uv = ref.uvSet == 0 ? mesh.uv0 : mesh.uv1;
+  return uv.empty() ? vec2(0) : c.interpolate(uv);
+}
+
+/// `mean` (may be null) stands in for the texture.
+vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const Corner& c,
+                  const vec4* mean = nullptr) {
+  vec4 colour(material.baseColor, material.alpha);
+  if (mean)
+    colour *= *mean;
+  else if (material.baseColorTexture.image != kNone)
+    colour *= sampleTexture(assets, material.baseColorTexture, uvOf(mesh, c, material.baseColorTexture));
+  if (!mesh.colors.empty()) colour *= c.interpolate(mesh.colors);
+  return colour;
+}
+
+} // namespace
+
+float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
+              const vec2& barycentric) {
+  const Corner c = cornerOf(mesh, primitive, triangle, barycentric.x, barycentric.y);
+  return baseColourAt(assets, mesh, assets.materials[primitive.material], c).w;
+}
+
+SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, const TriangleMet& met, const Ray& ray,
+                     bool textures, uint64_t& lookups) {
+  const Mesh& mesh = instance.mesh;
+  const Primitive& primitive = mesh.primitives[met.primitive];
+  const Material& material = assets.materials[primitive.material];
+  const Corner c = cornerOf(mesh, primitive, met.triangle, met.barycentric.x, met.barycentric.y);
+  const vec3 p0 = instance.positions[c.vertices.x];
+  const vec3 front = instance.normalFromObject *
+                     glm::cross(instance.positions[c.vertices.y] - p0, instance.positions[c.vertices.z] - p0);
+  const float length = glm::length(front);
+  SurfaceHit hit;
+  if (!(length > 0)) return hit;
+  const bool fromFront = glm::dot(front, ray.direction) < 0;
+  hit.t = met.t;
+  hit.position = ray.origin + ray.direction * hit.t;
+  hit.geometricNormal = front * ((fromFront ? 1.0f : -1.0f) / length);
+  const vec3 shading = instance.normalFromObject * c.interpolate(instance.normals) * (fromFront ? 1.0f : -1.0f);
+  const float shadingLength = glm::length(shading);
+  // A shading normal that looks away from the ray would light the surface from behind.
+  hit.normal =
+      shadingLength > 0 && glm::dot(shading, ray.direction) < 0 ? shading / shadingLength : hit.geometricNormal;
+  const bool textured = material.baseColorTexture.image != kNone;
+  const vec4* mean = textured && !textures ? &assets.images[material.baseColorTexture.image].averageLinear : nullptr;
+  lookups += textured && !mean;
+  hit.albedo = glm::clamp(vec3(baseColourAt(assets, mesh, material, c, mean)), 0.0f, 1.0f);
+  if (material.emits() && (fromFront || material.doubleSided))
+    hit.emission =
+        material.emission * vec3(sampleTexture(assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
+  hit.instance = met.instance;
+  hit.primitive = met.primitive;
+  hit.triangle = met.triangle;
+  hit.barycentric = met.barycentric;
+  return hit;
+}
+
+} // namespace lambent

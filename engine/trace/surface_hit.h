@@ -1,0 +1,31 @@
+// The surface at a place on a triangle: what all tracers of the scene's triangles say of a hit.
+#pragma once
+
+#include "engine/trace/ray_query.h"
+
+namespace lambent {
+
+/// An instance as rays find it.
+struct TracedInstance {
+  const Mesh& mesh;
+  const std::vector<vec3>&positions, &normals; // object space: the mesh's, or as deformed
+  mat3 normalFromObject{1};                    // transposed inverse of the instance's matrix
+};
+
+/// Where a ray met it.
+struct TriangleMet {
+  float t = 0;
+  uint32_t instance = 0, primitive = 0, triangle = 0; // as SurfaceHit
+  vec2 barycentric{0};
+};
+
+/// Of a triangle that the instance's scale squashed to nothing: a hit that is not valid. With `textures` the albedo has
+/// the texel's colour, else the texture's mean; `lookups` counts the former.
+SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, const TriangleMet& met, const Ray& ray,
+                     bool textures, uint64_t& lookups);
+
+/// Of a primitive's triangle: base colour's alpha × texture's × vertices'.
+float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
+              const vec2& barycentric);
+
+} // namespace lambent

@@ -1,0 +1,43 @@
+// Which share of the area lights' light reaches the fragments of a picture: patches of it, split where visibility
+// changes. Paper 4, sections 3.1.1 to 3.1.4 (sub-fragment visibility tests, SFVT; gradient aware subdivision, GASS), and
+// for comparison that of Nichols et al. 2010 by neighbourhoods.
+#pragma once
+
+#include "engine/trace/ray_query.h"
+#include "gi/plan/settings.h"
+#include "gi/vpl/area_lights.h"
+#include "shaders/shared/camera_block.h"
+
+#include <span>
+#include <vector>
+
+namespace lambent {
+
+/// A picture's surfaces on the CPU, rows from the bottom.
+struct PictureSurfaces {
+  int width = 0, height = 0;
+  std::span<const float> depth; // as GBuffer
+  std::span<const vec4> normal;
+  CameraBlock camera;
+
+  bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
+  size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
+};
+
+/// Fragments of one level, 2^level pixels wide, row by row over the padded picture.
+struct FragmentLevel {
+  glm::ivec2 size{0};
+  std::vector<uint8_t> smooth; // in: 1 where the patch is one surface, 0 where it is to be split or shows nothing
+  std::vector<vec4> visible;   // out: share of the unshadowed light per channel; w: 1 where a fragment is
+};
+
+struct FragmentCounts {
+  uint64_t fragments = 0, dark = 0, extra = 0; // with extra samples; dark: of these, without any light
+  RayCounts rays;
+};
+
+/// Level 0 to the coarsest; fills `visible`. The same for any number of threads.
+FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+                            const AreaSettings& settings, std::span<FragmentLevel> levels);
+
+} // namespace lambent

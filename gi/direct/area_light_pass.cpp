@@ -1,0 +1,128 @@
+#include "gi/direct/area_light_pass.h"
+
+#include "gi/gather/draw_gather.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+namespace {
+
+/// Every fourth sample as a disk: what lobes reflect.
+std::vector<AreaPiece> disksOf(const AreaLights& lights) {
+  constexpr uint32_t kEvery = 4;
+  std::vector<AreaPiece> disks;
+  for (const AreaLight& light : lights.lights) {
+    float area = 0;
+    for (uint32_t i = 0; i < light.pieces; ++i) area += lights.pieces[light.firstPiece + i].normalArea.w;
+    for (uint32_t i = kEvery / 2; i < light.samples; i += kEvery) {
+      const AreaSample& s = lights.samples[light.firstSample + i];
+      AreaPiece& disk = disks.emplace_back();
+      disk.corners[0] = vec4(s.position, 0);
+      disk.normalArea = vec4(s.normal, area * float(kEvery) / float(light.samples));
+      disk.radianceSides = vec4(s.radiance, light.doubleSided ? 1 : 0);
+    }
+  }
+  return disks;
+}
+
+} // namespace
+
+void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
+                        const LightTarget& target, FrameStats& stats) {
+  lights_ = areaLights(world.lights);
+  if (lights_.lights.empty()) return;
+  const PatchPyramid& pyramid = patches.pyramid();
+  GBuffer plain = surfaces; // shares have no lobes
+  plain.finish = nullptr;
+  atlas_.fit(plain, pyramid, false);
+  readSurfaces(surfaces, pyramid);
+  {
+    const CpuScope scope(stats.stages, key(StageId::AreaRays));
+    const FragmentCounts counts =
+        shareVisible(world.rays, lights_, {surfaces.width, surfaces.height, depth_, normal_, surfaces.block},
+                     settings.area, levels_);
+    stats.areaFragments = counts.fragments;
+    stats.raysArea += counts.rays;
+  }
+  const gl::PassScope scope = context_.scope(StageId::AreaLight);
+  for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
+  const gl::Texture& share = upsample(plain, settings);
+  shade(surfaces, lights_.pieces, false, share, target);
+  if (surfaces.finish) shade(surfaces, disksOf(lights_), true, share, target);
+}
+
+/// What the CPU has to know of the picture. Waits for the GPU.
+void AreaLightPass::readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid) {
+  const size_t pixels = size_t(surfaces.width) * size_t(surfaces.height);
+  depth_.resize(pixels);
+  normal_.resize(pixels);
+  surfaces.depth->read(std::span(depth_), GL_DEPTH_COMPONENT, GL_FLOAT);
+  surfaces.normal->read(std::span(normal_), GL_RGBA, GL_FLOAT);
+  levels_.resize(size_t(pyramid.levels) + 1);
+  std::vector<float> split, plane;
+  for (int level = 0; level <= pyramid.levels; ++level) {
+    FragmentLevel& at = levels_[size_t(level)];
+    at.size = pyramid.padded / (1 << level);
+    at.smooth.assign(size_t(at.size.x) * size_t(at.size.y), 0);
+    if (level == 0) {
+      for (int y = 0; y < surfaces.height; ++y)
+        for (int x = 0; x < surfaces.width; ++x)
+          at.smooth[size_t(y) * size_t(at.size.x) + size_t(x)] =
+              depth_[size_t(y) * size_t(surfaces.width) + size_t(x)] > 0;
+      continue;
+    }
+    split.resize(at.smooth.size());
+    plane.resize(at.smooth.size());
+    pyramid.normalLo->read(std::span(split), GL_ALPHA, GL_FLOAT, level - 1);
+    pyramid.plane->read(std::span(plane), GL_RED, GL_FLOAT, level - 1);
+    for (size_t i = 0; i < split.size(); ++i) at.smooth[i] = split[i] <= 0.5f && plane[i] > 0;
+  }
+}
+
+const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settings& settings) {
+  if (settings.area.upsample != AreaUpsample::Rbf) {
+    Settings between = settings;
+    between.multires.upsample =
+        settings.area.upsample == AreaUpsample::Bilinear ? PatchUpsample::Bilinear : PatchUpsample::Bilateral;
+    between.multires.detail = 0;
+    atlas_.upsample(surfaces, between);
+    return *atlas_.light().irradiance;
+  }
+  share_.fit(surfaces);
+  share_.bind();
+  bindSurfaces(surfaces);
+  atlas_.bind(2);
+  const gl::Program& program = context_.programs.get({.fragment = "area_upsample.frag"});
+  program.use();
+  program.set("base", atlas_.shape().base);
+  program.set("coarsest", atlas_.shape().coarsest);
+  program.set("normalPower", settings.filter.normalPower);
+  program.set("distanceSigma", settings.filter.distance);
+  gl::PipelineState{.width = surfaces.width, .height = surfaces.height}.apply();
+  gl::drawFullscreen();
+  return *share_.light().irradiance;
+}
+
+void AreaLightPass::shade(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks,
+                          const gl::Texture& share, const LightTarget& target) {
+  std::vector<std::string> defines = bindSurfaces(surfaces);
+  if (disks) defines.push_back("DISKS");
+  const gl::Program& program = context_.programs.get({.fragment = "area_light.frag", .defines = std::move(defines)});
+  program.use();
+  program.set("spread", GatherSettings{}.spread); // as DirectLight
+  share.bind(2);
+  target.bind();
+  gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
+  blocks_.reserve(pieces.size_bytes() + kPiecesPerBlock * sizeof(AreaPiece));
+  for (size_t first = 0; first < pieces.size(); first += kPiecesPerBlock) {
+    std::vector<AreaPiece> block(pieces.begin() + std::ptrdiff_t(first),
+                                 pieces.begin() + std::ptrdiff_t(std::min(first + kPiecesPerBlock, pieces.size())));
+    program.set("pieceCount", int(block.size()));
+    block.resize(kPiecesPerBlock);
+    blocks_.write(kPiecesPerBlock * sizeof(AreaPiece), block.data()).bindUniform(1);
+    gl::drawFullscreen();
+  }
+}
+
+} // namespace lambent

@@ -1,0 +1,39 @@
+// Direct light of emissive surfaces by patches of the picture (paper 4): what they bring where nothing is between, in
+// closed form at every pixel, times the share of it that rays from patches find open.
+#pragma once
+
+#include "gi/contract/figures.h"
+#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/pass_context.h"
+#include "gi/contract/patches.h"
+#include "gi/contract/world.h"
+#include "gi/direct/area_fragments.h"
+#include "gi/gather/patch_atlas.h"
+
+namespace lambent {
+
+class AreaLightPass {
+ public:
+  explicit AreaLightPass(PassContext context) : context_(context) {}
+
+  /// Adds to the target, which is as large as the picture.
+  void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
+           const LightTarget& target, FrameStats& stats);
+
+ private:
+  void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
+  const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
+  void shade(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks, const gl::Texture& share,
+             const LightTarget& target);
+
+  PassContext context_;
+  AreaLights lights_;
+  std::vector<float> depth_;
+  std::vector<vec4> normal_;
+  std::vector<FragmentLevel> levels_;
+  PatchAtlas atlas_{context_};
+  LightTarget share_{"area lights"};
+  gl::Ring blocks_{"area lights/pieces"};
+};
+
+} // namespace lambent

@@ -1,0 +1,37 @@
+// Emissive surfaces as area lights: pieces whose unshadowed light is known in closed form, and points that rays are sent
+// to. Paper 4, section 3.1.
+#pragma once
+
+#include "gi/vpl/light_set.h"
+#include "shaders/shared/area_piece.h"
+
+namespace lambent {
+
+/// Where rays end. World space.
+struct AreaSample {
+  vec3 position, normal; // on the surface; unit, to the front
+  vec3 radiance;         // there
+};
+
+/// One emitter.
+struct AreaLight {
+  uint32_t firstPiece = 0, pieces = 0;   // run of AreaLights::pieces
+  uint32_t firstSample = 0, samples = 0; // run of AreaLights::samples, in an order in which neighbours lie side by side
+  bool doubleSided = false;
+};
+
+struct AreaLights {
+  std::vector<AreaLight> lights;
+  std::vector<AreaPiece> pieces;
+  std::vector<AreaSample> samples;
+
+  static constexpr uint32_t kMostPolygons = 32; // of an emitter; with more, or a texture, its samples are its pieces
+  static constexpr uint32_t kSamples = 64;      // of an emitter
+};
+/// Of all emitters that bring light. Two triangles that make a parallelogram become one piece.
+AreaLights areaLights(const LightSet& lights);
+
+/// Irradiance from a light where nothing is between.
+vec3 unshadowed(const AreaLights& all, const AreaLight& light, const vec3& position, const vec3& normal);
+
+} // namespace lambent

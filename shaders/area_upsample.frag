@@ -1,0 +1,138 @@
+#version 450
+// The share of area lights' light that reaches each pixel, from that of fragments of all sizes, in one pass (paper 4,
+// section 3.1.5): those of at most 4 × 4 pixels are copied; within larger ones three Gaussian radial basis functions, around
+// the samples nearest to the pixel, are fitted to what these hold. Beyond the paper: only samples of the same surface; where
+// the fit is ill-conditioned, the mean by weights; never beyond the samples' range, so that a constant stays one.
+#include "lib/gbuffer.glsl"
+#include "shared/patches.h"
+
+layout(binding = 2) uniform sampler2D atlas; // a > 0: a fragment
+uniform ivec2 base;          // of the atlas's level 0
+uniform int coarsest;        // level
+uniform float normalPower;   // as in upsample.frag
+uniform float distanceSigma;
+layout(location = 0) out vec4 outShare;
+
+const float kVariance = 2.0;          // C of equation 2b
+const float kLeastDeterminant = 0.02; // of the fit's matrix, whose diagonal is 1
+
+struct Sample {
+  vec2 at; // pixels
+  float width;
+  vec3 share;
+  float nearness; // squared distance to the pixel over width²
+};
+Sample nearest[3];
+int found = 0;
+vec3 position, normal;
+vec2 here;
+float inverseSigma;
+
+bool sameSurface(ivec2 pixel) {
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  if (depth == 0.0) return false;
+  float height = dot(normal, positionFromDepth(pixel, depth) - position) * inverseSigma;
+  float alignment = max(dot(normal, texelFetch(gbufferNormal, pixel, 0).xyz), 1e-4);
+  return exp2(normalPower * log2(alignment) - 0.7213475 * height * height) > 0.25;
+}
+
+void consider(ivec2 texel, int level) {
+  vec3 share = texelFetch(atlas, atlasOrigin(base, level) + texel, 0).rgb;
+  ivec2 pixel = patchPixel(texel, level, 1, ivec2(0), ivec2(camera.size.xy));
+  if (!sameSurface(pixel)) return;
+  float width = float(1 << level);
+  vec2 at = vec2(texel) * width + 0.5 * (width - 1.0), way = (at - here) / width;
+  Sample s = Sample(at, width, share, dot(way, way));
+  for (int i = 0; i < found; ++i)
+    if (nearest[i].at == s.at) return;
+  for (int i = 0; i < 3; ++i) {
+    if (i < found && nearest[i].nearness <= s.nearness) continue;
+    Sample next = nearest[i];
+    nearest[i] = s;
+    s = next;
+    if (i >= found) break;
+  }
+  found = min(found + 1, 3);
+}
+
+/// Level of the fragment that a pixel belongs to; −1: none.
+int levelAt(ivec2 pixel) {
+  for (int level = 0; level <= coarsest; ++level)
+    if (texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0).a > 0.0) return level;
+  return -1;
+}
+
+/// The fragment around a pixel, and where it is large its single pixels (area_fragments.cpp).
+void considerAround(ivec2 pixel) {
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
+  int level = levelAt(pixel);
+  if (level < 0) return;
+  consider(pixel >> level, level);
+  int coarse = level;
+  if (level == 0) { // maybe one of those
+    for (coarse = 3; coarse <= coarsest; ++coarse)
+      if (texelFetch(atlas, atlasOrigin(base, coarse) + (pixel >> coarse), 0).a > 0.0) break;
+    if (coarse > coarsest) return;
+    consider(pixel >> coarse, coarse);
+  }
+  if (coarse < 3) return;
+  int side = 1 << coarse;
+  ivec2 origin = (pixel >> coarse) * side;
+  ivec2 within[3] = ivec2[3](ivec2(side / 2, side - 1), ivec2(0, side - 1), ivec2(0, side / 2));
+  for (int i = 0; i < 3; ++i) {
+    ivec2 single = origin + within[i];
+    if (all(lessThan(single, ivec2(camera.size.xy))) && texelFetch(atlas, single, 0).a > 0.0) consider(single, 0);
+  }
+}
+
+float basis(vec2 at, Sample s) {
+  vec2 way = (at - s.at) / s.width;
+  return exp(-dot(way, way) / kVariance);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  outShare = vec4(0.0);
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  if (depth == 0.0) return;
+  int level = levelAt(pixel);
+  if (level < 0) return;
+  outShare = vec4(texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0).rgb, 1.0);
+  if (level < 3) return;
+
+  here = vec2(pixel);
+  position = positionFromDepth(pixel, depth);
+  normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  inverseSigma = 1.0 / max(distanceSigma * viewDistanceFromDepth(camera, depth), 1e-20);
+  int side = 1 << level;
+  ivec2 lo = (pixel >> level) * side, hi = lo + side;
+  considerAround(pixel);
+  considerAround(ivec2(lo.x - 1, pixel.y));
+  considerAround(ivec2(hi.x, pixel.y));
+  considerAround(ivec2(pixel.x, lo.y - 1));
+  considerAround(ivec2(pixel.x, hi.y));
+  if (found == 0) return;
+
+  vec3 weights = vec3(0.0), least = nearest[0].share, most = least;
+  for (int i = 0; i < found; ++i) {
+    weights[i] = basis(here, nearest[i]);
+    least = min(least, nearest[i].share);
+    most = max(most, nearest[i].share);
+  }
+  float sum = weights.x + weights.y + weights.z;
+  vec3 share = nearest[0].share;
+  if (sum > 1e-6) {
+    share = vec3(0.0);
+    for (int i = 0; i < found; ++i) share += weights[i] / sum * nearest[i].share;
+  }
+  if (found == 3) {
+    mat3 m; // column j: basis j at the samples
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) m[j][i] = basis(nearest[i].at, nearest[j]);
+    if (abs(determinant(m)) > kLeastDeterminant) {
+      vec3 w = weights * inverse(m); // of the samples' values: Φ(x)ᵀ Φ⁻¹
+      share = w.x * nearest[0].share + w.y * nearest[1].share + w.z * nearest[2].share;
+    }
+  }
+  outShare = vec4(clamp(share, least, most), 1.0);
+}
