@@ -2,17 +2,27 @@
 // The share of area lights' light that reaches each pixel, from that of fragments of all sizes, in one pass (paper 4,
 // section 3.1.5): those of at most 4 × 4 pixels are copied; within larger ones three Gaussian radial basis functions, around
 // the samples nearest to the pixel, are fitted to what these hold. Beyond the paper: only samples of the same surface; where
-// the fit is ill-conditioned, the mean by weights; never beyond the samples' range, so that a constant stays one.
+// the fit is ill-conditioned, the mean by weights; never beyond the samples' range, so that a constant stays one. Variants:
+// none copies, MARK keeps the pixels that lie between samples that differ (for the stencil), BETWEEN interpolates there.
 #include "lib/gbuffer.glsl"
 #include "shared/patches.h"
 
-layout(binding = 2) uniform sampler2D atlas; // a > 0: a fragment
+layout(binding = 2) uniform sampler2D atlas; // a: 0 no fragment; of large ones 2: others around hold something else
 uniform ivec2 base;          // of the atlas's level 0
 uniform int coarsest;        // level
 uniform float normalPower;   // as in upsample.frag
 uniform float distanceSigma;
 layout(location = 0) out vec4 outShare;
 
+/// Level of the fragment that a pixel belongs to; −1: none. From the coarsest on, where most are.
+int levelAt(ivec2 pixel) {
+  int found = texelFetch(atlas, pixel, 0).a > 0.0 ? 0 : -1;
+  for (int level = coarsest; level > 0 && found < 0; --level)
+    if (texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0).a > 0.0) found = level;
+  return found;
+}
+
+#ifdef BETWEEN
 const float kVariance = 2.0;          // C of equation 2b
 const float kLeastDeterminant = 0.02; // of the fit's matrix, whose diagonal is 1
 
@@ -55,13 +65,6 @@ void consider(ivec2 texel, int level) {
   found = min(found + 1, 3);
 }
 
-/// Level of the fragment that a pixel belongs to; −1: none.
-int levelAt(ivec2 pixel) {
-  for (int level = 0; level <= coarsest; ++level)
-    if (texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0).a > 0.0) return level;
-  return -1;
-}
-
 /// The fragment around a pixel, and where it is large its single pixels (area_fragments.cpp).
 void considerAround(ivec2 pixel) {
   if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
@@ -90,16 +93,7 @@ float basis(vec2 at, Sample s) {
   return exp(-dot(way, way) / kVariance);
 }
 
-void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outShare = vec4(0.0);
-  float depth = texelFetch(gbufferDepth, pixel, 0).r;
-  if (depth == 0.0) return;
-  int level = levelAt(pixel);
-  if (level < 0) return;
-  outShare = vec4(texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0).rgb, 1.0);
-  if (level < 3) return;
-
+vec3 interpolated(ivec2 pixel, int level, float depth, vec3 own) {
   here = vec2(pixel);
   position = positionFromDepth(pixel, depth);
   normal = texelFetch(gbufferNormal, pixel, 0).xyz;
@@ -111,7 +105,7 @@ void main() {
   considerAround(ivec2(hi.x, pixel.y));
   considerAround(ivec2(pixel.x, lo.y - 1));
   considerAround(ivec2(pixel.x, hi.y));
-  if (found == 0) return;
+  if (found == 0) return own;
 
   vec3 weights = vec3(0.0), least = nearest[0].share, most = least;
   for (int i = 0; i < found; ++i) {
@@ -134,5 +128,22 @@ void main() {
       share = w.x * nearest[0].share + w.y * nearest[1].share + w.z * nearest[2].share;
     }
   }
-  outShare = vec4(clamp(share, least, most), 1.0);
+  return clamp(share, least, most);
+}
+
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  outShare = vec4(0.0);
+  float depth = texelFetch(gbufferDepth, pixel, 0).r;
+  int level = depth == 0.0 ? -1 : levelAt(pixel);
+  vec4 own = level < 0 ? vec4(0.0) : texelFetch(atlas, atlasOrigin(base, level) + (pixel >> level), 0);
+#ifdef MARK
+  if (own.a < 1.5) discard;
+#elif defined(BETWEEN)
+  outShare = vec4(interpolated(pixel, level, depth, own.rgb), 1.0);
+#else
+  outShare = own;
+#endif
 }

@@ -29,16 +29,28 @@ Place placeAt(const PictureSurfaces& s, const glm::ivec2& pixel) {
   return {positionAt(s, pixel), glm::normalize(vec3(s.normal[s.at(pixel)]))};
 }
 
-/// A ray of a fragment: to a sample of a light.
-struct Target {
-  uint32_t light, sample;
-};
-
 /// What a fragment saw.
 struct Seen {
-  std::array<uint64_t, 4> bits{}; // by sub-fragment
+  std::array<uint64_t, 4> bits{}; // by sub-fragment; of a single pixel by quarter of its rays
   vec3 visible{0};                // share of the unshadowed light
-  bool lit = false;               // any bit is set
+  uint64_t rays = 0;              // that were traced
+
+  bool lit() const {
+    return std::any_of(bits.begin(), bits.end(), [](uint64_t b) { return b != 0; });
+  }
+};
+
+/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters, whose
+/// rays follow each other in turn, is spread over the lights as evenly as all.
+constexpr int kQuarterOf[4] = {0, 2, 3, 1};   // by sub-fragment: of those that lie opposite, next to each other
+constexpr int kPartOf[4] = {0, 3, 1, 2};      // the inverse
+constexpr int kMostAll = 4 * kMostRays;
+
+struct Rays {
+  std::array<uint32_t, kMostAll> lights, samples; // where they end
+  std::array<Ray, kMostAll> segments;
+  std::array<float, kMostAll> weights; // of a sample's light, for a receiver; 0: not traced
+  std::array<bool, kMostAll> open;
 };
 
 class Visibility {
@@ -46,102 +58,190 @@ class Visibility {
   Visibility(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces, int raysPerPart)
       : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
 
-  /// Of 2^level pixels of which `texel` is the number; light is measured at `centre`.
-  Seen of(const glm::ivec2& texel, int level) const;
+  /// Of the patch of 2^level pixels, level ≥ 1, of which `texel` is the number.
+  Seen ofPatch(const glm::ivec2& texel, int level) const;
+  /// Of a pixel. Where a quarter of its rays agree, the others are not asked.
+  Seen ofPixel(const glm::ivec2& pixel) const;
+  /// Of the four pixels of a patch of level 1 that has been asked: all its rays, of which the patch's are a quarter.
+  std::array<Seen, 4> ofQuad(const glm::ivec2& texel, const Seen& patch) const;
 
  private:
+  /// What the lights bring where nothing is between.
+  struct Unshadowed {
+    std::vector<vec3> light;
+    float total = 0; // luminance
+  };
+  Unshadowed unshadowedAt(const Place& place) const;
+  std::array<Place, 4> partsOf(const glm::ivec2& texel, int level) const;
+  Place centreOf(const glm::ivec2& texel, int level) const {
+    return placeAt(surfaces_, clamped(texel * (1 << level) + (1 << level) / 2));
+  }
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
-  Seen measure(const std::array<Place, 4>& parts, const std::vector<vec3>& light, float total) const;
+  void choose(const Unshadowed& from, Rays& to) const;
+  void aim(const Place& place, int k, Rays& rays) const;
+  uint64_t trace(Rays& rays, int quarter, int other = -1, int third = -1, int fourth = -1) const;
+  void addUp(const Unshadowed& from, const Rays& rays, Seen& to) const;
+
+  int all() const { return 4 * count_; }
 
   const RayQuery& rays_;
   const AreaLights& lights_;
   const PictureSurfaces& surfaces_;
-  int count_;
+  int count_; // of a quarter
 };
 
-Seen Visibility::of(const glm::ivec2& texel, int level) const {
+std::array<Place, 4> Visibility::partsOf(const glm::ivec2& texel, int level) const {
   const int side = 1 << level;
-  const glm::ivec2 origin = texel * side;
   std::array<Place, 4> parts;
   for (int s = 0; s < 4; ++s) {
-    const glm::ivec2 within = level == 0   ? glm::ivec2(0)
-                              : level == 1 ? glm::ivec2(s & 1, s >> 1)
-                                           : side / 4 + side / 2 * glm::ivec2(s & 1, s >> 1);
-    glm::ivec2 pixel = clamped(origin + within);
-    if (!surfaces_.seen(pixel)) pixel = clamped(origin);
-    parts[size_t(s)] = placeAt(surfaces_, pixel);
+    const glm::ivec2 within = side / 4 + side / 2 * glm::ivec2(s & 1, s >> 1); // of 2×2 pixels one each
+    const glm::ivec2 pixel = clamped(texel * side + within);
+    parts[size_t(s)] = placeAt(surfaces_, surfaces_.seen(pixel) ? pixel : clamped(texel * side));
   }
-  const Place centre = placeAt(surfaces_, clamped(origin + side / 2));
-  std::vector<vec3> light(lights_.lights.size());
-  float total = 0;
-  for (size_t l = 0; l < light.size(); ++l) {
-    light[l] = unshadowed(lights_, lights_.lights[l], centre.position, centre.normal);
-    total += luminance(light[l]);
-  }
-  if (!(total > 0)) return {};
-  return measure(parts, light, total);
+  return parts;
 }
 
-/// Rays go to the lights in proportion to what these bring; ray k of a sub-fragment to the same sixteenth (of 16) of them
-/// in all four, each to another quarter of it.
-Seen Visibility::measure(const std::array<Place, 4>& parts, const std::vector<vec3>& light, float total) const {
-  constexpr int kQuarter[4] = {0, 2, 3, 1}; // by sub-fragment: those that lie opposite share no border
-  const int all = 4 * count_;
-  std::array<Target, 4 * kMostRays> targets;
-  std::array<Ray, 4 * kMostRays> segments;
-  std::array<uint8_t, 4 * kMostRays> blocked;
-  std::array<float, 4 * kMostRays> weights;
-  std::array<int, 4> partOf;
-  for (int s = 0; s < 4; ++s) partOf[size_t(kQuarter[s])] = s;
+Visibility::Unshadowed Visibility::unshadowedAt(const Place& place) const {
+  Unshadowed out{std::vector<vec3>(lights_.lights.size())};
+  for (size_t l = 0; l < out.light.size(); ++l) {
+    out.light[l] = unshadowed(lights_, lights_.lights[l], place.position, place.normal);
+    out.total += luminance(out.light[l]);
+  }
+  return out;
+}
+
+void Visibility::choose(const Unshadowed& from, Rays& to) const {
   float below = 0; // light before `l`, share of all
   size_t l = 0;
-  for (int k = 0; k < all; ++k) {
-    const float u = (float(k) + 0.5f) / float(all);
-    while (l + 1 < light.size() && below + luminance(light[l]) / total <= u) below += luminance(light[l++]) / total;
-    const AreaLight& to = lights_.lights[l];
-    const float within = (u - below) * total / std::max(luminance(light[l]), 1e-30f);
-    const uint32_t sample = std::min(uint32_t(std::max(within, 0.0f) * float(to.samples)), to.samples - 1);
-    targets[size_t(k)] = {uint32_t(l), to.firstSample + sample};
-    const AreaSample& point = lights_.samples[to.firstSample + sample];
-    const Place& part = parts[size_t(partOf[size_t(k % 4)])];
-    const vec3 way = point.position - part.position;
-    const float distance2 = std::max(glm::dot(way, way), 1e-20f);
-    const float cosineLight = -glm::dot(point.normal, way);
-    weights[size_t(k)] = std::max(glm::dot(part.normal, way), 0.0f) *
-                         (to.doubleSided ? std::abs(cosineLight) : std::max(cosineLight, 0.0f)) / (distance2 * distance2);
-    const vec3 outward = cosineLight < 0 && to.doubleSided ? -point.normal : point.normal;
-    segments[size_t(k)] = segment(offsetPoint(part.position, part.normal, rays_.grain()),
-                                  offsetPoint(point.position, outward, rays_.grain()));
-    if (!(weights[size_t(k)] > 0)) segments[size_t(k)].tMax = -1; // is not traced
+  for (int k = 0; k < all(); ++k) {
+    const float u = (float(k) + 0.5f) / float(all());
+    const auto share = [&] { return luminance(from.light[l]) / from.total; };
+    while (l + 1 < from.light.size() && below + share() <= u) {
+      below += share();
+      ++l;
+    }
+    const AreaLight& light = lights_.lights[l];
+    const float within = std::max(u - below, 0.0f) / std::max(share(), 1e-30f);
+    to.lights[size_t(k)] = uint32_t(l);
+    to.samples[size_t(k)] =
+        light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
   }
-  rays_.occluded(std::span(segments).first(size_t(all)), std::span(blocked).first(size_t(all)));
+}
 
-  Seen seen;
+void Visibility::aim(const Place& place, int k, Rays& rays) const {
+  const AreaSample& sample = lights_.samples[rays.samples[size_t(k)]];
+  const bool doubleSided = lights_.lights[rays.lights[size_t(k)]].doubleSided;
+  const vec3 way = sample.position - place.position;
+  const float distance2 = std::max(glm::dot(way, way), 1e-20f);
+  const float cosine = std::max(glm::dot(place.normal, way), 0.0f), cosineLight = -glm::dot(sample.normal, way);
+  rays.weights[size_t(k)] =
+      cosine * (doubleSided ? std::abs(cosineLight) : std::max(cosineLight, 0.0f)) / (distance2 * distance2);
+  rays.segments[size_t(k)] =
+      segment(offsetPoint(place.position, place.normal, rays_.grain()),
+              offsetPoint(sample.position, cosineLight < 0 ? -sample.normal : sample.normal, rays_.grain()));
+}
+
+/// The rays of these quarters, in the order of the lights. Says how many.
+uint64_t Visibility::trace(Rays& rays, int quarter, int other, int third, int fourth) const {
+  std::array<Ray, kMostAll> segments;
+  std::array<uint8_t, kMostAll> blocked;
+  std::array<int, kMostAll> numbers;
+  size_t count = 0;
+  for (int k = 0; k < all(); ++k) {
+    const int q = k % 4;
+    if ((q != quarter && q != other && q != third && q != fourth) || !(rays.weights[size_t(k)] > 0)) continue;
+    segments[count] = rays.segments[size_t(k)];
+    numbers[count++] = k;
+  }
+  rays_.occluded(std::span(segments).first(count), std::span(blocked).first(count));
+  for (size_t i = 0; i < count; ++i) rays.open[size_t(numbers[i])] = !blocked[i];
+  return count;
+}
+
+/// The share that the rays found open, over their weights: 1 where all are.
+void Visibility::addUp(const Unshadowed& from, const Rays& rays, Seen& to) const {
   vec3 lit(0), whole(0);
-  for (int k = 0; k < all;) {
-    const uint32_t at = targets[size_t(k)].light;
+  for (int k = 0; k < all();) {
+    const uint32_t light = rays.lights[size_t(k)];
     vec3 open(0), sum(0);
-    for (; k < all && targets[size_t(k)].light == at; ++k) {
-      if (!(weights[size_t(k)] > 0)) continue;
-      const vec3 weight = weights[size_t(k)] * lights_.samples[targets[size_t(k)].sample].radiance;
+    for (; k < all() && rays.lights[size_t(k)] == light; ++k) {
+      if (!(rays.weights[size_t(k)] > 0)) continue;
+      const vec3 weight = rays.weights[size_t(k)] * lights_.samples[rays.samples[size_t(k)]].radiance;
       sum += weight;
-      if (blocked[size_t(k)]) continue;
+      if (!rays.open[size_t(k)]) continue;
       open += weight;
-      seen.bits[size_t(partOf[size_t(k % 4)])] |= uint64_t(1) << (k / 4);
+      to.bits[size_t(kPartOf[k % 4])] |= uint64_t(1) << (k / 4);
     }
     // A light that is due less than one ray stands for others like it.
-    const float share = std::max(1.0f, total / (float(all) * std::max(luminance(light[at]), 1e-30f)));
+    const vec3& own = from.light[light];
+    const float share = std::max(1.0f, from.total / (float(all()) * std::max(luminance(own), 1e-30f)));
     for (int c = 0; c < 3; ++c) {
       if (!(sum[c] > 0)) continue;
-      whole[c] += share * light[at][c];
-      lit[c] += share * light[at][c] * open[c] / sum[c];
+      whole[c] += share * own[c];
+      lit[c] += share * own[c] * (open[c] / sum[c]);
     }
   }
-  for (int c = 0; c < 3; ++c) seen.visible[c] = whole[c] > 0 ? std::min(lit[c] / whole[c], 1.0f) : 0;
-  seen.lit = std::any_of(seen.bits.begin(), seen.bits.end(), [](uint64_t b) { return b != 0; });
+  for (int c = 0; c < 3; ++c) to.visible[c] = whole[c] > 0 ? std::min(lit[c] / whole[c], 1.0f) : 0;
+}
+
+Seen Visibility::ofPatch(const glm::ivec2& texel, int level) const {
+  const Unshadowed from = unshadowedAt(centreOf(texel, level));
+  if (!(from.total > 0)) return {};
+  const std::array<Place, 4> parts = partsOf(texel, level);
+  Rays rays;
+  choose(from, rays);
+  for (int k = 0; k < all(); ++k) aim(parts[size_t(kPartOf[k % 4])], k, rays);
+  Seen seen;
+  seen.rays = trace(rays, 0, 1, 2, 3);
+  addUp(from, rays, seen);
   return seen;
+}
+
+Seen Visibility::ofPixel(const glm::ivec2& pixel) const {
+  const Place place = placeAt(surfaces_, pixel);
+  const Unshadowed from = unshadowedAt(place);
+  if (!(from.total > 0)) return {};
+  Rays rays;
+  choose(from, rays);
+  for (int k = 0; k < all(); ++k) aim(place, k, rays);
+  Seen seen;
+  seen.rays = trace(rays, 1);
+  int opened = 0, traced = 0;
+  for (int k = 1; k < all(); k += 4) {
+    if (!(rays.weights[size_t(k)] > 0)) continue;
+    ++traced;
+    opened += rays.open[size_t(k)];
+  }
+  if (traced > 0 && (opened == 0 || opened == traced)) {
+    for (int k = 0; k < all(); ++k) rays.open[size_t(k)] = opened > 0;
+  } else {
+    seen.rays += trace(rays, 0, 2, 3);
+  }
+  addUp(from, rays, seen);
+  return seen;
+}
+
+std::array<Seen, 4> Visibility::ofQuad(const glm::ivec2& texel, const Seen& patch) const {
+  const Unshadowed from = unshadowedAt(centreOf(texel, 1)); // as when the patch was asked
+  const std::array<Place, 4> parts = partsOf(texel, 1);
+  Rays rays;
+  choose(from, rays);
+  std::array<Seen, 4> out;
+  for (int s = 0; s < 4; ++s) {
+    for (int k = 0; k < all(); ++k) aim(parts[size_t(s)], k, rays);
+    const int asked = kQuarterOf[s];
+    for (int k = asked; k < all(); k += 4) rays.open[size_t(k)] = patch.bits[size_t(s)] >> (k / 4) & 1;
+    out[size_t(s)].rays = trace(rays, (asked + 1) % 4, (asked + 2) % 4, (asked + 3) % 4);
+    addUp(from, rays, out[size_t(s)]);
+  }
+  return out;
+}
+
+/// Of a large fragment that have samples of their own: in the middle of its top, in the corner, in the middle of its left.
+std::array<glm::ivec2, 3> singlePixels(int side) {
+  return {glm::ivec2(side / 2, side - 1), glm::ivec2(0, side - 1), glm::ivec2(0, side / 2)};
 }
 
 struct Fragment {
@@ -167,6 +267,43 @@ bool isSplit(const Seen& seen, const AreaSettings& settings, std::array<bool, 4>
     if (settings.gradient > 0 && gradient > settings.gradient) twice[size_t(a)] = twice[size_t(b)] = true;
   }
   return split;
+}
+
+const vec4* fragmentAt(std::span<const FragmentLevel> levels, const glm::ivec2& pixel) {
+  for (size_t l = 0; l < levels.size(); ++l) {
+    const glm::ivec2 at(pixel.x >> l, pixel.y >> l);
+    if (at.x >= levels[l].size.x || at.y >= levels[l].size.y) continue;
+    const vec4& visible = levels[l].visible[size_t(at.y * levels[l].size.x + at.x)];
+    if (visible.w > 0) return &visible;
+  }
+  return nullptr;
+}
+
+/// w = kBetween for large fragments around which, or in which, others hold something else: their pixels lie between.
+void markBorders(std::span<FragmentLevel> levels) {
+  for (size_t l = 3; l < levels.size(); ++l) {
+    FragmentLevel& at = levels[l];
+    parallelFor(size_t(at.size.y), 1, [&](size_t begin, size_t end) {
+      for (int y = int(begin); y < int(end); ++y)
+        for (int x = 0; x < at.size.x; ++x) {
+          vec4& own = at.visible[size_t(y * at.size.x + x)];
+          if (own.w == 0) continue;
+          const int side = 1 << l;
+          const glm::ivec2 lo = glm::ivec2(x, y) * side;
+          const auto differs = [&](const glm::ivec2& pixel) {
+            if (pixel.x < 0 || pixel.y < 0) return false;
+            const vec4* other = fragmentAt(levels, pixel);
+            return other && vec3(*other) != vec3(own);
+          };
+          bool between = false;
+          for (int i = -1; i <= side && !between; ++i)
+            between = differs(lo + glm::ivec2(i, -1)) || differs(lo + glm::ivec2(i, side)) ||
+                      differs(lo + glm::ivec2(-1, i)) || differs(lo + glm::ivec2(side, i));
+          for (const glm::ivec2& within : singlePixels(side)) between = between || differs(lo + within);
+          if (between) own.w = kBetween;
+        }
+    });
+  }
 }
 
 } // namespace
@@ -208,9 +345,17 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
           fragments.push_back({{x, y}});
       }
     parallelFor(fragments.size(), kGrain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) fragments[i].seen = visibility.of(fragments[i].texel, level);
+      for (size_t i = begin; i < end; ++i) {
+        Fragment& f = fragments[i];
+        f.seen = level == 0 ? visibility.ofPixel(f.texel) : visibility.ofPatch(f.texel, level);
+      }
     });
-    counts.rays.occlusion += fragments.size() * 4 * uint64_t(settings.rays);
+    for (const Fragment& f : fragments) counts.rays.occlusion += f.seen.rays;
+    const auto keep = [&](const glm::ivec2& texel, FragmentLevel& in, const Seen& seen) {
+      in.visible[size_t(texel.y * in.size.x + texel.x)] = vec4(seen.visible, 1);
+      ++counts.fragments;
+      counts.dark += !seen.lit();
+    };
 
     std::vector<int> numbers; // of fragments, by texel
     if (neighbours) {
@@ -218,6 +363,7 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
       for (size_t i = 0; i < fragments.size(); ++i)
         numbers[size_t(fragments[i].texel.y * at.size.x + fragments[i].texel.x)] = int(i);
     }
+    std::vector<Fragment> quads; // of pixels
     for (const Fragment& f : fragments) {
       std::array<bool, 4> twice{};
       bool apart = false;
@@ -229,34 +375,48 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
           apart = n >= 0 && bitsApart(f.seen, fragments[size_t(n)].seen) >= uint64_t(settings.threshold);
         }
       } else if (level > 0) {
-        apart = f.seen.lit && isSplit(f.seen, settings, twice);
+        apart = f.seen.lit() && isSplit(f.seen, settings, twice);
+      }
+      if (apart && level == 1) {
+        quads.push_back(f);
+        continue;
       }
       if (apart) {
         split(level, f.texel, twice);
         continue;
       }
-      at.visible[size_t(f.texel.y * at.size.x + f.texel.x)] = vec4(f.seen.visible, 1);
-      ++counts.fragments;
-      counts.dark += !f.seen.lit;
-      if (settings.extra && !neighbours && level > 2 && f.seen.lit) {
+      keep(f.texel, at, f.seen);
+      if (settings.extra && !neighbours && level > 2 && f.seen.lit()) {
         const int side = 1 << level;
-        for (const glm::ivec2 within : {glm::ivec2(side / 2, side - 1), glm::ivec2(0, side - 1), glm::ivec2(0, side / 2)})
-          extra.push_back(f.texel * side + within);
+        for (const glm::ivec2& within : singlePixels(side)) extra.push_back(f.texel * side + within);
       }
     }
+    std::vector<std::array<Seen, 4>> pixels(quads.size());
+    parallelFor(quads.size(), kGrain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) pixels[i] = visibility.ofQuad(quads[i].texel, quads[i].seen);
+    });
+    for (size_t i = 0; i < quads.size(); ++i)
+      for (int s = 0; s < 4; ++s) {
+        keep(quads[i].texel * 2 + glm::ivec2(s & 1, s >> 1), levels[0], pixels[i][size_t(s)]);
+        counts.rays.occlusion += pixels[i][size_t(s)].rays;
+      }
   }
 
   std::erase_if(extra, [&](const glm::ivec2& p) {
     return p.x >= surfaces.width || p.y >= surfaces.height || !surfaces.seen(p);
   });
+  std::vector<uint64_t> traced(extra.size());
   parallelFor(extra.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      levels[0].visible[size_t(extra[i].y * levels[0].size.x + extra[i].x)] =
-          vec4(visibility.of(extra[i], 0).visible, 1);
+    for (size_t i = begin; i < end; ++i) {
+      const Seen seen = visibility.ofPixel(extra[i]);
+      levels[0].visible[size_t(extra[i].y * levels[0].size.x + extra[i].x)] = vec4(seen.visible, 1);
+      traced[i] = seen.rays;
+    }
   });
   counts.extra = extra.size();
   counts.fragments += extra.size();
-  counts.rays.occlusion += extra.size() * 4 * uint64_t(settings.rays);
+  for (uint64_t rays : traced) counts.rays.occlusion += rays;
+  markBorders(levels);
   return counts;
 }
 

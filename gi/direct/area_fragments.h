@@ -28,8 +28,11 @@ struct PictureSurfaces {
 struct FragmentLevel {
   glm::ivec2 size{0};
   std::vector<uint8_t> smooth; // in: 1 where the patch is one surface, 0 where it is to be split or shows nothing
-  std::vector<vec4> visible;   // out: share of the unshadowed light per channel; w: 1 where a fragment is
+  std::vector<vec4> visible;   // out: share of the unshadowed light per channel; w: 1 where a fragment is, kBetween
+                               // where it is large and others around it hold something else
 };
+
+inline constexpr float kBetween = 2;
 
 struct FragmentCounts {
   uint64_t fragments = 0, dark = 0, extra = 0; // with extra samples; dark: of these, without any light

@@ -32,7 +32,8 @@ class AreaLightPass {
   std::vector<vec4> normal_;
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};
-  LightTarget share_{"area lights"};
+  gl::Texture share_, stencil_;
+  gl::Framebuffer framebuffer_; // of both
   gl::Ring blocks_{"area lights/pieces"};
 };
 
