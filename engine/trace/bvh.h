@@ -20,8 +20,8 @@ class BvhBuilder {
  public:
   BvhBuilder();
   ~BvhBuilder();
-  /// At most `leafSize` ≤ 7 boxes per leaf. Boxes that are empty or not finite are left out. Throws RunError where Embree
-  /// fails.
+  /// At most `leafSize` ≤ 7 boxes per leaf. Boxes that are empty or not finite are left out. Throws RunError where
+  /// Embree fails.
   Bvh build(std::span<const Aabb> boxes, uint32_t leafSize) const;
 
  private:

@@ -48,8 +48,7 @@ FlatScene::FlatScene(const SceneAssets& assets) : assets_(assets) {
     for (const Primitive& p : mesh.primitives) {
       if (assets.materials[p.material].alphaMode != AlphaMode::Mask) continue;
       masks.resize(mesh.triangles.size(), kNone);
-      for (uint32_t t = 0; t < p.triangleCount; ++t)
-        masks[p.firstTriangle + t] = maskOf(mesh, p, p.firstTriangle + t);
+      for (uint32_t t = 0; t < p.triangleCount; ++t) masks[p.firstTriangle + t] = maskOf(mesh, p, p.firstTriangle + t);
     }
     const std::vector<Aabb> boxes = boxesOf(mesh, mesh.positions);
     Shape& shape = meshes_.emplace_back();
@@ -102,8 +101,8 @@ void FlatScene::place(Shape& shape, uint32_t meshIndex, std::span<const vec3> po
   nodes_.insert(nodes_.end(), shape.bvh.nodes.begin(), shape.bvh.nodes.end());
   for (const uint32_t t : shape.bvh.order) {
     const uvec3& corners = mesh.triangles[t];
-    triangles_.push_back({positions[corners.x], t, positions[corners.y], masks.empty() ? kNone : masks[t],
-                          positions[corners.z], 0});
+    triangles_.push_back(
+        {positions[corners.x], t, positions[corners.y], masks.empty() ? kNone : masks[t], positions[corners.z], 0});
   }
 }
 
@@ -116,8 +115,9 @@ void FlatScene::reshape(const SceneView& view, Changed& changed) {
     any = meshOf_[i] != in.mesh || revisions_[i] != (in.deformed ? in.deformed->revision : 0);
   }
   if (!any) return;
-  changed.shapes = std::any_of(view.instances.begin(), view.instances.end(), [](const auto& i) { return i.deformed; }) ||
-                   nodes_.size() > staticNodes_;
+  changed.shapes =
+      std::any_of(view.instances.begin(), view.instances.end(), [](const auto& i) { return i.deformed; }) ||
+      nodes_.size() > staticNodes_;
   deformed_.resize(count);
   meshOf_.resize(count, kNone);
   revisions_.resize(count, 0);
@@ -177,11 +177,8 @@ FlatScene::Changed FlatScene::update(const SceneView& view) {
     const InstanceView& in = view.instances[i];
     const Shape& shape = in.deformed ? deformed_[i] : meshes_[in.mesh];
     const mat4 rows = glm::transpose(glm::inverse(in.worldFromObject));
-    instances_.push_back({{rows[0], rows[1], rows[2]},
-                          shape.firstNode,
-                          uint32_t(shape.bvh.nodes.size()),
-                          shape.firstTriangle,
-                          i});
+    instances_.push_back(
+        {{rows[0], rows[1], rows[2]}, shape.firstNode, uint32_t(shape.bvh.nodes.size()), shape.firstTriangle, i});
   }
   return changed;
 }

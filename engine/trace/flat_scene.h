@@ -16,8 +16,8 @@ class FlatScene {
     bool top = false;    // instances, and the hierarchy above them
     bool shapes = false; // nodes and triangles from staticNodes() and staticTriangles() on: of deformed instances
   };
-  /// Takes over instances and transforms. The hierarchy above them is refitted, and built anew where instances come, go,
-  /// or have strayed (see kStrayed); those of reshaped instances are refitted.
+  /// Takes over instances and transforms. The hierarchy above them is refitted, and built anew where instances come,
+  /// go, or have strayed (see kStrayed); those of reshaped instances are refitted.
   Changed update(const SceneView& view);
 
   std::span<const BvhNode> nodes() const { return nodes_; }
@@ -45,7 +45,7 @@ class FlatScene {
 
   const SceneAssets& assets_;
   BvhBuilder builder_;
-  std::vector<Shape> meshes_, deformed_; // deformed_: by instance, only of those that are
+  std::vector<Shape> meshes_, deformed_;             // deformed_: by instance, only of those that are
   std::vector<std::vector<uint32_t>> masksOfMeshes_; // by mesh and triangle; empty: all solid
   std::vector<BvhNode> nodes_;
   std::vector<RayTriangle> triangles_;

@@ -68,8 +68,8 @@ SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, 
   lookups += textured && !mean;
   hit.albedo = glm::clamp(vec3(baseColourAt(assets, mesh, material, c, mean)), 0.0f, 1.0f);
   if (material.emits() && (fromFront || material.doubleSided))
-    hit.emission =
-        material.emission * vec3(sampleTexture(assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
+    hit.emission = material.emission *
+                   vec3(sampleTexture(assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
   hit.instance = met.instance;
   hit.primitive = met.primitive;
   hit.triangle = met.triangle;

@@ -40,10 +40,10 @@ struct Seen {
   }
 };
 
-/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters, whose
-/// rays follow each other in turn, is spread over the lights as evenly as all.
-constexpr int kQuarterOf[4] = {0, 2, 3, 1};   // by sub-fragment: of those that lie opposite, next to each other
-constexpr int kPartOf[4] = {0, 3, 1, 2};      // the inverse
+/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters,
+/// whose rays follow each other in turn, is spread over the lights as evenly as all.
+constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
+constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
 constexpr int kMostAll = 4 * kMostRays;
 
 struct Rays {
@@ -125,8 +125,7 @@ void Visibility::choose(const Unshadowed& from, Rays& to) const {
     const AreaLight& light = lights_.lights[l];
     const float within = std::max(u - below, 0.0f) / std::max(share(), 1e-30f);
     to.lights[size_t(k)] = uint32_t(l);
-    to.samples[size_t(k)] =
-        light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
+    to.samples[size_t(k)] = light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
   }
 }
 
@@ -239,7 +238,8 @@ std::array<Seen, 4> Visibility::ofQuad(const glm::ivec2& texel, const Seen& patc
   return out;
 }
 
-/// Of a large fragment that have samples of their own: in the middle of its top, in the corner, in the middle of its left.
+/// Of a large fragment that have samples of their own: in the middle of its top, in the corner, in the middle of its
+/// left.
 std::array<glm::ivec2, 3> singlePixels(int side) {
   return {glm::ivec2(side / 2, side - 1), glm::ivec2(0, side - 1), glm::ivec2(0, side / 2)};
 }
@@ -402,9 +402,8 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
       }
   }
 
-  std::erase_if(extra, [&](const glm::ivec2& p) {
-    return p.x >= surfaces.width || p.y >= surfaces.height || !surfaces.seen(p);
-  });
+  std::erase_if(
+      extra, [&](const glm::ivec2& p) { return p.x >= surfaces.width || p.y >= surfaces.height || !surfaces.seen(p); });
   std::vector<uint64_t> traced(extra.size());
   parallelFor(extra.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

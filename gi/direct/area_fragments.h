@@ -1,6 +1,6 @@
 // Which share of the area lights' light reaches the fragments of a picture: patches of it, split where visibility
-// changes. Paper 4, sections 3.1.1 to 3.1.4 (sub-fragment visibility tests, SFVT; gradient aware subdivision, GASS), and
-// for comparison that of Nichols et al. 2010 by neighbourhoods.
+// changes. Paper 4, sections 3.1.1 to 3.1.4 (sub-fragment visibility tests, SFVT; gradient aware subdivision, GASS),
+// and for comparison that of Nichols et al. 2010 by neighbourhoods.
 #pragma once
 
 #include "engine/trace/ray_query.h"

@@ -68,8 +68,8 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 } // namespace
 
 DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
-    : context_(context), shadows_(context), emitters_(context), areas_(context), doubts_(std::min(mostDoubts, gl::mostBufferTexels())),
-      depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
+    : context_(context), shadows_(context), emitters_(context), areas_(context),
+      doubts_(std::min(mostDoubts, gl::mostBufferTexels())), depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {

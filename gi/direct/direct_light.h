@@ -17,7 +17,7 @@ struct DirectInputs {
   const GBuffer& surfaces;
   const EffectPlan& plan;
   const Settings& settings;
-  Patches& patches; // of the surfaces
+  Patches& patches;  // of the surfaces
   bool keep = false; // all of it is that of the last run
 };
 

@@ -140,11 +140,11 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                              : reflective         ? Answer{false, "no light path is traced"}
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
-  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0     ? Answer{false, "no emissive surface"}
-                                : settings.shadow.emitterSamples > 1 ||
-                                        settings.shadow.emitters == EmitterShadows::Patches
-                                    ? Answer{true, count(scene.emissive, "lamp")}
-                                                                     : Answer{false, "shadow.emitterSamples is 1"});
+  decide(EffectId::SoftShadows,
+         !emissive || scene.emissive == 0 ? Answer{false, "no emissive surface"}
+         : settings.shadow.emitterSamples > 1 || settings.shadow.emitters == EmitterShadows::Patches
+             ? Answer{true, count(scene.emissive, "lamp")}
+             : Answer{false, "shadow.emitterSamples is 1"});
   decide(EffectId::Filter, !lights                                          ? none
                            : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
                            : !rowOf(settings.gather.mode).subsets           ? Answer{false, "every pixel sees all VPLs"}

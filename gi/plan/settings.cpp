@@ -87,9 +87,10 @@ class Table {
            {1, 1024, "samples", PowersOfTwo}, Maps, "shadowed samples for all emissive surfaces in direct light");
     number("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution,
            {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
-    choice("shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
-           "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
-           "from patches of the picture, split where the answers differ (paper 4)");
+    choice(
+        "shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
+        "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
+        "from patches of the picture, split where the answers differ (paper 4)");
     choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"sub-fragments", "neighbours"}, Nothing,
            "what splits these patches: visibility within them, or that of the eight around (Nichols et al. 2010)");
     number("area.rays", &Settings::area, &AreaSettings::rays, {1, 64, "rays", PowersOfTwo}, Nothing,

@@ -95,8 +95,8 @@ struct ShadowSettings {
   int emitterSamples = 16; // shadowed samples that stand for all emissive surfaces in direct light
   int emitterResolution = 256;
   EmitterShadows emitters = EmitterShadows::Samples; // who says what of emissive surfaces is seen
-  bool rays = true; // ask rays where maps of direct light are in doubt
-  int skyMaps = 32; // directions that stand for the sky in direct light
+  bool rays = true;                                  // ask rays where maps of direct light are in doubt
+  int skyMaps = 32;                                  // directions that stand for the sky in direct light
   int skyResolution = 256;
   bool operator==(const ShadowSettings&) const = default;
 };

@@ -29,9 +29,8 @@ template <class T> gl::Buffer bufferOf(const char* label, std::span<const T> dat
 
 /// Primitive of a mesh's triangle.
 uint32_t primitiveOf(const Mesh& mesh, uint32_t triangle) {
-  const auto after = std::find_if(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& p) {
-    return triangle < p.firstTriangle + p.triangleCount;
-  });
+  const auto after = std::find_if(mesh.primitives.begin(), mesh.primitives.end(),
+                                  [&](const Primitive& p) { return triangle < p.firstTriangle + p.triangleCount; });
   CHECK(after != mesh.primitives.end());
   return uint32_t(after - mesh.primitives.begin());
 }
@@ -125,8 +124,8 @@ void GpuRays::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) con
                         {mesh, in.deformed ? in.deformed->positions : mesh.positions,
                          in.deformed ? in.deformed->normals : mesh.normals,
                          glm::transpose(glm::inverse(mat3(in.worldFromObject)))},
-                        {met[i].t, met[i].instance, primitive, met[i].triangle - mesh.primitives[primitive].firstTriangle,
-                         met[i].barycentric},
+                        {met[i].t, met[i].instance, primitive,
+                         met[i].triangle - mesh.primitives[primitive].firstTriangle, met[i].barycentric},
                         rays[i], true, lookups);
   }
 }

@@ -27,8 +27,7 @@ bool merge(AreaPiece& a, const AreaPiece& b) {
     const vec3 fourth = next + last - off;
     const float within = 1e-4f * glm::distance(next, last);
     const auto among = [&](const vec3& p) {
-      return std::any_of(b.corners, b.corners + 3,
-                         [&](const vec4& c) { return glm::distance(vec3(c), p) <= within; });
+      return std::any_of(b.corners, b.corners + 3, [&](const vec4& c) { return glm::distance(vec3(c), p) <= within; });
     };
     if (!among(next) || !among(last) || !among(fourth)) continue;
     a.corners[0] = vec4(off, 4);
@@ -57,8 +56,8 @@ bool textured(const LightSet& lights, const Emitter& emitter) {
   return lights.view->assets->materials[primitive.material].emissiveTexture.image != kNone;
 }
 
-/// Points spread evenly over an emitter in proportion to the power of its triangles. Those of a textured one are each the
-/// middle of sixteen, whose mean radiance they have.
+/// Points spread evenly over an emitter in proportion to the power of its triangles. Those of a textured one are each
+/// the middle of sixteen, whose mean radiance they have.
 void addSamples(const LightSet& lights, const Emitter& emitter, AreaLights& to) {
   const uint32_t group = textured(lights, emitter) ? 16 : 1, count = AreaLights::kSamples * group;
   std::vector<AreaSample> points;

@@ -1,5 +1,5 @@
-// Emissive surfaces as area lights: pieces whose unshadowed light is known in closed form, and points that rays are sent
-// to. Paper 4, section 3.1.
+// Emissive surfaces as area lights: pieces whose unshadowed light is known in closed form, and points that rays are
+// sent to. Paper 4, section 3.1.
 #pragma once
 
 #include "gi/vpl/light_set.h"
@@ -26,7 +26,7 @@ struct AreaLights {
   std::vector<AreaSample> samples;
 
   static constexpr uint32_t kMostPolygons = 32; // of an emitter; with more, or a texture, its samples are its pieces
-  static constexpr uint32_t kSamples = 64;      // of an emitter
+  static constexpr uint32_t kSamples = 256;     // of an emitter
 };
 /// Of all emitters that bring light. Two triangles that make a parallelogram become one piece.
 AreaLights areaLights(const LightSet& lights);

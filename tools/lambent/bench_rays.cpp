@@ -98,7 +98,8 @@ void benchRays(const BenchOptions& options) {
   };
   const Row rows[] = {
       {"Embree", secondsOf([&] {
-         parallel([&](size_t at, size_t n) { embree.closest(std::span(rays).subspan(at, n), std::span(a).subspan(at, n)); });
+         parallel(
+             [&](size_t at, size_t n) { embree.closest(std::span(rays).subspan(at, n), std::span(a).subspan(at, n)); });
        }),
        secondsOf([&] {
          parallel([&](size_t at, size_t n) {
@@ -121,8 +122,7 @@ void benchRays(const BenchOptions& options) {
   j["blocked_only"] = {{"Embree", blockedOnly[0]}, {"GPU", blockedOnly[1]}};
   writeJson(options.output.json, j);
   if (options.output.quiet) return;
-  std::printf("%zu rays, half of them all over the scene, half between surfaces; %s\n", rays.size(),
-              machine.c_str());
+  std::printf("%zu rays, half of them all over the scene, half between surfaces; %s\n", rays.size(), machine.c_str());
   for (const Row& r : rows)
     std::printf("  %-8s %8.2f million closest hits a second, %8.2f million answers whether anything is met\n", r.name,
                 double(rays.size()) / r.closest * 1e-6, double(rays.size()) / r.any * 1e-6);

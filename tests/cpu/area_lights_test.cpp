@@ -1,0 +1,143 @@
+// Area lights: their pieces' unshadowed light against closed forms and sums, and the points that rays are sent to.
+#include "engine/core/rng.h"
+#include "gi/vpl/area_lights.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent {
+namespace {
+
+AreaPiece quadPiece(const vec3& corner, const vec3& e1, const vec3& e2, bool doubleSided = false) {
+  AreaPiece piece{};
+  piece.corners[0] = vec4(corner, 4);
+  piece.corners[1] = vec4(corner + e1, 0);
+  piece.corners[2] = vec4(corner + e1 + e2, 0);
+  piece.corners[3] = vec4(corner + e2, 0);
+  const vec3 n = glm::cross(e1, e2);
+  piece.normalArea = vec4(glm::normalize(n), glm::length(n));
+  piece.radianceSides = vec4(vec3(1), doubleSided ? 1 : 0);
+  return piece;
+}
+
+/// ∫ cosx cosy / r² over a parallelogram, by its midpoints.
+double summed(const AreaPiece& piece, const vec3& position, const vec3& normal, int steps) {
+  const glm::dvec3 corner(piece.corners[0]), e1 = glm::dvec3(piece.corners[1]) - corner,
+                                             e2 = glm::dvec3(piece.corners[3]) - corner;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const glm::dvec3 way = corner + e1 * ((i + 0.5) / steps) + e2 * ((j + 0.5) / steps) - glm::dvec3(position);
+      const double r2 = glm::dot(way, way), x = glm::dot(glm::dvec3(normal), way),
+                   y = -glm::dot(glm::dvec3(piece.normalArea), way);
+      if (x > 0 && (y > 0 || piece.radianceSides.w > 0)) sum += x * std::abs(y) / (r2 * r2);
+    }
+  return sum * double(piece.normalArea.w) / (double(steps) * steps);
+}
+
+TEST(AreaPiece, ARectangleAboveAPlane) {
+  // Over one corner of a parallel rectangle a × b at height 1 (Siegel and Howell, configuration C-11).
+  const float a = 0.7f, b = 1.9f;
+  const AreaPiece piece = quadPiece({0, 1, 0}, {a, 0, 0}, {0, 0, b});
+  ASSERT_LT(piece.normalArea.y, 0);
+  const double ra = std::sqrt(1 + double(a) * a), rb = std::sqrt(1 + double(b) * b);
+  const double expected = 0.5 * (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb));
+  EXPECT_NEAR(double(areaFormFactor(piece, vec3(0), vec3(0, 1, 0))), expected, 1e-6);
+  EXPECT_EQ(areaFormFactor(piece, vec3(0, 2, 0), vec3(0, -1, 0)), 0) << "its back";
+  EXPECT_EQ(areaFormFactor(piece, vec3(0), vec3(0, -1, 0)), 0) << "below the horizon";
+}
+
+TEST(AreaPiece, FillsTheSkyWithPi) {
+  const AreaPiece piece = quadPiece({-1e4f, 1, -1e4f}, {2e4f, 0, 0}, {0, 0, 2e4f});
+  EXPECT_NEAR(areaFormFactor(piece, vec3(0), vec3(0, 1, 0)), kPi, 1e-3f);
+  EXPECT_NEAR(areaFormFactor(piece, vec3(0), vec3(1, 0, 0)), 0.5f * kPi, 1e-3f) << "half of it";
+}
+
+TEST(AreaPiece, IsTheIntegralWherever) {
+  int clipped = 0, far = 0;
+  for (uint32_t i = 0; i < 300; ++i) {
+    Rng rng(4, Stream::Test, i);
+    const auto around = [&] { return 2.0f * rng.next3() - 1.0f; };
+    const AreaPiece piece = quadPiece(around() + vec3(0, 1.5f, 0), around(), around(), i % 2 == 0);
+    const vec3 normal = glm::normalize(around()), position = (i % 5 == 0 ? 40.0f : 1.0f) * around();
+    const double expected = summed(piece, position, normal, 300), got = areaFormFactor(piece, position, normal);
+    const double nearest = std::sqrt(double(piece.normalArea.w)) / 300;
+    ASSERT_NEAR(got, expected, 4e-3 * expected + 2e-3 * nearest + 1e-6) << i;
+    clipped += expected > 0 && summed(piece, position, -normal, 50) > 0;
+    far += expected > 0 && i % 5 == 0;
+  }
+  EXPECT_GT(clipped, 30);
+  EXPECT_GT(far, 10);
+}
+
+TEST(AreaPiece, IsANumberOnItsEdgesAndCorners) {
+  const AreaPiece piece = quadPiece({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, true);
+  for (const vec3& at : {vec3(0), vec3(0.5f, 0, 0), vec3(1, 0, 1), vec3(0.3f, 0, 0.3f), vec3(2, 0, 0), vec3(-1, 0, 0)})
+    for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, -1, 0), glm::normalize(vec3(1))}) {
+      const float f = areaFormFactor(piece, at, n);
+      EXPECT_TRUE(f >= 0 && f <= 3.2f) << f;
+      EXPECT_TRUE(std::isfinite(areaFormFactor(piece, at + vec3(0, 1e-7f, 0), n)));
+    }
+}
+
+TEST(AreaLights, ABoxHasSixPiecesAndAllItsArea) {
+  test::HandScene scene;
+  scene.box(vec3(-1, -2, -3), vec3(1, 2, 3), scene.material(vec3(0), vec3(2)), false);
+  const SceneView view = scene.view();
+  const AreaLights lights = areaLights(collectLights(view));
+  ASSERT_EQ(lights.lights.size(), 6u) << "an emitter per quad";
+  float area = 0;
+  for (const AreaPiece& p : lights.pieces) {
+    EXPECT_EQ(p.corners[0].w, 4);
+    area += p.normalArea.w;
+  }
+  EXPECT_FLOAT_EQ(area, 2 * (2 * 4 + 4 * 6 + 2 * 6));
+  EXPECT_EQ(lights.samples.size(), 6u * AreaLights::kSamples);
+  // From outside, the side that faces is all that lights.
+  vec3 sum(0);
+  for (const AreaLight& l : lights.lights) sum += unshadowed(lights, l, vec3(0, 5, 0), vec3(0, -1, 0));
+  EXPECT_NEAR(sum.x, 2 * summed(quadPiece({-1, 2, -3}, {0, 0, 6}, {2, 0, 0}), vec3(0, 5, 0), vec3(0, -1, 0), 300),
+              1e-3f);
+}
+
+TEST(AreaLights, NeighboursInTheOrderLieSideBySide) {
+  test::HandScene scene;
+  scene.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, scene.material(vec3(0), vec3(2)));
+  const SceneView view = scene.view();
+  const AreaLights lights = areaLights(collectLights(view));
+  ASSERT_EQ(lights.samples.size(), 64u);
+  float along = 0;
+  for (size_t i = 1; i < 64; ++i) along += glm::distance(lights.samples[i - 1].position, lights.samples[i].position);
+  EXPECT_LT(along / 63, 0.45f) << "at random: 1.04";
+  for (int quarter = 0; quarter < 4; ++quarter) { // each quarter of the order fills a quarter of the light
+    Aabb box;
+    for (size_t i = 0; i < 16; ++i) box.add(lights.samples[size_t(quarter) * 16 + i].position);
+    EXPECT_LT(box.size().x * box.size().z, 1.4f);
+  }
+}
+
+TEST(AreaLights, TexturedOnesKeepTheirTexture) {
+  test::HandScene scene;
+  TextureImage image; // left half black
+  image.width = 2;
+  image.height = 1;
+  image.srgb = false;
+  image.texels = {{0, 0, 0, 255}, {255, 255, 255, 255}};
+  image.averageLinear = vec4(0.5f, 0.5f, 0.5f, 1);
+  scene.assets.images.push_back(image);
+  const uint32_t material = scene.material(vec3(0), vec3(4));
+  scene.assets.materials[material].emissiveTexture.image = 0;
+  scene.assets.materials[material].emissiveTexture.nearest = true;
+  scene.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, material); // u along x, faces down
+  const SceneView view = scene.view();
+  const AreaLights lights = areaLights(collectLights(view));
+  ASSERT_EQ(lights.lights.size(), 1u);
+  EXPECT_EQ(lights.lights[0].pieces, AreaLights::kSamples);
+  for (const AreaSample& s : lights.samples)
+    if (std::abs(s.position.x) > 0.3f) EXPECT_FLOAT_EQ(s.radiance.x, s.position.x > 0 ? 4 : 0);
+  const float bright = summed(quadPiece({0, 1, -1}, {1, 0, 0}, {0, 0, 2}), vec3(0), vec3(0, 1, 0), 200);
+  EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0), vec3(0, 1, 0)).x, 4 * bright, 0.04f * 4 * bright);
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,210 @@
+// Direct light of emissive surfaces by patches (paper 4) against closed forms and against a thousand rays per pixel.
+#include "engine/core/parallel.h"
+#include "gi/direct/area_light_pass.h"
+#include "gi/direct/direct_light.h"
+#include "gi/plan/effects.h"
+#include "tests/gl/gl_fixture.h"
+#include "tests/support/images.h"
+
+namespace lambent::test {
+
+class AreaLightTest : public GlTest {
+ protected:
+  AreaLightTest() { settings.shadow.emitters = EmitterShadows::Patches; }
+
+  /// Direct irradiance, row 0 at the top, with every emissive surface of the scene as a light.
+  Image irradianceOf(const HandScene& scene) {
+    placed = std::make_unique<PlacedScene>(programs, scene);
+    const SceneView view = scene.view();
+    const World world = placed->world(collectLights(view));
+    SurfacePass surfacePass(passes);
+    PatchPass patchPass(passes, StageId::Patches);
+    DirectLight direct(passes);
+    stats = {};
+    FrameResults results;
+    results.surfaces = surfacePass.run({world.gpu, world.view.camera});
+    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
+    results.indirect =
+        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, patches}, stats);
+    return readBuffer(Buffer::Irradiance, results);
+  }
+
+  /// The same with side² rays per triangle of a lamp at every pixel.
+  Image tracedOf(const HandScene& scene, int side = 32) const {
+    const CameraView& camera = scene.camera;
+    const SceneView view = scene.view();
+    const LightSet lights = collectLights(view);
+    EmbreeQuery rays(scene.assets);
+    rays.update(view);
+    Image image(camera.width, camera.height);
+    for (int y = 0; y < camera.height; ++y)
+      for (int x = 0; x < camera.width; ++x) {
+        const CameraRay ray =
+            cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
+        const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
+        if (!hit.valid()) continue;
+        const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.grain());
+        vec3 sum(0);
+        for (const EmitterTriangle& t : lights.triangles)
+          for (int i = 0; i < side * side; ++i) {
+            vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+            if (u.x + u.y > 1) u = 1.0f - u;
+            const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
+            const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
+            if (cosine <= 0 || cosineLight <= 0) continue;
+            if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.grain())))) continue;
+            const float r2 = glm::dot(way, way);
+            sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
+          }
+        image.at(x, y) = sum;
+      }
+    return image;
+  }
+
+  std::unique_ptr<PlacedScene> placed;
+  Settings settings;
+  FrameStats stats; // of the last picture
+};
+
+/// A floor, and a lamp of 0.8 × 0.6 m above it that faces down.
+HandScene& lampOver(HandScene& scene, const vec3& radiance = vec3(5, 4, 3)) {
+  scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
+  scene.quad(vec3(-0.4f, 2, -0.3f), vec3(0.8f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), radiance));
+  scene.camera = cameraAt(vec3(0, 1.8f, 3), vec3(0, 0.2f, 0), 1.0f, 96, 64);
+  return scene;
+}
+
+TEST_F(AreaLightTest, IsExactWhereNothingIsBetween) {
+  HandScene scene;
+  lampOver(scene);
+  const Image image = irradianceOf(scene);
+  const SceneView view = scene.view();
+  const AreaLights lights = areaLights(collectLights(view));
+  int floor = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 64);
+      const float t = -ray.origin.y / ray.direction.y;
+      const vec3 at = ray.origin + ray.direction * t;
+      if (t <= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+      const vec3 expected = unshadowed(lights, lights.lights[0], at, vec3(0, 1, 0));
+      if (glm::distance(image.at(x, y), vec3(0)) == 0) continue; // the lamp is in the way
+      ASSERT_NEAR(image.at(x, y).x, expected.x, 2e-3f * expected.x) << x << ' ' << y;
+      ASSERT_NEAR(image.at(x, y).z, expected.z, 2e-3f * expected.z);
+      ++floor;
+    }
+  EXPECT_GT(floor, 3000);
+  EXPECT_LT(stats.areaFragments, 1500u) << "of 6144 pixels";
+}
+
+TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
+  for (int what = 0; what < 4; ++what) {
+    HandScene scene;
+    lampOver(scene);
+    const uint32_t white = scene.material(vec3(0.7f));
+    if (what == 0) scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, white, false); // a plate in the air
+    if (what == 1) scene.box({0.2f, 0, 0.2f}, {0.23f, 1.2f, 0.23f}, white, false);    // a pole
+    if (what == 2)
+      for (int i = 0; i < 8; ++i) // a fence
+        scene.box({-0.8f + 0.2f * float(i), 0, 0.3f}, {-0.74f + 0.2f * float(i), 0.7f, 0.33f}, white, false);
+    if (what == 3) scene.box({-1.2f, 0, -0.5f}, {-0.2f, 1.99f, 0.5f}, white, false); // reaches the lamp
+    const Image image = irradianceOf(scene), traced = tracedOf(scene);
+    EXPECT_LT(relativeRmse(image, traced), what == 2 ? 0.03 : 0.02) << what;
+    EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.003) << what;
+    EXPECT_LT(stats.areaFragments, 96u * 64u * 3 / 4) << what;
+    EXPECT_LT(stats.raysArea.occlusion, 96u * 64u * 64u * 6 / 10) << what;
+  }
+}
+
+TEST_F(AreaLightTest, LampsOfUnlikeSizeAndColour) {
+  HandScene scene;
+  lampOver(scene, vec3(4, 0, 0));
+  scene.quad(vec3(1.2f, 1.0f, -0.02f), vec3(0.04f, 0, 0), vec3(0, 0, 0.04f), scene.material(vec3(0), vec3(0, 0, 900)));
+  const uint32_t white = scene.material(vec3(0.7f));
+  scene.box({0.3f, 0.3f, -0.3f}, {0.7f, 0.5f, 0.3f}, white, false);
+  const Image image = irradianceOf(scene), traced = tracedOf(scene);
+  EXPECT_LT(relativeRmse(image, traced), 0.06);
+  for (int c = 0; c < 3; c += 2) {
+    double a = 0, b = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) a += image.pixels[i][c], b += traced.pixels[i][c];
+    EXPECT_NEAR(a / b, 1, 0.01) << c;
+  }
+}
+
+TEST_F(AreaLightTest, ManyLampsShareTheRays) {
+  HandScene scene;
+  lampOver(scene, vec3(0.1f));
+  const uint32_t lamp = scene.material(vec3(0), vec3(60)), white = scene.material(vec3(0.7f));
+  for (int i = 0; i < 49; ++i)
+    scene.quad(vec3(-3 + float(i % 7), 2.5f, -3 + float(i / 7)), vec3(0.1f, 0, 0), vec3(0, 0, 0.1f), lamp);
+  scene.box({-0.5f, 0, -0.5f}, {0.5f, 0.8f, 0.5f}, white, false);
+  const Image image = irradianceOf(scene), traced = tracedOf(scene, 4);
+  EXPECT_LT(relativeRmse(image, traced), 0.05);
+  EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.005);
+}
+
+TEST_F(AreaLightTest, AClosedBoxStaysBlack) {
+  HandScene scene;
+  lampOver(scene);
+  scene.box(vec3(-1, 0.001f, -1), vec3(1, 1, 1), scene.material(vec3(0.7f)), true);
+  scene.camera = cameraAt(vec3(0.5f, 0.5f, 0.9f), vec3(0, 0.3f, 0), 1.2f, 96, 64);
+  EXPECT_EQ(meanLuminance(irradianceOf(scene)), 0);
+}
+
+/// A light that touches a wall, one seen edge-on, one behind a pane that is not cut out.
+TEST_F(AreaLightTest, AtWallsOnEdgeAndBehindGlass) {
+  HandScene scene;
+  lampOver(scene);
+  const uint32_t white = scene.material(vec3(0.7f)), lamp = scene.material(vec3(0), vec3(5));
+  scene.quad(vec3(-2, 0, -1), vec3(4, 0, 0), vec3(0, 3, 0), white);                // wall at z = −1, faces +z
+  scene.quad(vec3(-1.5f, 0.5f, -1), vec3(0, 0.5f, 0), vec3(0, 0, 0.5f), lamp);     // stands on it, faces −x
+  scene.quad(vec3(1.5f, 0.5f, -0.999f), vec3(0.4f, 0, 0), vec3(0, 0.4f, 0), lamp); // lies on it
+  scene.quad(vec3(1.4f, 0.4f, -0.9f), vec3(0.6f, 0, 0), vec3(0, 0.6f, 0), white);  // a pane before that one
+  const Image image = irradianceOf(scene), traced = tracedOf(scene);
+  for (const vec3& e : image.pixels) ASSERT_TRUE(isFinite(e) && e.x >= 0);
+  EXPECT_LT(relativeRmse(image, traced), 0.04);
+  EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.005);
+}
+
+TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
+  HandScene scene;
+  scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
+  scene.quad(vec3(0, 2, 0), vec3(0.1f, 0, 0), vec3(0, 0, 0.1f), scene.material(vec3(0), vec3(50)));
+  scene.box({-5, 1, -5}, {0, 1.05f, 5}, scene.material(vec3(0.7f)), false); // half of the floor in its shadow
+  scene.camera = cameraAt(vec3(0, 0.9f, 2), vec3(0, 0, 0), 1.0f, 192, 128);
+  settings.area.rays = 64;
+  const Image gass = irradianceOf(scene);
+  const uint64_t rays = stats.raysArea.occlusion;
+  settings.area.gradient = 0;
+  const Image one = irradianceOf(scene);
+  EXPECT_LT(relativeRmse(gass, one), 0.01);
+  EXPECT_NE(rays, stats.raysArea.occlusion) << "or nothing was split twice";
+  EXPECT_NEAR(double(rays), double(stats.raysArea.occlusion), 0.1 * double(rays)) << "it saves steps, hardly rays";
+}
+
+TEST_F(AreaLightTest, FewerFragmentsThanByNeighboursAndUpsampledBetter) {
+  HandScene scene;
+  lampOver(scene);
+  scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
+  const Image traced = tracedOf(scene);
+  const double rbf = relativeRmse(irradianceOf(scene), traced);
+  const uint64_t fragments = stats.areaFragments;
+  settings.area.upsample = AreaUpsample::Bilinear;
+  EXPECT_GT(relativeRmse(irradianceOf(scene), traced), rbf);
+  settings.area.refinement = AreaRefinement::Neighbours;
+  irradianceOf(scene);
+  EXPECT_GT(stats.areaFragments, fragments);
+}
+
+TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {
+  HandScene scene;
+  lampOver(scene);
+  scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
+  const Image a = irradianceOf(scene);
+  setThreadCount(1);
+  const Image b = irradianceOf(scene);
+  setThreadCount(0);
+  EXPECT_EQ(a.pixels, b.pixels);
+}
+
+} // namespace lambent::test
