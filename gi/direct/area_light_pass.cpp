@@ -8,9 +8,9 @@ namespace lambent {
 
 namespace {
 
-/// Every fourth sample as a disk: what lobes reflect.
+/// Every sixteenth sample as a disk: what lobes reflect.
 std::vector<AreaPiece> disksOf(const AreaLights& lights) {
-  constexpr uint32_t kEvery = 4;
+  constexpr uint32_t kEvery = 16;
   std::vector<AreaPiece> disks;
   for (const AreaLight& light : lights.lights) {
     float area = 0;
@@ -30,7 +30,9 @@ std::vector<AreaPiece> disksOf(const AreaLights& lights) {
 
 void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
                         const LightTarget& target, FrameStats& stats) {
-  lights_ = areaLights(world.lights);
+  const SceneChanges& changes = world.view.changes;
+  if (changes.first || changes.lights || changes.geometry || changes.instances || lights_.lights.empty())
+    lights_ = areaLights(world.lights);
   if (lights_.lights.empty()) return;
   const PatchPyramid& pyramid = patches.pyramid();
   GBuffer plain = surfaces; // shares have no lobes

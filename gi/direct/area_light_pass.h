@@ -19,6 +19,8 @@ class AreaLightPass {
   /// Adds to the target, which is as large as the picture.
   void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
            const LightTarget& target, FrameStats& stats);
+  /// It is not asked for a while: what lights come to be meanwhile is not told.
+  void forget() { lights_ = {}; }
 
  private:
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);

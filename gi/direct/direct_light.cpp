@@ -79,6 +79,8 @@ LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
     areas_.add(in.world, in.surfaces, in.patches, in.settings, target_, stats);
     stats.of(EffectId::Emissive) += stats.areaFragments;
     stats.of(EffectId::SoftShadows) = stats.areaFragments;
+  } else {
+    areas_.forget();
   }
   return target_.light();
 }

@@ -23,10 +23,16 @@ constexpr Technique kTechniques[] = {
     {"isr",
      "image-space radiosity: clusters of reflective maps (paper 3)",
      {Isr, V::None, Multires, R::Upsample},
+     EmitterShadows::Samples,
      "the number of its lights, where a map changed"},
     {"hisr",
      "hierarchical image-space radiosity: a cut of the trees per patch (paper 3)",
      {Hisr, V::None, Multires, R::Upsample}},
+    {"area-multires",
+     "smc, with direct light of emissive surfaces at patches (paper 4)",
+     {Smc, V::Maps, Interleaved, R::Filter},
+     EmitterShadows::Patches,
+     "the picture's surfaces, where anything glows"},
 };
 
 } // namespace
@@ -56,6 +62,7 @@ void applyTechnique(Settings& settings, const Technique& technique) {
     settings.gather.mode = technique.axes.gather;
   }
   settings.vpl.source = technique.axes.source;
+  settings.shadow.emitters = technique.emitters;
   settings.own = technique.make ? &technique : nullptr;
 }
 
@@ -66,8 +73,9 @@ const Technique& techniqueOf(const Settings& settings) {
   const Technique* nearest = nullptr;
   for (const Technique& t : kTechniques) {
     if (t.axes.source != settings.vpl.source) continue;
-    if (t.axes.gather == settings.gather.mode) return t;
-    if (!nearest) nearest = &t;
+    const bool gathers = t.axes.gather == settings.gather.mode, emitters = t.emitters == settings.shadow.emitters;
+    if (gathers && emitters) return t;
+    if (!nearest || (gathers && nearest->axes.gather != settings.gather.mode)) nearest = &t;
   }
   CHECK(nearest != nullptr);
   return *nearest;

@@ -1,11 +1,13 @@
 #include "gi/vpl/area_lights.h"
 
 #include <algorithm>
-#include <array>
+#include <span>
 
 namespace lambent {
 
 namespace {
+
+constexpr uint32_t kPerDisk = 4;
 
 AreaPiece pieceOf(const EmitterTriangle& t, bool doubleSided) {
   AreaPiece piece{};
@@ -59,7 +61,7 @@ bool textured(const LightSet& lights, const Emitter& emitter) {
 /// Points spread evenly over an emitter in proportion to the power of its triangles. Those of a textured one are each
 /// the middle of sixteen, whose mean radiance they have.
 void addSamples(const LightSet& lights, const Emitter& emitter, AreaLights& to) {
-  const uint32_t group = textured(lights, emitter) ? 16 : 1, count = AreaLights::kSamples * group;
+  const uint32_t group = textured(lights, emitter) ? 4 : 1, count = AreaLights::kSamples * group;
   std::vector<AreaSample> points;
   Aabb box;
   for (uint32_t i = 0; i < count; ++i) {
@@ -79,17 +81,18 @@ void addSamples(const LightSet& lights, const Emitter& emitter, AreaLights& to) 
   }
 }
 
-/// The samples as disks, each with its share of the surface.
+/// Samples as disks: one for every kPerDisk that follow each other, with their share of the surface and their mean radiance.
 void addDisks(const LightSet& lights, const Emitter& emitter, const AreaLight& light, AreaLights& to) {
   float area = 0;
   for (uint32_t t = 0; t < emitter.triangleCount; ++t) area += lights.triangles[emitter.firstTriangle + t].area;
-  for (uint32_t i = 0; i < light.samples; ++i) {
-    const AreaSample& s = to.samples[light.firstSample + i];
-    AreaPiece piece{};
-    piece.corners[0] = vec4(s.position, 0);
-    piece.normalArea = vec4(s.normal, area / float(light.samples));
-    piece.radianceSides = vec4(s.radiance, emitter.doubleSided ? 1 : 0);
-    to.pieces.push_back(piece);
+  for (uint32_t i = 0; i < light.samples; i += kPerDisk) {
+    const std::span of = std::span(to.samples).subspan(light.firstSample + i, kPerDisk);
+    vec3 radiance(0);
+    for (const AreaSample& s : of) radiance += s.radiance / float(kPerDisk);
+    AreaPiece& piece = to.pieces.emplace_back();
+    piece.corners[0] = vec4(of[kPerDisk / 2].position, 0);
+    piece.normalArea = vec4(of[kPerDisk / 2].normal, area * float(kPerDisk) / float(light.samples));
+    piece.radianceSides = vec4(radiance, emitter.doubleSided ? 1 : 0);
   }
 }
 
@@ -115,7 +118,7 @@ AreaLights areaLights(const LightSet& lights) {
     if (light.pieces == 0 || light.pieces > AreaLights::kMostPolygons || textured(lights, emitter)) {
       out.pieces.resize(light.firstPiece);
       addDisks(lights, emitter, light, out);
-      light.pieces = light.samples;
+      light.pieces = uint32_t(out.pieces.size()) - light.firstPiece;
     }
     out.lights.push_back(light);
   }

@@ -23,8 +23,10 @@ class Ambient : public IndirectStage {
 inline std::unique_ptr<IndirectStage> makeAmbient(PassContext) { return std::make_unique<Ambient>(); }
 
 constexpr Technique kAmbient{
-    "ambient", "constant light", {VplSource::None, VplVisibility::None, GatherMode::Own, Reconstruction::None},
-    nullptr,   makeAmbient,
+    .name = "ambient",
+    .help = "constant light",
+    .axes = {VplSource::None, VplVisibility::None, GatherMode::Own, Reconstruction::None},
+    .make = makeAmbient,
 };
 
 } // namespace lambent::test

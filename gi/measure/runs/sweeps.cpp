@@ -54,6 +54,7 @@ std::vector<Assignments> jointDesign(bool quick) {
 const std::vector<Knob>& knobTable() {
   using enum KnobLight;
   static const Assignments patches{{"gather.mode", "multires-interleaved"}};
+  static const Assignments byPatches{{"shadow.emitters", "patches"}};
   static const Assignments clamped{{"gather.disk", "0"}, {"gather.near", "0"}};
   static const std::vector<Knob> knobs{
       // The set of lights.
@@ -97,6 +98,13 @@ const std::vector<Knob>& knobTable() {
       {"shadow.rays", {"off", "on"}, Direct},
       {"shadow.emitterSamples", {"4", "16", "64"}, Direct},
       {"shadow.emitterResolution", {"64", "256", "512"}, Direct},
+      {"shadow.emitters", {"samples", "patches"}, Direct},
+      {"area.refinement", {"neighbours", "sub-fragments"}, Direct, byPatches},
+      {"area.rays", {"4", "8", "16", "64"}, Direct, byPatches},
+      {"area.threshold", {"4", "2", "1"}, Direct, byPatches},
+      {"area.gradient", {"0", "4"}, Direct, byPatches},
+      {"area.extra", {"off", "on"}, Direct, byPatches},
+      {"area.upsample", {"bilinear", "bilateral", "rbf"}, Direct, byPatches},
       {"shadow.sunResolution", {"256", "512", "2048"}, Direct},
       {"shadow.pointResolution", {"64", "128", "512"}, Direct},
       {"shadow.skyMaps", {"8", "32", "128"}, Direct},
