@@ -145,7 +145,7 @@ std::vector<std::string> ProgramCache::reloadChanged() {
     try {
       build(*program);
       const ProgramDesc& desc = program->desc_;
-      messages.push_back("reloaded " + (!desc.compute.empty()    ? desc.compute
+      messages.push_back("reloaded " + (!desc.compute.empty()   ? desc.compute
                                         : desc.fragment.empty() ? desc.vertex
                                                                 : desc.fragment));
     } catch (const RunError& error) {

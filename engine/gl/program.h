@@ -72,7 +72,8 @@ std::filesystem::path findShaderFolder();
 
 /// Programs of one context, compiled when first asked for. References stay valid for the life of the cache.
 /// LAMBENT_DUMP_SHADERS=FOLDER has every variant that compiles written there as the compiler got it, so that other
-/// compilers can be asked (tests/cli/shaders): PROGRAM-FILE.vert, .geom, .frag and .comp, with a number for the program.
+/// compilers can be asked (tests/cli/shaders): PROGRAM-FILE.vert, .geom, .frag and .comp, with a number for the
+/// program.
 class ProgramCache {
  public:
   explicit ProgramCache(std::filesystem::path folder = findShaderFolder()) : folder_(std::move(folder)) {}

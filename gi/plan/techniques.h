@@ -18,7 +18,7 @@ struct Technique {
   const char* help; // one line
   Axes axes;
   EmitterShadows emitters = EmitterShadows::Samples; // direct light of emissive surfaces, which goes with any axes
-  const char* waits = nullptr; // what a frame waits for or reads back from the GPU; null: nothing
+  const char* waits = nullptr;                       // what a frame waits for or reads back from the GPU; null: nothing
   /// Of a technique without virtual lights (GatherMode::Own): its stage, which takes surfaces and gives light on them.
   std::unique_ptr<IndirectStage> (*make)(PassContext) = nullptr;
 };

@@ -81,7 +81,8 @@ void addSamples(const LightSet& lights, const Emitter& emitter, AreaLights& to) 
   }
 }
 
-/// Samples as disks: one for every kPerDisk that follow each other, with their share of the surface and their mean radiance.
+/// Samples as disks: one for every kPerDisk that follow each other, with their share of the surface and their mean
+/// radiance.
 void addDisks(const LightSet& lights, const Emitter& emitter, const AreaLight& light, AreaLights& to) {
   float area = 0;
   for (uint32_t t = 0; t < emitter.triangleCount; ++t) area += lights.triangles[emitter.firstTriangle + t].area;

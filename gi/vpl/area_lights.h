@@ -25,8 +25,9 @@ struct AreaLights {
   std::vector<AreaPiece> pieces;
   std::vector<AreaSample> samples;
 
-  static constexpr uint32_t kMostPolygons = 32; // of an emitter; with more, or a texture, disks at its samples are its pieces
-  static constexpr uint32_t kSamples = 256;     // of an emitter
+  static constexpr uint32_t kMostPolygons =
+      32; // of an emitter; with more, or a texture, disks at its samples are its pieces
+  static constexpr uint32_t kSamples = 256; // of an emitter
 };
 /// Of all emitters that bring light. Two triangles that make a parallelogram become one piece.
 AreaLights areaLights(const LightSet& lights);

@@ -148,7 +148,8 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     const World world = placed->world(lamp);
     DirectLight direct(passes);
     Patches none;
-    results.direct = direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, none}, stats);
+    results.direct =
+        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, none}, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {

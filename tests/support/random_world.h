@@ -120,7 +120,7 @@ class RandomWorld {
     const float x = number(), y = number();
     return {x, y, number()};
   }
-  Sky randomSky() {
+  lambent::Sky randomSky() {
     const float what = number();
     if (what < 0.4f) return {};
     if (what < 0.7f) return number3();
