@@ -20,7 +20,6 @@ struct RayHit {
 };
 
 const uint kRayNone = 0xffffffffu;
-const float kRayFar = uintBitsToFloat(0x7f800000u);
 
 int rayWrapped(int i, int size, uint wrap) {
   if (wrap == 2u) return clamp(i, 0, size - 1);
@@ -131,7 +130,7 @@ RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any) {
     }
     if (met) hit.instance = instance.instance;
   }
-  if (hit.instance == kRayNone) hit.t = kRayFar;
+  if (hit.instance == kRayNone) hit.t = uintBitsToFloat(0x7f800000u); // infinite
   return hit;
 }
 

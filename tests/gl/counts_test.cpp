@@ -4,6 +4,10 @@
 #include "gi/lights/reflective_maps.h"
 #include "gl_fixture.h"
 
+#include <chrono>
+#include <functional>
+#include <thread>
+
 namespace lambent::test {
 
 class CountsTest : public GlTest {
@@ -46,6 +50,12 @@ TEST_F(CountsTest, OnlyTheResultOfAQueryWaits) {
   EXPECT_EQ(sinceBefore().waits, 1u);
 }
 
+/// Whether it holds within a second.
+bool soon(const std::function<bool()>& holds) {
+  for (int polls = 0; polls < 1000 && !holds(); ++polls) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return holds();
+}
+
 /// Frame i marks i fragments. Whatever the GPU has come to by then, what is heard is the count of a frame that was
 /// drawn, never of an earlier one than was heard before, and at last that of the last frame that asked.
 TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
@@ -67,13 +77,14 @@ TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
     heard = now;
   }
   EXPECT_EQ(sinceBefore().waits, 0u);
+  // Of a GPU that is done the results are known "in finite time" (OpenGL 4.5, 4.2.3): with some drivers a little later.
   glFinish();
-  EXPECT_GT(ring.latest().value_or(0), 0u);
+  EXPECT_TRUE(soon([&] { return ring.latest().value_or(0) > 0; }));
   ring.begin();
   gl::drawFullscreen();
   ring.end();
   glFinish();
-  EXPECT_EQ(ring.latest(), 40u);
+  EXPECT_TRUE(soon([&] { return ring.latest() == 40u; })) << ring.latest().value_or(0);
 }
 
 /// Of the room: 17 rectangles, of three materials, one of them cut out in the end.
