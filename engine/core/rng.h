@@ -31,7 +31,8 @@ enum class Stream : uint32_t {
   NearLight,
   Turns,
   SkyLight,
-  SamplerSkyLight
+  SamplerSkyLight,
+  SurfaceSamples
 };
 
 /// A sequence of numbers addressed by what they are for.

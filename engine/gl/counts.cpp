@@ -45,8 +45,8 @@ void drawWithoutAttributes(GLenum mode, int count) {
 
 void drawFullscreen() { drawWithoutAttributes(GL_TRIANGLES, 3); }
 void drawPoints(int count) { drawWithoutAttributes(GL_POINTS, count); }
-void dispatch(int groups) {
-  glDispatchCompute(GLuint(groups), 1, 1);
+void dispatch(int groupsX, int groupsY, int groupsZ) {
+  glDispatchCompute(GLuint(groupsX), GLuint(groupsY), GLuint(groupsZ));
   ++detail::countsSoFar().draws;
 }
 

@@ -47,7 +47,7 @@ void drawFullscreen();
 /// Points that the bound program makes from gl_VertexID.
 void drawPoints(int count);
 /// The bound compute program, so many groups of it; counted as a draw.
-void dispatch(int groups);
+void dispatch(int groupsX, int groupsY = 1, int groupsZ = 1);
 
 /// Ends all that was asked of the GPU, so that a clock beside it tells the truth. For measuring only: a frame that is
 /// not measured never does this, so it is not counted.

@@ -18,6 +18,8 @@ constexpr FigureRow kRows[] = {
     {"rays.cells", "that found the surface around VPLs", [](const S& s) -> Figure { return s.raysCells; }},
     {"rays.map_tests", "from VPLs to objects that moved", [](const S& s) -> Figure { return s.raysMapTests; }},
     {"rays.shadows", "where maps of direct light are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
+    {"rays.volume", "between cells of a light propagation volume, and from lights to them",
+     [](const S& s) -> Figure { return s.raysVolume; }},
     {"rays.area", "between emissive surfaces and patches", [](const S& s) -> Figure { return s.raysArea; }},
     {"rays.near", "for the light that bounds take from near VPLs", [](const S& s) -> Figure { return s.raysNear; }},
     {"rays.checks", "that check maps of VPLs", [](const S& s) -> Figure { return s.raysChecks; }},

@@ -22,7 +22,7 @@ struct FrameStats {
   std::vector<StageTime> stages;   // CPU and GPU, in order
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
-      raysMapTests, raysShadows, raysArea;
+      raysMapTests, raysShadows, raysArea, raysVolume;
   uint64_t patches = 0;       // of the multiresolution buffer that gathered, as far as the GPU has told
   uint64_t areaFragments = 0; // of area lights
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;

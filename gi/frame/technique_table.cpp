@@ -33,6 +33,9 @@ constexpr Technique kTechniques[] = {
      {Smc, V::Maps, Interleaved, R::Filter},
      EmitterShadows::Patches,
      "the picture's surfaces, where anything glows"},
+    {"lpv",
+     "light propagation volume lit by Poisson samples over all surfaces (paper 4)",
+     {Poisson, V::None, Volume, R::None}},
 };
 
 } // namespace
@@ -57,7 +60,7 @@ const Technique& techniqueByName(const std::string& name) {
 }
 
 void applyTechnique(Settings& settings, const Technique& technique) {
-  if (!rowOf(settings.vpl.source).sampled || !rowOf(technique.axes.source).sampled) {
+  if (!sharesGather(settings.vpl.source) || !sharesGather(technique.axes.source)) {
     settings.vpl.visibility = technique.axes.visibility;
     settings.gather.mode = technique.axes.gather;
   }

@@ -10,6 +10,7 @@ IndirectStage& IndirectStages::of(const Settings& settings) {
   const bool rays = settings.vpl.visibility == VplVisibility::Rays;
   const Make make = settings.own     ? settings.own->make
                     : rays           ? makeRayGather
+                    : gather.volume  ? makeVolumeGather
                     : gather.splats  ? makeSplatGather
                     : gather.patches ? makePatchGather
                                      : makePixelGather;

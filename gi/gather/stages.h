@@ -7,6 +7,7 @@
 //   patch_atlas     the multiresolution buffer of papers 2 and 3, flattened; from its patches to pixels
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
+//   volume_gather   lights into a grid, through it, and from there to pixels
 //   tree_gather     the draw of light trees
 //   map_checks      rays that check what maps say at pixels
 //   near_light_pass what bounds take from near lights, added to any of these
@@ -24,6 +25,7 @@ std::unique_ptr<IndirectStage> makePixelGather(PassContext context);
 std::unique_ptr<IndirectStage> makeRayGather(PassContext context);
 std::unique_ptr<IndirectStage> makePatchGather(PassContext context);
 std::unique_ptr<IndirectStage> makeSplatGather(PassContext context);
+std::unique_ptr<IndirectStage> makeVolumeGather(PassContext context);
 
 /// The stages, each made when it is first asked for and kept.
 class IndirectStages {

@@ -26,7 +26,7 @@ VirtualLights ReflectiveSource::run(const SourceInputs& in, FrameStats& stats) {
     lights.packed =
         row.clusters ? lightPass_.runClusters(sheet_, in.settings.rsm) : lightPass_.runGrid(sheet_, in.settings.rsm);
     lights.alive = lights.packed.count;
-    if (in.settings.vpl.visibility != VplVisibility::None) { // shadow maps and rays are made from the CPU's side
+    if (in.settings.vpl.visibility != VplVisibility::None || rowOf(in.settings.gather.mode).volume) { // made on the CPU
       if (sheet_.changed || shown_.empty()) {
         shown_.clear();
         for (const VplLight& light : lightPass_.read()) shown_.push_back(unpack(light));

@@ -21,6 +21,11 @@ std::string whyNot(const Axes& axes) {
   if (source.tree && axes.visibility != VplVisibility::None)
     return "vpl.visibility " + std::string(rowOf(axes.visibility).name) + ": " + name +
            " has clusters of all sizes, and no shadow maps of them (none)";
+  if (gather.volume && axes.visibility != VplVisibility::None)
+    return "vpl.visibility " + std::string(rowOf(axes.visibility).name) +
+           ": light of a volume goes around corners by itself (none)";
+  if (source.tree && gather.volume)
+    return "gather.mode volume: " + name + " has clusters of all sizes, and no list of them (smc, rsm, poisson, ...)";
   if (source.tree && gather.splats)
     return "gather.mode " + std::string(gather.name) + ": " + name +
            "'s clusters are chosen by who gathers (multires, multires-interleaved, interleaved or full)";

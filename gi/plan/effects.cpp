@@ -153,7 +153,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
 
   const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
   const bool bounded =
-      source.sampled && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
+      source.sampled && !rowOf(settings.gather.mode).volume && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
   decide(EffectId::History, !lights                       ? none
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
                             : sixteenths                  ? Answer{true, "the gather is interleaved"}
@@ -190,6 +190,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
   decide(EffectId::Replace, !lights                  ? none
+                            : source.fixed           ? Answer{false, "the samples stay on their surfaces"}
                             : reflective             ? fromMaps
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}

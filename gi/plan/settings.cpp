@@ -169,6 +169,14 @@ class Table {
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
     number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
+    number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
+           "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
+    number("lpv.size", &Settings::lpv, &VolumeSettings::size, {0, kNoLimit, "m"}, Nothing,
+           "gather.mode volume: edge of a grid that follows the camera in steps of a cell; 0 = all of the scene");
+    number("lpv.steps", &Settings::lpv, &VolumeSettings::steps, {0, 512, "steps", PowersOfTwo}, Nothing,
+           "gather.mode volume: cells that light goes from where it was reflected; what is then on its way is lost");
+    flag("lpv.occlusion", &Settings::lpv, &VolumeSettings::occlusion, Nothing,
+         "gather.mode volume: surfaces stop light; off: it goes through walls");
     number("history.frames", &Settings::history, &HistorySettings::frames, {0, 256, "frames", PowersOfTwo}, Nothing,
            "pictures that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
            "the VPLs; 0 = each picture by itself");

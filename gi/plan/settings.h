@@ -152,6 +152,15 @@ struct RsmSettings {
   bool operator==(const RsmSettings&) const = default;
 };
 
+/// A grid that light propagates through (Kaplanyan and Dachsbacher 2010; paper 4).
+struct VolumeSettings {
+  int cells = 16;        // along each edge
+  float size = 0;        // edge, metres, of a grid that follows the camera; 0 = all of the scene
+  int steps = 64;        // of propagation, a cell each
+  bool occlusion = true; // surfaces stop light; off: it goes through walls
+  bool operator==(const VolumeSettings&) const = default;
+};
+
 struct FilterSettings {
   bool on = true;
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
@@ -195,6 +204,7 @@ struct Settings {
   GatherSettings gather;
   MultiresSettings multires;
   RsmSettings rsm;
+  VolumeSettings lpv;
   HistorySettings history;
   FilterSettings filter;
   ImageSettings image;

@@ -59,6 +59,9 @@ struct CandidateHit {
 std::vector<CandidateHit> traceCandidates(const RayQuery& rays, std::span<const VisiblePoint> points, int count,
                                           uint32_t seed, uint32_t frame, RayCounts& counts);
 
+/// A VPL at a hit, of the hit's colour, valid and not yet alive. Rides on the hit's object from now on.
+Vpl vplAt(const CandidateHit& hit, const SceneView& view, uint64_t id);
+
 /// Stage 4. Picks up to `count` different hits with probability ∝ area that a hit stands for (1/density of hits,
 /// nearest neighbour), so that picks are uniform over the indirectly visible surface (paper 1, 3.2.1). At most 8
 /// retries per pick.

@@ -27,6 +27,8 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
     return placeByImagePower(set, in, log);
   case VplSource::Tcas:
     return placeByShadowMapChains(set, in, log);
+  case VplSource::Poisson:
+    return placeOverSurfaces(set, in, log);
   case VplSource::Smc:
     break;
   case VplSource::Rsm:

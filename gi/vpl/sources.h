@@ -27,6 +27,10 @@ VplChanges placeByImagePower(VplSet& set, const VplUpdate& in, VplUpdateLog& log
 /// bounce only.
 VplChanges placeByShadowMapChains(VplSet& set, const VplUpdate& in, VplUpdateLog& log);
 
+/// Poisson samples over both sides of all surfaces that reflect, each for its share of their area (paper 4, 3.2). They
+/// stand where they stand as long as the same objects are there, and ride on these.
+VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log);
+
 /// What a comparator puts into a slot. Without power the slot is empty.
 struct PlacedVpl {
   vec3 position{0}, normal{0, 1, 0}, geometricNormal{0, 1, 0}, albedo{0};

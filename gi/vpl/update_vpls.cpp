@@ -51,30 +51,6 @@ void place(Vpl& v, const SceneView& view, uint32_t instanceIndex) {
     v.alive = v.valid = false;
 }
 
-Vpl candidateAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
-  const InstanceView& carrier = view.instances[h.instance];
-  const mat3 normalFromWorld = glm::transpose(mat3(carrier.worldFromObject));
-  Vpl v;
-  v.albedo = h.albedo;
-  v.mailbox = h.from;
-  v.instance = carrier.id;
-  v.place = {vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1)),
-             glm::normalize(normalFromWorld * h.normal),
-             glm::normalize(normalFromWorld * h.geometricNormal),
-             carrier.mesh,
-             h.primitive,
-             h.triangle,
-             h.barycentric};
-  if (view.assets) {
-    const SurfacePoint p = surfacePoint(view, h.instance, h.primitive, h.triangle, h.barycentric);
-    v.place.back = glm::dot(p.geometricNormal, h.geometricNormal) < 0;
-  }
-  v.id = id;
-  v.valid = true;
-  place(v, view, h.instance); // so that it stands to the bit where it stands when carried nowhere
-  return v;
-}
-
 std::vector<DensityPoint> densityPoints(std::span<const Vpl> vpls, std::vector<uint32_t>& index) {
   std::vector<DensityPoint> points;
   index.clear();
@@ -244,7 +220,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const I
   {
     CpuScope scope(log.stages, key(StageId::Radiosity));
     const size_t old = now.relight ? 0 : set.pool.size();
-    for (uint32_t pick : resampled.picks) set.pool.push_back(candidateAt(hits[pick], in.view, set.nextId++));
+    for (uint32_t pick : resampled.picks) set.pool.push_back(vplAt(hits[pick], in.view, set.nextId++));
     set.poolPaths.resize(set.pool.size());
     std::vector<RadianceJob> jobs;
     if (now.relight)
@@ -295,6 +271,30 @@ void mergeStages(std::vector<StageTime>& stages) {
 }
 
 } // namespace
+
+Vpl vplAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
+  const InstanceView& carrier = view.instances[h.instance];
+  const mat3 normalFromWorld = glm::transpose(mat3(carrier.worldFromObject));
+  Vpl v;
+  v.albedo = h.albedo;
+  v.mailbox = h.from;
+  v.instance = carrier.id;
+  v.place = {vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1)),
+             glm::normalize(normalFromWorld * h.normal),
+             glm::normalize(normalFromWorld * h.geometricNormal),
+             carrier.mesh,
+             h.primitive,
+             h.triangle,
+             h.barycentric};
+  if (view.assets) {
+    const SurfacePoint p = surfacePoint(view, h.instance, h.primitive, h.triangle, h.barycentric);
+    v.place.back = glm::dot(p.geometricNormal, h.geometricNormal) < 0;
+  }
+  v.id = id;
+  v.valid = true;
+  place(v, view, h.instance); // so that it stands to the bit where it stands when carried nowhere
+  return v;
+}
 
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all) {
   std::vector<uint32_t> carried;

@@ -13,6 +13,7 @@ using glm::clamp;
 using glm::cross;
 using glm::dot;
 using glm::exp;
+using glm::floor;
 using glm::ivec2;
 using glm::length;
 using glm::max;
