@@ -7,7 +7,7 @@
 //   patch_atlas     the multiresolution buffer of papers 2 and 3, flattened; from its patches to pixels
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
-//   volume_gather   lights into a grid, through it, and from there to pixels
+//   light_volume, volume_gather  lights into a grid, through it, and from there to pixels
 //   tree_gather     the draw of light trees
 //   map_checks      rays that check what maps say at pixels
 //   near_light_pass what bounds take from near lights, added to any of these

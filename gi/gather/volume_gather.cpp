@@ -1,15 +1,7 @@
-// Light propagation volume (paper 4, 3.2; Kaplanyan and Dachsbacher 2010): lights deposit what they reflect in the cells of
-// a grid, it goes from cell to cell, and pixels take what passes by. Deposits are made on the CPU, where the lights and
-// the rays are; the steps and the look-up on the GPU. What nothing changed is kept.
-#include "engine/core/parallel.h"
-#include "engine/gl/ring.h"
+// Light of pixels from a light propagation volume.
 #include "gi/gather/draw_gather.h"
+#include "gi/gather/light_volume.h"
 #include "gi/gather/stages.h"
-#include "gi/visibility/volume_sights.h"
-#include "gi/vpl/disturbance.h"
-#include "shaders/shared/light_volume.h"
-
-#include <cstring>
 
 namespace lambent {
 
@@ -17,169 +9,26 @@ namespace {
 
 class VolumeGather : public IndirectStage {
  public:
-  explicit VolumeGather(PassContext context) : context_(context) {}
+  explicit VolumeGather(PassContext context) : context_(context), volume_(context) {}
 
   LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
-    const VolumeSettings& settings = in.settings.lpv;
-    bool changed = steps_ != settings.steps;
-    {
-      const CpuScope scope(stats.stages, key(StageId::VolumeSights));
-      const VolumeGrid grid = volumeGrid(settings, in.world.view, sights_.grid());
-      const bool fresh = sights_.update(grid, in.world, settings.occlusion, stats.raysVolume);
-      if (fresh || !open_) {
-        changed = true;
-        upload(open_, "volume/open", sights_.open());
-        upload(seen_, "volume/sights", sights_.sights());
-        seats_.clear();
-      }
-    }
-    steps_ = settings.steps;
-    {
-      const CpuScope scope(stats.stages, key(StageId::Inject));
-      changed |= deposit(in, stats.raysVolume);
-    }
-    if (changed) propagate();
-    return lookUp(in.surfaces);
-  }
-
- private:
-  /// Where a light stands, and the cells around that it may go to.
-  struct Seat {
-    vec3 position{kInfinity}, normal{0};
-    ivec3 base{0};
-    float weights[8] = {}; // sum 1, or 0 where nothing is open to it
-  };
-
-  template <class T> void upload(gl::Buffer& buffer, const char* label, std::span<const T> data) {
-    if (!buffer || buffer.bytes() != data.size_bytes()) buffer = gl::Buffer(label, data.size_bytes(), nullptr);
-    changes_.reserve(data.size_bytes());
-    changes_.upload(buffer, 0, data.size_bytes(), data.data());
-  }
-
-  /// Looks which cells around them the lights see that stand elsewhere than before, or near which something moved.
-  void seat(const IndirectInputs& in, RayCounts& counts) {
-    const VolumeGrid& grid = sights_.grid();
-    const std::span<const VirtualLight> lights = in.seen.lights.slots;
-    seats_.resize(lights.size());
-    std::vector<uint32_t> anew;
-    for (uint32_t i = 0; i < lights.size(); ++i) {
-      const VirtualLight& light = lights[i];
-      if (!light.alive) continue;
-      const bool stays = seats_[i].position == light.position && seats_[i].normal == light.geometricNormal;
-      if (!stays || in.world.moved.touches(light.position, 2 * grid.cell)) anew.push_back(i);
-    }
-    std::vector<Ray> rays;
-    std::vector<std::pair<uint32_t, int>> asked;
-    for (uint32_t i : anew) {
-      const VirtualLight& light = lights[i];
-      Seat& seat = seats_[i];
-      seat = {light.position, light.geometricNormal};
-      const vec3 x = (light.position - grid.corner()) / grid.cell + kVolumeShift * light.geometricNormal;
-      if (!isFinite(x) || maxComponent(glm::abs(x)) > 1e6f) continue;
-      seat.base = ivec3(glm::floor(x - 0.5f));
-      for (int k = 0; k < 8; ++k) {
-        const ivec3 at = seat.base + ivec3(k & 1, k >> 1 & 1, k >> 2);
-        if (!grid.holds(at)) continue;
-        seat.weights[k] = volumeWeight(x, vec3(at) + 0.5f, light.geometricNormal);
-        if (seat.weights[k] == 0 || !in.settings.lpv.occlusion) continue;
-        rays.push_back(segment(offsetPoint(light.position, light.geometricNormal, in.world.rays.grain()),
-                               grid.centre(at)));
-        asked.emplace_back(i, k);
-      }
-    }
-    std::vector<uint8_t> blocked(rays.size());
-    parallelFor(rays.size(), 4096, [&](size_t begin, size_t end) {
-      in.world.rays.occluded(std::span(rays).subspan(begin, end - begin),
-                             std::span(blocked).subspan(begin, end - begin));
-    });
-    counts.occlusion += rays.size();
-    for (size_t n = 0; n < asked.size(); ++n)
-      if (blocked[n]) seats_[asked[n].first].weights[asked[n].second] = 0;
-    for (uint32_t i : anew) {
-      float sum = 0;
-      for (float w : seats_[i].weights) sum += w;
-      for (float& w : seats_[i].weights) w = sum > 0 ? w / sum : 0;
-    }
-  }
-
-  /// What the lights reflect, as cosine lobes in the cells around them: all of it, where anything is open to them.
-  /// Returns whether it is other than before.
-  bool deposit(const IndirectInputs& in, RayCounts& counts) {
-    seat(in, counts);
-    const VolumeGrid& grid = sights_.grid();
-    std::vector<vec4> cells(3 * grid.size(), vec4(0));
-    const std::span<const VirtualLight> lights = in.seen.lights.slots;
-    for (size_t i = 0; i < lights.size(); ++i) {
-      const VirtualLight& light = lights[i];
-      if (!light.alive) continue;
-      const vec3 flux = kPi * light.radiance * light.area;
-      const Seat& seat = seats_[i];
-      const vec4 lobe(kLobe0, kLobe1 * light.normal);
-      for (int k = 0; k < 8; ++k) {
-        if (seat.weights[k] == 0) continue;
-        const size_t cell = 3 * grid.index(seat.base + ivec3(k & 1, k >> 1 & 1, k >> 2));
-        for (int colour = 0; colour < 3; ++colour) cells[cell + colour] += lobe * (seat.weights[k] * flux[colour]);
-      }
-    }
-    if (cells.size() == deposited_.size() &&
-        std::memcmp(cells.data(), deposited_.data(), cells.size() * sizeof(vec4)) == 0)
-      return false;
-    deposited_ = std::move(cells);
-    upload(deposits_, "volume/deposits", std::span<const vec4>(deposited_));
-    return true;
-  }
-
-  void propagate() {
-    const gl::PassScope scope = context_.scope(StageId::Propagate);
-    const VolumeGrid& grid = sights_.grid();
-    const uint64_t cells = grid.size();
-    if (!passed_ || passed_.bytes() != cells * 6 * sizeof(vec4)) {
-      passed_ = gl::Buffer("volume/passed", cells * 6 * sizeof(vec4), nullptr);
-      for (gl::Buffer& light : light_) light = gl::Buffer("volume/light", cells * 4 * sizeof(vec4), nullptr);
-    }
-    passed_.bindStorage(2);
-    open_.bindStorage(3);
-    deposits_.bindStorage(4);
-    const int groups = (grid.cells + 3) / 4;
-    for (int step = 0; step <= steps_; ++step) {
-      const gl::Program& program = context_.programs.get(
-          {.defines = step == 0 ? std::vector<std::string>{"INJECT"} : std::vector<std::string>{},
-           .compute = "volume_step.comp"});
-      program.use();
-      program.set("cells", grid.cells);
-      light_[(step + 1) % 2].bindStorage(0);
-      light_[step % 2].bindStorage(1);
-      gl::dispatch(groups, groups, groups);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    }
-  }
-
-  LightOnSurfaces lookUp(const GBuffer& surfaces) {
+    volume_.update({in.world, in.seen.lights.slots, in.settings.lpv}, stats);
     const gl::PassScope scope = context_.scope(StageId::Gather);
-    const VolumeGrid& grid = sights_.grid();
-    target_.fit(surfaces);
+    target_.fit(in.surfaces);
     const gl::Program& program =
-        context_.programs.get({.fragment = "volume_gather.frag", .defines = bindSurfaces(surfaces)});
+        context_.programs.get({.fragment = "volume_gather.frag", .defines = bindSurfaces(in.surfaces)});
     program.use();
-    program.set("corner", grid.corner());
-    program.set("cell", grid.cell);
-    program.set("cells", grid.cells);
-    passed_.bindStorage(2);
-    seen_.bindStorage(5);
+    volume_.bind(program);
     target_.bind();
     gl::PipelineState{.width = target_.size().x, .height = target_.size().y}.apply();
     gl::drawFullscreen();
     return target_.light();
   }
 
+ private:
   PassContext context_;
+  LightVolume volume_;
   LightTarget target_{"volume gather"};
-  VolumeSights sights_;
-  gl::Buffer open_, seen_, deposits_, light_[2], passed_;
-  gl::Ring changes_{"volume/changes"};
-  std::vector<Seat> seats_; // by slot
-  std::vector<vec4> deposited_;
-  int steps_ = -1;
 };
 
 } // namespace

@@ -152,8 +152,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                  : Answer{true, "the gather is interleaved"});
 
   const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
-  const bool bounded =
-      source.sampled && !rowOf(settings.gather.mode).volume && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
+  const bool bounded = source.sampled && !rowOf(settings.gather.mode).volume && settings.gather.near > 0 &&
+                       (settings.gather.disk > 0 || settings.gather.clamp > 0);
   decide(EffectId::History, !lights                       ? none
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
                             : sixteenths                  ? Answer{true, "the gather is interleaved"}

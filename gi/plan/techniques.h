@@ -27,8 +27,8 @@ std::span<const Technique> techniqueTable();
 const Technique& techniqueByName(const std::string& name);
 std::vector<std::string> techniqueNames();
 
-/// Sets the axes. Techniques that sample lights for the picture share visibility and gather: between two of these, both stay as
-/// they are (a preset or a person chose them).
+/// Sets the axes. Techniques that sample lights for the picture share visibility and gather: between two of these, both
+/// stay as they are (a preset or a person chose them).
 void applyTechnique(Settings& settings, const Technique& technique);
 void applyTechnique(Settings& settings, const std::string& name);
 /// The row that the settings amount to, or the nearest: the first of the same source.

@@ -117,8 +117,8 @@ void VolumeSights::traceFaces(const std::vector<uint32_t>& stale, const RayQuery
       for (int k = 0; k < kTests; ++k) blocked_[i][size_t(axis)] |= uint8_t(blocked[next++] << k);
 }
 
-/// Openness from the tests. A wall bars the straight way and every way around: all ways along centres would have to cross
-/// it somewhere.
+/// Openness from the tests. A wall bars the straight way and every way around: all ways along centres would have to
+/// cross it somewhere.
 void VolumeSights::closeWalls() {
   for (size_t i = 0; i < open_.size(); ++i) {
     const ivec3 at = cellAt(i, grid_.cells);

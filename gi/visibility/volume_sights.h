@@ -1,9 +1,9 @@
 // A grid of cells over the scene, and what surfaces leave open between them. World space.
 #pragma once
 
+#include "engine/trace/ray_query.h"
 #include "gi/contract/world.h"
 #include "gi/plan/settings.h"
-#include "engine/trace/ray_query.h"
 
 #include <cstdint>
 #include <span>
@@ -33,8 +33,8 @@ struct VolumeGrid {
 /// while that fits into `before` and fills half of it.
 VolumeGrid volumeGrid(const VolumeSettings& settings, const SceneView& view, const VolumeGrid& before);
 
-/// What every cell sees of its neighbourhood: the fuzzy occlusion volume (Kaplanyan and Dachsbacher 2010, section 4.2) of
-/// paper 4, by rays instead of surfels splatted into harmonics, whose two bands stop three quarters of the light at
+/// What every cell sees of its neighbourhood: the fuzzy occlusion volume (Kaplanyan and Dachsbacher 2010, section 4.2)
+/// of paper 4, by rays instead of surfels splatted into harmonics, whose two bands stop three quarters of the light at
 /// most. What geometry did not change near is kept, also where the grid goes on by whole cells.
 class VolumeSights {
  public:
@@ -43,8 +43,8 @@ class VolumeSights {
 
   const VolumeGrid& grid() const { return grid_; }
   /// By cell: the share of light that gets from its centre's surroundings to those of the next one along x, y and z.
-  /// 0 where the straight way between the centres is barred and so are the four ways around it: a wall, however thin and
-  /// however it stands, not a pole.
+  /// 0 where the straight way between the centres is barred and so are the four ways around it: a wall, however thin
+  /// and however it stands, not a pole.
   std::span<const vec4> open() const { return open_; }
   /// By cell: which of the 64 parts of the two cells' width around its centre that sees (volumePart).
   std::span<const glm::uvec2> sights() const { return sights_; }

@@ -1,6 +1,6 @@
-// Poisson samples over all surfaces (paper 4, 3.2): virtual lights that stand where they stand whatever the camera does,
-// ride on their triangles, and are lit anew where the light or what they see changes. The paper lights them by rays to
-// the area light; ours take light as every VPL does, so all kinds of lights count, and smc.bounces bounces.
+// Poisson samples over all surfaces (paper 4, 3.2): virtual lights that stand where they stand whatever the camera
+// does, ride on their triangles, and are lit anew where the light or what they see changes. The paper lights them by
+// rays to the area light; ours take light as every VPL does, so all kinds of lights count, and smc.bounces bounces.
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "engine/scene/surface_point.h"
@@ -166,8 +166,7 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
   std::vector<RadianceJob> jobs;
   for (uint32_t i = 0; i < set.slots.size(); ++i) {
     if (!in.settings.cache || (!in.effects.relight && changed.geometry)) set.lightPaths[i].clear();
-    if (set.slots[i].alive)
-      jobs.push_back({&set.slots[i], nullptr, in.settings.cache ? &set.lightPaths[i] : nullptr});
+    if (set.slots[i].alive) jobs.push_back({&set.slots[i], nullptr, in.settings.cache ? &set.lightPaths[i] : nullptr});
   }
   const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights,
                                              {.paths = in.settings.paths,

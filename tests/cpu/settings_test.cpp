@@ -87,7 +87,8 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
           const bool lights = axes.source != VplSource::None;
           bool sense = upsampled == g.patches && (!filtered || g.subsets) &&
                        (lights || (axes.gather == GatherMode::Own && axes.visibility == VplVisibility::None));
-          if (axes.source == VplSource::Hisr) sense = sense && axes.visibility == VplVisibility::None && !g.splats;
+          if (axes.source == VplSource::Hisr) sense = sense && !g.splats && !g.volume;
+          if (axes.source == VplSource::Hisr || g.volume) sense = sense && axes.visibility == VplVisibility::None;
           EXPECT_EQ(reason.empty(), sense) << source << visibility << gather << reconstruction << ' ' << reason;
         }
   EXPECT_GT(fine, 100);

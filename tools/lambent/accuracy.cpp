@@ -85,6 +85,9 @@ void declareAccuracy(CLI::App& app) {
   forms->add_flag("--direct", options->direct,
                   "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
                   "samples of what is emissive");
+  forms->add_flag(
+      "--volume", options->volume,
+      "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");
   forms->add_flag("--report", options->report,
                   "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
                   "every technique, along each shot and standing at its end: front, curves, pictures on one page "
@@ -128,6 +131,7 @@ void declareAccuracy(CLI::App& app) {
     if (o.gathers) return accuracyGathers(o);
     if (o.light) return accuracyLight(o);
     if (o.direct) return accuracyDirect(o);
+    if (o.volume) return accuracyVolume(o);
     if (o.report) return accuracyReport(o);
     if (!o.figure.empty()) return accuracyFigure(o);
     accuracy(o);

@@ -17,8 +17,8 @@ struct AccuracyOptions {
   int slots = 64, points = 1024;
   std::string curve, figure; // empty: none
   int frame = 0;             // of a shot
-  bool convergence = false, light = false, direct = false, alone = false, gathers = false, report = false,
-       joint = false, quick = false;
+  bool convergence = false, light = false, direct = false, alone = false, gathers = false, volume = false,
+       report = false, joint = false, quick = false;
   std::optional<int> samples, seeds;
   std::optional<double> clamp; // 1/m²
 
@@ -35,6 +35,8 @@ void accuracyGathers(const AccuracyOptions& options);
 void accuracyLight(const AccuracyOptions& options);
 /// Bias and error of direct light against path tracing, as set, and by other means.
 void accuracyDirect(const AccuracyOptions& options);
+/// Light propagation volumes by their settings, against path tracing.
+void accuracyVolume(const AccuracyOptions& options);
 /// What accuracy costs in time: all knobs and techniques, in several scenes, on one page.
 void accuracyReport(const AccuracyOptions& options);
 /// Figures of the papers for any scene: of paper 1 those here, of papers 2 and 3 those of reflective_figures.h.

@@ -18,10 +18,10 @@ struct BenchOptions {
   std::vector<std::string> scenes, techniques;
   std::vector<std::string> against; // NAME=VALUE
   std::vector<std::string> along;   // what --growth sweeps; empty: all
-  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, quick = false;
+  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, quick = false;
   int frames = 0, skip = 2;
   int seeds = 3, frame = 0;   // --equal-error; frame 0: 30, or the last
-  std::optional<int> samples; // --equal-error
+  std::optional<int> samples; // --equal-error, --area
 };
 
 /// As the options say, of a scene `frames` where they say nothing. Throws InputError when no frame would be left.
@@ -46,6 +46,8 @@ void benchTable2(const BenchOptions& options);
 void benchGrowth(const BenchOptions& options);
 /// Error of the presets, and path tracing's time to the same.
 void benchEqualError(const BenchOptions& options);
+/// Area lights at patches, their predecessor and every pixel, scene by scene (paper 4, table 1).
+void benchArea(const BenchOptions& options);
 /// Rays on the GPU against Embree.
 void benchRays(const BenchOptions& options);
 

@@ -118,6 +118,8 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"vpl.source", "vpl.mirCandidates", "vpl.tcasIterations"}, "techniques are points of their own, as published"},
       {{"rsm.resolution", "rsm.vpls", "rsm.exact", "rsm.coarsest", "rsm.finest", "rsm.depth", "rsm.normal", "rsm.tau"},
        "of techniques from reflective shadow maps; their curves: --curve clusters"},
+      {{"lpv.cells", "lpv.size", "lpv.steps", "lpv.occlusion"},
+       "of light propagation volumes; their table: --volume"},
       {{"smc.cache", "shadow.maker", "frame.overlap"}, "time alone: the picture is the same, or a frame late"},
       {{"shadow.bias", "filter.normalPower"}, "error alone: any value costs the same"},
       {{"shadow.spotResolution"}, "as shadow.sunResolution, of lights that these scenes have not"},
