@@ -156,7 +156,7 @@ struct RsmSettings {
 struct VolumeSettings {
   int cells = 16;        // along each edge
   float size = 0;        // edge, metres, of a grid that follows the camera; 0 = all of the scene
-  int steps = 64;        // of propagation, a cell each
+  int steps = 32;        // of propagation, a cell each
   bool occlusion = true; // surfaces stop light; off: it goes through walls
   bool operator==(const VolumeSettings&) const = default;
 };

@@ -1,6 +1,7 @@
 // Poisson samples over all surfaces (paper 4, 3.2): virtual lights that stand where they stand whatever the camera
 // does, ride on their triangles, and are lit anew where the light or what they see changes. The paper lights them by
 // rays to the area light; ours take light as every VPL does, so all kinds of lights count, and smc.bounces bounces.
+#include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "engine/scene/surface_point.h"
@@ -42,7 +43,7 @@ std::vector<Piece> piecesOf(const SceneView& view) {
 }
 
 /// Points uniform over both sides of the pieces, `count` of them; without those where a mask leaves nothing, and
-/// those that something else covers. Adds up the share that is left.
+/// those that something else covers. `area`: of all that is left, m².
 std::vector<CandidateHit> drawPoints(const VplUpdate& in, std::span<const Piece> pieces, uint32_t count, double& area) {
   std::vector<float> areas;
   for (const Piece& p : pieces) areas.push_back(p.area);
@@ -115,24 +116,94 @@ std::vector<uint32_t> thinned(std::span<const CandidateHit> points, uint32_t cou
   return taken;
 }
 
+/// Of each point the nearest kept one of its surface, which sees it and faces about the same way: who stands for it.
+/// (On the other side of a wall its light would be lost, or be where none is.)
+std::vector<uint32_t> ownersOf(std::span<const CandidateHit> points, std::span<const uint32_t> kept,
+                               const RayQuery& rays) {
+  constexpr size_t kAsked = 12;
+  std::vector<DensityPoint> places;
+  for (uint32_t k : kept) places.push_back({points[k].position, points[k].geometricNormal});
+  const NeighbourTree tree(places);
+  const auto off = [&](const DensityPoint& p) { return offsetPoint(p.position, p.normal, rays.grain()); };
+  std::vector<uint32_t> owners(points.size());
+  parallelFor(points.size(), 256, [&](size_t begin, size_t end) {
+    uint32_t near[kAsked];
+    float distance2[kAsked];
+    for (size_t i = begin; i < end; ++i) {
+      const DensityPoint point{points[i].position, points[i].geometricNormal};
+      const size_t found = tree.nearest(point.position, kAsked, near, distance2);
+      const auto standsFor = [&](uint32_t n) {
+        return glm::dot(places[n].normal, point.normal) > 0.5f && (!rays.occluded(segment(off(point), off(places[n]))));
+      };
+      const uint32_t* last = near + found;
+      const uint32_t* owner = std::find_if(static_cast<const uint32_t*>(near), last, standsFor);
+      owners[i] = owner == last ? kNone : *owner;
+    }
+  });
+  return owners;
+}
+
+/// Cells from the points, where these stand now. Of the pool each slot has as many as its cell, one slot after another.
+void fillCells(VplSet& set) {
+  size_t next = 0;
+  for (size_t slot = 0; slot < set.slots.size(); ++slot) {
+    Vpl& v = set.slots[slot];
+    v.area = 0;
+    for (CellPoint& point : set.cells[slot].points) {
+      const Vpl& p = set.pool[next++];
+      point = {p.position, p.normal, p.geometricNormal, p.albedo, p.alive ? p.area : 0};
+      v.area += point.area;
+    }
+    v.alive = v.alive && v.area > 0;
+    v.candidateArea = v.area;
+  }
+}
+
 void placeAnew(VplSet& set, const VplUpdate& in) {
   const uint32_t count = uint32_t(in.settings.vpls);
   set.slots.assign(count, {});
   set.lightPaths.assign(count, {});
-  if (!in.view.assets) return;
-  const std::vector<Piece> pieces = piecesOf(in.view);
+  set.cells.assign(count, {});
+  set.pool.clear();
+  const std::vector<Piece> pieces = in.view.assets ? piecesOf(in.view) : std::vector<Piece>();
   if (pieces.empty()) return;
-  constexpr uint32_t kChoice = 5; // points drawn for each that is kept
+  constexpr uint32_t kChoice = 16; // points drawn for each that is kept
   double area = 0;
   const std::vector<CandidateHit> points = drawPoints(in, pieces, kChoice * count, area);
   const std::vector<uint32_t> kept = thinned(points, count, area);
+  if (kept.empty()) return;
+  const std::vector<uint32_t> owners = ownersOf(points, kept, in.rays);
+  std::vector<std::vector<uint32_t>> owned(kept.size());
+  for (uint32_t i = 0; i < points.size(); ++i)
+    if (owners[i] != kNone) owned[owners[i]].push_back(i);
   for (uint32_t slot = 0; slot < kept.size(); ++slot) {
+    const CandidateHit& middle = points[kept[slot]];
     Vpl& v = set.slots[slot];
-    v = vplAt(points[kept[slot]], in.view, set.nextId++);
+    v = vplAt(middle, in.view, set.nextId++);
     v.alive = v.valid;
     v.bornFrame = set.frame;
-    v.area = v.candidateArea = float(area / double(kept.size()));
+    std::stable_sort(owned[slot].begin(), owned[slot].end(), [&](uint32_t a, uint32_t b) {
+      return glm::distance(points[a].position, middle.position) < glm::distance(points[b].position, middle.position);
+    });
+    set.cells[slot].points.resize(owned[slot].size());
+    for (uint32_t i : owned[slot]) {
+      Vpl& p = set.pool.emplace_back(vplAt(points[i], in.view, 0));
+      p.alive = p.valid;
+      p.area = float(area / double(points.size()));
+    }
   }
+  fillCells(set);
+}
+
+/// Slots that stand elsewhere.
+std::vector<uint32_t> carry(VplSet& set, const VplUpdate& in) {
+  VplSet points;
+  std::swap(points.slots, set.pool);
+  carryVpls(points, in.view, in.effects.carryAll);
+  std::swap(points.slots, set.pool);
+  const std::vector<uint32_t> moved = carryVpls(set, in.view, in.effects.carryAll);
+  fillCells(set);
+  return moved;
 }
 
 } // namespace
@@ -148,7 +219,7 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
     for (uint32_t i = 0; i < set.slots.size(); ++i) changes.movedSlots.push_back(i);
     changes.placedSlots = changes.movedSlots;
   } else if (changed.geometry || in.effects.carryAll) {
-    changes.movedSlots = carryVpls(set, in.view, in.effects.carryAll);
+    changes.movedSlots = carry(set, in);
   }
   for (const Vpl& v : set.slots) changes.alive += v.alive;
   changes.kept = changes.alive - std::min<uint32_t>(changes.alive, uint32_t(changes.movedSlots.size()));
@@ -166,7 +237,8 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
   std::vector<RadianceJob> jobs;
   for (uint32_t i = 0; i < set.slots.size(); ++i) {
     if (!in.settings.cache || (!in.effects.relight && changed.geometry)) set.lightPaths[i].clear();
-    if (set.slots[i].alive) jobs.push_back({&set.slots[i], nullptr, in.settings.cache ? &set.lightPaths[i] : nullptr});
+    if (set.slots[i].alive)
+      jobs.push_back({&set.slots[i], &set.cells[i], in.settings.cache ? &set.lightPaths[i] : nullptr});
   }
   const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights,
                                              {.paths = in.settings.paths,

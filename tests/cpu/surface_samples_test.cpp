@@ -36,13 +36,13 @@ class SurfaceSamplesTest : public ::testing::Test {
 
 TEST_F(SurfaceSamplesTest, StandEvenlyOnBothSides) {
   update();
-  double area = 0;
+  double areas[3] = {}; // of the floor, up and down, and of the box
   int up = 0, down = 0, box = 0;
   float nearest = kInfinity;
   for (size_t i = 0; i < set.slots.size(); ++i) {
     const Vpl& v = set.slots[i];
     ASSERT_TRUE(v.alive);
-    area += v.area;
+    areas[v.position.y > 0.5f ? 2 : v.normal.y > 0 ? 0 : 1] += v.area;
     EXPECT_NE(v.position.y, 3) << "black";
     if (v.position.y < 0.5f)
       (v.normal.y > 0 ? up : down) += 1;
@@ -52,11 +52,13 @@ TEST_F(SurfaceSamplesTest, StandEvenlyOnBothSides) {
       if (glm::dot(v.normal, set.slots[j].normal) > 0)
         nearest = std::min(nearest, glm::distance(v.position, set.slots[j].position));
   }
-  EXPECT_NEAR(area, 44, 0.01);
-  // In proportion to area, with less spread than independent points have (√N: 17).
-  EXPECT_NEAR(up, 1000 * 16 / 44.0, 25);
-  EXPECT_NEAR(down, 1000 * 16 / 44.0, 25);
-  EXPECT_NEAR(box, 1000 * 12 / 44.0, 25);
+  // About in proportion to area; what they stand for is.
+  EXPECT_NEAR(up, 1000 * 16 / 44.0, 40);
+  EXPECT_NEAR(down, 1000 * 16 / 44.0, 40);
+  EXPECT_NEAR(box, 1000 * 12 / 44.0, 40);
+  EXPECT_NEAR(areas[0], 16, 0.4);
+  EXPECT_NEAR(areas[1], 16, 0.4);
+  EXPECT_NEAR(areas[2], 12, 0.4);
   // Of the densest packing 0.225 m lie between neighbours; of independent points the nearest two are millimetres apart.
   EXPECT_GT(nearest, 0.09f);
 }
@@ -105,11 +107,13 @@ TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
   // As if lit from scratch.
   std::vector<Vpl> again = set.slots;
   std::vector<Vpl*> all;
-  for (Vpl& v : again) all.push_back(&v);
+  std::vector<const VplCell*> cells;
+  for (size_t i = 0; i < again.size(); ++i) all.push_back(&again[i]), cells.push_back(&set.cells[i]);
   RayCounts counts;
   const SceneView view = scene.view();
-  estimateRadiance(all, *rays, collectLights(view), settings.paths, settings.bounces, 1, counts);
-  for (size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].radiance, set.slots[i].radiance) << i;
+  estimateRadiance(all, *rays, collectLights(view), settings.paths, settings.bounces, 1, counts, RadianceUse::Rendering,
+                   cells);
+  for (size_t i = 0; i < again.size(); ++i) ASSERT_EQ(again[i].radiance, set.slots[i].radiance) << i;
 }
 
 /// An object that comes or goes: the samples are shared out again.
@@ -123,7 +127,7 @@ TEST_F(SurfaceSamplesTest, AreSharedOutAgain) {
     EXPECT_LT(v.position.y, 0.5f);
     area += v.area;
   }
-  EXPECT_NEAR(area, 32, 0.01);
+  EXPECT_NEAR(area, 32, 0.1);
 }
 
 } // namespace lambent::test
