@@ -13,6 +13,7 @@ layout(std430, binding = 5) restrict readonly buffer Sights { uvec2 sights[]; };
 uniform vec3 corner; // world
 uniform float cell;  // metres
 uniform int cells;
+const float kTowardsViewer = 0.5; // cells
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
@@ -38,6 +39,11 @@ void main() {
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 x = (position - corner) / cell + kVolumeShift * normal;
   ivec3 base = ivec3(floor(x - 0.5));
+  // What sees the pixel is asked for a place a little on the way to the camera, which no surface lies between: beside
+  // another surface the half cell that the pixel lies in may have its middle behind that.
+  vec3 towardsViewer =
+      camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
+  vec3 asked = x + kTowardsViewer * towardsViewer;
 #ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, normal);
   vec3 mirrored = reflect(-receiver.towardsViewer, normal);
@@ -52,7 +58,7 @@ void main() {
     float weight = volumeWeight(x, centre, normal);
     if (weight == 0.0) continue;
     int index = (at.z * cells + at.y) * cells + at.x;
-    int part = volumePart(x, centre);
+    int part = volumePart(asked, centre);
     bool sees = (sights[index][part >> 5] >> (part & 31) & 1u) != 0u;
     vec3 light = weight * onSurface(index, normal);
     if (sees) seen += light, seenWeight += weight;
