@@ -21,14 +21,18 @@ void accuracyVolume(const AccuracyOptions& options) {
   add("smc", {});
   if (!study.stage->at(0).lights.empty()) add("rsm", {});
   add("lpv", {});
-  const std::vector<std::pair<const char*, std::vector<const char*>>> knobs{{"lpv.cells", {"8", "32", "64"}},
-                                                                            {"lpv.steps", {"16", "32", "128"}},
-                                                                            {"lpv.occlusion", {"off"}},
-                                                                            {"smc.vpls", {"512", "8192"}},
-                                                                            {"smc.bounces", {"1"}}};
-  for (const auto& [setting, values] : knobs)
-    for (const char* value : values)
-      if (!options.quick || value == values[0]) add("lpv", {{setting, value}});
+  for (const Assignments& set : std::vector<Assignments>{{{"lpv.cells", "8"}, {"lpv.steps", "16"}},
+                                                         {{"lpv.cells", "32"}, {"lpv.steps", "64"}},
+                                                         {{"lpv.cells", "64"}, {"lpv.steps", "128"}},
+                                                         {{"lpv.steps", "16"}},
+                                                         {{"lpv.steps", "64"}},
+                                                         {{"lpv.occlusion", "off"}},
+                                                         {{"smc.vpls", "512"}},
+                                                         {{"smc.vpls", "8192"}},
+                                                         {{"smc.bounces", "1"}}}) {
+    add("lpv", set);
+    if (options.quick) break;
+  }
   nlohmann::json rows;
   for (const Measured& m : study.draw(variants, Buffer::Irradiance)) {
     rows.push_back(rowOf(pictureError(m.picture, truth)));
