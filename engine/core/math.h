@@ -11,10 +11,10 @@ namespace lambent {
 
 using glm::dmat4;
 using glm::dvec3;
+using glm::ivec3;
 using glm::mat3;
 using glm::mat4;
 using glm::quat;
-using glm::ivec3;
 using glm::uvec3;
 using glm::vec2;
 using glm::vec3;
