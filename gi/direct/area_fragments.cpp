@@ -60,8 +60,11 @@ class Visibility {
 
   /// Of the patch of 2^level pixels, level ≥ 1, of which `texel` is the number.
   Seen ofPatch(const glm::ivec2& texel, int level) const;
-  /// Of a pixel. Where a quarter of its rays agree, the others are not asked.
-  Seen ofPixel(const glm::ivec2& pixel) const;
+  /// Of a pixel. Unless all rays are asked for: where a quarter of them agree, the others are not.
+  Seen ofPixel(const glm::ivec2& pixel, bool askAll = false) const;
+  glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {
+    return clamped(texel * (1 << level) + (1 << level) / 2);
+  }
   /// Of the four pixels of a patch of level 1 that has been asked: all its rays, of which the patch's are a quarter.
   std::array<Seen, 4> ofQuad(const glm::ivec2& texel, const Seen& patch) const;
 
@@ -73,9 +76,7 @@ class Visibility {
   };
   Unshadowed unshadowedAt(const Place& place) const;
   std::array<Place, 4> partsOf(const glm::ivec2& texel, int level) const;
-  Place centreOf(const glm::ivec2& texel, int level) const {
-    return placeAt(surfaces_, clamped(texel * (1 << level) + (1 << level) / 2));
-  }
+  Place centreOf(const glm::ivec2& texel, int level) const { return placeAt(surfaces_, middleOf(texel, level)); }
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
@@ -198,7 +199,7 @@ Seen Visibility::ofPatch(const glm::ivec2& texel, int level) const {
   return seen;
 }
 
-Seen Visibility::ofPixel(const glm::ivec2& pixel) const {
+Seen Visibility::ofPixel(const glm::ivec2& pixel, bool askAll) const {
   const Place place = placeAt(surfaces_, pixel);
   const Unshadowed from = unshadowedAt(place);
   if (!(from.total > 0)) return {};
@@ -213,7 +214,7 @@ Seen Visibility::ofPixel(const glm::ivec2& pixel) const {
     ++traced;
     opened += rays.open[size_t(k)];
   }
-  if (traced > 0 && (opened == 0 || opened == traced)) {
+  if (!askAll && traced > 0 && (opened == 0 || opened == traced)) {
     for (int k = 0; k < all(); ++k) rays.open[size_t(k)] = opened > 0;
   } else {
     seen.rays += trace(rays, 0, 2, 3);
@@ -265,6 +266,42 @@ bool isSplit(const Seen& seen, const AreaSettings& settings, std::array<bool, 4>
     split |= std::popcount(seen.bits[size_t(a)] ^ seen.bits[size_t(b)]) >= settings.threshold;
     const int gradient = std::abs(std::popcount(seen.bits[size_t(a)]) - std::popcount(seen.bits[size_t(b)]));
     if (settings.gradient > 0 && gradient > settings.gradient) twice[size_t(a)] = twice[size_t(b)] = true;
+  }
+  return split;
+}
+
+/// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it, whether
+/// or not these are fragments; says which fragments are split. `level` above 0.
+std::vector<uint8_t> askAround(const Visibility& visibility, const PictureSurfaces& surfaces, int level,
+                               const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments, uint64_t& rays) {
+  std::vector<int> numbers(size_t(size.x) * size_t(size.y), -1); // of what is asked, by texel
+  std::vector<Fragment> asked;
+  const auto forAround = [&](const Fragment& f, auto&& with) {
+    for (int k = 0; k < 9; ++k) {
+      const glm::ivec2 there = f.texel + glm::ivec2(k % 3 - 1, k / 3 - 1);
+      if (there.x < 0 || there.y < 0 || there.x >= size.x || there.y >= size.y) continue;
+      if (surfaces.seen(visibility.middleOf(there, level))) with(there, numbers[size_t(there.y * size.x + there.x)]);
+    }
+  };
+  for (const Fragment& f : fragments)
+    forAround(f, [&](const glm::ivec2& there, int& number) {
+      if (number >= 0) return;
+      number = int(asked.size());
+      asked.push_back({there});
+    });
+  parallelFor(asked.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      asked[i].seen = visibility.ofPixel(visibility.middleOf(asked[i].texel, level), true);
+  });
+  for (const Fragment& f : asked) rays += f.seen.rays;
+  std::vector<uint8_t> split(fragments.size(), 0);
+  for (size_t i = 0; i < fragments.size(); ++i) {
+    Fragment& f = fragments[i];
+    const int own = numbers[size_t(f.texel.y * size.x + f.texel.x)];
+    if (own >= 0) f.seen = asked[size_t(own)].seen;
+    forAround(f, [&](const glm::ivec2&, int number) {
+      split[i] |= bitsApart(f.seen, asked[size_t(number)].seen) >= uint64_t(threshold);
+    });
   }
   return split;
 }
@@ -344,40 +381,31 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
         else if (at.smooth[i])
           fragments.push_back({{x, y}});
       }
-    parallelFor(fragments.size(), kGrain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        Fragment& f = fragments[i];
-        f.seen = level == 0 ? visibility.ofPixel(f.texel) : visibility.ofPatch(f.texel, level);
-      }
-    });
-    for (const Fragment& f : fragments) counts.rays.occlusion += f.seen.rays;
+    std::vector<uint8_t> around;
+    if (neighbours && level > 0) {
+      around = askAround(visibility, surfaces, level, at.size, settings.threshold, fragments, counts.rays.occlusion);
+    } else {
+      parallelFor(fragments.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+          Fragment& f = fragments[i];
+          f.seen = level == 0 ? visibility.ofPixel(f.texel, neighbours) : visibility.ofPatch(f.texel, level);
+        }
+      });
+      for (const Fragment& f : fragments) counts.rays.occlusion += f.seen.rays;
+    }
     const auto keep = [&](const glm::ivec2& texel, FragmentLevel& in, const Seen& seen) {
       in.visible[size_t(texel.y * in.size.x + texel.x)] = vec4(seen.visible, 1);
       ++counts.fragments;
       counts.dark += !seen.lit();
     };
 
-    std::vector<int> numbers; // of fragments, by texel
-    if (neighbours) {
-      numbers.assign(at.smooth.size(), -1);
-      for (size_t i = 0; i < fragments.size(); ++i)
-        numbers[size_t(fragments[i].texel.y * at.size.x + fragments[i].texel.x)] = int(i);
-    }
     std::vector<Fragment> quads; // of pixels
-    for (const Fragment& f : fragments) {
+    for (size_t i = 0; i < fragments.size(); ++i) {
+      const Fragment& f = fragments[i];
       std::array<bool, 4> twice{};
       bool apart = false;
-      if (level > 0 && neighbours) {
-        for (int k = 0; k < 9 && !apart; ++k) {
-          const glm::ivec2 there = f.texel + glm::ivec2(k % 3 - 1, k / 3 - 1);
-          if (there.x < 0 || there.y < 0 || there.x >= at.size.x || there.y >= at.size.y) continue;
-          const int n = numbers[size_t(there.y * at.size.x + there.x)];
-          apart = n >= 0 && bitsApart(f.seen, fragments[size_t(n)].seen) >= uint64_t(settings.threshold);
-        }
-      } else if (level > 0) {
-        apart = f.seen.lit() && isSplit(f.seen, settings, twice);
-      }
-      if (apart && level == 1) {
+      if (level > 0) apart = neighbours ? around[i] != 0 : f.seen.lit() && isSplit(f.seen, settings, twice);
+      if (apart && level == 1 && !neighbours) {
         quads.push_back(f);
         continue;
       }

@@ -69,7 +69,8 @@ std::vector<Variant> variantsOf(const Stage& stage) {
   before.settings.area.upsample = AreaUpsample::Bilinear;
   Variant& brute = variants[2];
   brute.name = kBrute;
-  brute.settings.multires.depth = 0; // splits all
+  brute.settings.area.refinement = AreaRefinement::Neighbours; // asks all rays
+  brute.settings.multires.depth = 0;                           // splits all
   return variants;
 }
 
