@@ -3,26 +3,10 @@
 // and for comparison that of Nichols et al. 2010 by neighbourhoods.
 #pragma once
 
-#include "engine/trace/ray_query.h"
+#include "gi/direct/area_visibility.h"
 #include "gi/plan/settings.h"
-#include "gi/vpl/area_lights.h"
-#include "shaders/shared/camera_block.h"
-
-#include <span>
-#include <vector>
 
 namespace lambent {
-
-/// A picture's surfaces on the CPU, rows from the bottom.
-struct PictureSurfaces {
-  int width = 0, height = 0;
-  std::span<const float> depth; // as GBuffer
-  std::span<const vec4> normal;
-  CameraBlock camera;
-
-  bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
-  size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
-};
 
 /// Fragments of one level, 2^level pixels wide, row by row over the padded picture.
 struct FragmentLevel {

@@ -91,16 +91,18 @@ class Table {
         "shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
         "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
         "from patches of the picture, split where the answers differ (paper 4)");
-    choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"sub-fragments", "neighbours"}, Nothing,
-           "what splits these patches: visibility within them, or that of the eight around (Nichols et al. 2010)");
+    choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"counts", "sub-fragments", "neighbours"},
+           Nothing,
+           "what splits these patches: how many rays their quarters and those beside them find open, which rays their "
+           "quarters do (paper 4), or which rays the eight patches around do (Nichols et al. 2010)");
     number("area.rays", &Settings::area, &AreaSettings::rays, {1, 64, "rays", PowersOfTwo}, Nothing,
            "from each quarter of a patch, and four times as many from a single pixel");
     number("area.threshold", &Settings::area, &AreaSettings::threshold, {1, 256, "rays"}, Nothing,
-           "answers that differ and split a patch");
+           "by which quarters side by side differ that a patch is split; the papers ask for 1");
     number("area.gradient", &Settings::area, &AreaSettings::gradient, {0, 64, "rays"}, Nothing,
            "difference between quarters side by side beyond which both are split twice at once; 0 = never");
     flag("area.extra", &Settings::area, &AreaSettings::extra, Nothing,
-         "three single pixels more in patches of 8x8 pixels and larger");
+         "three single pixels more in patches of 8x8 pixels and larger, for area.upsample=rbf");
     choice("area.upsample", &Settings::area, &AreaSettings::upsample, {"rbf", "bilateral", "bilinear"}, Nothing,
            "between patches: radial basis functions around the three nearest samples, or level by level as "
            "multires.upsample");

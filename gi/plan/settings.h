@@ -22,7 +22,7 @@ enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
 // What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
-enum class AreaRefinement : int { SubFragments, Neighbours };
+enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
@@ -103,9 +103,9 @@ struct ShadowSettings {
 
 /// Direct light of emissive surfaces by patches of the picture (paper 4).
 struct AreaSettings {
-  AreaRefinement refinement = AreaRefinement::SubFragments;
+  AreaRefinement refinement = AreaRefinement::Counts;
   int rays = 16;     // per sub-fragment: a quarter of a patch, or of a pixel's rays
-  int threshold = 1; // bits of visibility that differ and split a patch
+  int threshold = 3; // how far sub-fragments (of neighbours: all their rays) differ that a patch is split
   int gradient = 4;  // bits between neighbouring sub-fragments beyond which both are split twice; 0 = never twice
   bool extra = true; // three single pixels more in patches of 8×8 pixels and larger
   AreaUpsample upsample = AreaUpsample::Rbf;

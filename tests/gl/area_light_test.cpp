@@ -182,18 +182,39 @@ TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
   EXPECT_NEAR(double(rays), double(stats.raysArea.occlusion), 0.1 * double(rays)) << "it saves steps, hardly rays";
 }
 
-TEST_F(AreaLightTest, FewerFragmentsThanByNeighboursAndUpsampledBetter) {
+TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   HandScene scene;
   lampOver(scene);
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   const Image traced = tracedOf(scene);
   const double rbf = relativeRmse(irradianceOf(scene), traced);
-  const uint64_t fragments = stats.areaFragments;
+  const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
   settings.area.upsample = AreaUpsample::Bilinear;
   EXPECT_GT(relativeRmse(irradianceOf(scene), traced), rbf);
+  settings.area.threshold = 1;
+  settings.area.refinement = AreaRefinement::SubFragments;
+  irradianceOf(scene);
+  EXPECT_GT(stats.areaFragments, fragments);
+  EXPECT_GT(stats.raysArea.occlusion, rays);
   settings.area.refinement = AreaRefinement::Neighbours;
   irradianceOf(scene);
   EXPECT_GT(stats.areaFragments, fragments);
+  EXPECT_GT(stats.raysArea.occlusion, 2 * rays);
+  settings.multires.depth = 0; // every pixel asks all
+  irradianceOf(scene);
+  EXPECT_EQ(stats.areaFragments, 96u * 64u - uint64_t(std::count(traced.pixels.begin(), traced.pixels.end(), vec3(0))));
+}
+
+// A patch whose middle lies above a lamp's plane is not dark for that: its lower half is lit.
+TEST_F(AreaLightTest, LightEndsWhereTheLampsPlaneDoes) {
+  HandScene scene;
+  scene.quad(vec3(-2, 0, -1), vec3(4, 0, 0), vec3(0, 2, 0), scene.material(vec3(0.5f)));
+  scene.quad(vec3(-1, 1, -0.95f), vec3(2, 0, 0), vec3(0, 0, 0.4f), scene.material(vec3(0), vec3(5)));
+  for (int i = 0; i < 4; ++i) { // the plane's height within a patch
+    scene.camera = cameraAt(vec3(0, 0.9f + 0.01f * float(i), 1), vec3(0, 0.9f + 0.01f * float(i), -1), 1.0f, 96, 64);
+    const Image traced = tracedOf(scene), image = irradianceOf(scene);
+    EXPECT_LT(relativeRmse(image, traced), 0.02) << i;
+  }
 }
 
 TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {

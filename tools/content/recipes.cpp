@@ -29,6 +29,7 @@ const std::vector<ContentRecipe>& contentRecipes() {
         {"door", "a dark room beside a bright one, and the door leaf between them", true, content::writeDoor},
         {"red-box", "white corridor, and a red box to be carried along it", true, content::writeRedBox},
         {"lift", "hall of three storeys with a lift in front of lit rooms", true, content::writeLift},
+        {"lamps", "gallery with fifty lamps of unlike size, thin poles, a fence, small trees", true, content::writeLamps},
     };
     addSizes(all, "office", "office building: corridors, rooms with open doors, 14 lights", content::writeOffice);
     addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);

@@ -14,6 +14,7 @@ GeneratedScene writeDoor(const std::filesystem::path& folder);
 GeneratedScene writeGarden(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeHall(const std::filesystem::path& folder);
 GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size);
+GeneratedScene writeLamps(const std::filesystem::path& folder);
 GeneratedScene writeLift(const std::filesystem::path& folder);
 GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);

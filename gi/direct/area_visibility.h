@@ -1,0 +1,88 @@
+// What a fragment of a picture sees of the area lights: rays towards them from its parts, and which share of their light
+// these find open.
+#pragma once
+
+#include "engine/trace/ray_query.h"
+#include "gi/vpl/area_lights.h"
+#include "shaders/shared/camera_block.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+namespace lambent {
+
+inline constexpr int kMostAreaRays = 64; // from a quarter: bits of a word
+
+/// A picture's surfaces on the CPU, rows from the bottom.
+struct PictureSurfaces {
+  int width = 0, height = 0;
+  std::span<const float> depth; // as GBuffer
+  std::span<const vec4> normal;
+  CameraBlock camera;
+
+  bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
+  size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
+};
+
+/// What a fragment saw.
+struct AreaSeen {
+  std::array<uint64_t, 4> bits{}; // by sub-fragment; of a single pixel by quarter of its rays
+  vec3 visible{0};                // share of the unshadowed light
+  uint64_t rays = 0;              // that were traced
+
+  bool lit() const {
+    return std::any_of(bits.begin(), bits.end(), [](uint64_t b) { return b != 0; });
+  }
+};
+
+class AreaVisibility {
+ public:
+  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces, int raysPerPart)
+      : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
+
+  /// Of the patch of 2^level pixels, level ≥ 1, of which `texel` is the number.
+  AreaSeen ofPatch(const glm::ivec2& texel, int level) const;
+  /// Of a pixel. Unless all rays are asked for: where a quarter of them agree, the others are not.
+  AreaSeen ofPixel(const glm::ivec2& pixel, bool askAll = false) const;
+  /// Of the four pixels of a patch of level 1 that has been asked: all its rays, of which the patch's are a quarter.
+  std::array<AreaSeen, 4> ofQuad(const glm::ivec2& texel, const AreaSeen& patch) const;
+
+  /// Pixel in the middle of a patch.
+  glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {
+    return clamped(texel * (1 << level) + (1 << level) / 2);
+  }
+
+ private:
+  struct Rays;
+  struct Place {
+    vec3 position, normal;
+  };
+  /// What the lights bring where nothing is between.
+  struct Unshadowed {
+    std::vector<vec3> light;
+    float total = 0; // luminance
+  };
+  Unshadowed unshadowedAt(const Place& place) const;
+  /// At the middle of a patch, or where that gets none, at the first of its parts that gets any.
+  Unshadowed unshadowedAround(const Place& middle, const std::array<Place, 4>& parts) const;
+  std::array<Place, 4> partsOf(const glm::ivec2& texel, int level) const;
+  Place placeAt(const glm::ivec2& pixel) const;
+  glm::ivec2 clamped(const glm::ivec2& p) const {
+    return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
+  }
+  void choose(const Unshadowed& from, Rays& to) const;
+  void aim(const Place& place, int k, Rays& rays) const;
+  uint64_t trace(Rays& rays, int quarter, int other = -1, int third = -1, int fourth = -1) const;
+  void addUp(const Unshadowed& from, const Rays& rays, AreaSeen& to) const;
+
+  int all() const { return 4 * count_; }
+
+  const RayQuery& rays_;
+  const AreaLights& lights_;
+  const PictureSurfaces& surfaces_;
+  int count_; // of a quarter
+};
+
+} // namespace lambent
