@@ -14,12 +14,14 @@ TrackedPixels trackedPixels(const Shot& shot, int grid) {
   return tracked;
 }
 
-TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples) {
+TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples, bool direct) {
   if (!surface.valid()) return {};
   const double n = samples;
-  const glm::dvec3 mean = sums.indirect / n;
-  const glm::dvec3 variance = glm::max(glm::dvec3(0), sums.indirectSquares / n - mean * mean) / std::max(1.0, n - 1);
-  return {surface.albedo * vec3(mean), surface.albedo * vec3(glm::sqrt(variance))};
+  const glm::dvec3 mean = (direct ? sums.direct : sums.indirect) / n;
+  const glm::dvec3 squares = (direct ? sums.directSquares : sums.indirectSquares) / n;
+  const glm::dvec3 variance = glm::max(glm::dvec3(0), squares - mean * mean) / std::max(1.0, n - 1);
+  const vec3 emitted = direct ? surface.emission : vec3(0);
+  return {surface.albedo * vec3(mean) + emitted, surface.albedo * vec3(glm::sqrt(variance))};
 }
 
 void refuseGlossy(const Settings& settings) {

@@ -17,12 +17,15 @@ struct TrackedPixels {
 };
 TrackedPixels trackedPixels(const Shot& shot, int grid);
 
-/// Indirect radiance of one watched point and its standard error, per channel.
+/// What is watched: indirect light, or where settings turn that off, direct light with what surfaces emit.
+inline bool watchesDirect(const Settings& settings) { return settings.effects[EffectId::Indirect] == EffectMode::Off; }
+
+/// Radiance of one watched point and its standard error, per channel.
 struct TrackedValue {
   vec3 radiance{0}, error{0};
 };
 /// Zero where the camera sees no surface.
-TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples);
+TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples, bool direct = false);
 
 /// Throws InputError when receivers are to be glossy: values and their truth are those of Lambert surfaces.
 void refuseGlossy(const Settings& settings);

@@ -121,7 +121,7 @@ std::vector<Plot> plotsOf(const ShotRun& s) {
   for (size_t p = 0; p < s.marked; ++p) {
     Plot plot{.title = format("%s, pixel %zu", s.name.c_str(), p),
               .xLabel = "time, s",
-              .yLabel = "indirect luminance, tone-mapped (0 to 1)",
+              .yLabel = "luminance, tone-mapped (0 to 1)",
               .x = {},
               .even = true,
               .series = {}};

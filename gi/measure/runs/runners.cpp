@@ -9,14 +9,15 @@ namespace {
 
 class WholeFrames final : public Runner {
  public:
-  explicit WholeFrames(const Variant& v) : gi_(v.settings, v.seed) {}
+  explicit WholeFrames(const Variant& v)
+      : gi_(v.settings, v.seed), watched_(watchesDirect(v.settings) ? Buffer::Direct : Buffer::Indirect) {}
 
   const FrameStats& run(const SceneView& view) override { return gi_.run(view); }
   Image picture(Buffer buffer) const override { return gi_.read(buffer); }
   float exposure() const override { return gi_.exposure(); }
 
   std::vector<TrackedValue> at(std::span<const vec2> points) const override {
-    const Image picture = gi_.read(Buffer::Indirect);
+    const Image picture = gi_.read(watched_);
     std::vector<TrackedValue> out;
     for (const vec2& p : points) {
       const int x = std::min(int(p.x * float(picture.width)), picture.width - 1);
@@ -28,6 +29,7 @@ class WholeFrames final : public Runner {
 
  private:
   GiFrame gi_;
+  const Buffer watched_;
 };
 
 /// What those that look at the watched points alone share: the points cannot be others.
@@ -77,8 +79,10 @@ class PathsAtPoints final : public AtPoints {
         watched_.surfaces(),
         {watched_.rays(), watched_.lights(), view.camera, variant_.settings.smc.bounces, clamp_, variant_.seed},
         samples_, counts);
+    const bool direct = watchesDirect(variant_.settings);
     values_.clear();
-    for (size_t i = 0; i < sums.size(); ++i) values_.push_back(trackedValue(sums[i], watched_.surfaces()[i], samples_));
+    for (size_t i = 0; i < sums.size(); ++i)
+      values_.push_back(trackedValue(sums[i], watched_.surfaces()[i], samples_, direct));
     return stats_;
   }
 

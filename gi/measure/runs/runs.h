@@ -26,14 +26,14 @@ class Runner {
   /// The last frame. Runners that draw no pictures give none.
   virtual Image picture(Buffer) const { return {}; }
   virtual float exposure() const { return 1; }
-  /// Radiance of indirect light at points (u, v) of the last frame.
+  /// Radiance at points (u, v) of the last frame: of indirect light, or of direct (watchesDirect).
   virtual std::vector<TrackedValue> at(std::span<const vec2> points) const = 0;
 };
 
 struct Variant;
 using MakeRunner = std::function<std::unique_ptr<Runner>(const Variant&)>;
 
-/// Whole frames by GiFrame, in the current GL context; values at points are those of the indirect buffer. Passes are
+/// Whole frames by GiFrame, in the current GL context; values at points are those of the indirect or the direct buffer. Passes are
 /// finished one by one unless the settings choose a timing: timer queries that lag would give one variant's times to
 /// another.
 std::unique_ptr<Runner> wholeFrames(const Variant& variant);
