@@ -132,7 +132,10 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   say(*stage, options.output.quiet);
 
-  const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
+  TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
+  const CameraView camera = stage->at(0).camera;
+  for (vec2& p : tracked.points) // what pictures show is seen through the middles of pixels
+    p = (glm::floor(p * vec2(camera.width, camera.height)) + 0.5f) / vec2(camera.width, camera.height);
   WatchedScene watched(tracked.points);
   const std::vector<Variant> variants = variantsOf(options, *stage, watched);
   if (!context && std::ranges::any_of(variants, [](const Variant& v) { return drawsWholeFrames(v.settings); }))
