@@ -124,8 +124,8 @@ vec3 interpolated(ivec2 pixel, int level, float depth, vec3 own) {
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) m[j][i] = basis(nearest[i].at, nearest[j]);
     if (abs(determinant(m)) > kLeastDeterminant) {
-      vec3 w = weights * inverse(m); // of the samples' values: Φ(x)ᵀ Φ⁻¹
-      share = w.x * nearest[0].share + w.y * nearest[1].share + w.z * nearest[2].share;
+      vec3 w = weights * inverse(m); // Φ(x)ᵀ Φ⁻¹, of what the samples have beyond the mean
+      share += w.x * (nearest[0].share - share) + w.y * (nearest[1].share - share) + w.z * (nearest[2].share - share);
     }
   }
   return clamp(share, least, most);

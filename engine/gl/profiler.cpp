@@ -13,6 +13,14 @@ double msSince(std::chrono::steady_clock::time_point begin) {
 
 } // namespace
 
+double secondsOf(const std::function<void()>& work) {
+  finishToMeasure();
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  finishToMeasure();
+  return 1e-3 * msSince(begin);
+}
+
 Timing GpuProfiler::calibrate() {
   // Known to be wrong, and sometimes right by chance: in the second profiler of a process all three trials agreed.
   if (std::string_view(reinterpret_cast<const char*>(glGetString(GL_RENDERER))).find("llvmpipe") !=
@@ -31,15 +39,13 @@ Timing GpuProfiler::calibrate() {
   };
   PipelineState{.width = 512, .height = 512}.apply(); // blits keep to the scissor
   const auto time = [&](int blits) -> Times {
-    finishToMeasure();
-    const auto start = std::chrono::steady_clock::now();
-    glQueryCounter(begin.name(), GL_TIMESTAMP);
-    for (int i = 0; i < blits; ++i)
-      glBlitNamedFramebuffer(source.name(), target.name(), 0, 0, 256, 256, 0, 0, 512, 512, GL_COLOR_BUFFER_BIT,
-                             GL_LINEAR);
-    glQueryCounter(end.name(), GL_TIMESTAMP);
-    finishToMeasure();
-    const double wallMs = msSince(start);
+    const double wallMs = 1e3 * secondsOf([&] {
+                            glQueryCounter(begin.name(), GL_TIMESTAMP);
+                            for (int i = 0; i < blits; ++i)
+                              glBlitNamedFramebuffer(source.name(), target.name(), 0, 0, 256, 256, 0, 0, 512, 512,
+                                                     GL_COLOR_BUFFER_BIT, GL_LINEAR);
+                            glQueryCounter(end.name(), GL_TIMESTAMP);
+                          });
     return {wallMs, double(end.known().value_or(0) - begin.known().value_or(0)) * 1e-6};
   };
   // As many as take 5 ms, so that the cost of waiting does not blur the answer; the first round pays for shaders.

@@ -5,6 +5,7 @@
 #include "engine/gl/objects.h"
 
 #include <deque>
+#include <functional>
 #include <map>
 
 namespace lambent::gl {
@@ -12,6 +13,9 @@ namespace lambent::gl {
 /// Queries: GPU timestamps, read without waiting, so a row shows the latest known time of its stage (a few frames old).
 /// Finish: glFinish around each pass; exact everywhere, but the CPU waits.
 enum class Timing { Queries, Finish };
+
+/// Of some work, the GPU's included. Waits for all that it does.
+double secondsOf(const std::function<void()>& work);
 
 class GpuProfiler {
  public:

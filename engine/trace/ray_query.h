@@ -57,6 +57,9 @@ class RayQuery {
   /// 1 where something lies on the segment (0, tMax), else 0.
   virtual void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const = 0;
 
+  /// Whether only the thread that made it may ask; such a one answers long lists best.
+  virtual bool ownThread() const { return false; }
+
   SurfaceHit closest(const Ray& ray) const {
     SurfaceHit h;
     closest({&ray, 1}, {&h, 1});

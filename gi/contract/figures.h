@@ -35,6 +35,7 @@ struct FrameStats {
   bool burst = false;
   EffectPlan plan;
   std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
+  std::string areaTracer;                // who traced rays from patches to emissive surfaces, and how fast each would be
   std::string shadowMaker, makerTimes;   // who drew VPL maps last; both makers' times where they were measured
   std::string timing;                    // how GPU times were taken
 

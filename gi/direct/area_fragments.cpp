@@ -9,8 +9,6 @@ namespace lambent {
 
 namespace {
 
-constexpr size_t kGrain = 32; // fragments
-
 enum State : uint8_t { Nothing, Test, Split }; // Split: into four without a test
 
 /// Of a large fragment that have samples of their own: in the middle of its top, in the corner, in the middle of its
@@ -76,12 +74,13 @@ bool differsBeyondBorders(const Fragment& f, std::span<const Fragment> fragments
   return false;
 }
 
-/// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it, whether
-/// or not these are fragments; says which fragments are split. `level` above 0.
+/// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it,
+/// whether or not these are fragments; says which fragments are split. `level` above 0.
 std::vector<uint8_t> askAround(const AreaVisibility& visibility, const PictureSurfaces& surfaces, int level,
-                               const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments, uint64_t& rays) {
+                               const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments,
+                               uint64_t& rays) {
   std::vector<int> numbers(size_t(size.x) * size_t(size.y), -1); // of what is asked, by texel
-  std::vector<Fragment> asked;
+  std::vector<glm::ivec2> asked;                                 // pixels
   const auto forAround = [&](const Fragment& f, auto&& with) {
     for (int k = 0; k < 9; ++k) {
       const glm::ivec2 there = f.texel + glm::ivec2(k % 3 - 1, k / 3 - 1);
@@ -93,20 +92,17 @@ std::vector<uint8_t> askAround(const AreaVisibility& visibility, const PictureSu
     forAround(f, [&](const glm::ivec2& there, int& number) {
       if (number >= 0) return;
       number = int(asked.size());
-      asked.push_back({there});
+      asked.push_back(visibility.middleOf(there, level));
     });
-  parallelFor(asked.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      asked[i].seen = visibility.ofPixel(visibility.middleOf(asked[i].texel, level), true);
-  });
-  for (const Fragment& f : asked) rays += f.seen.rays;
+  const std::vector<AreaSeen> seen = visibility.ofPixels(asked, true);
+  for (const AreaSeen& s : seen) rays += s.rays;
   std::vector<uint8_t> split(fragments.size(), 0);
   for (size_t i = 0; i < fragments.size(); ++i) {
     Fragment& f = fragments[i];
     const int own = numbers[size_t(f.texel.y * size.x + f.texel.x)];
-    if (own >= 0) f.seen = asked[size_t(own)].seen;
+    if (own >= 0) f.seen = seen[size_t(own)];
     forAround(f, [&](const glm::ivec2&, int number) {
-      split[i] |= bitsApart(f.seen, asked[size_t(number)].seen) >= uint64_t(threshold);
+      split[i] |= bitsApart(f.seen, seen[size_t(number)]) >= uint64_t(threshold);
     });
   }
   return split;
@@ -163,7 +159,7 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
     levels[l].visible.assign(levels[l].smooth.size(), vec4(0));
   }
   std::fill(states.back().begin(), states.back().end(), Test);
-  std::vector<glm::ivec2> extra; // single pixels in large fragments
+  std::array<std::vector<glm::ivec2>, 2> extra; // single pixels in large fragments that are fully lit, and others
   const auto split = [&](int level, const glm::ivec2& texel, const std::array<bool, 4>& twice) {
     FragmentLevel& finer = levels[size_t(level - 1)];
     for (int s = 0; s < 4; ++s) {
@@ -191,12 +187,11 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
     if (neighbours && level > 0) {
       around = askAround(visibility, surfaces, level, at.size, settings.threshold, fragments, counts.rays.occlusion);
     } else {
-      parallelFor(fragments.size(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-          Fragment& f = fragments[i];
-          f.seen = level == 0 ? visibility.ofPixel(f.texel, neighbours) : visibility.ofPatch(f.texel, level);
-        }
-      });
+      std::vector<glm::ivec2> texels;
+      for (const Fragment& f : fragments) texels.push_back(f.texel);
+      const std::vector<AreaSeen> seen =
+          level == 0 ? visibility.ofPixels(texels, neighbours) : visibility.ofPatches(texels, level);
+      for (size_t i = 0; i < fragments.size(); ++i) fragments[i].seen = seen[i];
       for (const Fragment& f : fragments) counts.rays.occlusion += f.seen.rays;
     }
     const auto keep = [&](const glm::ivec2& texel, FragmentLevel& in, const AreaSeen& seen) {
@@ -207,7 +202,8 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
 
     const bool byCounts = level > 0 && settings.refinement == AreaRefinement::Counts;
     const std::vector<int> numbers = byCounts ? numbersOf(fragments, at.size) : std::vector<int>();
-    std::vector<Fragment> quads; // of pixels
+    std::vector<glm::ivec2> quads; // patches of which all pixels are asked
+    std::vector<AreaSeen> quadsSeen;
     for (size_t i = 0; i < fragments.size(); ++i) {
       const Fragment& f = fragments[i];
       std::array<bool, 4> twice{};
@@ -215,7 +211,8 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
       if (level > 0) apart = neighbours ? around[i] != 0 : f.seen.lit() && isSplit(f.seen, settings, twice);
       if (byCounts && !apart) apart = differsBeyondBorders(f, fragments, numbers, at.size, settings.threshold);
       if (apart && level == 1 && !neighbours) {
-        quads.push_back(f);
+        quads.push_back(f.texel);
+        quadsSeen.push_back(f.seen);
         continue;
       }
       if (apart) {
@@ -225,33 +222,30 @@ FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, cons
       keep(f.texel, at, f.seen);
       if (settings.extra && settings.upsample == AreaUpsample::Rbf && !neighbours && level > 2 && f.seen.lit()) {
         const int side = 1 << level;
-        for (const glm::ivec2& within : singlePixels(side)) extra.push_back(f.texel * side + within);
+        for (const glm::ivec2& within : singlePixels(side)) {
+          const glm::ivec2 pixel = f.texel * side + within;
+          if (pixel.x < surfaces.width && pixel.y < surfaces.height && surfaces.seen(pixel))
+            extra[f.seen.visible != vec3(1)].push_back(pixel);
+        }
       }
     }
-    std::vector<std::array<AreaSeen, 4>> pixels(quads.size());
-    parallelFor(quads.size(), kGrain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) pixels[i] = visibility.ofQuad(quads[i].texel, quads[i].seen);
-    });
-    for (size_t i = 0; i < quads.size(); ++i)
-      for (int s = 0; s < 4; ++s) {
-        keep(quads[i].texel * 2 + glm::ivec2(s & 1, s >> 1), levels[0], pixels[i][size_t(s)]);
-        counts.rays.occlusion += pixels[i][size_t(s)].rays;
-      }
+    const std::vector<AreaSeen> pixels = visibility.ofQuads(quads, quadsSeen);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      keep(quads[i / 4] * 2 + glm::ivec2(i & 1, i >> 1 & 1), levels[0], pixels[i]);
+      counts.rays.occlusion += pixels[i].rays;
+    }
   }
 
-  std::erase_if(
-      extra, [&](const glm::ivec2& p) { return p.x >= surfaces.width || p.y >= surfaces.height || !surfaces.seen(p); });
-  std::vector<uint64_t> traced(extra.size());
-  parallelFor(extra.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const AreaSeen seen = visibility.ofPixel(extra[i]);
-      levels[0].visible[size_t(extra[i].y * levels[0].size.x + extra[i].x)] = vec4(seen.visible, 1);
-      traced[i] = seen.rays;
+  for (const bool partly : {false, true}) { // a quarter of the rays does not tell a little shadow from none
+    const std::vector<AreaSeen> seen = visibility.ofPixels(extra[partly], partly);
+    for (size_t i = 0; i < seen.size(); ++i) {
+      const glm::ivec2& pixel = extra[partly][i];
+      levels[0].visible[size_t(pixel.y * levels[0].size.x + pixel.x)] = vec4(seen[i].visible, 1);
+      counts.rays.occlusion += seen[i].rays;
     }
-  });
-  counts.extra = extra.size();
-  counts.fragments += extra.size();
-  for (uint64_t rays : traced) counts.rays.occlusion += rays;
+    counts.extra += seen.size();
+    counts.fragments += seen.size();
+  }
   markBorders(levels);
   return counts;
 }

@@ -1,6 +1,9 @@
 #include "gi/direct/area_light_pass.h"
 
+#include "engine/gl/profiler.h"
 #include "gi/gather/draw_gather.h"
+
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 
@@ -40,10 +43,11 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   atlas_.fit(plain, pyramid, false);
   readSurfaces(surfaces, pyramid);
   {
+    const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+    const RayQuery& rays = tracerFor(world, seen, settings.area);
+    stats.areaTracer = tracer_;
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
-    const FragmentCounts counts =
-        shareVisible(world.rays, lights_, {surfaces.width, surfaces.height, depth_, normal_, surfaces.block},
-                     settings.area, levels_);
+    const FragmentCounts counts = shareVisible(rays, lights_, seen, settings.area, levels_);
     stats.areaFragments = counts.fragments;
     stats.raysArea += counts.rays;
   }
@@ -52,6 +56,47 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   const gl::Texture& share = upsample(plain, settings);
   shade(surfaces, lights_.pieces, false, share, target);
   if (surfaces.finish) shade(surfaces, disksOf(lights_), true, share, target);
+}
+
+/// Embree or the GPU. Their answers differ for rays that graze an edge, so the GPU has to be twice as fast to be taken.
+const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfaces& surfaces,
+                                         const AreaSettings& settings) {
+  const bool measures = settings.tracer == AreaTracer::Auto && !gpuIsFaster_;
+  const bool gpu = settings.tracer == AreaTracer::Gpu || (settings.tracer == AreaTracer::Auto && gpuIsFaster_ == true);
+  if (!gpu && !measures) {
+    gpuRays_.reset();
+    if (settings.tracer == AreaTracer::Cpu) tracer_ = "cpu";
+    return world.rays;
+  }
+  if (!gpuRays_ || world.view.changes.first)
+    gpuRays_ = std::make_unique<GpuRays>(context_.programs, *world.view.assets);
+  gpuRays_->update(world.view);
+  if (settings.tracer == AreaTracer::Gpu) tracer_ = "gpu";
+  if (!measures) return *gpuRays_;
+  constexpr size_t kPixels = 256; // with 64 rays each
+  std::vector<glm::ivec2> pixels;
+  for (size_t i = 0; i < kPixels; ++i) {
+    const size_t p = (2 * i + 1) * surfaces.depth.size() / (2 * kPixels);
+    const glm::ivec2 pixel(int(p % size_t(surfaces.width)), int(p / size_t(surfaces.width)));
+    if (surfaces.seen(pixel)) pixels.push_back(pixel);
+  }
+  const auto millionsPerSecond = [&](const RayQuery& rays) {
+    uint64_t count = 0;
+    const double seconds = gl::secondsOf([&] {
+      for (const AreaSeen& seen : AreaVisibility(rays, lights_, surfaces, 16).ofPixels(pixels, true))
+        count += seen.rays;
+    });
+    return double(count) / std::max(seconds, 1e-9) * 1e-6;
+  };
+  millionsPerSecond(*gpuRays_); // compiles
+  const double onGpu = millionsPerSecond(*gpuRays_), onCpu = millionsPerSecond(world.rays);
+  if (onCpu == 0) return world.rays; // no light reaches the picture: another frame tells
+  gpuIsFaster_ = onGpu > 2 * onCpu;
+  tracer_ = fmt::format("{} ({:.1f} million rays a second, {} {:.1f})", *gpuIsFaster_ ? "gpu" : "cpu",
+                        *gpuIsFaster_ ? onGpu : onCpu, *gpuIsFaster_ ? "cpu" : "gpu", *gpuIsFaster_ ? onCpu : onGpu);
+  if (*gpuIsFaster_) return *gpuRays_;
+  gpuRays_.reset();
+  return world.rays;
 }
 
 /// What the CPU has to know of the picture. Waits for the GPU.

@@ -9,6 +9,10 @@
 #include "gi/contract/world.h"
 #include "gi/direct/area_fragments.h"
 #include "gi/gather/patch_atlas.h"
+#include "gi/visibility/gpu_rays.h"
+
+#include <memory>
+#include <optional>
 
 namespace lambent {
 
@@ -20,9 +24,13 @@ class AreaLightPass {
   void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
            const LightTarget& target, FrameStats& stats);
   /// It is not asked for a while: what lights come to be meanwhile is not told.
-  void forget() { lights_ = {}; }
+  void forget() {
+    lights_ = {};
+    gpuRays_.reset();
+  }
 
  private:
+  const RayQuery& tracerFor(const World& world, const PictureSurfaces& surfaces, const AreaSettings& settings);
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void shade(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks, const gl::Texture& share,
@@ -30,6 +38,9 @@ class AreaLightPass {
 
   PassContext context_;
   AreaLights lights_;
+  std::unique_ptr<GpuRays> gpuRays_; // where the GPU traces
+  std::optional<bool> gpuIsFaster_;  // once measured
+  std::string tracer_;
   std::vector<float> depth_;
   std::vector<vec4> normal_;
   std::vector<FragmentLevel> levels_;

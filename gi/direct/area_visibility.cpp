@@ -1,22 +1,34 @@
 #include "gi/direct/area_visibility.h"
 
+#include "engine/core/parallel.h"
+
 namespace lambent {
 
 namespace {
 
-/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters,
-/// whose rays follow each other in turn, is spread over the lights as evenly as all.
+/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters is
+/// spread over the lights as evenly as all.
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
 constexpr int kMostAll = 4 * kMostAreaRays;
 
+/// Of four rays side by side, each quarter has one; which one takes turns, or a quarter's rays would all lie to one
+/// side of another's, and an edge along them would look like a difference.
+int quarterOf(int ray) { return (ray + ray / 4 + ray / 16) % 4; }
+
 } // namespace
 
-struct AreaVisibility::Rays {
+/// The rays of a fragment: where they go, and what is known of them.
+struct AreaVisibility::Question {
+  Unshadowed from;
   std::array<uint32_t, kMostAll> lights, samples; // where they end
   std::array<Ray, kMostAll> segments;
   std::array<float, kMostAll> weights; // of a sample's light, for a receiver; 0: not traced
   std::array<bool, kMostAll> open;
+  std::array<bool, 4> quarters{}; // to be traced next
+  uint64_t traced = 0;
+
+  bool wanted(int k) const { return quarters[size_t(quarterOf(k))] && weights[size_t(k)] > 0; }
 };
 
 AreaVisibility::Place AreaVisibility::placeAt(const glm::ivec2& pixel) const {
@@ -45,76 +57,112 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAt(const Place& place) cons
   return out;
 }
 
-AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle, const std::array<Place, 4>& parts) const {
+AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle,
+                                                            const std::array<Place, 4>& parts) const {
   Unshadowed from = unshadowedAt(middle);
   for (size_t s = 0; s < 4 && !(from.total > 0); ++s) from = unshadowedAt(parts[s]);
   return from;
 }
 
-void AreaVisibility::choose(const Unshadowed& from, Rays& to) const {
+void AreaVisibility::choose(Question& q) const {
   float below = 0; // light before `l`, share of all
   size_t l = 0;
   for (int k = 0; k < all(); ++k) {
     const float u = (float(k) + 0.5f) / float(all());
-    const auto share = [&] { return luminance(from.light[l]) / from.total; };
-    while (l + 1 < from.light.size() && below + share() <= u) {
+    const auto share = [&] { return luminance(q.from.light[l]) / q.from.total; };
+    while (l + 1 < q.from.light.size() && below + share() <= u) {
       below += share();
       ++l;
     }
     const AreaLight& light = lights_.lights[l];
     const float within = std::max(u - below, 0.0f) / std::max(share(), 1e-30f);
-    to.lights[size_t(k)] = uint32_t(l);
-    to.samples[size_t(k)] = light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
+    q.lights[size_t(k)] = uint32_t(l);
+    q.samples[size_t(k)] = light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
   }
 }
 
-void AreaVisibility::aim(const Place& place, int k, Rays& rays) const {
-  const AreaSample& sample = lights_.samples[rays.samples[size_t(k)]];
-  const bool doubleSided = lights_.lights[rays.lights[size_t(k)]].doubleSided;
+void AreaVisibility::aim(Question& q, int k, const Place& place) const {
+  const AreaSample& sample = lights_.samples[q.samples[size_t(k)]];
+  const bool doubleSided = lights_.lights[q.lights[size_t(k)]].doubleSided;
   const vec3 way = sample.position - place.position;
   const float distance2 = std::max(glm::dot(way, way), 1e-20f);
   const float cosine = std::max(glm::dot(place.normal, way), 0.0f), cosineLight = -glm::dot(sample.normal, way);
-  rays.weights[size_t(k)] =
+  q.weights[size_t(k)] =
       cosine * (doubleSided ? std::abs(cosineLight) : std::max(cosineLight, 0.0f)) / (distance2 * distance2);
-  rays.segments[size_t(k)] =
+  q.segments[size_t(k)] =
       segment(offsetPoint(place.position, place.normal, rays_.grain()),
               offsetPoint(sample.position, cosineLight < 0 ? -sample.normal : sample.normal, rays_.grain()));
 }
 
-/// The rays of these quarters, in the order of the lights. Says how many.
-uint64_t AreaVisibility::trace(Rays& rays, int quarter, int other, int third, int fourth) const {
-  std::array<Ray, kMostAll> segments;
-  std::array<uint8_t, kMostAll> blocked;
-  std::array<int, kMostAll> numbers;
-  size_t count = 0;
-  for (int k = 0; k < all(); ++k) {
-    const int q = k % 4;
-    if ((q != quarter && q != other && q != third && q != fourth) || !(rays.weights[size_t(k)] > 0)) continue;
-    segments[count] = rays.segments[size_t(k)];
-    numbers[count++] = k;
+template <class Begin, class Asked>
+void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) const {
+  constexpr size_t kGrain = 32;
+  if (!rays_.ownThread()) {
+    parallelFor(count, kGrain, [&](size_t first, size_t end) {
+      Question q;
+      std::array<Ray, kMostAll> segments;
+      std::array<uint8_t, kMostAll> blocked;
+      for (size_t i = first; i < end; ++i) {
+        q.traced = 0;
+        q.quarters = {};
+        for (bool more = begin(i, q); more; more = asked(i, q)) {
+          size_t n = 0;
+          for (int k = 0; k < all(); ++k)
+            if (q.wanted(k)) segments[n++] = q.segments[size_t(k)];
+          rays_.occluded(std::span(segments).first(n), std::span(blocked).first(n));
+          q.traced += n;
+          n = 0;
+          for (int k = 0; k < all(); ++k)
+            if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++];
+        }
+      }
+    });
+    return;
   }
-  rays_.occluded(std::span(segments).first(count), std::span(blocked).first(count));
-  for (size_t i = 0; i < count; ++i) rays.open[size_t(numbers[i])] = !blocked[i];
-  return count;
+  constexpr size_t kAtOnce = 4096; // 47 MB of questions
+  for (size_t first = 0; first < count; first += kAtOnce) {
+    std::vector<Question> questions(std::min(kAtOnce, count - first));
+    std::vector<uint8_t> more(questions.size());
+    parallelFor(questions.size(), kGrain, [&](size_t from, size_t end) {
+      for (size_t i = from; i < end; ++i) more[i] = begin(first + i, questions[i]);
+    });
+    while (std::ranges::find(more, 1) != more.end()) {
+      std::vector<Ray> segments;
+      for (size_t i = 0; i < questions.size(); ++i)
+        for (int k = 0; k < all() && more[i]; ++k)
+          if (questions[i].wanted(k)) segments.push_back(questions[i].segments[size_t(k)]);
+      std::vector<uint8_t> blocked(segments.size());
+      rays_.occluded(segments, blocked);
+      size_t n = 0;
+      for (size_t i = 0; i < questions.size(); ++i) {
+        if (!more[i]) continue;
+        Question& q = questions[i];
+        for (int k = 0; k < all(); ++k)
+          if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++], ++q.traced;
+        more[i] = asked(first + i, q);
+      }
+    }
+  }
 }
 
 /// The share that the rays found open, over their weights: 1 where all are.
-void AreaVisibility::addUp(const Unshadowed& from, const Rays& rays, AreaSeen& to) const {
+void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
+  to.rays = q.traced;
   vec3 lit(0), whole(0);
   for (int k = 0; k < all();) {
-    const uint32_t light = rays.lights[size_t(k)];
+    const uint32_t light = q.lights[size_t(k)];
     vec3 open(0), sum(0);
-    for (; k < all() && rays.lights[size_t(k)] == light; ++k) {
-      if (!(rays.weights[size_t(k)] > 0)) continue;
-      const vec3 weight = rays.weights[size_t(k)] * lights_.samples[rays.samples[size_t(k)]].radiance;
+    for (; k < all() && q.lights[size_t(k)] == light; ++k) {
+      if (!(q.weights[size_t(k)] > 0)) continue;
+      const vec3 weight = q.weights[size_t(k)] * lights_.samples[q.samples[size_t(k)]].radiance;
       sum += weight;
-      if (!rays.open[size_t(k)]) continue;
+      if (!q.open[size_t(k)]) continue;
       open += weight;
-      to.bits[size_t(kPartOf[k % 4])] |= uint64_t(1) << (k / 4);
+      to.bits[size_t(kPartOf[quarterOf(k)])] |= uint64_t(1) << (k / 4);
     }
     // A light that is due less than one ray stands for others like it.
-    const vec3& own = from.light[light];
-    const float share = std::max(1.0f, from.total / (float(all()) * std::max(luminance(own), 1e-30f)));
+    const vec3& own = q.from.light[light];
+    const float share = std::max(1.0f, q.from.total / (float(all()) * std::max(luminance(own), 1e-30f)));
     for (int c = 0; c < 3; ++c) {
       if (!(sum[c] > 0)) continue;
       whole[c] += share * own[c];
@@ -124,57 +172,83 @@ void AreaVisibility::addUp(const Unshadowed& from, const Rays& rays, AreaSeen& t
   for (int c = 0; c < 3; ++c) to.visible[c] = whole[c] > 0 ? std::min(lit[c] / whole[c], 1.0f) : 0;
 }
 
-AreaSeen AreaVisibility::ofPatch(const glm::ivec2& texel, int level) const {
-  const std::array<Place, 4> parts = partsOf(texel, level);
-  const Unshadowed from = unshadowedAround(placeAt(middleOf(texel, level)), parts);
-  if (!(from.total > 0)) return {};
-  Rays rays;
-  choose(from, rays);
-  for (int k = 0; k < all(); ++k) aim(parts[size_t(kPartOf[k % 4])], k, rays);
-  AreaSeen seen;
-  seen.rays = trace(rays, 0, 1, 2, 3);
-  addUp(from, rays, seen);
+std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texels, int level) const {
+  std::vector<AreaSeen> seen(texels.size());
+  ask(
+      texels.size(),
+      [&](size_t i, Question& q) {
+        const std::array<Place, 4> parts = partsOf(texels[i], level);
+        q.from = unshadowedAround(placeAt(middleOf(texels[i], level)), parts);
+        if (!(q.from.total > 0)) return false;
+        choose(q);
+        for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[quarterOf(k)])]);
+        q.quarters.fill(true);
+        return true;
+      },
+      [&](size_t i, const Question& q) {
+        addUp(q, seen[i]);
+        return false;
+      });
   return seen;
 }
 
-AreaSeen AreaVisibility::ofPixel(const glm::ivec2& pixel, bool askAll) const {
-  const Place place = placeAt(pixel);
-  const Unshadowed from = unshadowedAt(place);
-  if (!(from.total > 0)) return {};
-  Rays rays;
-  choose(from, rays);
-  for (int k = 0; k < all(); ++k) aim(place, k, rays);
-  AreaSeen seen;
-  seen.rays = trace(rays, 1);
-  int opened = 0, traced = 0;
-  for (int k = 1; k < all(); k += 4) {
-    if (!(rays.weights[size_t(k)] > 0)) continue;
-    ++traced;
-    opened += rays.open[size_t(k)];
-  }
-  if (!askAll && traced > 0 && (opened == 0 || opened == traced)) {
-    for (int k = 0; k < all(); ++k) rays.open[size_t(k)] = opened > 0;
-  } else {
-    seen.rays += trace(rays, 0, 2, 3);
-  }
-  addUp(from, rays, seen);
+std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const {
+  constexpr int kFirst = 1; // the quarter that is asked before the others
+  std::vector<AreaSeen> seen(pixels.size());
+  ask(
+      pixels.size(),
+      [&](size_t i, Question& q) {
+        const Place place = placeAt(pixels[i]);
+        q.from = unshadowedAt(place);
+        if (!(q.from.total > 0)) return false;
+        choose(q);
+        for (int k = 0; k < all(); ++k) aim(q, k, place);
+        q.quarters.fill(askAll);
+        q.quarters[kFirst] = true;
+        return true;
+      },
+      [&](size_t i, Question& q) {
+        if (!askAll && q.quarters[kFirst]) {
+          uint64_t opened = 0;
+          for (int k = 0; k < all(); ++k) opened += q.wanted(k) && q.open[size_t(k)];
+          if (q.traced == 0 || (opened != 0 && opened != q.traced)) {
+            q.quarters.fill(true);
+            q.quarters[kFirst] = false;
+            return true;
+          }
+          for (int k = 0; k < all(); ++k) q.open[size_t(k)] = opened > 0;
+        }
+        addUp(q, seen[i]);
+        return false;
+      });
   return seen;
 }
 
-std::array<AreaSeen, 4> AreaVisibility::ofQuad(const glm::ivec2& texel, const AreaSeen& patch) const {
-  const std::array<Place, 4> parts = partsOf(texel, 1);
-  const Unshadowed from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
-  Rays rays;
-  choose(from, rays);
-  std::array<AreaSeen, 4> out;
-  for (int s = 0; s < 4; ++s) {
-    for (int k = 0; k < all(); ++k) aim(parts[size_t(s)], k, rays);
-    const int asked = kQuarterOf[s];
-    for (int k = asked; k < all(); k += 4) rays.open[size_t(k)] = patch.bits[size_t(s)] >> (k / 4) & 1;
-    out[size_t(s)].rays = trace(rays, (asked + 1) % 4, (asked + 2) % 4, (asked + 3) % 4);
-    addUp(from, rays, out[size_t(s)]);
-  }
-  return out;
+std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels,
+                                              std::span<const AreaSeen> patches) const {
+  std::vector<AreaSeen> seen(4 * texels.size());
+  ask(
+      seen.size(),
+      [&](size_t i, Question& q) {
+        const glm::ivec2& texel = texels[i / 4];
+        const size_t s = i % 4;
+        const std::array<Place, 4> parts = partsOf(texel, 1);
+        q.from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
+        if (!(q.from.total > 0)) return false;
+        choose(q);
+        for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
+        const int known = kQuarterOf[s];
+        for (int k = 0; k < all(); ++k)
+          if (quarterOf(k) == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
+        q.quarters.fill(true);
+        q.quarters[size_t(known)] = false;
+        return true;
+      },
+      [&](size_t i, const Question& q) {
+        addUp(q, seen[i]);
+        return false;
+      });
+  return seen;
 }
 
 } // namespace lambent

@@ -1,5 +1,5 @@
-// What a fragment of a picture sees of the area lights: rays towards them from its parts, and which share of their light
-// these find open.
+// What a fragment of a picture sees of the area lights: rays towards them from its parts, and which share of their
+// light these find open.
 #pragma once
 
 #include "engine/trace/ray_query.h"
@@ -37,25 +37,26 @@ struct AreaSeen {
   }
 };
 
+/// Asks the rays of many fragments: from all threads, or where the query belongs to one, in long lists.
 class AreaVisibility {
  public:
   AreaVisibility(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces, int raysPerPart)
       : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
 
-  /// Of the patch of 2^level pixels, level ≥ 1, of which `texel` is the number.
-  AreaSeen ofPatch(const glm::ivec2& texel, int level) const;
-  /// Of a pixel. Unless all rays are asked for: where a quarter of them agree, the others are not.
-  AreaSeen ofPixel(const glm::ivec2& pixel, bool askAll = false) const;
-  /// Of the four pixels of a patch of level 1 that has been asked: all its rays, of which the patch's are a quarter.
-  std::array<AreaSeen, 4> ofQuad(const glm::ivec2& texel, const AreaSeen& patch) const;
-
+  /// Of patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
+  std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
+  /// Of pixels. Unless all rays are asked for: where a quarter of them agree, the others are not.
+  std::vector<AreaSeen> ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const;
+  /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
+  /// are a quarter.
+  std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
   /// Pixel in the middle of a patch.
   glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {
     return clamped(texel * (1 << level) + (1 << level) / 2);
   }
 
  private:
-  struct Rays;
+  struct Question;
   struct Place {
     vec3 position, normal;
   };
@@ -72,10 +73,12 @@ class AreaVisibility {
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
-  void choose(const Unshadowed& from, Rays& to) const;
-  void aim(const Place& place, int k, Rays& rays) const;
-  uint64_t trace(Rays& rays, int quarter, int other = -1, int third = -1, int fourth = -1) const;
-  void addUp(const Unshadowed& from, const Rays& rays, AreaSeen& to) const;
+  void choose(Question& q) const;
+  void aim(Question& q, int k, const Place& place) const;
+  void addUp(const Question& q, AreaSeen& to) const;
+  /// `begin(i, q)` aims the rays of question i; `asked(i, q)` takes the answers and says whether there is more to
+  /// trace.
+  template <class Begin, class Asked> void ask(size_t count, const Begin& begin, const Asked& asked) const;
 
   int all() const { return 4 * count_; }
 

@@ -106,6 +106,8 @@ class Table {
     choice("area.upsample", &Settings::area, &AreaSettings::upsample, {"rbf", "bilateral", "bilinear"}, Nothing,
            "between patches: radial basis functions around the three nearest samples, or level by level as "
            "multires.upsample");
+    choice("area.tracer", &Settings::area, &AreaSettings::tracer, {"auto", "cpu", "gpu"}, Nothing,
+           "who traces these rays; auto measures both once and takes the GPU where it is twice as fast");
     number("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, {1, 512, "maps", PowersOfTwo}, Maps,
            "directions of the sky in direct light");
     number("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, {16, 2048, "texels", PowersOfTwo},

@@ -22,6 +22,7 @@ enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
 // What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
+enum class AreaTracer : int { Auto, Cpu, Gpu }; // auto measures both once
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
@@ -109,6 +110,7 @@ struct AreaSettings {
   int gradient = 4;  // bits between neighbouring sub-fragments beyond which both are split twice; 0 = never twice
   bool extra = true; // three single pixels more in patches of 8×8 pixels and larger
   AreaUpsample upsample = AreaUpsample::Rbf;
+  AreaTracer tracer = AreaTracer::Auto;
   bool operator==(const AreaSettings&) const = default;
 };
 

@@ -3,25 +3,13 @@
 #include "gi/visibility/paraboloid_makers.h"
 
 #include "engine/core/error.h"
+#include "engine/gl/profiler.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace lambent {
-
-namespace {
-
-double secondsOf(const std::function<void()>& work) {
-  gl::finishToMeasure();
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  gl::finishToMeasure();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-} // namespace
 
 ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   const gl::PassScope scope = context_.scope(stage_);
@@ -80,8 +68,8 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
     sample.push_back({jobs[i * jobs.size() / std::min<size_t>(8, jobs.size())].slot, TexelRect::whole(in.resolution)});
   drawRaster(in, std::span(sample).first(1));
   drawRays(in, std::span(sample).first(1));
-  const double rasterMs = secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
-  const double raysMs = secondsOf([&] { drawRays(in, sample); }) * 1e3 / double(sample.size());
+  const double rasterMs = gl::secondsOf([&] { drawRaster(in, sample); }) * 1e3 / double(sample.size());
+  const double raysMs = gl::secondsOf([&] { drawRays(in, sample); }) * 1e3 / double(sample.size());
   // Rays unless raster is twice as fast: the two differ in a few texels, so a machine's noise must not decide which
   // picture it is. Software Mesa is 2 to 12 times on the one side; a GPU with a slow CPU beside it is as far on the
   // other.

@@ -1,7 +1,7 @@
 // A gallery with fifty lamps of unlike size, shape and colour: panels in rows below the ceiling, thin tubes along the
 // walls, glowing balls on posts, one of which (node "lantern") is to be carried about. Between them stand what throws
-// hard shadows: columns, thin poles, a fence, small trees. X runs along the room from its west end, Z to the south from its
-// middle, the floor is y = 0.
+// hard shadows: columns, thin poles, a fence, small trees. X runs along the room from its west end, Z to the south from
+// its middle, the floor is y = 0.
 #include "tools/content/furniture.h"
 #include "tools/content/plants.h"
 #include "tools/content/recipes.h"
@@ -22,9 +22,9 @@ class LampsBuilder {
     addRoom();
     addObstacles();
     for (int row = 0; row < 4; ++row)
-      for (int i = 0; i < 8; ++i) addPanel(row, i); // 32
-    for (int i = 0; i < 10; ++i) addTube(i);        // 42
-    for (int i = 0; i < 7; ++i) addPost(i);         // 49
+      for (int i = 0; i < 8; ++i) addPanel(row, i);                                                      // 32
+    for (int i = 0; i < 10; ++i) addTube(i);                                                             // 42
+    for (int i = 0; i < 7; ++i) addPost(i);                                                              // 49
     s_.place("lantern", sphere(0.14, kDetail), glowing("lantern", {1, 0.72, 0.4}, 30), {4.5, 1.3, 1.2}); // 50
     s_.camera("along", {0.7, 1.7, 2.6}, {8, 1.0, -0.6}, 62);
     return s_.gltf.write(folder, "lamps");

@@ -1,7 +1,7 @@
 // lambent bench --area SCENE...: paper 4's table 1. Direct light of emissive surfaces at patches of the picture as set,
 // at those of paper 4 (quarters whose answers differ by one bit), at those of Nichols et al. 2010 (nine patches whose
-// answers do, upsampling level by level), and at every pixel; with lamps as they are, and with lamps of a quarter of their
-// width. Time with visibility found anew in every frame; error against path tracing.
+// answers do, upsampling level by level), and at every pixel; with lamps as they are, and with lamps of a quarter of
+// their width. Time with visibility found anew in every frame; error against path tracing.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"

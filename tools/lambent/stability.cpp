@@ -68,7 +68,8 @@ constexpr int kPicturePaths = 32; // per pixel of the picture that shows where t
 constexpr int kStillFrames = 6;   // to measure each time at which a shot stands still
 
 bool drawsWholeFrames(const Settings& settings) {
-  return settings.own || watchesDirect(settings) || rowOf(settings.vpl.source).reflective || settings.vpl.visibility == VplVisibility::Maps;
+  return settings.own || watchesDirect(settings) || rowOf(settings.vpl.source).reflective ||
+         settings.vpl.visibility == VplVisibility::Maps;
 }
 
 /// The truth first, path traced in two halves, then each technique with each seed.
