@@ -24,8 +24,8 @@ struct Direction {
   double importance = 0; // of a squared error
 };
 
-/// All above the surface: some spread as reflections by the lobe's own normals, some over all the sky and denser towards
-/// the horizon, weighted by the sum of both densities (Veach's balance heuristic).
+/// All above the surface: some spread as reflections by the lobe's own normals, some over all the sky and denser
+/// towards the horizon, weighted by the sum of both densities (Veach's balance heuristic).
 std::vector<Direction> directionsFor(float alpha, float cosViewer, float f0) {
   const Receiver viewed = {.normal = vec3(0, 0, 1),
                            .towardsViewer = vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer),

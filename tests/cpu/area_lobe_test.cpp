@@ -164,10 +164,10 @@ TEST(AreaLobe, PiecesFarAndNearAgree) {
     const vec3 corner(-1.5f, -0.3f, 0.8f), other(0.012f / side.y, 0, 0.012f / side.y);
     const double whole = double(lobeRadiance(lobeTable(), quadPiece(corner, side, other, true), vec3(0), r).x);
     double parts = 0;
-    for (int i = 0; i < 64; ++i)
+    for (int i = 0; i < 1024; ++i)
       parts += double(lobeRadiance(lobeTable(),
-                                   quadPiece(corner + side * (float(i % 8) / 8) + other * (float(i / 8) / 8),
-                                             side / 8.0f, other / 8.0f, true),
+                                   quadPiece(corner + side * (float(i % 32) / 32) + other * (float(i / 32) / 32),
+                                             side / 32.0f, other / 32.0f, true),
                                    vec3(0), r)
                           .x);
     EXPECT_NEAR(whole, parts, 0.01 * parts) << side.y;
@@ -181,6 +181,12 @@ TEST(AreaLobe, OnlyFrontsShineUnlessBothSidesDo) {
   EXPECT_EQ(lobeRadiance(lobeTable(), quadPiece(corner, e2, e1), vec3(0), r).x, 0);
   EXPECT_FLOAT_EQ(lobeRadiance(lobeTable(), quadPiece(corner, e2, e1, true), vec3(0), r).x,
                   lobeRadiance(lobeTable(), quadPiece(corner, e1, e2), vec3(0), r).x);
+  for (AreaPiece piece : rectangles()) {
+    const float both = lobeRadiance(lobeTable(), piece, vec3(0), r).x;
+    const bool inFront = glm::dot(vec3(piece.normalArea), vec3(piece.corners[0])) < 0;
+    piece.radianceSides.w = 0;
+    EXPECT_EQ(lobeRadiance(lobeTable(), piece, vec3(0), r).x, inFront ? both : 0);
+  }
 }
 
 } // namespace
