@@ -1,19 +1,27 @@
 #version 450
 // Direct light of one block of area lights' pieces: what they bring where nothing is between, times the share of it that
-// reaches the pixel. GLOSSY: the receivers' lobes too, by disks that stand for the pieces (DISKS: of one block of them).
+// reaches the pixel. GLOSSY: the receivers' lobes too, by linearly transformed cosines.
 #include "lib/gbuffer.glsl"
+#include "shared/area_piece.h"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
+#include "shared/area_lobe.h"
 #endif
-#include "shared/area_piece.h"
 
 layout(std140, binding = 1) uniform Pieces { AreaPiece pieces[kPiecesPerBlock]; };
 layout(binding = 2) uniform sampler2D visible; // share per channel
 uniform int pieceCount;
-uniform float spread; // GLOSSY: GatherSettings::spread
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
+layout(binding = 3) uniform sampler2DArray lobes; // members of AreaLobe
+uniform float spread;                             // GatherSettings::spread
+layout(location = 1) out vec4 outGlossy;          // radiance over glossyTint
+
+AreaLobe lobeFor(float alpha2, float cosViewer) {
+  vec2 place = lobePlace(alpha2, cosViewer);
+  return AreaLobe(textureLod(lobes, vec3(place, 0.0), 0.0), textureLod(lobes, vec3(place, 1.0), 0.0),
+                  textureLod(lobes, vec3(place, 2.0), 0.0));
+}
 #endif
 
 void main() {
@@ -27,26 +35,31 @@ void main() {
   if (depth == 0.0 || share == vec3(0.0)) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
-#ifdef DISKS
+#ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, normal);
+  AreaLobe lobe = lobeFor(receiver.alpha2, receiver.cosViewer);
+  vec3 glossy = vec3(0.0), x, y;
+  lobeFrame(receiver, x, y);
 #endif
   vec3 sum = vec3(0.0);
   for (int i = 0; i < pieceCount; ++i) {
     AreaPiece piece = pieces[i];
     float factor = areaFormFactor(piece, position, normal);
-#ifdef DISKS
-    if (factor == 0.0) continue;
-    vec3 way = piece.corners[0].xyz - position;
-    float distance2 = squaredLength(way);
-    vec3 towardsLight = way * inversesqrt(distance2);
-    float widening = lobeSpread(spread, piece.normalArea.w, abs(dot(piece.normalArea.xyz, towardsLight)), distance2);
-    factor *= glossyReflectance(receiver, towardsLight, widening);
-#endif
     sum += piece.radianceSides.rgb * factor;
+#ifdef GLOSSY
+    if (factor == 0.0 || receiver.strength == 0.0) continue;
+    AreaLobe lobeOfPiece = lobe;
+    if (piece.corners[0].w == 0.0) { // disks have gaps between them, which a wider lobe does not see
+      vec3 way = piece.corners[0].xyz - position;
+      float distance2 = squaredLength(way), facing = abs(dot(piece.normalArea.xyz, way)) * inversesqrt(distance2);
+      float widened = receiver.alpha2 + lobeSpread(spread, piece.normalArea.w, facing, distance2);
+      lobeOfPiece = lobeFor(min(widened, 1.0), receiver.cosViewer);
+    }
+    glossy += piece.radianceSides.rgb * lobeReflection(piece, position, receiver, lobeOfPiece, x, y);
+#endif
   }
-#ifdef DISKS
-  outGlossy = vec4(share * sum / glossyTint(receiver), 1.0);
-#else
   outIrradiance = vec4(share * sum, 1.0);
+#ifdef GLOSSY
+  outGlossy = vec4(share * glossy / glossyTint(receiver), 1.0);
 #endif
 }

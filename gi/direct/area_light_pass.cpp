@@ -2,6 +2,7 @@
 
 #include "engine/gl/profiler.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/vpl/area_lobe.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -11,22 +12,22 @@ namespace lambent {
 
 namespace {
 
-/// Every sixteenth sample as a disk: what lobes reflect.
-std::vector<AreaPiece> disksOf(const AreaLights& lights) {
-  constexpr uint32_t kEvery = 16;
-  std::vector<AreaPiece> disks;
-  for (const AreaLight& light : lights.lights) {
-    float area = 0;
-    for (uint32_t i = 0; i < light.pieces; ++i) area += lights.pieces[light.firstPiece + i].normalArea.w;
-    for (uint32_t i = kEvery / 2; i < light.samples; i += kEvery) {
-      const AreaSample& s = lights.samples[light.firstSample + i];
-      AreaPiece& disk = disks.emplace_back();
-      disk.corners[0] = vec4(s.position, 0);
-      disk.normalArea = vec4(s.normal, area * float(kEvery) / float(light.samples));
-      disk.radianceSides = vec4(s.radiance, light.doubleSided ? 1 : 0);
-    }
+/// A layer for each member of AreaLobe.
+gl::Texture lobeTexture() {
+  constexpr int kLayers = sizeof(AreaLobe) / sizeof(vec4);
+  gl::Texture texture("area lights/lobes", {.kind = gl::TextureKind::Array,
+                                            .format = GL_RGBA32F,
+                                            .width = kLobeRoughnesses,
+                                            .height = kLobeAngles,
+                                            .layers = kLayers,
+                                            .linear = true});
+  std::vector<vec4> layer;
+  for (int i = 0; i < kLayers; ++i) {
+    layer.clear();
+    for (const AreaLobe& lobe : lobeTable()) layer.push_back(i == 0 ? lobe.white : i == 1 ? lobe.schlick : lobe.share);
+    glTextureSubImage3D(texture.name(), 0, 0, 0, i, kLobeRoughnesses, kLobeAngles, 1, GL_RGBA, GL_FLOAT, layer.data());
   }
-  return disks;
+  return texture;
 }
 
 } // namespace
@@ -54,8 +55,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   const gl::PassScope scope = context_.scope(StageId::AreaLight);
   for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
   const gl::Texture& share = upsample(plain, settings);
-  shade(surfaces, lights_.pieces, false, share, target);
-  if (surfaces.finish) shade(surfaces, disksOf(lights_), true, share, target);
+  shade(surfaces, share, target);
 }
 
 /// Embree or the GPU. Their answers differ for rays that graze an edge, so the GPU has to be twice as fast to be taken.
@@ -169,20 +169,23 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
   return share_;
 }
 
-void AreaLightPass::shade(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks,
-                          const gl::Texture& share, const LightTarget& target) {
-  std::vector<std::string> defines = bindSurfaces(surfaces);
-  if (disks) defines.push_back("DISKS");
-  const gl::Program& program = context_.programs.get({.fragment = "area_light.frag", .defines = std::move(defines)});
+void AreaLightPass::shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target) {
+  const gl::Program& program =
+      context_.programs.get({.fragment = "area_light.frag", .defines = bindSurfaces(surfaces)});
   program.use();
-  program.set("spread", GatherSettings{}.spread); // as DirectLight
   share.bind(2);
+  if (surfaces.finish) {
+    if (!lobes_) lobes_ = lobeTexture();
+    lobes_.bind(3);
+    program.set("spread", GatherSettings{}.spread); // as DirectLight
+  }
   target.bind();
   gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
+  const std::span pieces(lights_.pieces);
   blocks_.reserve(pieces.size_bytes() + kPiecesPerBlock * sizeof(AreaPiece));
   for (size_t first = 0; first < pieces.size(); first += kPiecesPerBlock) {
-    std::vector<AreaPiece> block(pieces.begin() + std::ptrdiff_t(first),
-                                 pieces.begin() + std::ptrdiff_t(std::min(first + kPiecesPerBlock, pieces.size())));
+    const std::span some = pieces.subspan(first, std::min(pieces.size() - first, size_t(kPiecesPerBlock)));
+    std::vector<AreaPiece> block(some.begin(), some.end());
     program.set("pieceCount", int(block.size()));
     block.resize(kPiecesPerBlock);
     blocks_.write(kPiecesPerBlock * sizeof(AreaPiece), block.data()).bindUniform(1);

@@ -33,8 +33,7 @@ class AreaLightPass {
   const RayQuery& tracerFor(const World& world, const PictureSurfaces& surfaces, const AreaSettings& settings);
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
-  void shade(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks, const gl::Texture& share,
-             const LightTarget& target);
+  void shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target);
 
   PassContext context_;
   AreaLights lights_;
@@ -45,7 +44,7 @@ class AreaLightPass {
   std::vector<vec4> normal_;
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};
-  gl::Texture share_, stencil_;
+  gl::Texture share_, stencil_, lobes_;
   gl::Framebuffer framebuffer_; // of both
   gl::Ring blocks_{"area lights/pieces"};
 };

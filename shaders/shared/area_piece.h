@@ -23,8 +23,8 @@ SHARED_INLINE vec3 edgeIntegral(vec3 a, vec3 b) {
 
 /// Form factor times π (W/m² per W/(m² sr)) of a piece that emits towards a receiver at `position` with unit `normal`;
 /// what lies below the receiver's horizon does not count. Lambert's formula for polygons (within 1e-3 of the value, and
-/// within 1e-6 where they fill the sky); a polygon of less than a thirtieth of its distance counts as a point at its
-/// centre (within 0.2 %), a disk as E = L·a·cosx·cosy/(r² + a/π).
+/// within 1e-6 where they fill the sky); a polygon whose sides are less than a thirtieth of its distance counts as a
+/// point at its centre (within 0.2 %), a disk as E = L·a·cosx·cosy/(r² + a/π).
 SHARED_INLINE float areaFormFactor(AreaPiece piece, vec3 position, vec3 normal) {
   int count = int(piece.corners[0].w);
   vec3 corner = vec3(piece.corners[0]) - position;
@@ -40,7 +40,9 @@ SHARED_INLINE float areaFormFactor(AreaPiece piece, vec3 position, vec3 normal) 
     centre = count == 4 ? 0.25f * (centre + vec3(piece.corners[3]) - position) : centre * (1.0f / 3.0f);
   }
   float distance2 = max(dot(centre, centre), 1e-20f);
-  if (count == 0 || area < distance2 * 1e-3f) {
+  vec3 across = vec3(piece.corners[2] - piece.corners[0]);
+  vec3 other = count == 4 ? vec3(piece.corners[3] - piece.corners[1]) : vec3(piece.corners[1] - piece.corners[0]);
+  if (count == 0 || max(dot(across, across), dot(other, other)) < distance2 * 2e-3f) {
     float inverse = 1.0f / sqrt(distance2);
     float cosine = dot(normal, centre) * inverse, cosineLight = abs(dot(front, centre)) * inverse;
     return max(cosine, 0.0f) * area * cosineLight / (distance2 + (count == 0 ? area * 0.318309886f : 0.0f));

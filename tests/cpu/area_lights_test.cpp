@@ -1,6 +1,7 @@
 // Area lights: their pieces' unshadowed light against closed forms and sums, and the points that rays are sent to.
 #include "engine/core/rng.h"
 #include "gi/vpl/area_lights.h"
+#include "tests/support/area_pieces.h"
 #include "tests/support/hand_scene.h"
 
 #include <gtest/gtest.h>
@@ -10,17 +11,7 @@
 namespace lambent {
 namespace {
 
-AreaPiece quadPiece(const vec3& corner, const vec3& e1, const vec3& e2, bool doubleSided = false) {
-  AreaPiece piece{};
-  piece.corners[0] = vec4(corner, 4);
-  piece.corners[1] = vec4(corner + e1, 0);
-  piece.corners[2] = vec4(corner + e1 + e2, 0);
-  piece.corners[3] = vec4(corner + e2, 0);
-  const vec3 n = glm::cross(e1, e2);
-  piece.normalArea = vec4(glm::normalize(n), glm::length(n));
-  piece.radianceSides = vec4(vec3(1), doubleSided ? 1 : 0);
-  return piece;
-}
+using test::quadPiece;
 
 /// ∫ cosx cosy / r² over a parallelogram, by its midpoints.
 double summed(const AreaPiece& piece, const vec3& position, const vec3& normal, int steps) {

@@ -3,6 +3,7 @@
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/direct_light.h"
 #include "gi/plan/effects.h"
+#include "gi/vpl/area_lobe.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -61,6 +62,24 @@ class AreaLightTest : public GlTest {
     return image;
   }
 
+  /// Direct radiance of glossy surfaces, row 0 at the top.
+  Image radianceOf(const HandScene& scene) {
+    settings.gather.glossy = true;
+    settings.effects[EffectId::Emissive] = EffectMode::On;
+    placed = std::make_unique<PlacedScene>(programs, scene);
+    const SceneView view = scene.view();
+    const World world = placed->world(collectLights(view));
+    SurfacePass surfacePass(passes);
+    PatchPass patchPass(passes, StageId::Patches);
+    DirectLight direct(passes);
+    FrameResults results;
+    results.surfaces = surfacePass.run({world.gpu, world.view.camera, true});
+    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
+    results.direct =
+        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, patches}, stats);
+    return readBuffer(Buffer::Direct, results);
+  }
+
   std::unique_ptr<PlacedScene> placed;
   Settings settings;
   FrameStats stats; // of the last picture
@@ -95,6 +114,71 @@ TEST_F(AreaLightTest, IsExactWhereNothingIsBetween) {
     }
   EXPECT_GT(floor, 3000);
   EXPECT_LT(stats.areaFragments, 1500u) << "of 6144 pixels";
+}
+
+/// Floors of metal and of a dielectric under the lamp: pixel by pixel what the CPU makes of the table, and on the whole
+/// the integral of the lobe over the lamp.
+TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
+  for (const auto& [albedo, roughness, metalness] :
+       {std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.3f, 1.0f), std::tuple(vec3(0.2f, 0.5f, 0.8f), 0.35f, 0.0f),
+        std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.6f, 0.7f)}) {
+    HandScene scene;
+    lampOver(scene);
+    Material& floor = scene.assets.materials[0];
+    floor.baseColor = albedo;
+    floor.roughness = roughness;
+    floor.metalness = metalness;
+    scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
+    const Image image = radianceOf(scene);
+    const SceneView view = scene.view();
+    const AreaLights lights = areaLights(collectLights(view));
+    const AreaPiece& lamp = lights.pieces.at(0);
+    Image onCpu(48, 32), integrated(48, 32), drawn(48, 32);
+    int seen = 0;
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 48; ++x) {
+        const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 48, (float(y) + 0.5f) / 32);
+        const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
+        if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+        const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
+        const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
+        onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
+        integrated.at(x, y) = lambert;
+        constexpr int kSteps = 24;
+        for (int i = 0; i < kSteps * kSteps; ++i) {
+          const vec3 to = vec3(-0.4f + 0.8f * (float(i % kSteps) + 0.5f) / kSteps, 2,
+                               -0.3f + 0.6f * (float(i / kSteps) + 0.5f) / kSteps);
+          const vec3 way = to - at, towardsLight = glm::normalize(way);
+          const float solid = 0.48f / (kSteps * kSteps) * towardsLight.y / glm::dot(way, way);
+          integrated.at(x, y) += vec3(5, 4, 3) * glossyReflectance(r, towardsLight, 0) * (solid * towardsLight.y);
+        }
+        drawn.at(x, y) = image.at(x, y);
+        ++seen;
+      }
+    EXPECT_GT(seen, 800);
+    EXPECT_LT(relativeRmse(drawn, onCpu), 0.002) << roughness;
+    EXPECT_LT(relativeRmse(drawn, integrated), roughness < 0.4f ? 0.02 : 0.06) << roughness;
+    EXPECT_NEAR(meanLuminance(drawn) / meanLuminance(integrated), 1, 0.01) << roughness;
+  }
+}
+
+/// A lamp with a texture is disks. White all over, it is mirrored as the same lamp without.
+TEST_F(AreaLightTest, GlossyFloorsMirrorDisks) {
+  HandScene scene;
+  lampOver(scene);
+  scene.assets.materials[0].roughness = 0.3f;
+  scene.assets.materials[0].metalness = 1;
+  scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
+  const Image whole = radianceOf(scene);
+  TextureImage white;
+  white.width = white.height = 1;
+  white.srgb = false;
+  white.texels = {{255, 255, 255, 255}};
+  scene.assets.images.push_back(white);
+  scene.assets.materials[1].emissiveTexture.image = 0;
+  const Image disks = radianceOf(scene);
+  EXPECT_LT(relativeRmse(disks, whole), 0.03);
+  EXPECT_NEAR(meanLuminance(disks) / meanLuminance(whole), 1, 0.01);
 }
 
 TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
