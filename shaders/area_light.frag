@@ -1,6 +1,7 @@
 #version 450
 // Direct light of one block of area lights' pieces: what they bring where nothing is between, times the share of it that
-// reaches the pixel. GLOSSY: the receivers' lobes too, by linearly transformed cosines.
+// reaches the pixel. DISKS: of a block without polygons (software Mesa runs both branches of what differs among pieces).
+// GLOSSY: the receivers' lobes too, by linearly transformed cosines.
 #include "lib/gbuffer.glsl"
 #include "shared/area_piece.h"
 #ifdef GLOSSY
@@ -43,11 +44,15 @@ void main() {
 #endif
   vec3 sum = vec3(0.0);
   for (int i = 0; i < pieceCount; ++i) {
-    AreaPiece piece = pieces[i];
-    float factor = areaFormFactor(piece, position, normal);
-    sum += piece.radianceSides.rgb * factor;
+#ifdef DISKS
+    float factor = diskFormFactor(pieces[i], position, normal);
+#else
+    float factor = areaFormFactor(pieces[i], position, normal);
+#endif
+    sum += pieces[i].radianceSides.rgb * factor;
 #ifdef GLOSSY
     if (factor == 0.0 || receiver.strength == 0.0) continue;
+    AreaPiece piece = pieces[i];
     AreaLobe lobeOfPiece = lobe;
     if (piece.corners[0].w == 0.0) { // disks have gaps between them, which a wider lobe does not see
       vec3 way = piece.corners[0].xyz - position;

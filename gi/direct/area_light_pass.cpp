@@ -170,19 +170,26 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
 }
 
 void AreaLightPass::shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target) {
-  const gl::Program& program =
-      context_.programs.get({.fragment = "area_light.frag", .defines = bindSurfaces(surfaces)});
-  program.use();
   share.bind(2);
   if (surfaces.finish) {
     if (!lobes_) lobes_ = lobeTexture();
     lobes_.bind(3);
-    program.set("spread", GatherSettings{}.spread); // as DirectLight
   }
   target.bind();
   gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
-  const std::span pieces(lights_.pieces);
-  blocks_.reserve(pieces.size_bytes() + kPiecesPerBlock * sizeof(AreaPiece));
+  std::vector<AreaPiece> pieces = lights_.pieces;
+  const auto disks = std::ranges::stable_partition(pieces, [](const AreaPiece& p) { return p.corners[0].w > 0; });
+  blocks_.reserve(pieces.size() * sizeof(AreaPiece) + 2 * kPiecesPerBlock * sizeof(AreaPiece));
+  shadePieces(surfaces, std::span(pieces).first(pieces.size() - disks.size()), false);
+  shadePieces(surfaces, disks, true);
+}
+
+void AreaLightPass::shadePieces(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks) {
+  std::vector<std::string> defines = bindSurfaces(surfaces);
+  if (disks) defines.push_back("DISKS");
+  const gl::Program& program = context_.programs.get({.fragment = "area_light.frag", .defines = std::move(defines)});
+  program.use();
+  if (surfaces.finish) program.set("spread", GatherSettings{}.spread); // as DirectLight
   for (size_t first = 0; first < pieces.size(); first += kPiecesPerBlock) {
     const std::span some = pieces.subspan(first, std::min(pieces.size() - first, size_t(kPiecesPerBlock)));
     std::vector<AreaPiece> block(some.begin(), some.end());

@@ -34,6 +34,7 @@ class AreaLightPass {
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target);
+  void shadePieces(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks);
 
   PassContext context_;
   AreaLights lights_;
