@@ -6,15 +6,11 @@ namespace lambent {
 
 namespace {
 
-/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters is
-/// spread over the lights as evenly as all.
+/// Rays go to the lights in proportion to what these bring: ray k to part k/n of all light. Each of four quarters,
+/// whose rays follow each other in turn, is spread over the lights as evenly as all.
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
 constexpr int kMostAll = 4 * kMostAreaRays;
-
-/// Of four rays side by side, each quarter has one; which one takes turns, or a quarter's rays would all lie to one
-/// side of another's, and an edge along them would look like a difference.
-int quarterOf(int ray) { return (ray + ray / 4 + ray / 16) % 4; }
 
 } // namespace
 
@@ -28,7 +24,7 @@ struct AreaVisibility::Question {
   std::array<bool, 4> quarters{}; // to be traced next
   uint64_t traced = 0;
 
-  bool wanted(int k) const { return quarters[size_t(quarterOf(k))] && weights[size_t(k)] > 0; }
+  bool wanted(int k) const { return quarters[size_t(k % 4)] && weights[size_t(k)] > 0; }
 };
 
 AreaVisibility::Place AreaVisibility::placeAt(const glm::ivec2& pixel) const {
@@ -158,7 +154,7 @@ void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
       sum += weight;
       if (!q.open[size_t(k)]) continue;
       open += weight;
-      to.bits[size_t(kPartOf[quarterOf(k)])] |= uint64_t(1) << (k / 4);
+      to.bits[size_t(kPartOf[k % 4])] |= uint64_t(1) << (k / 4);
     }
     // A light that is due less than one ray stands for others like it.
     const vec3& own = q.from.light[light];
@@ -181,7 +177,7 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
         q.from = unshadowedAround(placeAt(middleOf(texels[i], level)), parts);
         if (!(q.from.total > 0)) return false;
         choose(q);
-        for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[quarterOf(k)])]);
+        for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
         q.quarters.fill(true);
         return true;
       },
@@ -239,7 +235,7 @@ std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels
         for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
         const int known = kQuarterOf[s];
         for (int k = 0; k < all(); ++k)
-          if (quarterOf(k) == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
+          if (k % 4 == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
         q.quarters.fill(true);
         q.quarters[size_t(known)] = false;
         return true;
