@@ -23,6 +23,7 @@ struct AreaVisibility::Question {
   std::array<bool, kMostAll> open;
   std::array<bool, 4> quarters{}; // to be traced next
   uint64_t traced = 0;
+  size_t quad = ~size_t(0); // whose lights and samples these are
 
   bool wanted(int k) const { return quarters[size_t(k % 4)] && weights[size_t(k)] > 0; }
 };
@@ -229,9 +230,12 @@ std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels
         const glm::ivec2& texel = texels[i / 4];
         const size_t s = i % 4;
         const std::array<Place, 4> parts = partsOf(texel, 1);
-        q.from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
+        if (q.quad != i / 4) { // the four come one after the other
+          q.quad = i / 4;
+          q.from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
+          if (q.from.total > 0) choose(q);
+        }
         if (!(q.from.total > 0)) return false;
-        choose(q);
         for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
         const int known = kQuarterOf[s];
         for (int k = 0; k < all(); ++k)
