@@ -278,6 +278,7 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
   EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.008) << "64 rays";
+  EXPECT_LT(error, 0.022) << "0.0234 where patches beside a shadow's edge are not split too";
   settings.area.upsample = AreaUpsample::Bilinear;
   EXPECT_GT(relativeRmse(irradianceOf(scene), traced), error);
   settings.area.refinement = AreaRefinement::Neighbours;
