@@ -135,5 +135,18 @@ TEST(AreaLights, TexturedOnesKeepTheirTexture) {
   EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0), vec3(0, 1, 0)).x, 4 * bright, 0.04f * 4 * bright);
 }
 
+TEST(AreaLights, DisksShineToTheirFrontOrToBothSides) {
+  AreaPiece disk{};
+  disk.corners[0] = vec4(0, 1, 0, 0);
+  disk.normalArea = vec4(0, -1, 0, 0.01f);
+  disk.radianceSides = vec4(1, 1, 1, 0);
+  const float front = areaFormFactor(disk, vec3(0), vec3(0, 1, 0));
+  EXPECT_NEAR(front, 0.01f / (1 + 0.01f / kPi), 1e-6f);
+  disk.normalArea.y = 1;
+  EXPECT_EQ(areaFormFactor(disk, vec3(0), vec3(0, 1, 0)), 0);
+  disk.radianceSides.w = 1;
+  EXPECT_EQ(areaFormFactor(disk, vec3(0), vec3(0, 1, 0)), front);
+}
+
 } // namespace
 } // namespace lambent

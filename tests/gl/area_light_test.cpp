@@ -309,6 +309,12 @@ TEST_F(AreaLightTest, LightEndsWhereTheLampsPlaneDoes) {
     scene.camera = cameraAt(vec3(0, 0.9f + 0.01f * float(i), 1), vec3(0, 0.9f + 0.01f * float(i), -1), 1.0f, 96, 64);
     const Image traced = tracedOf(scene), image = irradianceOf(scene);
     EXPECT_LT(relativeRmse(image, traced), 0.02) << i;
+    float most = 0;
+    for (const vec3& e : traced.pixels) most = std::max(most, e.x);
+    int black = 0;
+    for (size_t p = 0; p < traced.pixels.size(); ++p)
+      black += traced.pixels[p].x > 0.01f * most && image.pixels[p].x == 0;
+    EXPECT_EQ(black, 0) << i;
   }
 }
 
