@@ -7,6 +7,8 @@
 #include "gi/contract/world.h"
 #include "gi/plan/settings.h"
 
+#include <functional>
+
 namespace lambent {
 
 struct FrameStats; // gi/contract/figures.h
@@ -22,7 +24,8 @@ struct IndirectInputs {
   uint32_t picture = 0;  // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such pictures
   bool changes = false;  // light does; means are short then
-  bool stands = false;   // neither light nor camera changes, and means follow no change before
+  bool stands = false; // neither light nor camera changes, and means follow no change before
+  std::function<void(int, int)> progress = {}; // of what takes long: done and total; may be empty
 };
 
 class IndirectStage {

@@ -45,6 +45,7 @@ struct VirtualLights {
   std::vector<uint32_t> carried = {}; // slots whose light is the same and stands elsewhere, on an object that moved
   bool mayWait = false;               // maps of lights that stay may follow moving objects some frames late
   const LightTrees* trees = nullptr;  // in place of a list
+  uint32_t direct = ~0u;              // slots below it reflect direct light, others later bounces
   uint32_t alive = 0;                 // that bring light, as far as known
 };
 

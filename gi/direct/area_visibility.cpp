@@ -11,6 +11,11 @@ namespace {
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
 constexpr int kMostAll = 4 * kMostAreaRays;
+constexpr int kMostRounds = 8;           // of rays to ever fewer lights
+constexpr int kEnoughHidden = 16;        // rays that tell that nothing of a light is seen; fewer do where nearly
+constexpr float kAllHidden = 15.0f / 16; // all rays are blocked, for lights that are about
+constexpr float kLikeBrightest = 0.125f; // as bright as the brightest that is hidden
+constexpr float kMostlyHidden = 0.75f;   // of the light: rays to the others, again as many as to all
 
 } // namespace
 
@@ -22,6 +27,9 @@ struct AreaVisibility::Question {
   std::array<float, kMostAll> weights; // of a sample's light, for a receiver; 0: not traced
   std::array<bool, kMostAll> open;
   std::array<bool, 4> quarters{}; // to be traced next
+  std::array<bool, 4> known{};    // traced
+  vec3 whole{0};                  // what all lights bring; `from` loses those that are found hidden
+  int rounds = 0;
   uint64_t traced = 0;
   size_t quad = ~size_t(0); // whose lights and samples these are
 
@@ -49,8 +57,9 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAt(const Place& place) cons
   Unshadowed out{std::vector<vec3>(lights_.lights.size())};
   for (size_t l = 0; l < out.light.size(); ++l) {
     out.light[l] = unshadowed(lights_, lights_.lights[l], place.position, place.normal);
-    out.total += luminance(out.light[l]);
+    out.sum += out.light[l];
   }
+  out.total = luminance(out.sum);
   return out;
 }
 
@@ -59,6 +68,61 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle,
   Unshadowed from = unshadowedAt(middle);
   for (size_t s = 0; s < 4 && !(from.total > 0); ++s) from = unshadowedAt(parts[s]);
   return from;
+}
+
+bool AreaVisibility::begin(Question& q, Unshadowed from) const {
+  q.from = std::move(from);
+  q.whole = q.from.sum;
+  q.rounds = 1;
+  q.known = {};
+  if (!(q.from.total > 0)) return false;
+  choose(q);
+  return true;
+}
+
+/// Leaves out lights that are hidden, where they were due most of the rays: what is left gets as many again. A lamp
+/// behind a wall would else take the rays of all that it outshines, and these its darkness. Whether there is any left.
+bool AreaVisibility::askRest(Question& q) const {
+  if (q.rounds == kMostRounds) return false;
+  const auto answered = [&](int k) { return q.known[size_t(k % 4)] && q.weights[size_t(k)] > 0; };
+  int asked = 0, blocked = 0;
+  for (int k = 0; k < all(); ++k)
+    if (answered(k)) ++asked, blocked += !q.open[size_t(k)];
+  if (blocked == 0) return false;
+  struct Hidden {
+    uint32_t light;
+    int rays;
+    float brightness;
+  };
+  std::array<Hidden, kMostAll> hidden;
+  size_t count = 0;
+  float brightest = 0;
+  for (int k = 0; k < all();) {
+    const uint32_t light = q.lights[size_t(k)];
+    int rays = 0, open = 0;
+    for (; k < all() && q.lights[size_t(k)] == light; ++k)
+      if (answered(k)) ++rays, open += q.open[size_t(k)];
+    if (rays == 0 || open > 0) continue;
+    hidden[count++] = {light, rays, luminance(q.from.light[light])};
+    brightest = std::max(brightest, hidden[count - 1].brightness);
+  }
+  const bool nearlyAll = float(blocked) >= kAllHidden * float(asked);
+  Unshadowed left{q.from.light};
+  float gone = 0;
+  for (const Hidden& h : std::span(hidden).first(count)) {
+    if (h.rays < kEnoughHidden && !(nearlyAll && h.brightness >= kLikeBrightest * brightest)) continue;
+    left.light[h.light] = vec3(0);
+    gone += h.brightness;
+  }
+  if (!(gone > 0) || (blocked < asked && gone < kMostlyHidden * q.from.total)) return false;
+  for (const vec3& light : left.light) left.sum += light;
+  left.total = luminance(left.sum);
+  if (!(left.total > 0)) return false;
+  q.from = std::move(left);
+  ++q.rounds;
+  q.known = {};
+  choose(q);
+  return true;
 }
 
 void AreaVisibility::choose(Question& q) const {
@@ -94,6 +158,11 @@ void AreaVisibility::aim(Question& q, int k, const Place& place) const {
 template <class Begin, class Asked>
 void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) const {
   constexpr size_t kGrain = 32;
+  const auto take = [&](Question& q, std::span<const uint8_t> blocked, size_t& n) {
+    for (int k = 0; k < all(); ++k)
+      if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++], ++q.traced;
+    for (size_t s = 0; s < 4; ++s) q.known[s] |= q.quarters[s];
+  };
   if (!rays_.ownThread()) {
     parallelFor(count, kGrain, [&](size_t first, size_t end) {
       Question q;
@@ -107,10 +176,8 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
           for (int k = 0; k < all(); ++k)
             if (q.wanted(k)) segments[n++] = q.segments[size_t(k)];
           rays_.occluded(std::span(segments).first(n), std::span(blocked).first(n));
-          q.traced += n;
           n = 0;
-          for (int k = 0; k < all(); ++k)
-            if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++];
+          take(q, blocked, n);
         }
       }
     });
@@ -134,8 +201,7 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
       for (size_t i = 0; i < questions.size(); ++i) {
         if (!more[i]) continue;
         Question& q = questions[i];
-        for (int k = 0; k < all(); ++k)
-          if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++], ++q.traced;
+        take(q, blocked, n);
         more[i] = asked(first + i, q);
       }
     }
@@ -145,6 +211,7 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
 /// The share that the rays found open, over their weights: 1 where all are.
 void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
   to.rays = q.traced;
+  to.rounds = q.rounds;
   vec3 lit(0), whole(0);
   for (int k = 0; k < all();) {
     const uint32_t light = q.lights[size_t(k)];
@@ -166,7 +233,12 @@ void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
       lit[c] += share * own[c] * (open[c] / sum[c]);
     }
   }
-  for (int c = 0; c < 3; ++c) to.visible[c] = whole[c] > 0 ? std::min(lit[c] / whole[c], 1.0f) : 0;
+  // A colour that no light has that was asked goes by the brightness.
+  const float bright = luminance(whole) > 0 ? luminance(lit) / luminance(whole) : 0;
+  for (int c = 0; c < 3; ++c) {
+    const float left = q.whole[c] > 0 ? q.from.sum[c] / q.whole[c] : 1;
+    to.visible[c] = std::min((whole[c] > 0 ? lit[c] / whole[c] : bright) * left, 1.0f);
+  }
 }
 
 std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texels, int level) const {
@@ -175,14 +247,17 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
       texels.size(),
       [&](size_t i, Question& q) {
         const std::array<Place, 4> parts = partsOf(texels[i], level);
-        q.from = unshadowedAround(placeAt(middleOf(texels[i], level)), parts);
-        if (!(q.from.total > 0)) return false;
-        choose(q);
+        if (!begin(q, unshadowedAround(placeAt(middleOf(texels[i], level)), parts))) return false;
         for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
         q.quarters.fill(true);
         return true;
       },
-      [&](size_t i, const Question& q) {
+      [&](size_t i, Question& q) {
+        if (askRest(q)) {
+          const std::array<Place, 4> parts = partsOf(texels[i], level);
+          for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
+          return true;
+        }
         addUp(q, seen[i]);
         return false;
       });
@@ -192,29 +267,28 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
 std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const {
   constexpr int kFirst = 1; // the quarter that is asked before the others
   std::vector<AreaSeen> seen(pixels.size());
+  const auto aimAll = [&](size_t i, Question& q) {
+    const Place place = placeAt(pixels[i]);
+    for (int k = 0; k < all(); ++k) aim(q, k, place);
+    q.quarters.fill(askAll || q.rounds > 1);
+    q.quarters[kFirst] = true;
+    return true;
+  };
   ask(
-      pixels.size(),
+      pixels.size(), [&](size_t i, Question& q) { return begin(q, unshadowedAt(placeAt(pixels[i]))) && aimAll(i, q); },
       [&](size_t i, Question& q) {
-        const Place place = placeAt(pixels[i]);
-        q.from = unshadowedAt(place);
-        if (!(q.from.total > 0)) return false;
-        choose(q);
-        for (int k = 0; k < all(); ++k) aim(q, k, place);
-        q.quarters.fill(askAll);
-        q.quarters[kFirst] = true;
-        return true;
-      },
-      [&](size_t i, Question& q) {
-        if (!askAll && q.quarters[kFirst]) {
-          uint64_t opened = 0;
-          for (int k = 0; k < all(); ++k) opened += q.wanted(k) && q.open[size_t(k)];
-          if (q.traced == 0 || (opened != 0 && opened != q.traced)) {
+        if (!askAll && q.rounds == 1 && q.quarters[kFirst]) {
+          int asked = 0, opened = 0;
+          for (int k = 0; k < all(); ++k)
+            if (q.wanted(k)) ++asked, opened += q.open[size_t(k)];
+          if (asked == 0 || (opened != 0 && opened != asked)) {
             q.quarters.fill(true);
             q.quarters[kFirst] = false;
             return true;
           }
           for (int k = 0; k < all(); ++k) q.open[size_t(k)] = opened > 0;
         }
+        if (askRest(q)) return aimAll(i, q);
         addUp(q, seen[i]);
         return false;
       });
@@ -232,19 +306,28 @@ std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels
         const std::array<Place, 4> parts = partsOf(texel, 1);
         if (q.quad != i / 4) { // the four come one after the other
           q.quad = i / 4;
-          q.from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
-          if (q.from.total > 0) choose(q);
+          begin(q, unshadowedAround(placeAt(middleOf(texel, 1)), parts)); // as when the patch was asked
         }
         if (!(q.from.total > 0)) return false;
         for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
+        q.quarters.fill(true);
+        q.known = {};
+        if (patches[i / 4].rounds > 1) return true; // its bits are of other rays
         const int known = kQuarterOf[s];
         for (int k = 0; k < all(); ++k)
           if (k % 4 == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
-        q.quarters.fill(true);
         q.quarters[size_t(known)] = false;
+        q.known[size_t(known)] = true;
         return true;
       },
-      [&](size_t i, const Question& q) {
+      [&](size_t i, Question& q) {
+        if (askRest(q)) {
+          q.quad = ~size_t(0); // the next of the four begins with all lights
+          const std::array<Place, 4> parts = partsOf(texels[i / 4], 1);
+          for (int k = 0; k < all(); ++k) aim(q, k, parts[i % 4]);
+          q.quarters.fill(true);
+          return true;
+        }
         addUp(q, seen[i]);
         return false;
       });

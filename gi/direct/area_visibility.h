@@ -30,6 +30,7 @@ struct PictureSurfaces {
 struct AreaSeen {
   std::array<uint64_t, 4> bits{}; // by sub-fragment; of a single pixel by quarter of its rays
   vec3 visible{0};                // share of the unshadowed light
+  int rounds = 1;                 // 2 and more: the bits are of what was left when the brightest were found hidden
   uint64_t rays = 0;              // that were traced
 
   bool lit() const {
@@ -63,6 +64,7 @@ class AreaVisibility {
   /// What the lights bring where nothing is between.
   struct Unshadowed {
     std::vector<vec3> light;
+    vec3 sum{0};
     float total = 0; // luminance
   };
   Unshadowed unshadowedAt(const Place& place) const;
@@ -73,7 +75,9 @@ class AreaVisibility {
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
+  bool begin(Question& q, Unshadowed from) const;
   void choose(Question& q) const;
+  bool askRest(Question& q) const;
   void aim(Question& q, int k, const Place& place) const;
   void addUp(const Question& q, AreaSeen& to) const;
   /// `begin(i, q)` aims the rays of question i; `asked(i, q)` takes the answers and says whether there is more to

@@ -120,7 +120,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       const bool changes = averages && plan.lightChanges();
       gathered = k.indirectStages.of(settings).run(
           {world, surfaces, patches, seen, settings, bounces, k.seed, averages ? k.history.picture() : 0, averages,
-           changes, averages && !changes && !world.view.changes.camera && !k.history.follows()},
+           changes, averages && !changes && !world.view.changes.camera && !k.history.follows(), progress},
           stats);
       const FilterSettings filter = k.filterFor(plan);
       LightOnSurfaces mean = gathered;

@@ -36,6 +36,9 @@ constexpr Technique kTechniques[] = {
     {"lpv",
      "light propagation volume lit by Poisson samples over all surfaces (paper 4)",
      {Poisson, V::None, Volume, R::None}},
+    {"ibrr",
+     "instant radiosity kept in a layered depth cube, looked up by every view (paper 5)",
+     {Ir, V::None, Cube, R::None}},
 };
 
 } // namespace
@@ -60,7 +63,7 @@ const Technique& techniqueByName(const std::string& name) {
 }
 
 void applyTechnique(Settings& settings, const Technique& technique) {
-  if (!sharesGather(settings.vpl.source) || !sharesGather(technique.axes.source)) {
+  if (!sharesGather(axesOf(settings)) || !sharesGather(technique.axes)) {
     settings.vpl.visibility = technique.axes.visibility;
     settings.gather.mode = technique.axes.gather;
   }

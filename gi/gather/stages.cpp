@@ -11,6 +11,7 @@ IndirectStage& IndirectStages::of(const Settings& settings) {
   const Make make = settings.own     ? settings.own->make
                     : rays           ? makeRayGather
                     : gather.volume  ? makeVolumeGather
+                    : gather.stored  ? makeCubeGather
                     : gather.splats  ? makeSplatGather
                     : gather.patches ? makePatchGather
                                      : makePixelGather;

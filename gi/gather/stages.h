@@ -8,6 +8,7 @@
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
 //   light_volume, volume_gather  lights into a grid, through it, and from there to pixels
+//   cube_gather     lights into a layered depth cube (gi/cube), and from there to pixels
 //   tree_gather     the draw of light trees
 //   map_checks      rays that check what maps say at pixels
 //   near_light_pass what bounds take from near lights, added to any of these
@@ -26,6 +27,7 @@ std::unique_ptr<IndirectStage> makeRayGather(PassContext context);
 std::unique_ptr<IndirectStage> makePatchGather(PassContext context);
 std::unique_ptr<IndirectStage> makeSplatGather(PassContext context);
 std::unique_ptr<IndirectStage> makeVolumeGather(PassContext context);
+std::unique_ptr<IndirectStage> makeCubeGather(PassContext context);
 
 /// The stages, each made when it is first asked for and kept.
 class IndirectStages {

@@ -138,6 +138,7 @@ VirtualLights SampledSource::show(const SourceInputs& in, bool overlapped, const
   changes.placedSlots.clear();
   shown_ = lightsOf(kept_.set);
   lights.slots = shown_;
+  lights.direct = kept_.set.direct;
   lights.mayWait = true;
   if (in.settings.vpl.visibility != VplVisibility::Rays) lights.packed = buffer_.run(shown_);
   return lights;

@@ -24,6 +24,11 @@ std::string whyNot(const Axes& axes) {
   if (gather.volume && axes.visibility != VplVisibility::None)
     return "vpl.visibility " + std::string(rowOf(axes.visibility).name) +
            ": light of a volume goes around corners by itself (none)";
+  if (gather.stored && axes.visibility != VplVisibility::None)
+    return "vpl.visibility " + std::string(rowOf(axes.visibility).name) +
+           ": what is stored was looked at by lights themselves, as cube.sights says (none)";
+  if (gather.stored && !source.anyView)
+    return "gather.mode " + std::string(gather.name) + ": the lights of " + name + " follow the view (ir, poisson)";
   if (source.tree && gather.volume)
     return "gather.mode volume: " + name + " has clusters of all sizes, and no list of them (smc, rsm, poisson, ...)";
   if (source.tree && gather.splats)

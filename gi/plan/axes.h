@@ -18,22 +18,20 @@ struct SourceRow {
   bool reflective; // from reflective shadow maps, when the picture is drawn: punctual lights only, one bounce
   bool clusters;   // of the maps' texels; else a grid over them
   bool tree;       // clusters of all sizes, chosen by who gathers: no list
+  bool anyView;    // its lights are the same wherever the camera is
 };
 inline constexpr SourceRow kSources[] = {
-    {"smc", "sequential Monte Carlo set", true, true, false, false, false, false},
-    {"ir", "photons from the lights", true, false, false, false, false, false},
-    {"mir", "paths from the camera, by their light", true, false, false, false, false, false},
-    {"tcas", "Markov chains over shadow maps", true, false, false, false, false, false},
-    {"poisson", "Poisson samples over all surfaces", true, true, true, false, false, false},
-    {"rsm", "grid over reflective shadow maps", false, false, false, true, false, false},
-    {"isr", "smooth patches of reflective shadow maps", false, false, false, true, true, false},
-    {"hisr", "trees over reflective shadow maps", false, false, false, true, true, true},
-    {"none", "no virtual lights", false, false, false, false, false, false},
+    {"smc", "sequential Monte Carlo set", true, true, false, false, false, false, false},
+    {"ir", "photons from the lights", true, false, false, false, false, false, true},
+    {"mir", "paths from the camera, by their light", true, false, false, false, false, false, false},
+    {"tcas", "Markov chains over shadow maps", true, false, false, false, false, false, false},
+    {"poisson", "Poisson samples over all surfaces", true, true, true, false, false, false, true},
+    {"rsm", "grid over reflective shadow maps", false, false, false, true, false, false, false},
+    {"isr", "smooth patches of reflective shadow maps", false, false, false, true, true, false, false},
+    {"hisr", "trees over reflective shadow maps", false, false, false, true, true, true, false},
+    {"none", "no virtual lights", false, false, false, false, false, false, false},
 };
 constexpr const SourceRow& rowOf(VplSource source) { return kSources[int(source)]; }
-/// Whether its lights are sampled for the picture: all such sources go with the same visibility and gather.
-constexpr bool sharesGather(VplSource source) { return rowOf(source).sampled && !rowOf(source).fixed; }
-
 /// Who says which pixel a virtual light reaches.
 enum class VplVisibility : int { Maps, Rays, None };
 struct VisibilityRow {
@@ -48,7 +46,7 @@ inline constexpr VisibilityRow kVisibilities[] = {
 constexpr const VisibilityRow& rowOf(VplVisibility visibility) { return kVisibilities[int(visibility)]; }
 
 /// Where light is gathered. With rays, at every pixel from every light, whatever this says.
-enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl, Volume, Own };
+enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl, Volume, Cube, Own };
 struct GatherRow {
   const char* name;
   const char* help;
@@ -56,16 +54,18 @@ struct GatherRow {
   bool patches; // of the multiresolution buffer
   bool splats;  // light by light, into the patches
   bool volume;  // in a grid over the scene, which light propagates through
+  bool stored;  // once for all views: by lights that do not depend on them
 };
 inline constexpr GatherRow kGathers[] = {
-    {"interleaved", "pixels, each of 4x4 from a sixteenth of the lights", true, false, false, false},
-    {"full", "every pixel from every light", false, false, false, false},
-    {"multires", "every patch from every light", false, true, false, false},
-    {"multires-interleaved", "patches of each of the 16 subsets", true, true, false, false},
-    {"splat", "every light into the patches", false, true, true, false},
-    {"splat-per-vpl", "every light into patches of its own", false, true, true, false},
-    {"volume", "pixels, from a grid that light propagates through", false, false, false, true},
-    {"own", "a stage of the technique's own", false, false, false, false},
+    {"interleaved", "pixels, each of 4x4 from a sixteenth of the lights", true, false, false, false, false},
+    {"full", "every pixel from every light", false, false, false, false, false},
+    {"multires", "every patch from every light", false, true, false, false, false},
+    {"multires-interleaved", "patches of each of the 16 subsets", true, true, false, false, false},
+    {"splat", "every light into the patches", false, true, true, false, false},
+    {"splat-per-vpl", "every light into patches of its own", false, true, true, false, false},
+    {"volume", "pixels, from a grid that light propagates through", false, false, false, true, false},
+    {"cube", "a layered depth cube over the scene, kept from picture to picture", false, false, false, false, true},
+    {"own", "a stage of the technique's own", false, false, false, false, false},
 };
 constexpr const GatherRow& rowOf(GatherMode mode) { return kGathers[int(mode)]; }
 
@@ -79,6 +79,11 @@ struct Axes {
   GatherMode gather = GatherMode::Interleaved;
   Reconstruction reconstruction = Reconstruction::Filter;
 };
+
+/// Whether lights are sampled for the picture: all such sources go with the same visibility and gather.
+constexpr bool sharesGather(const Axes& axes) {
+  return rowOf(axes.source).sampled && !rowOf(axes.source).fixed && !rowOf(axes.gather).stored;
+}
 
 /// Why these do not go together, in one line that names the setting to change; empty where they do.
 std::string whyNot(const Axes& axes);

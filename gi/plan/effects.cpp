@@ -152,8 +152,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                  : Answer{true, "the gather is interleaved"});
 
   const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
-  const bool bounded = source.sampled && !rowOf(settings.gather.mode).volume && settings.gather.near > 0 &&
-                       (settings.gather.disk > 0 || settings.gather.clamp > 0);
+  const bool bounded = source.sampled && !rowOf(settings.gather.mode).volume && !rowOf(settings.gather.mode).stored &&
+                       settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
   decide(EffectId::History, !lights                       ? none
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
                             : sixteenths                  ? Answer{true, "the gather is interleaved"}
@@ -176,22 +176,26 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                : moved                 ? Answer{true, movers}
                                : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
                                                        : Answer{false, "nothing moved"});
-  const bool placedAnew = source.sampled && !source.persistent; // every frame, by photons or chains
+  // By photons or chains; photons take the same ways as long as nothing is in another place.
+  const bool sameWays = source.anyView && !changes.first && !changes.lights && !moved && !facts.settingsChanged;
+  const bool placedAnew = source.sampled && !source.persistent;
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
-  decide(EffectId::Relight, !lights                 ? none
-                            : reflective            ? fromMaps
-                            : placedAnew            ? Answer{true, "the technique lights its VPLs anew in every frame"}
-                            : changes.first         ? Answer{true, "the scene is new"}
-                            : changes.lights        ? Answer{true, "lights changed"}
-                            : moved                 ? Answer{true, movers}
-                            : facts.settingsChanged ? Answer{true, "settings changed"}
+  decide(EffectId::Relight, !lights                  ? none
+                            : reflective             ? fromMaps
+                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
+                            : placedAnew             ? Answer{true, "the technique lights its VPLs anew in every frame"}
+                            : changes.first          ? Answer{true, "the scene is new"}
+                            : changes.lights         ? Answer{true, "lights changed"}
+                            : moved                  ? Answer{true, movers}
+                            : facts.settingsChanged  ? Answer{true, "settings changed"}
                             : !smc.cache && !(still && facts.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
   decide(EffectId::Replace, !lights                  ? none
                             : source.fixed           ? Answer{false, "the samples stay on their surfaces"}
                             : reflective             ? fromMaps
+                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}

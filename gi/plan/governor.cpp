@@ -27,7 +27,7 @@ std::optional<double> timeOf(const Settings& settings) {
     applyPreset(same, preset.name);
     if (same == settings) return preset.time;
   }
-  const bool ownGather = !sharesGather(settings.vpl.source);
+  const bool ownGather = !sharesGather(axesOf(settings));
   for (const auto& [name, value] : presetTable().front().set) {
     const SettingRow& row = settingRow(name);
     if (row.get(settings) != row.standard && !(ownGather && name == "gather.mode")) return {};

@@ -43,7 +43,7 @@ void applyPreset(Settings& settings, const std::string& name) {
     throw InputError("preset " + name, "no such preset (" + known + ")");
   }
   for (const auto& [setting, value] : found->set) // techniques from reflective maps have a gather of their own
-    if (setting != "gather.mode" || sharesGather(settings.vpl.source)) applySetting(settings, setting, value);
+    if (setting != "gather.mode" || sharesGather(axesOf(settings))) applySetting(settings, setting, value);
 }
 
 } // namespace lambent

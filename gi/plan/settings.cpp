@@ -173,10 +173,18 @@ class Table {
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
     number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
+    number("cube.resolution", &Settings::cube, &CubeSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Set,
+           "along an edge of the layered depth cube; time to build it and memory grow with the square");
+    choice("cube.sights", &Settings::cube, &CubeSettings::sights, {"rays", "hemicubes"}, Set,
+           "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
+    number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Set,
+           "along an edge of these images; half of it for lights after the first bounce");
     number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
            "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
     number("lpv.size", &Settings::lpv, &VolumeSettings::size, {0, kNoLimit, "m"}, Nothing,
-           "gather.mode volume: edge of a grid that follows the camera in steps of a cell; 0 = all of the scene");
+           "gather.mode volume: edge of a grid that follows the camera in steps of a cell (of 1e-5 of the scene's "
+           "width, at "
+           "least); 0 = all of the scene");
     number("lpv.steps", &Settings::lpv, &VolumeSettings::steps, {0, 512, "steps", PowersOfTwo}, Nothing,
            "gather.mode volume: cells that light goes from where it was reflected; what is then on its way is lost");
     flag("lpv.occlusion", &Settings::lpv, &VolumeSettings::occlusion, Nothing,

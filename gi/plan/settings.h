@@ -26,6 +26,8 @@ enum class AreaTracer : int { Auto, Cpu, Gpu }; // auto measures both once
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
+// Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
+enum class CubeSights : int { Rays, Hemicubes };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -163,6 +165,14 @@ struct VolumeSettings {
   bool operator==(const VolumeSettings&) const = default;
 };
 
+/// The layered depth cube: irradiance of all surfaces, whatever the view (paper 5).
+struct CubeSettings {
+  int resolution = 128; // texels along an edge of the scene's box
+  CubeSights sights = CubeSights::Rays;
+  int hemicube = 128; // texels along an edge of a light's hemicube; half of it after the first bounce
+  bool operator==(const CubeSettings&) const = default;
+};
+
 struct FilterSettings {
   bool on = true;
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
@@ -207,6 +217,8 @@ struct Settings {
   MultiresSettings multires;
   RsmSettings rsm;
   VolumeSettings lpv;
+  CubeSettings cube;
+  std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube)
   HistorySettings history;
   FilterSettings filter;
   ImageSettings image;

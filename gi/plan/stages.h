@@ -51,6 +51,7 @@ enum class StageId : uint16_t {
   VolumeSights, // which cells of a volume see one another
   Inject,
   Propagate,
+  Cube, // lights put into it and taken out
   Upsample,
   History,
   Filter,
@@ -98,6 +99,7 @@ inline constexpr const char* kStageNames[] = {"scene",
                                               "volume sights",
                                               "inject",
                                               "propagate",
+                                              "cube",
                                               "upsample",
                                               "history",
                                               "filter",

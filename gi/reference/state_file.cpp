@@ -2,7 +2,7 @@
 #include "gi/reference/state_file.h"
 
 #include "engine/core/error.h"
-#include "engine/core/rng.h"
+#include "engine/scene/scene_hash.h"
 
 #include <cstring>
 #include <fstream>
@@ -22,77 +22,6 @@ struct Header {
 };
 static_assert(sizeof(Header) == 32 && sizeof(PixelSums) == 15 * sizeof(double));
 
-class Hash {
- public:
-  void bytes(const void* data, size_t size) {
-    const char* at = static_cast<const char*>(data);
-    for (; size >= 8; at += 8, size -= 8) word(at, 8);
-    if (size > 0) word(at, size);
-  }
-  template <class T> void value(const T& v) {
-    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
-    bytes(&v, sizeof v);
-  }
-  template <int N> void value(const glm::vec<N, float>& v) {
-    for (int i = 0; i < N; ++i) value(v[i]);
-  }
-  template <class T> void values(const std::vector<T>& v) {
-    value(v.size());
-    bytes(v.data(), v.size() * sizeof(T));
-  }
-  uint64_t result() const { return state_; }
-
- private:
-  void word(const char* at, size_t size) {
-    uint64_t w = 0;
-    std::memcpy(&w, at, size);
-    state_ = mix64(state_ ^ w) + 0x9e3779b97f4a7c15ull;
-  }
-  uint64_t state_ = kVersion;
-};
-
-void add(Hash& hash, const TextureRef& t) {
-  hash.value(t.image);
-  hash.value(t.uvSet);
-  hash.value(t.wrapU);
-  hash.value(t.wrapV);
-  hash.value(t.nearest);
-  hash.bytes(&t.uvTransform, sizeof t.uvTransform);
-}
-
-/// What only glossy receivers depend on stays out of the others' hashes.
-void add(Hash& hash, const SceneAssets& assets, bool glossy) {
-  for (const Mesh& mesh : assets.meshes) {
-    hash.values(mesh.positions);
-    hash.values(mesh.normals);
-    hash.values(mesh.uv0);
-    hash.values(mesh.uv1);
-    hash.values(mesh.colors);
-    hash.values(mesh.triangles);
-    for (const Primitive& p : mesh.primitives) hash.value(p.firstTriangle), hash.value(p.material);
-  }
-  for (const Material& m : assets.materials) {
-    hash.value(m.baseColor);
-    hash.value(m.alpha);
-    add(hash, m.baseColorTexture);
-    hash.value(m.emission);
-    add(hash, m.emissiveTexture);
-    hash.value(m.alphaMode);
-    hash.value(m.alphaCutoff);
-    hash.value(m.doubleSided);
-    if (!glossy) continue;
-    hash.value(m.roughness);
-    hash.value(m.metalness);
-    add(hash, m.finishTexture);
-  }
-  for (const TextureImage& image : assets.images) {
-    if (!image.srgb && !glossy) continue;
-    hash.value(image.width);
-    hash.value(image.srgb);
-    hash.values(image.texels);
-  }
-}
-
 void add(Hash& hash, const LightView& light) {
   hash.value(light.type);
   hash.value(light.position);
@@ -104,7 +33,7 @@ void add(Hash& hash, const LightView& light) {
 }
 
 uint64_t checksumOf(const ReferenceSums& sums) {
-  Hash hash;
+  Hash hash(kVersion);
   hash.value(sums.samples);
   hash.bytes(sums.pixels.data(), sums.pixels.size() * sizeof(PixelSums));
   return hash.result();
@@ -113,15 +42,8 @@ uint64_t checksumOf(const ReferenceSums& sums) {
 } // namespace
 
 uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
-  Hash hash;
-  if (view.assets) add(hash, *view.assets, in.glossy != nullptr);
-  for (const InstanceView& i : view.instances) {
-    hash.value(i.mesh);
-    hash.bytes(&i.worldFromObject, sizeof i.worldFromObject);
-    if (!i.deformed) continue;
-    hash.values(i.deformed->positions);
-    hash.values(i.deformed->normals);
-  }
+  Hash hash(kVersion);
+  addGeometry(hash, view, in.glossy != nullptr);
   for (const LightView& light : view.lights) add(hash, light);
   for (const float number : view.sky.numbers()) hash.value(number);
   hash.bytes(&in.camera.worldFromView, sizeof in.camera.worldFromView);

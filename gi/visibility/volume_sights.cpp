@@ -12,6 +12,11 @@ namespace lambent {
 
 namespace {
 
+constexpr float kAllOfIt = 1.001f;  // width of a grid over the scene's
+constexpr float kMoving = 1.25f;    // where that has been seen to grow: every new grid is a step in the picture
+constexpr float kLeastCell = 1e-5f; // of the scene's width, which floats still tell apart
+constexpr size_t kAtOnce = 1 << 14; // cells whose rays are listed together: 34 MB
+
 const ivec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 ivec3 cellAt(size_t index, int cells) {
@@ -33,19 +38,22 @@ void blockedBy(const RayQuery& rays, std::span<const Ray> asked, std::span<uint8
 VolumeGrid volumeGrid(const VolumeSettings& settings, const SceneView& view, const VolumeGrid& before) {
   VolumeGrid grid;
   grid.cells = settings.cells;
+  const Aabb& bounds = view.boundsWorld;
+  const float widest = std::max(maxComponent(bounds.size()), 1e-20f);
   if (settings.size > 0) {
-    grid.cell = settings.size / float(settings.cells);
+    const float farthest = std::max(widest, maxComponent(glm::abs(view.camera.position())));
+    grid.cell = std::max(settings.size / float(settings.cells), kLeastCell * farthest);
     grid.first = ivec3(glm::floor(view.camera.position() / grid.cell)) - settings.cells / 2;
     return grid;
   }
-  const Aabb& bounds = view.boundsWorld;
-  const float widest = std::max(maxComponent(bounds.size()), 1e-20f);
+  float slack = kAllOfIt;
   if (before.cells == grid.cells && before.cell > 0) {
     const vec3 lo = before.corner(), hi = lo + float(before.cells) * before.cell;
     const bool inside = glm::all(glm::greaterThanEqual(bounds.lo, lo)) && glm::all(glm::lessThanEqual(bounds.hi, hi));
     if (inside && widest > 0.5f * before.cell * float(before.cells)) return before;
+    slack = kMoving;
   }
-  grid.cell = widest * 1.001f / float(settings.cells);
+  grid.cell = widest * slack / float(settings.cells);
   grid.offset = bounds.centre() - 0.5f * float(settings.cells) * grid.cell;
   return grid;
 }
@@ -95,26 +103,29 @@ bool VolumeSights::update(const VolumeGrid& grid, const World& world, bool occlu
 
 void VolumeSights::traceFaces(const std::vector<uint32_t>& stale, const RayQuery& rays, RayCounts& counts) {
   static const vec2 kPlaces[kTests] = {{0, 0}, {-0.25f, -0.25f}, {0.25f, -0.25f}, {-0.25f, 0.25f}, {0.25f, 0.25f}};
-  std::vector<Ray> asked;
-  asked.reserve(stale.size() * 3 * kTests);
-  for (uint32_t i : stale) {
-    const vec3 centre = grid_.centre(cellAt(i, grid_.cells));
-    for (int axis = 0; axis < 3; ++axis)
-      for (const vec2& place : kPlaces) {
-        vec3 aside(0);
-        aside[(axis + 1) % 3] = place.x;
-        aside[(axis + 2) % 3] = place.y;
-        const vec3 from = centre + aside * grid_.cell;
-        asked.push_back(between(from, from + vec3(kAxes[axis]) * grid_.cell));
-      }
+  for (size_t first = 0; first < stale.size(); first += kAtOnce) {
+    const std::span some = std::span(stale).subspan(first, std::min(kAtOnce, stale.size() - first));
+    std::vector<Ray> asked;
+    asked.reserve(some.size() * 3 * kTests);
+    for (uint32_t i : some) {
+      const vec3 centre = grid_.centre(cellAt(i, grid_.cells));
+      for (int axis = 0; axis < 3; ++axis)
+        for (const vec2& place : kPlaces) {
+          vec3 aside(0);
+          aside[(axis + 1) % 3] = place.x;
+          aside[(axis + 2) % 3] = place.y;
+          const vec3 from = centre + aside * grid_.cell;
+          asked.push_back(between(from, from + vec3(kAxes[axis]) * grid_.cell));
+        }
+    }
+    std::vector<uint8_t> blocked(asked.size());
+    blockedBy(rays, asked, blocked);
+    counts.occlusion += asked.size();
+    size_t next = 0;
+    for (uint32_t i : some)
+      for (int axis = 0; axis < 3; ++axis)
+        for (int k = 0; k < kTests; ++k) blocked_[i][size_t(axis)] |= uint8_t(blocked[next++] << k);
   }
-  std::vector<uint8_t> blocked(asked.size());
-  blockedBy(rays, asked, blocked);
-  counts.occlusion += asked.size();
-  size_t next = 0;
-  for (uint32_t i : stale)
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < kTests; ++k) blocked_[i][size_t(axis)] |= uint8_t(blocked[next++] << k);
 }
 
 /// Openness from the tests. A wall bars the straight way and every way around: all ways along centres would have to
@@ -154,24 +165,27 @@ void VolumeSights::traceSights(const RayQuery& rays, RayCounts& counts) {
   std::vector<uint32_t> cells;
   for (size_t i = 0; i < sights_.size(); ++i)
     if (!sightsKnown_[i] && nearWall(cellAt(i, grid_.cells))) cells.push_back(uint32_t(i));
-  std::vector<Ray> asked;
-  asked.reserve(cells.size() * 64);
-  for (uint32_t i : cells) {
-    const vec3 centre = grid_.centre(cellAt(i, grid_.cells));
-    for (int part = 0; part < 64; ++part) {
-      const vec3 to = (vec3(part & 3, part >> 2 & 3, part >> 4) - 1.5f) * 0.5f;
-      asked.push_back({centre, to * grid_.cell, 1});
+  for (size_t first = 0; first < cells.size(); first += kAtOnce) {
+    const std::span some = std::span(cells).subspan(first, std::min(kAtOnce, cells.size() - first));
+    std::vector<Ray> asked;
+    asked.reserve(some.size() * 64);
+    for (uint32_t i : some) {
+      const vec3 centre = grid_.centre(cellAt(i, grid_.cells));
+      for (int part = 0; part < 64; ++part) {
+        const vec3 to = (vec3(part & 3, part >> 2 & 3, part >> 4) - 1.5f) * 0.5f;
+        asked.push_back({centre, to * grid_.cell, 1});
+      }
     }
-  }
-  std::vector<uint8_t> blocked(asked.size());
-  blockedBy(rays, asked, blocked);
-  counts.occlusion += asked.size();
-  for (size_t n = 0; n < cells.size(); ++n) {
-    glm::uvec2& sees = sights_[cells[n]];
-    sees = glm::uvec2(0);
-    for (int part = 0; part < 64; ++part)
-      if (!blocked[n * 64 + size_t(part)]) sees[part / 32] |= 1u << (part % 32);
-    sightsKnown_[cells[n]] = 1;
+    std::vector<uint8_t> blocked(asked.size());
+    blockedBy(rays, asked, blocked);
+    counts.occlusion += asked.size();
+    for (size_t n = 0; n < some.size(); ++n) {
+      glm::uvec2& sees = sights_[some[n]];
+      sees = glm::uvec2(0);
+      for (int part = 0; part < 64; ++part)
+        if (!blocked[n * 64 + size_t(part)]) sees[part / 32] |= 1u << (part % 32);
+      sightsKnown_[some[n]] = 1;
+    }
   }
 }
 

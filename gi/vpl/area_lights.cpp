@@ -1,46 +1,15 @@
 #include "gi/vpl/area_lights.h"
 
+#include "gi/vpl/area_pieces.h"
+
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <span>
 
 namespace lambent {
 
 namespace {
-
-constexpr uint32_t kPerDisk = 4;
-
-AreaPiece pieceOf(const EmitterTriangle& t, bool doubleSided) {
-  AreaPiece piece{};
-  // The front may be the other side than the corners say, under mirroring transforms.
-  const bool turned = glm::dot(glm::cross(t.e1, t.e2), t.normal) < 0;
-  piece.corners[0] = vec4(t.p0, 3);
-  piece.corners[1] = vec4(t.p0 + (turned ? t.e2 : t.e1), 0);
-  piece.corners[2] = vec4(t.p0 + (turned ? t.e1 : t.e2), 0);
-  piece.normalArea = vec4(t.normal, t.area);
-  piece.radianceSides = vec4(t.radiance, doubleSided ? 1 : 0);
-  return piece;
-}
-
-/// A triangle and the one that completes it to a parallelogram.
-bool merge(AreaPiece& a, const AreaPiece& b) {
-  if (a.corners[0].w != 3 || glm::dot(vec3(a.normalArea), vec3(b.normalArea)) < 0.99999f) return false;
-  for (int i = 0; i < 3; ++i) { // its corner off the diagonal
-    const vec3 off(a.corners[i]), next(a.corners[(i + 1) % 3]), last(a.corners[(i + 2) % 3]);
-    const vec3 fourth = next + last - off;
-    const float within = 1e-4f * glm::distance(next, last);
-    const auto among = [&](const vec3& p) {
-      return std::any_of(b.corners, b.corners + 3, [&](const vec4& c) { return glm::distance(vec3(c), p) <= within; });
-    };
-    if (!among(next) || !among(last) || !among(fourth)) continue;
-    a.corners[0] = vec4(off, 4);
-    a.corners[1] = vec4(next, 0);
-    a.corners[2] = vec4(fourth, 0);
-    a.corners[3] = vec4(last, 0);
-    a.normalArea.w *= 2;
-    return true;
-  }
-  return false;
-}
 
 /// Number of the cell that a place in [0,1]³ lies in along a curve that fills the cube (Morton).
 uint32_t alongCurve(const vec3& place) {
@@ -58,69 +27,116 @@ bool textured(const LightSet& lights, const Emitter& emitter) {
   return lights.view->assets->materials[primitive.material].emissiveTexture.image != kNone;
 }
 
-/// Points spread evenly over an emitter in proportion to the power of its triangles. Those of a textured one are each
-/// the middle of sixteen, whose mean radiance they have.
-void addSamples(const LightSet& lights, const Emitter& emitter, AreaLights& to) {
-  const uint32_t group = textured(lights, emitter) ? 4 : 1, count = AreaLights::kSamples * group;
-  std::vector<AreaSample> points;
+/// The emitters by themselves, each in the parts that do not touch, which are lights of their own: many lamps may be
+/// one mesh. (Corners that rounding parts make two of one, which is only slower.)
+LightSet byParts(const LightSet& lights) {
+  LightSet parts;
+  parts.view = lights.view;
+  for (const Emitter& emitter : lights.emitters) {
+    if (!(emitter.power > 0)) continue;
+    const std::span of = std::span(lights.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);
+    Aabb box;
+    for (const EmitterTriangle& t : of) box.add(t.p0), box.add(t.p0 + t.e1), box.add(t.p0 + t.e2);
+    const float grain = std::max(1e-5f * maxComponent(box.size()), 1e-30f);
+    std::vector<uint32_t> part(of.size()); // another triangle of the same part, or itself
+    std::iota(part.begin(), part.end(), 0u);
+    const auto root = [&](uint32_t i) {
+      while (part[i] != i) i = part[i] = part[part[i]];
+      return i;
+    };
+    std::map<std::array<int, 3>, uint32_t> at;
+    for (uint32_t i = 0; i < of.size(); ++i)
+      for (const vec3& c : {of[i].p0, of[i].p0 + of[i].e1, of[i].p0 + of[i].e2}) {
+        const vec3 place = glm::round((c - box.lo) / grain);
+        const auto [known, anew] = at.try_emplace({int(place.x), int(place.y), int(place.z)}, i);
+        if (!anew) part[root(i)] = root(known->second);
+      }
+    std::map<uint32_t, std::vector<EmitterTriangle>> triangles;
+    for (uint32_t i = 0; i < of.size(); ++i)
+      if (of[i].area > 0) triangles[root(i)].push_back(of[i]);
+    for (auto& [first, some] : triangles)
+      addEmitter(parts, emitter.instance, emitter.primitive, std::move(some), emitter.doubleSided);
+  }
+  return parts;
+}
+
+/// Points spread evenly over an emitter's area, along a curve that fills its box.
+std::vector<SurfaceLight> pointsOf(const LightSet& lights, const Emitter& emitter, uint32_t count) {
+  std::vector<SurfaceLight> points;
   Aabb box;
   for (uint32_t i = 0; i < count; ++i) {
     const vec3 spread = additiveRecurrence3(i, vec3(0.5f));
-    const EmitterPoint p = sampleEmitter(lights, emitter, {(float(i) + 0.5f) / float(count), spread.x, spread.y});
-    points.push_back({p.position, p.normal, p.radiance});
+    const float u = (float(i) + 0.5f) / float(count);
+    const EmitterPoint p = sampleEmitter(lights, emitter, {u, spread.x, spread.y});
+    points.push_back({p.position, p.normal, p.radiance, 1 / (p.pdfArea * float(count)), emitter.byPower.sample(u)});
     box.add(p.position);
   }
   const vec3 size = glm::max(box.size(), vec3(maxComponent(box.size()) * 1e-3f + 1e-30f));
-  std::stable_sort(points.begin(), points.end(), [&](const AreaSample& a, const AreaSample& b) {
-    return alongCurve((a.position - box.lo) / size) < alongCurve((b.position - box.lo) / size);
-  });
-  for (uint32_t i = 0; i < count; i += group) {
-    AreaSample& sample = to.samples.emplace_back(points[i + group / 2]);
-    sample.radiance = vec3(0);
-    for (uint32_t k = 0; k < group; ++k) sample.radiance += points[i + k].radiance / float(group);
+  std::vector<std::pair<uint32_t, uint32_t>> order;
+  for (uint32_t i = 0; i < count; ++i) order.emplace_back(alongCurve((points[i].position - box.lo) / size), i);
+  std::sort(order.begin(), order.end());
+  std::vector<SurfaceLight> sorted;
+  for (const auto& [place, i] : order) sorted.push_back(points[i]);
+  return sorted;
+}
+
+/// `count` of the points, in proportion to their brightness.
+void addSamples(std::span<const SurfaceLight> points, uint32_t count, std::vector<AreaSample>& to) {
+  std::vector<float> brightness;
+  double area = 0;
+  for (const SurfaceLight& p : points) {
+    brightness.push_back(luminance(p.radiance) * p.area);
+    area += p.area;
+  }
+  const Distribution byBrightness(brightness);
+  const float mean = float(byBrightness.total() / area);
+  for (uint32_t i = 0; i < count; ++i) {
+    const SurfaceLight& p = points[byBrightness.sample((float(i) + 0.5f) / float(count))];
+    to.push_back({p.position, p.normal, p.radiance * (mean / luminance(p.radiance))});
   }
 }
 
-/// Samples as disks: one for every kPerDisk that follow each other, with their share of the surface and their mean
-/// radiance.
-void addDisks(const LightSet& lights, const Emitter& emitter, const AreaLight& light, AreaLights& to) {
-  float area = 0;
-  for (uint32_t t = 0; t < emitter.triangleCount; ++t) area += lights.triangles[emitter.firstTriangle + t].area;
-  for (uint32_t i = 0; i < light.samples; i += kPerDisk) {
-    const std::span of = std::span(to.samples).subspan(light.firstSample + i, kPerDisk);
-    vec3 radiance(0);
-    for (const AreaSample& s : of) radiance += s.radiance / float(kPerDisk);
-    AreaPiece& piece = to.pieces.emplace_back();
-    piece.corners[0] = vec4(of[kPerDisk / 2].position, 0);
-    piece.normalArea = vec4(of[kPerDisk / 2].normal, area * float(kPerDisk) / float(light.samples));
-    piece.radianceSides = vec4(radiance, emitter.doubleSided ? 1 : 0);
+/// Every so many of a light's samples as disks, with their share of the surface.
+void addDisks(std::span<const AreaSample> samples, float area, bool doubleSided, std::vector<AreaPiece>& to) {
+  const size_t step = std::max<size_t>(samples.size() / AreaLights::kMostPieces, 1);
+  for (size_t i = step / 2; i < samples.size(); i += step) {
+    AreaPiece& piece = to.emplace_back();
+    piece.corners[0] = vec4(samples[i].position, 0);
+    piece.normalArea = vec4(samples[i].normal, area * float(step) / float(samples.size()));
+    piece.radianceSides = vec4(samples[i].radiance, doubleSided ? 1 : 0);
   }
 }
 
 } // namespace
 
 AreaLights areaLights(const LightSet& lights) {
+  constexpr uint32_t kTexturedPoints = 1 << 14; // looked at of a texture
   AreaLights out;
-  for (const Emitter& emitter : lights.emitters) {
-    if (!(emitter.power > 0)) continue;
+  const LightSet parts = byParts(lights);
+  const uint32_t samples = std::clamp(AreaLights::kAllSamples / std::max(1u, uint32_t(parts.emitters.size())),
+                                      AreaLights::kLeastSamples, AreaLights::kSamples);
+  for (const Emitter& emitter : parts.emitters) {
+    const bool uneven = textured(parts, emitter);
+    const std::vector<SurfaceLight> points = pointsOf(parts, emitter, uneven ? kTexturedPoints : samples);
+    if (std::ranges::none_of(points, [](const SurfaceLight& p) { return luminance(p.radiance) > 0; })) continue;
     AreaLight light{.firstPiece = uint32_t(out.pieces.size()),
                     .firstSample = uint32_t(out.samples.size()),
-                    .samples = AreaLights::kSamples,
+                    .samples = samples,
                     .doubleSided = emitter.doubleSided};
-    addSamples(lights, emitter, out);
-    for (uint32_t t = 0; t < emitter.triangleCount && emitter.triangleCount <= 2 * AreaLights::kMostPolygons; ++t) {
-      const EmitterTriangle& triangle = lights.triangles[emitter.firstTriangle + t];
-      if (!(triangle.area > 0)) continue;
-      const AreaPiece piece = pieceOf(triangle, emitter.doubleSided);
-      if (out.pieces.size() > light.firstPiece && merge(out.pieces.back(), piece)) continue;
-      out.pieces.push_back(piece);
+    addSamples(points, samples, out.samples);
+    const std::span of = std::span(parts.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);
+    std::vector<uint32_t> pieceOf;
+    std::vector<AreaPiece> pieces = mergedPieces(of, emitter.doubleSided, pieceOf);
+    if (pieces.size() > AreaLights::kMostPieces) {
+      float area = 0;
+      for (const EmitterTriangle& t : of) area += t.area;
+      pieces.clear();
+      addDisks(std::span(out.samples).last(samples), area, emitter.doubleSided, pieces);
+    } else if (uneven) {
+      pieces = piecesByRadiance(std::move(pieces), points, pieceOf, AreaLights::kMostPieces);
     }
-    light.pieces = uint32_t(out.pieces.size()) - light.firstPiece;
-    if (light.pieces == 0 || light.pieces > AreaLights::kMostPolygons || textured(lights, emitter)) {
-      out.pieces.resize(light.firstPiece);
-      addDisks(lights, emitter, light, out);
-      light.pieces = uint32_t(out.pieces.size()) - light.firstPiece;
-    }
+    out.pieces.insert(out.pieces.end(), pieces.begin(), pieces.end());
+    light.pieces = uint32_t(pieces.size());
     out.lights.push_back(light);
   }
   return out;

@@ -7,13 +7,13 @@
 
 namespace lambent {
 
-/// Where rays end. World space.
+/// Where rays end: in proportion to brightness. World space.
 struct AreaSample {
   vec3 position, normal; // on the surface; unit, to the front
-  vec3 radiance;         // there
+  vec3 radiance;         // there, times the area that it stands for over the mean sample's: all are equally bright
 };
 
-/// One emitter.
+/// One emitter, or one of its parts that do not touch.
 struct AreaLight {
   uint32_t firstPiece = 0, pieces = 0;   // run of AreaLights::pieces
   uint32_t firstSample = 0, samples = 0; // run of AreaLights::samples, in an order in which neighbours lie side by side
@@ -25,11 +25,12 @@ struct AreaLights {
   std::vector<AreaPiece> pieces;
   std::vector<AreaSample> samples;
 
-  static constexpr uint32_t kMostPolygons =
-      32; // of an emitter; with more, or a texture, disks at its samples are its pieces
-  static constexpr uint32_t kSamples = 256; // of an emitter
+  static constexpr uint32_t kMostPieces = 64;       // of a light; polygons, or where these are more, disks
+  static constexpr uint32_t kSamples = 256;         // of a light, at most
+  static constexpr uint32_t kAllSamples = 1u << 18; // of all lights, but for kLeastSamples of each
+  static constexpr uint32_t kLeastSamples = 16;
 };
-/// Of all emitters that bring light. Two triangles that make a parallelogram become one piece.
+/// Of all emitters that bring light.
 AreaLights areaLights(const LightSet& lights);
 
 /// Irradiance from a light where nothing is between.

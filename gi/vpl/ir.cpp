@@ -10,12 +10,15 @@
 #include "gi/vpl/photons.h"
 #include "gi/vpl/sources.h"
 
+#include <algorithm>
+
 namespace lambent {
 
 VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
   ++set.frame;
   const uint32_t slots = uint32_t(in.settings.vpls), bounces = uint32_t(in.settings.bounces);
   std::vector<PlacedVpl> placed(slots);
+  set.direct = slots / std::max(bounces, 1u) + (slots % std::max(bounces, 1u) > 0 ? 1 : 0);
   const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.grain());
   if (bounces > 0 && !source.empty()) {
     CpuScope scope(log.stages, key(StageId::Photons));

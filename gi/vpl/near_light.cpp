@@ -96,15 +96,104 @@ uint32_t patternOf(uint32_t x, uint32_t y) { return ((x + y) >> 1 & 1) | ((x + ~
 
 /// A ray that goes on.
 struct Near {
-  uint32_t pixel, surface; // of the picture; of those that its block of pixels sees
-  vec3 direction;          // from the receiver
-  float weight;            // first the number that says whether it goes on; then, times the radiance met, irradiance
-  float spread;            // lobeSpread of the surface met
-  uint32_t path;           // of the pattern
-  float most;              // luminance that the radiance met counts up to
+  uint32_t surface; // that it leaves
+  vec3 direction;   // from there
+  float weight;     // first the number that says whether it goes on; then, times the radiance met, irradiance
+  float spread;     // lobeSpread of the surface met
+  uint32_t path;    // of the pattern
+  float most;       // luminance that the radiance met counts up to
+};
+
+/// Near light of a few surfaces, ray by ray.
+struct NearTracer {
+  const RayQuery& rays;
+  const LightSet& lights;
+  const GatherSettings& gather;
+  const Cells& cells;
+  RadianceUpdate update;
+  vec3 shift;  // of the pattern
+  float share; // of a surface's rays that one stands for, inverse
+
+  std::vector<Ray> segments = {};
+  std::vector<Near> near = {};
+
+  /// A ray of the pattern from a surface.
+  void cast(const SurfaceHit& h, uint32_t surface, uint32_t path) {
+    const vec3 u = additiveRecurrence3(path, shift);
+    const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
+    if (glm::dot(direction, h.geometricNormal) <= 0) return;
+    // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
+    const float reach2 = reach2Of(std::max(u.z, 1e-6f) * kCertain / kWide, cells.meanArea(), gather);
+    segments.push_back({offsetPoint(h.position, h.geometricNormal, rays.grain()), direction, std::sqrt(reach2)});
+    near.push_back({surface, direction, u.z, 0, path, kInfinity});
+  }
+  /// Calls found(ray, irradiance) for each that brings any.
+  template <class Found> void follow(std::span<const SurfaceHit> surfaces, const Found& found, RayCounts& count) {
+    std::vector<SurfaceHit> hits(segments.size());
+    rays.closest(segments, hits);
+    count.closest += segments.size();
+    std::vector<Vpl> met;
+    size_t kept = 0;
+    for (size_t j = 0; j < hits.size(); ++j) {
+      const SurfaceHit& h = hits[j];
+      if (!h.valid() || !(h.t > 0) || maxComponent(h.albedo) <= 0) continue;
+      Near n = near[j];
+      const float cosReceiver = glm::dot(n.direction, surfaces[n.surface].normal),
+                  cosLight = -glm::dot(n.direction, h.normal), distance2 = h.t * h.t;
+      const float u = n.weight, mean = restOf(cosReceiver, cosLight, distance2, cells.meanArea(), gather);
+      const float likely = std::min(1.0f, kWide * mean / kCertain);
+      if (!(u < likely)) continue;
+      const VirtualLight* light = cells.at(h);
+      if (!light) continue;
+      const float rest = restOf(cosReceiver, cosLight, distance2, light->area, gather);
+      const float chance = std::min(likely, rest / kCertain);
+      if (!(u < chance)) continue;
+      n.weight = kPi * rest * share / chance;
+      n.spread = lobeSpread(gather.spread, light->area, cosLight, distance2);
+      if (gather.nearLimit > 0) n.most = gather.nearLimit * luminance(light->radiance);
+      near[kept++] = n;
+      Vpl v;
+      v.position = h.position;
+      v.normal = h.normal;
+      v.geometricNormal = h.geometricNormal;
+      v.albedo = h.albedo;
+      v.id = 1;
+      met.push_back(v);
+    }
+    std::vector<RadianceJob> jobs;
+    for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].path)});
+    count += estimateRadiance(jobs, rays, lights, update).rays;
+    for (size_t j = 0; j < kept; ++j) {
+      const Near& n = near[j];
+      const float brightness = luminance(met[j].radiance);
+      if (brightness > 0) found(n, met[j].radiance * (n.weight * std::min(1.0f, n.most / brightness)));
+    }
+  }
 };
 
 } // namespace
+
+std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const NearLightInputs& in, RayCounts& counts) {
+  std::vector<vec3> irradiance(surfaces.size(), vec3(0));
+  const Cells cells(in.virtuals);
+  if (!(cells.meanArea() > 0)) return irradiance;
+  RadianceUpdate update;
+  update.paths = in.casts;
+  update.bounces = in.bounces;
+  update.seed = in.seed;
+  const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
+  constexpr size_t kGrain = 64;
+  std::vector<RayCounts> countsOf((surfaces.size() + kGrain - 1) / kGrain);
+  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+    NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1 / float(in.casts)};
+    for (size_t s = begin; s < end; ++s)
+      for (uint32_t path = 0; path < uint32_t(in.casts); ++path) tracer.cast(surfaces[s], uint32_t(s), path);
+    tracer.follow(
+        surfaces, [&](const Near& n, const vec3& light) { irradiance[n.surface] += light; }, countsOf[begin / kGrain]);
+  });
+  for (const RayCounts& c : countsOf) counts += c;
+  return irradiance;
+}
 
 NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const CameraView& camera = in.view.camera;
@@ -149,8 +238,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
     count.closest += centres.size();
 
-    std::vector<Ray> segments;
-    std::vector<Near> near;
+    NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, float(stride) / float(perBlock)};
     for (uint32_t s = 0; s < asked.size(); ++s) {
       const SurfaceHit& h = surfaces[s];
       if (!h.valid()) continue;
@@ -159,60 +247,19 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       for (uint32_t p = paths[s]; p < uint32_t(perBlock); p += stride) {
         uint32_t path = (p % stride + 5 * casts) % pattern + pattern * (p / stride);
         if (averaged) path = path * kPatterns + patternOf(asked[s] % camera.width, asked[s] / camera.width);
-        const vec3 u = additiveRecurrence3(path, shift);
-        const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
-        if (glm::dot(direction, h.geometricNormal) <= 0) continue;
-        // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
-        const float reach2 = reach2Of(std::max(u.z, 1e-6f) * kCertain / kWide, cells.meanArea(), in.gather);
-        segments.push_back({offsetPoint(h.position, h.geometricNormal, in.rays.grain()), direction, std::sqrt(reach2)});
-        near.push_back({asked[s], s, direction, u.z, 0, path, kInfinity});
+        tracer.cast(h, s, path);
       }
     }
-    std::vector<SurfaceHit> hits(segments.size());
-    in.rays.closest(segments, hits);
-    count.closest += segments.size();
-
-    std::vector<Vpl> met;
-    size_t kept = 0;
-    for (size_t j = 0; j < hits.size(); ++j) {
-      const SurfaceHit& h = hits[j];
-      if (!h.valid() || !(h.t > 0) || maxComponent(h.albedo) <= 0) continue;
-      Near n = near[j];
-      const float cosReceiver = glm::dot(n.direction, surfaces[n.surface].normal),
-                  cosLight = -glm::dot(n.direction, h.normal), distance2 = h.t * h.t;
-      const float u = n.weight, mean = restOf(cosReceiver, cosLight, distance2, cells.meanArea(), in.gather);
-      const float likely = std::min(1.0f, kWide * mean / kCertain);
-      if (!(u < likely)) continue;
-      const VirtualLight* light = cells.at(h);
-      if (!light) continue;
-      const float rest = restOf(cosReceiver, cosLight, distance2, light->area, in.gather);
-      const float chance = std::min(likely, rest / kCertain);
-      if (!(u < chance)) continue;
-      n.weight = kPi * rest * float(stride) / (chance * float(perBlock));
-      n.spread = lobeSpread(in.gather.spread, light->area, cosLight, distance2);
-      if (in.gather.nearLimit > 0) n.most = in.gather.nearLimit * luminance(light->radiance);
-      near[kept++] = n;
-      Vpl v;
-      v.position = h.position;
-      v.normal = h.normal;
-      v.geometricNormal = h.geometricNormal;
-      v.albedo = h.albedo;
-      v.id = 1;
-      met.push_back(v);
-    }
-    std::vector<RadianceJob> jobs;
-    for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].path)});
-    count += estimateRadiance(jobs, in.rays, in.lights, update).rays;
-    for (size_t j = 0; j < kept; ++j) {
-      const Near& n = near[j];
-      const float brightness = luminance(met[j].radiance);
-      if (!(brightness > 0)) continue;
-      const vec3 light = met[j].radiance * (n.weight * std::min(1.0f, n.most / brightness));
-      out.irradiance[n.pixel] += light;
-      if (!in.glossy) continue;
-      const Receiver receiver = receiverOf(in.view, surfaces[n.surface]);
-      out.glossy[n.pixel] += light * glossyReflectance(receiver, n.direction, n.spread) / glossyTint(receiver);
-    }
+    tracer.follow(
+        surfaces,
+        [&](const Near& n, const vec3& light) {
+          out.irradiance[asked[n.surface]] += light;
+          if (!in.glossy) return;
+          const Receiver receiver = receiverOf(in.view, surfaces[n.surface]);
+          out.glossy[asked[n.surface]] +=
+              light * glossyReflectance(receiver, n.direction, n.spread) / glossyTint(receiver);
+        },
+        count);
   });
   for (const RayCounts& c : countsOf) counts += c;
   if (in.subsets) {

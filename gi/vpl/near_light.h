@@ -34,4 +34,7 @@ struct NearLight {
 /// its side.
 NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts);
 
+/// The same at surfaces that do not depend on the view, `casts` rays from each: irradiance. The view is not looked at.
+std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const NearLightInputs& in, RayCounts& counts);
+
 } // namespace lambent

@@ -88,6 +88,7 @@ struct VplSet {
   std::vector<VplCell> cells;                      // by slot; empty with densities by nearest neighbours
   uint32_t drawings = 0;                           // of cells, so far
   float cellLimit = 0;                             // m: the limit on radii that their densities are for
+  uint32_t direct = ~0u;                           // VirtualLights::direct
   float mostFlux = kInfinity;                      // W as a luminance: no VPL reflects more, see lightsOf
   std::vector<KeptPaths> samplerPaths, lightPaths; // by slot: of samplerRadiance and radiance; empty without path cache
   std::vector<Vpl> pool;                           // candidates that may yet be wanted, oldest first

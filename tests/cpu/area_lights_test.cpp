@@ -128,11 +128,73 @@ TEST(AreaLights, TexturedOnesKeepTheirTexture) {
   const SceneView view = scene.view();
   const AreaLights lights = areaLights(collectLights(view));
   ASSERT_EQ(lights.lights.size(), 1u);
-  EXPECT_EQ(lights.lights[0].pieces, AreaLights::kSamples / 4);
-  for (const AreaSample& s : lights.samples)
-    if (std::abs(s.position.x) > 0.3f) EXPECT_FLOAT_EQ(s.radiance.x, s.position.x > 0 ? 4 : 0);
+  ASSERT_EQ(lights.pieces.size(), 1u) << "the bright half";
+  EXPECT_NEAR(lights.pieces[0].normalArea.w, 2, 1e-6);
+  for (const AreaSample& s : lights.samples) {
+    EXPECT_GE(s.position.x, 0);
+    EXPECT_NEAR(s.radiance.x, 2, 0.01f) << "each stands for half as much surface as without the texture";
+  }
   const float bright = summed(quadPiece({0, 1, -1}, {1, 0, 0}, {0, 0, 2}), vec3(0), vec3(0, 1, 0), 200);
-  EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0), vec3(0, 1, 0)).x, 4 * bright, 0.04f * 4 * bright);
+  EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0), vec3(0, 1, 0)).x, 4 * bright, 0.01f * 4 * bright);
+}
+
+/// A square of n × n squares in one mesh, `apart` by so much, facing down at height 2.
+std::vector<EmitterTriangle> squares(int n, float apart) {
+  std::vector<EmitterTriangle> out;
+  const float side = 2.0f / float(n);
+  for (int i = 0; i < n * n; ++i) {
+    const vec3 at = vec3(float(i % n), 0, float(i / n)) * (side + apart) + vec3(-1, 2, -1), x(side, 0, 0),
+               z(0, 0, side);
+    out.push_back(makeEmitterTriangle(at, at + x, at + x + z, vec3(3)));
+    out.push_back(makeEmitterTriangle(at, at + x + z, at + z, vec3(3)));
+  }
+  return out;
+}
+
+TEST(AreaLights, AreWhatTheyAreHoweverTheyAreCut) {
+  for (const int n : {1, 2, 7, 24}) {
+    LightSet set;
+    addEmitter(set, 0, 0, squares(n, 0), false);
+    const AreaLights lights = areaLights(set);
+    ASSERT_EQ(lights.lights.size(), 1u);
+    ASSERT_EQ(lights.pieces.size(), 1u) << n << "² squares are one";
+    EXPECT_NEAR(lights.pieces[0].normalArea.w, 4, 1e-4);
+    const float one = summed(quadPiece({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), vec3(0.9f, 1.9f, 0), vec3(1, 0, 0), 400);
+    EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0.9f, 1.9f, 0), vec3(1, 0, 0)).x, 3 * one, 0.01f * one);
+  }
+}
+
+TEST(AreaLights, LampsOfOneMeshThatDoNotTouchAreLightsOfTheirOwn) {
+  LightSet set;
+  addEmitter(set, 0, 0, squares(6, 0.1f), false);
+  const AreaLights lights = areaLights(set);
+  EXPECT_EQ(lights.lights.size(), 36u);
+  EXPECT_EQ(lights.pieces.size(), 36u);
+}
+
+/// Of 64 × 64 texels 4 shine: 4 of 4096, on 4 m².
+TEST(AreaLights, ASmallBrightSpotIsFoundAndStaysSmall) {
+  test::HandScene scene;
+  TextureImage image;
+  image.width = image.height = 64;
+  image.srgb = false;
+  image.texels.assign(64 * 64, {0, 0, 0, 255});
+  for (const int texel : {40 * 64 + 20, 40 * 64 + 21, 41 * 64 + 20, 41 * 64 + 21})
+    image.texels[size_t(texel)] = {255, 255, 255, 255};
+  image.averageLinear = vec4(vec3(4.0f / 4096), 1);
+  scene.assets.images.push_back(image);
+  const uint32_t material = scene.material(vec3(0), vec3(1000));
+  scene.assets.materials[material].emissiveTexture.image = 0;
+  scene.assets.materials[material].emissiveTexture.nearest = true;
+  scene.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, material);
+  const SceneView view = scene.view();
+  const AreaLights lights = areaLights(collectLights(view));
+  ASSERT_EQ(lights.lights.size(), 1u);
+  float power = 0, area = 0;
+  for (const AreaPiece& p : lights.pieces) power += p.radianceSides.x * p.normalArea.w, area += p.normalArea.w;
+  EXPECT_NEAR(power, 1000 * 4 * 4.0f / 4096, 0.15f * 1000 * 4 * 4.0f / 4096);
+  EXPECT_LT(area, 0.02f) << "the spot is 0.004 m²";
+  for (const AreaSample& s : lights.samples) EXPECT_LT(glm::distance(s.position, lights.samples[0].position), 0.1f);
 }
 
 TEST(AreaLights, DisksShineToTheirFrontOrToBothSides) {

@@ -88,6 +88,8 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
           bool sense = upsampled == g.patches && (!filtered || g.subsets) &&
                        (lights || (axes.gather == GatherMode::Own && axes.visibility == VplVisibility::None));
           if (axes.source == VplSource::Hisr) sense = sense && !g.splats && !g.volume;
+          const bool anyView = axes.source == VplSource::Ir || axes.source == VplSource::Poisson;
+          if (g.stored) sense = sense && anyView && axes.visibility == VplVisibility::None;
           if (axes.source == VplSource::Hisr || g.volume) sense = sense && axes.visibility == VplVisibility::None;
           EXPECT_EQ(reason.empty(), sense) << source << visibility << gather << reconstruction << ' ' << reason;
         }

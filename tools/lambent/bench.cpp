@@ -120,9 +120,10 @@ void bench(const BenchOptions& options) {
   if (options.table2) return benchTable2(options);
   if (options.equalError) return benchEqualError(options);
   if (options.area) return benchArea(options);
+  if (options.cube) return benchCube(options);
   if (options.launch.scene.empty())
     throw InputError(options.scenes[1],
-                     "one scene or shot is enough (several go with --multires, --table2, --equal-error and --area)");
+                     "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
   if (options.growth) return benchGrowth(options);
   if (options.rays) return benchRays(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
@@ -198,7 +199,7 @@ void declareBench(CLI::App& app) {
                                                   "with --techniques of several techniques, frame by frame in turn");
   command
       ->add_option("SCENE", options->scenes,
-                   "glTF or shot file; several with --multires, --table2, --equal-error and --area")
+                   "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube")
       ->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output,
@@ -226,13 +227,16 @@ void declareBench(CLI::App& app) {
   forms->add_flag("--area", options->area,
                   "direct light of lamps, and of lamps a quarter as wide, at patches that split by their quarters, by "
                   "their neighbours, and at every pixel: fragments, time, error (paper 4, table 1)");
+  forms->add_flag("--cube", options->cube,
+                  "layered depth cubes of several resolutions and numbers of lights: time to build and to look up, "
+                  "memory, error (paper 5, table 1)");
   forms->add_flag("--rays", options->rays,
                   "a million rays on the GPU and with Embree: where they differ, and how many a second");
   command->add_option("--along", options->along, "--growth: comma-separated, only these")
       ->delimiter(',')
       ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));
   command->add_option("--seeds", options->seeds, "--equal-error: so many (default 3)")->check(CLI::Range(1, 1000));
-  command->add_option("--spp", options->samples, "--equal-error, --area: paths per pixel of the truth (2048; 1024)")
+  command->add_option("--spp", options->samples, "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--frame", options->frame, "--equal-error: of a shot in motion (default 30, or the last)")
       ->check(CLI::Range(1, 1000000));

@@ -18,7 +18,7 @@ struct BenchOptions {
   std::vector<std::string> scenes, techniques;
   std::vector<std::string> against; // NAME=VALUE
   std::vector<std::string> along;   // what --growth sweeps; empty: all
-  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, quick = false;
+  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, cube = false, quick = false;
   int frames = 0, skip = 2;
   int seeds = 3, frame = 0;   // --equal-error; frame 0: 30, or the last
   std::optional<int> samples; // --equal-error, --area
@@ -48,6 +48,8 @@ void benchGrowth(const BenchOptions& options);
 void benchEqualError(const BenchOptions& options);
 /// Area lights at patches, their predecessor and every pixel, scene by scene (paper 4, table 1).
 void benchArea(const BenchOptions& options);
+/// The layered depth cube, scene by scene (paper 5, table 1).
+void benchCube(const BenchOptions& options);
 /// Rays on the GPU against Embree.
 void benchRays(const BenchOptions& options);
 

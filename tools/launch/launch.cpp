@@ -221,6 +221,7 @@ Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>&
     if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
     applySetting(settings, text.substr(0, equals), text.substr(equals + 1));
   }
+  settings.cubeFile = options.cube;
   if (options.bounces) applySetting(settings, "smc.bounces", std::to_string(*options.bounces));
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   return settings;
@@ -242,6 +243,9 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
+  command.add_option("--cube", options.cube,
+                     "ibrr: file that keeps its layered depth cube; read where it fits the scene, else written; a "
+                     "build that was stopped goes on from it");
   command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")
       ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);

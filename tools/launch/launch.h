@@ -24,6 +24,7 @@ struct LaunchOptions {
   std::optional<float> fovDegrees;
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;
+  std::string cube; // file
   uint32_t seed = 1;
   int threads = 0; // 0 = all cores
 };

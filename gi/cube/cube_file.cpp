@@ -1,0 +1,135 @@
+// Layout, little-endian as the machine's own: Header, then counts and members in the order of CubeFile::each, then a
+// checksum of all of that.
+#include "gi/cube/cube_file.h"
+
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+#include "engine/scene/scene_hash.h"
+
+#include <fstream>
+
+namespace lambent {
+
+namespace {
+
+constexpr char kMagic[8] = {'L', 'A', 'M', 'B', 'C', 'U', 'B', '\n'};
+// Counts up when the file or the meaning of its numbers changes.
+constexpr uint32_t kVersion = 1;
+
+struct Header {
+  char magic[8];
+  uint32_t version, entryBytes; // of an entry and a light: another build's may differ
+  uint64_t key;
+};
+static_assert(sizeof(Header) == 24);
+constexpr uint32_t kBytes = uint32_t(sizeof(CubeEntry) * 1000 + sizeof(VirtualLight));
+
+struct Writer {
+  std::ofstream& out;
+  Hash hash{kVersion};
+  void bytes(void* data, size_t size) {
+    out.write(static_cast<const char*>(data), std::streamsize(size));
+    hash.bytes(data, size);
+  }
+  template <class T> void vector(std::vector<T>& v) {
+    uint64_t count = v.size();
+    bytes(&count, sizeof count);
+    bytes(v.data(), v.size() * sizeof(T));
+  }
+};
+
+struct Reader {
+  std::ifstream& in;
+  uint64_t left; // bytes of the file
+  Hash hash{kVersion};
+  void bytes(void* data, size_t size) {
+    if (size > left || !in.read(static_cast<char*>(data), std::streamsize(size))) throw std::ios_base::failure("short");
+    left -= size;
+    hash.bytes(data, size);
+  }
+  template <class T> void vector(std::vector<T>& v) {
+    uint64_t count = 0;
+    bytes(&count, sizeof count);
+    if (count > left / sizeof(T)) throw std::ios_base::failure("short");
+    v.resize(count);
+    bytes(v.data(), v.size() * sizeof(T));
+  }
+};
+
+} // namespace
+
+/// The members of a cube, in the order in which they lie in the file.
+struct CubeFile {
+  template <class Stream> static void each(Stream& stream, LayeredCube& cube) {
+    CubeSurfaces& s = cube.surfaces_;
+    stream.bytes(&s.corner_, sizeof s.corner_);
+    stream.bytes(&s.texel_, sizeof s.texel_);
+    stream.bytes(&s.resolution_, sizeof s.resolution_);
+    stream.bytes(&cube.settings_, sizeof cube.settings_);
+    stream.bytes(&cube.gather_, sizeof cube.gather_);
+    stream.vector(s.first_);
+    stream.vector(s.entries_);
+    stream.vector(cube.in_);
+    stream.vector(cube.seen_);
+    stream.vector(cube.sums_);
+  }
+  /// Whether the parts of what was read fit together.
+  static bool whole(const LayeredCube& cube) {
+    const CubeSurfaces& s = cube.surfaces_;
+    const size_t columns = 3 * size_t(s.resolution_) * size_t(s.resolution_);
+    if (s.resolution_ < 8 || s.resolution_ % 8 != 0 || s.first_.size() != columns + 1) return false;
+    if (s.first_.front() != 0 || s.first_.back() != s.entries_.size()) return false;
+    for (size_t c = 0; c < columns; ++c)
+      if (s.first_[c] > s.first_[c + 1]) return false;
+    return cube.sums_.size() == s.entries_.size() && cube.seen_.size() == s.entries_.size() * cube.words();
+  }
+};
+
+uint64_t cubeKey(const SceneView& view) {
+  Hash hash(kVersion);
+  addGeometry(hash, view, false);
+  return hash.result();
+}
+
+void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64_t key) {
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    Header header{{}, kVersion, kBytes, key};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    out.write(reinterpret_cast<const char*>(&header), sizeof header);
+    Writer writer{out};
+    CubeFile::each(writer, const_cast<LayeredCube&>(cube)); // is only read
+    const uint64_t checksum = writer.hash.result();
+    out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+  });
+}
+
+LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
+  std::ifstream in(file, std::ios::binary);
+  Header header;
+  if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
+    throw InputError(file.string(), "is not a layered depth cube (name a new file, or one written by --cube)");
+  if (header.version != kVersion || header.entryBytes != kBytes)
+    throw InputError(file.string(), "was written by another version of the program (remove it to build the cube anew)");
+  if (header.key != key)
+    throw InputError(file.string(),
+                     "belongs to another scene, or its objects stood elsewhere (name another, or remove it)");
+  const std::string damaged = "is damaged (remove it to build the cube anew)";
+  LayeredCube cube;
+  try {
+    std::error_code ignored;
+    Reader reader{in, std::filesystem::file_size(file, ignored)};
+    CubeFile::each(reader, cube);
+    uint64_t checksum = 0;
+    in.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
+    if (!in || in.peek() != std::ifstream::traits_type::eof() || checksum != reader.hash.result())
+      throw InputError(file.string(), damaged);
+  } catch (const std::ios_base::failure&) {
+    throw InputError(file.string(), damaged);
+  }
+  if (!CubeFile::whole(cube)) throw InputError(file.string(), damaged);
+  return cube;
+}
+
+} // namespace lambent

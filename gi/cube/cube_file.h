@@ -1,0 +1,19 @@
+// The layered depth cube on disk: what was built, or is being built, for a scene's geometry.
+#pragma once
+
+#include "gi/cube/layered_cube.h"
+
+#include <filesystem>
+
+namespace lambent {
+
+/// Hash of what entries and sights depend on: where surfaces are and what they are made of. Which lights are in it the
+/// cube knows itself.
+uint64_t cubeKey(const SceneView& view);
+
+/// Replaces the file in one step. Throws RunError where it cannot be written.
+void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64_t key);
+/// Throws InputError for a file that is no cube, is damaged, of another version, or of other geometry.
+LayeredCube loadCube(const std::filesystem::path& file, uint64_t key);
+
+} // namespace lambent

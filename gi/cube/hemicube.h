@@ -1,0 +1,48 @@
+// Five images around a virtual light (Cohen and Greenberg 1985; paper 5, section 4.1), and which entries of the layered
+// depth cube they see. World space, metres.
+#pragma once
+
+#include "gi/contract/virtual_lights.h"
+#include "gi/cube/cube_surfaces.h"
+
+namespace lambent {
+
+/// What a texel of a hemicube sees.
+struct HemicubeTexel {
+  float distance = kInfinity; // metres; kInfinity: nothing
+  vec3 normal{0};             // geometric, unit, towards the light
+};
+
+/// One image of resolution × resolution texels along the normal, then four of resolution × resolution/2 to its sides:
+/// the halves in front of the light. Rows from the horizon up.
+struct Hemicube {
+  vec3 origin{0};
+  mat3 frame{1}; // columns: tangent, bitangent, normal
+  int resolution = 0;
+  std::vector<HemicubeTexel> texels; // 3 resolution²
+
+  size_t size() const { return 3 * size_t(resolution) * resolution; }
+  /// Unit, through texel coordinates of a face (0, 0 is the corner of the first texel).
+  vec3 direction(int face, vec2 at) const;
+  /// Face and texel coordinates of a direction; false below the horizon.
+  bool find(const vec3& direction, int& face, vec2& at) const;
+};
+
+/// `light` looks around, from just off its surface.
+Hemicube hemicubeAt(const VirtualLight& light, int resolution, float grain);
+/// Fills one with rays. Thread-safe.
+void castHemicube(Hemicube& hemicube, const RayQuery& rays, RayCounts& counts);
+
+/// Who draws hemicubes otherwise.
+class HemicubeMaker {
+ public:
+  virtual ~HemicubeMaker() = default;
+  /// From the main thread.
+  virtual void make(std::span<Hemicube> hemicubes) = 0;
+};
+
+/// Marks the entries that it sees: each texel those of its surface that lie in it, as the light sees them, and half a
+/// texel around (the splats of paper 5, section 4.3; texels that the same hemicube wrote already are marked already).
+void splat(const Hemicube& hemicube, const CubeSurfaces& surfaces, std::vector<uint8_t>& seen);
+
+} // namespace lambent

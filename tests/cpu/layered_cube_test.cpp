@@ -1,0 +1,347 @@
+// The layered depth cube: surfaces found along the axes, light put in and taken out, and the file that keeps it.
+#include "engine/core/error.h"
+#include "engine/core/rng.h"
+#include "engine/scene/scene_hash.h"
+#include "gi/cube/cube_file.h"
+#include "gi/vpl/light_set.h"
+#include "gi/vpl/sources.h"
+#include "tests/support/random_world.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+namespace lambent {
+namespace {
+
+using Bytes = std::vector<char>;
+
+CubeSettings smallCube(CubeSights sights = CubeSights::Rays, int resolution = 32) {
+  CubeSettings s;
+  s.resolution = resolution;
+  s.sights = sights;
+  s.hemicube = 64;
+  return s;
+}
+
+VirtualLight lightAt(const vec3& position, const vec3& normal, const vec3& power, float area = 0.01f) {
+  return {position, normal, normal, power / area, area, true};
+}
+
+/// Rooms made by hand, and a cube over them.
+struct CubeWorld {
+  test::HandScene scene;
+  std::unique_ptr<EmbreeQuery> rays;
+  SceneView view;
+  GatherSettings gather;
+  std::vector<VirtualLight> lights;
+
+  void place() {
+    rays = std::make_unique<EmbreeQuery>(scene.assets);
+    view = scene.view();
+    rays->update(view, true);
+  }
+  CubeInputs inputs(const CubeSettings& settings) {
+    return {view.boundsWorld, *rays, kNothingMoved, false, lights, ~0u, settings, gather};
+  }
+};
+
+TEST(CubeSurfaces, AFloorIsALayerOnEachOfItsSides) {
+  CubeWorld w;
+  w.scene.quad({0, 1, 0}, {0, 0, 4}, {4, 0, 0}, w.scene.material(vec3(0.5f)));
+  w.place();
+  CubeSurfaces surfaces;
+  RayCounts counts;
+  surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
+  EXPECT_GT(counts.closest, 0u);
+  size_t up = 0, down = 0;
+  for (size_t c = 0; c < surfaces.columns(); ++c) {
+    const CubeSurfaces::Place at = surfaces.placeOf(c);
+    EXPECT_EQ(surfaces.column(at.axis, at.u, at.v), c);
+    for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+      const CubeEntry& entry = surfaces.entries()[e];
+      ASSERT_EQ(at.axis, 1);
+      EXPECT_NEAR(entry.position.y, 1, 1e-5f);
+      EXPECT_NEAR(entry.position.z, surfaces.corner().z + (float(at.u) + 0.5f) * surfaces.texel(), 1e-4f);
+      EXPECT_NEAR(entry.position.x, surfaces.corner().x + (float(at.v) + 0.5f) * surfaces.texel(), 1e-4f);
+      (entry.normal.y > 0 ? up : down)++;
+    }
+  }
+  EXPECT_EQ(up, 30u * 30u); // a texel on every side lies outside
+  EXPECT_EQ(down, up);
+  // Every one within sees its eight neighbours, none past the rim.
+  const size_t middle = surfaces.column(1, 16, 16), corner = surfaces.column(1, 1, 1);
+  EXPECT_EQ(surfaces.entries()[surfaces.firsts()[middle]].neighbours, 255u);
+  EXPECT_EQ(surfaces.entries()[surfaces.firsts()[corner]].neighbours, 1u | 4u | 16u);
+}
+
+TEST(CubeSurfaces, NeighboursBehindAWallAreNotLinked) {
+  CubeWorld w;
+  const uint32_t grey = w.scene.material(vec3(0.5f));
+  w.scene.quad({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
+  w.scene.quad({2.03f, 0, 0}, {0, 0, 4}, {0, 4, 0}, grey); // through texels, not between them
+  w.place();
+  CubeSurfaces surfaces;
+  RayCounts counts;
+  surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
+  size_t across = 0, along = 0;
+  for (size_t c = 0; c < surfaces.columns(); ++c) {
+    const CubeSurfaces::Place at = surfaces.placeOf(c);
+    if (at.axis != 1) continue;
+    for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+      const CubeEntry& entry = surfaces.entries()[e];
+      if (entry.normal.y < 0 || std::abs(entry.position.x - 2.03f) > 0.4f * surfaces.texel()) continue;
+      // v runs along x: the way over the wall is +v from this side, -v from the other.
+      across += entry.neighbours >> (entry.position.x < 2.03f ? 2 : 3) & 1;
+      along += entry.neighbours & 1;
+    }
+  }
+  EXPECT_EQ(across, 0u);
+  EXPECT_GT(along, 20u);
+}
+
+TEST(LayeredCube, ALightOverAFloorBringsWhatItsFormulaSays) {
+  CubeWorld w;
+  w.scene.quad({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, w.scene.material(vec3(0.5f)));
+  w.scene.quad({1, 1, 1}, {0, 0, 0.5f}, {0.5f, 0, 0}, w.scene.material(vec3(0.5f))); // a blocker
+  w.lights.push_back(lightAt({2, 2, 2}, {0, -1, 0}, {1, 2, 3}));
+  w.gather.disk = 0;
+  w.place();
+  w.view.boundsWorld.add(vec3(2, 2, 2));
+  LayeredCube cube;
+  const CubeSettings settings = smallCube();
+  const CubeWork work = cube.update(w.inputs(settings));
+  EXPECT_EQ(work.lightsIn, 1u);
+  size_t lit = 0, dark = 0;
+  for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) {
+    const CubeEntry& entry = cube.surfaces().entries()[e];
+    const vec3 d = vec3(2, 2, 2) - entry.position;
+    const float cosine = glm::dot(glm::normalize(d), entry.normal);
+    float expected = cosine > 0 ? cosine * glm::normalize(d).y / glm::dot(d, d) : 0;
+    // Where the way to the light passes the blocker.
+    const vec3 at = entry.position + d * ((1 - entry.position.y) / d.y);
+    if (entry.position.y < 0.5f && at.x > 1 && at.x < 1.5f && at.z > 1 && at.z < 1.5f) expected = 0;
+    EXPECT_NEAR(cube.irradiance(e).x, expected, 1e-4f);
+    EXPECT_NEAR(cube.irradiance(e).z, 3 * expected, 3e-4f);
+    (expected > 0 ? lit : dark)++;
+  }
+  EXPECT_GT(lit, 700u);
+  EXPECT_GT(dark, 700u);
+}
+
+/// Lights that photons leave in a world.
+std::vector<VirtualLight> photonLights(const SceneView& view, const RayQuery& rays, VplSet& set) {
+  SmcSettings settings;
+  settings.vpls = 96;
+  settings.bounces = 2;
+  const LightSet lights = collectLights(view);
+  VplUpdateLog log;
+  placeVpls(VplSource::Ir, set, {view, rays, lights, settings, 5}, log);
+  return lightsOf(set);
+}
+
+class CubeSightsTest : public ::testing::TestWithParam<CubeSights> {};
+
+/// After anything happened the cube is the one that is built from what there is now.
+TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
+  test::RandomWorld world(0.01f);
+  const CubeSettings settings = smallCube(GetParam(), 16);
+  const GatherSettings gather;
+  Aabb room;
+  room.add(vec3(-4, -1, -4)), room.add(vec3(4, 4, 4));
+  LayeredCube kept;
+  VplSet set;
+  size_t reused = 0, compared = 0;
+  for (int frame = 0; frame < (test::kSanitized ? 4 : 12); ++frame) {
+    const SceneView& view = world.step(frame % 3 == 2 ? 0 : 2);
+    const Disturbance moved(view);
+    const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+    const CubeInputs in{room, world.rays(), frame == 0 ? kNothingMoved : moved, false, lights, 48, settings, gather};
+    const CubeWork work = kept.update(in);
+    LayeredCube anew;
+    anew.update({room, world.rays(), kNothingMoved, true, lights, 48, settings, gather});
+    const std::span<const CubeEntry> a = kept.surfaces().entries(), b = anew.surfaces().entries();
+    ASSERT_EQ(a.size(), b.size()) << frame;
+    float brightest = 0;
+    for (size_t e = 0; e < a.size(); ++e) brightest = std::max(brightest, maxComponent(anew.irradiance(e)));
+    ASSERT_GT(brightest, 0);
+    for (size_t e = 0; e < a.size(); ++e) {
+      ASSERT_EQ(a[e].position, b[e].position) << frame;
+      ASSERT_EQ(a[e].neighbours, b[e].neighbours) << frame << ' ' << e;
+      ASSERT_LT(maxComponent(glm::abs(kept.irradiance(e) - anew.irradiance(e))), 1e-6f * brightest)
+          << frame << ' ' << e;
+      ++compared;
+    }
+    if (frame > 0) reused += work.entriesAnew < a.size();
+    if (frame % 3 == 2) EXPECT_EQ(work.entriesAnew, 0u);
+  }
+  EXPECT_GT(reused, 0u);
+  EXPECT_GT(compared, 10000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sights, CubeSightsTest, ::testing::Values(CubeSights::Rays, CubeSights::Hemicubes));
+
+TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
+  test::RandomWorld world(0.01f);
+  const SceneView& view = world.step(0);
+  VplSet set;
+  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  const CubeSettings settings = smallCube();
+  const GatherSettings gather;
+  LayeredCube cube;
+  const CubeInputs in{view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather};
+  EXPECT_TRUE(cube.update(in).changed);
+  const CubeWork again = cube.update(in);
+  EXPECT_FALSE(again.changed);
+  EXPECT_EQ(again.rays.closest + again.rays.occlusion, 0u);
+  // One light less: it alone is taken out, and nothing is asked.
+  std::vector<VirtualLight> fewer = lights;
+  size_t gone = 0;
+  while (!fewer[gone].alive) ++gone;
+  fewer[gone].alive = false;
+  const CubeWork less =
+      cube.update({view.boundsWorld, world.rays(), kNothingMoved, false, fewer, ~0u, settings, gather});
+  EXPECT_EQ(less.lightsOut, 1u);
+  EXPECT_EQ(less.lightsIn, 0u);
+  EXPECT_EQ(less.rays.occlusion, 0u);
+}
+
+/// A hemicube's texels are wider than the rays that ask for each entry: they disagree along the edges of shadows.
+TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
+  test::RandomWorld world(0.01f);
+  const SceneView& view = world.step(0);
+  VplSet set;
+  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  double difference[2] = {}, sum = 0;
+  const GatherSettings gather;
+  LayeredCube byRays;
+  byRays.update(
+      {view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, smallCube(CubeSights::Rays), gather});
+  for (int fine = 0; fine < 2; ++fine) {
+    CubeSettings settings = smallCube(CubeSights::Hemicubes);
+    settings.hemicube = fine ? 128 : 32;
+    LayeredCube cube;
+    cube.update({view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather});
+    ASSERT_EQ(cube.surfaces().entries().size(), byRays.surfaces().entries().size());
+    for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) {
+      difference[fine] += luminance(glm::abs(cube.irradiance(e) - byRays.irradiance(e)));
+      if (!fine) sum += luminance(byRays.irradiance(e));
+    }
+  }
+  EXPECT_LT(difference[1], 0.06 * sum);
+  EXPECT_LT(difference[1], 0.7 * difference[0]);
+}
+
+TEST(LayeredCube, EntriesDoNotDependOnLights) {
+  CubeWorld w;
+  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
+  w.place();
+  std::vector<CubeEntry> entries[2];
+  Rng random(1, Stream::Test, 0);
+  for (int many = 0; many < 2; ++many) {
+    w.lights.clear();
+    for (int i = 0; i < (many ? 750 : 200); ++i)
+      w.lights.push_back(lightAt({random.next() - 0.5f, -0.999f, random.next() - 0.5f}, {0, 1, 0}, vec3(1)));
+    LayeredCube cube;
+    const CubeSettings settings = smallCube();
+    cube.update(w.inputs(settings));
+    entries[many].assign(cube.surfaces().entries().begin(), cube.surfaces().entries().end());
+  }
+  EXPECT_EQ(entries[0], entries[1]);
+}
+
+TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
+  test::RandomWorld world(0.01f);
+  const SceneView& view = world.step(0);
+  VplSet set;
+  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  const CubeSettings settings = smallCube();
+  const GatherSettings gather;
+  const CubeInputs in{view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather};
+  LayeredCube whole, parts;
+  whole.update(in);
+  uint32_t left = ~0u;
+  int calls = 0;
+  do {
+    EXPECT_LE(parts.update(in, 10).lightsIn, 10u);
+    EXPECT_LT(parts.pending(), left);
+    left = parts.pending();
+  } while (left > 0 && ++calls < 100);
+  EXPECT_GT(calls, 4);
+  for (size_t e = 0; e < whole.surfaces().entries().size(); ++e)
+    ASSERT_LT(glm::length(whole.irradiance(e) - parts.irradiance(e)), 1e-6f * (1 + glm::length(whole.irradiance(e))));
+}
+
+class CubeFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("lambent-cube-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    file_ = folder_ / "room.cube";
+    w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
+    w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(1)));
+    w.lights.push_back(lightAt({0.5f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
+    w.place();
+    key_ = cubeKey(w.view);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  Bytes read() const {
+    std::ifstream in(file_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const Bytes& bytes) const {
+    std::ofstream(file_, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+  }
+
+  CubeWorld w;
+  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  std::filesystem::path folder_, file_;
+  uint64_t key_ = 0;
+};
+
+TEST_F(CubeFileTest, GivesBackWhatWasSavedAndGoesOn) {
+  LayeredCube half;
+  half.update(w.inputs(settings), 1);
+  ASSERT_EQ(half.pending(), 1u);
+  saveCube(file_, half, key_);
+  LayeredCube on = loadCube(file_, key_), whole;
+  EXPECT_EQ(on.update(w.inputs(settings)).lightsIn, 1u);
+  whole.update(w.inputs(settings));
+  for (size_t e = 0; e < whole.surfaces().entries().size(); ++e) ASSERT_EQ(on.irradiance(e), whole.irradiance(e));
+}
+
+TEST_F(CubeFileTest, SaysWhatIsWrongWithAFile) {
+  LayeredCube cube;
+  cube.update(w.inputs(settings));
+  saveCube(file_, cube, key_);
+  EXPECT_THROW(loadCube(file_, key_ + 1), InputError);
+  const Bytes good = read();
+  EXPECT_NO_THROW(loadCube(file_, key_));
+  for (size_t at = 0; at < good.size(); at += 997) {
+    Bytes bad = good;
+    bad[at] = char(bad[at] ^ 0x55);
+    write(bad);
+    EXPECT_THROW(loadCube(file_, key_), InputError) << at;
+  }
+  for (const size_t size : {size_t(0), size_t(10), size_t(24), size_t(100), good.size() / 2, good.size() - 1}) {
+    write(Bytes(good.begin(), good.begin() + std::ptrdiff_t(size)));
+    EXPECT_THROW(loadCube(file_, key_), InputError) << size;
+  }
+  Bytes longer = good;
+  longer.push_back(0);
+  write(longer);
+  EXPECT_THROW(loadCube(file_, key_), InputError);
+}
+
+TEST_F(CubeFileTest, BelongsToTheGeometryNotToTheLights) {
+  test::HandScene other;
+  other.box(vec3(-1), vec3(1.01f), other.material(vec3(0.5f)), true);
+  EXPECT_NE(cubeKey(other.view()), key_);
+  w.scene.lights.push_back({.type = LightType::Point, .intensity = vec3(1)});
+  EXPECT_EQ(cubeKey(w.scene.view()), key_);
+}
+
+} // namespace
+} // namespace lambent

@@ -1,0 +1,164 @@
+// Technique ibrr: the layered depth cube that pixels look light up in.
+#include "engine/core/error.h"
+#include "gl_fixture.h"
+#include "tests/support/images.h"
+
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace lambent::test {
+
+class CubeGatherTest : public GlTest {
+ protected:
+  CubeGatherTest() {
+    room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    applyTechnique(settings, "ibrr");
+    settings.smc.vpls = 256;
+    settings.smc.bounces = 2;
+    settings.cube.resolution = 64;
+    settings.gather.near = 0;
+    settings.image.exposure = 1;
+  }
+  SceneView still() const {
+    SceneView view = room.scene.view();
+    view.changes = {false, false, false, false, false};
+    return view;
+  }
+  static double differenceOf(const Image& a, const Image& b) {
+    double difference = 0, sum = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+      difference += luminance(glm::abs(a.pixels[i] - b.pixels[i]));
+      sum += luminance(b.pixels[i]);
+    }
+    return difference / sum;
+  }
+
+  Room room;
+  Settings settings;
+};
+
+/// The same lights, with a ray for every pixel and light.
+TEST_F(CubeGatherTest, GivesThePicturesOfItsLights) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  const Image cube = gi.read(Buffer::Irradiance);
+  Settings every = settings;
+  applyTechnique(every, "ir");
+  every.vpl.visibility = VplVisibility::Rays;
+  every.filter.on = false;
+  every.history.frames = 0;
+  GiFrame truth(every);
+  truth.run(room.scene.view());
+  const Image rays = truth.read(Buffer::Irradiance);
+  const double difference = differenceOf(cube, rays);
+  std::printf("mean difference from a ray for every pixel and light: %.2f %%\n", 100 * difference);
+  EXPECT_LT(difference, 0.03);
+  EXPECT_NEAR(meanLuminance(cube) / meanLuminance(rays), 1, 0.01);
+  size_t dark = 0; // cracks
+  for (size_t i = 0; i < cube.pixels.size(); ++i) dark += luminance(cube.pixels[i]) < 0.3f * luminance(rays.pixels[i]);
+  EXPECT_LE(dark, 2u);
+}
+
+/// While nothing but the camera moves a frame draws surfaces and looks up.
+TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  for (int frame = 0; frame < 3; ++frame) {
+    room.scene.camera.worldFromView[3].x += 0.02f;
+    SceneView view = still();
+    view.changes.camera = true;
+    const FrameStats& stats = gi.run(view);
+    EXPECT_EQ(stats.raysCube.closest + stats.raysCube.occlusion + stats.raysCandidates.closest, 0u);
+    EXPECT_FALSE(stats.plan.on(EffectId::Replace)) << stats.plan[EffectId::Replace].reason;
+    EXPECT_FALSE(stats.plan.on(EffectId::Relight));
+    EXPECT_TRUE(stats.plan.on(EffectId::Redraw));
+    GiFrame anew(settings);
+    anew.run(room.scene.view());
+    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, anew.read(Buffer::Irradiance).pixels) << frame;
+  }
+}
+
+/// After a lamp and the block moved the picture is that of a cube built there.
+TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  room.scene.lights[0].position.x = -0.3f;
+  SceneView view = still();
+  view.changes.lights = true;
+  gi.run(view);
+  for (InstanceView& i : room.scene.instances) {
+    if (i.boundsWorld.hi.y > 0.5f) continue; // walls
+    if (i.boundsWorld.size().x > 1.9f) continue;
+    i.boundsWorldBefore = i.boundsWorld;
+    i.worldFromObjectBefore = i.worldFromObject;
+    i.worldFromObject = glm::translate(mat4(1), vec3(0.3f, 0, 0.2f));
+    i.boundsWorld = transformed(room.scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
+    i.moved = true;
+  }
+  view = still();
+  view.changes.geometry = true;
+  const FrameStats& stats = gi.run(view);
+  EXPECT_GT(stats.raysCube.occlusion, 0u);
+  GiFrame anew(settings);
+  anew.run(room.scene.view());
+  const Image kept = gi.read(Buffer::Irradiance), fresh = anew.read(Buffer::Irradiance);
+  EXPECT_LT(differenceOf(kept, fresh), 1e-3);
+  GiFrame before(settings);
+  Room other;
+  other.scene.lights = room.scene.lights;
+  before.run(other.scene.view());
+  EXPECT_GT(differenceOf(before.read(Buffer::Irradiance), fresh), 0.05) << "the block makes a difference";
+}
+
+TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
+  for (const float turn : {0.0f, 0.3f, 0.785f}) {
+    HandScene scene;
+    const uint32_t white = scene.material(vec3(0.7f));
+    scene.box(vec3(-2, -1, -2), vec3(2, 1, 2), white, true);
+    const vec3 along(std::sin(turn), 0, std::cos(turn)); // of a wall without thickness
+    scene.quad(vec3(0.07f, -1, 0) - 3.0f * along, vec3(0, 2, 0), 6.0f * along, white);
+    scene.lights.push_back({.type = LightType::Point, .position = {-1.2f, 0.2f, 0}, .intensity = vec3(5)});
+    double lit = 0;
+    for (const float side : {-1.0f, 1.0f}) {
+      scene.camera = cameraAt(vec3(side * 0.9f, 0, -side * 0.8f), vec3(side * 1.5f, -0.2f, side * 2), 1.7f);
+      GiFrame gi(settings);
+      gi.run(scene.view());
+      const double mean = meanLuminance(gi.read(Buffer::Irradiance));
+      if (side < 0) lit = mean;
+      std::printf("wall turned by %.2f: %s room %.2g W/m2\n", double(turn), side < 0 ? "lit" : "dark", mean);
+      EXPECT_TRUE(side < 0 || mean < 0.01 * lit) << turn;
+    }
+    EXPECT_GT(lit, 0.1);
+  }
+}
+
+TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("lambent-gather-" + std::to_string(::getpid()) + ".cube");
+  settings.cubeFile = file.string();
+  Image first;
+  for (int run = 0; run < 2; ++run) {
+    GiFrame gi(settings);
+    const FrameStats& stats = gi.run(room.scene.view());
+    EXPECT_EQ(stats.raysCube.occlusion > 0, run == 0);
+    if (run == 0)
+      first = gi.read(Buffer::Irradiance);
+    else
+      EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, first.pixels);
+  }
+  // Another lamp: the file's lights are not shown.
+  room.scene.lights[0].position.x = -0.5f;
+  GiFrame moved(settings), plain((settings.cubeFile.clear(), settings));
+  moved.run(room.scene.view());
+  plain.run(room.scene.view());
+  EXPECT_LT(differenceOf(moved.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)), 1e-3);
+  // Whatever else the file may be, it is not touched.
+  std::ofstream(file, std::ios::trunc) << "{\"asset\": {\"version\": \"2.0\"}}";
+  settings.cubeFile = file.string();
+  EXPECT_THROW(GiFrame(settings).run(room.scene.view()), InputError);
+  EXPECT_EQ(std::filesystem::file_size(file), 29u);
+  std::filesystem::remove(file);
+}
+
+} // namespace lambent::test
