@@ -11,9 +11,8 @@
 
 layout(std430, binding = 2) restrict readonly buffer Firsts { uint firsts[]; };
 layout(std430, binding = 5) restrict readonly buffer Entries { CubeTexel entries[]; };
-uniform vec3 corner;     // world
-uniform float texel;     // metres
-uniform int resolution;  // texels
+layout(std430, binding = 6) restrict readonly buffer Nodes { CubeNode nodes[]; };
+uniform int resolution;  // texels along an edge of each cube
 uniform float brightest; // irradiance of the brightest entry, W/m²
 layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
@@ -36,6 +35,23 @@ uint bitOf(ivec2 s) {
   return s.y > 0 ? (s.x > 0 ? 16u : 32u) : (s.x > 0 ? 64u : 128u);
 }
 
+/// The cube that a place lies in.
+struct Cube {
+  vec3 corner; // world
+  float texel; // metres
+  int firstColumn;
+};
+
+Cube cubeAt(vec3 position) {
+  uint node = 0u;
+  while (nodes[node].children != 0u) {
+    CubeNode n = nodes[node];
+    uvec3 far = uvec3(greaterThan(position, n.corner + 0.5 * float(resolution) * n.texel));
+    node = n.children + far.x + 2u * far.y + 4u * far.z;
+  }
+  return Cube(nodes[node].corner, nodes[node].texel, int(nodes[node].firstColumn));
+}
+
 struct Found {
   float off;    // texels from the pixel, across the column; beyond any: none
   float weight;
@@ -45,17 +61,17 @@ struct Found {
 };
 
 /// Of a column's entries on the surface at x (from the corner) the one nearest to it. `at`: x in texels of the image.
-Found nearestIn(ivec2 column, int axis, vec2 at, vec3 x, vec3 normal) {
+Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal) {
   Found found = Found(1e9, 0.0, vec3(0.0), 0u, vec2(0.0));
   if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(resolution)))) return found;
   int blocks = resolution / kCubeBlock;
   ivec2 block = column / kCubeBlock, within = column % kCubeBlock;
-  int index = ((axis * blocks + block.y) * blocks + block.x) * kCubeBlock * kCubeBlock + within.y * kCubeBlock + within.x;
+  int index = cube.firstColumn + ((axis * blocks + block.y) * blocks + block.x) * kCubeBlock * kCubeBlock + within.y * kCubeBlock + within.x;
   uint last = firsts[index + 1];
   for (uint i = firsts[index]; i < last; ++i) {
     CubeTexel t = entries[i];
     vec3 n = unitFromOctahedral(unpackSnorm2x16(t.normal));
-    float height = abs(dot(x, n) - t.distance) / texel;
+    float height = abs(dot(x, n) - t.distance) / cube.texel;
     if (height > kSamePlane || dot(n, normal) < kLeastCos) continue;
     vec2 way = vec2(column) + (vec2(t.place >> 8 & 255u, t.place >> 16 & 255u) + 0.5) / 256.0 - at;
     float off = max(abs(way.x), abs(way.y)) + height;
@@ -67,13 +83,13 @@ Found nearestIn(ivec2 column, int axis, vec2 at, vec3 x, vec3 normal) {
 }
 
 /// Adds what an image holds around x; `share` of the image in all.
-void lookUp(int axis, float share, vec3 x, vec3 normal, inout vec3 sum, inout float total, inout vec4 fallback) {
-  vec2 at = vec2(x[(axis + 1) % 3], x[(axis + 2) % 3]) / texel;
+void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, inout vec3 sum, inout float total, inout vec4 fallback) {
+  vec2 at = vec2(x[(axis + 1) % 3], x[(axis + 2) % 3]) / cube.texel;
   ivec2 base = ivec2(floor(at - 0.5));
   Found found[4];
   int nearest = 0;
   for (int i = 0; i < 4; ++i) {
-    found[i] = nearestIn(base + ivec2(i & 1, i >> 1), axis, at, x, normal);
+    found[i] = nearestIn(cube, base + ivec2(i & 1, i >> 1), axis, at, x, normal);
     if (found[i].off < found[nearest].off) nearest = i;
   }
   if (found[nearest].off > 1e8) return;
@@ -98,17 +114,18 @@ void main() {
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
-  vec3 x = position - corner, a = abs(normal);
+  Cube cube = cubeAt(position);
+  vec3 x = position - cube.corner, a = abs(normal);
   float most = max(a.x, max(a.y, a.z));
   vec3 sum = vec3(0.0);
   float total = 0.0;
   vec4 nearest = vec4(0.0, 0.0, 0.0, 1e9);
   for (int axis = 0; axis < 3; ++axis) {
     float share = smoothstep(kNextImage * most, most, a[axis]);
-    if (share > 0.0) lookUp(axis, share, x, normal, sum, total, nearest);
+    if (share > 0.0) lookUp(cube, axis, share, x, normal, sum, total, nearest);
   }
   if (nearest.w > 1e8) // a mapped normal may lead to another image than the surface's own
-    for (int axis = 0; axis < 3; ++axis) lookUp(axis, 1.0, x, normal, sum, total, nearest);
+    for (int axis = 0; axis < 3; ++axis) lookUp(cube, axis, 1.0, x, normal, sum, total, nearest);
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
   outIrradiance = vec4(irradiance, 1.0);
 #ifdef GLOSSY

@@ -45,6 +45,7 @@ constexpr FigureRow kRows[] = {
      [](const S& s) -> Figure { return uint64_t(s.mapsWaiting); }},
     {"light_maps_drawn", "shadow maps of punctual lights and of the sky",
      [](const S& s) -> Figure { return uint64_t(s.lightMapsDrawn); }},
+    {"cube.cubes", "of the tree of layered depth cubes", [](const S& s) -> Figure { return s.cubes; }},
     {"cube.entries", "of the layered depth cube that light reaches",
      [](const S& s) -> Figure { return s.cubeEntries; }},
     {"cube.bytes", "that pixels look up", [](const S& s) -> Figure { return s.cubeBytes; }},

@@ -24,7 +24,9 @@ struct IndirectInputs {
   uint32_t picture = 0;  // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such pictures
   bool changes = false;  // light does; means are short then
-  bool stands = false; // neither light nor camera changes, and means follow no change before
+  bool stands = false;   // neither light nor camera changes, and means follow no change before
+  bool stores = true;    // what outlives pictures follows the lights; else it stays as it is
+  uint32_t most = ~0u;   // lights that are put into it at once: there is no light before all are
   std::function<void(int, int)> progress = {}; // of what takes long: done and total; may be empty
 };
 

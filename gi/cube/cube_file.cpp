@@ -6,6 +6,7 @@
 #include "engine/core/image.h"
 #include "engine/scene/scene_hash.h"
 
+#include <algorithm>
 #include <fstream>
 
 namespace lambent {
@@ -62,12 +63,16 @@ struct Reader {
 struct CubeFile {
   template <class Stream> static void each(Stream& stream, LayeredCube& cube) {
     CubeSurfaces& s = cube.surfaces_;
-    stream.bytes(&s.corner_, sizeof s.corner_);
-    stream.bytes(&s.texel_, sizeof s.texel_);
+    stream.bytes(&s.lo_, sizeof s.lo_);
+    stream.bytes(&s.edge_, sizeof s.edge_);
     stream.bytes(&s.resolution_, sizeof s.resolution_);
+    stream.bytes(&s.levels_, sizeof s.levels_);
+    stream.bytes(&s.split_, sizeof s.split_);
     stream.bytes(&cube.settings_, sizeof cube.settings_);
     stream.bytes(&cube.gather_, sizeof cube.gather_);
-    stream.vector(s.first_);
+    stream.vector(s.nodes_);
+    stream.vector(s.cubes_);
+    stream.vector(s.firsts_);
     stream.vector(s.entries_);
     stream.vector(cube.in_);
     stream.vector(cube.seen_);
@@ -76,11 +81,18 @@ struct CubeFile {
   /// Whether the parts of what was read fit together.
   static bool whole(const LayeredCube& cube) {
     const CubeSurfaces& s = cube.surfaces_;
-    const size_t columns = 3 * size_t(s.resolution_) * size_t(s.resolution_);
-    if (s.resolution_ < 8 || s.resolution_ % 8 != 0 || s.first_.size() != columns + 1) return false;
-    if (s.first_.front() != 0 || s.first_.back() != s.entries_.size()) return false;
-    for (size_t c = 0; c < columns; ++c)
-      if (s.first_[c] > s.first_[c + 1]) return false;
+    if (s.resolution_ < 8 || s.resolution_ % 8 != 0 || s.nodes_.empty()) return false;
+    if (s.firsts_.size() != s.cubes_.size() * s.columns() + 1) return false;
+    if (s.firsts_.front() != 0 || s.firsts_.back() != s.entries_.size()) return false;
+    if (!std::is_sorted(s.firsts_.begin(), s.firsts_.end())) return false;
+    for (const CubeGrid& grid : s.cubes_)
+      if (grid.resolution != s.resolution_) return false;
+    for (size_t n = 0; n < s.nodes_.size(); ++n) {
+      const CubeNode& node = s.nodes_[n];
+      if (node.children != 0 ? node.children <= n || size_t(node.children) + 8 > s.nodes_.size()
+                             : node.firstColumn % s.columns() != 0 || node.firstColumn / s.columns() >= s.cubes_.size())
+        return false;
+    }
     return cube.sums_.size() == s.entries_.size() && cube.seen_.size() == s.entries_.size() * cube.words();
   }
 };
@@ -105,17 +117,22 @@ void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64
   });
 }
 
+bool isCube(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  char magic[sizeof kMagic];
+  return in.read(magic, sizeof magic) && std::memcmp(magic, kMagic, sizeof magic) == 0;
+}
+
 LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
   std::ifstream in(file, std::ios::binary);
   Header header;
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
-    throw InputError(file.string(), "is not a layered depth cube (name a new file, or one written by --cube)");
+    throw InputError(file.string(), "is not a layered depth cube (--cube wants a new name, or what it wrote before)");
   if (header.version != kVersion || header.entryBytes != kBytes)
-    throw InputError(file.string(), "was written by another version of the program (remove it to build the cube anew)");
+    throw InputError(file.string(), "is a layered depth cube of another version of the program");
   if (header.key != key)
-    throw InputError(file.string(),
-                     "belongs to another scene, or its objects stood elsewhere (name another, or remove it)");
-  const std::string damaged = "is damaged (remove it to build the cube anew)";
+    throw InputError(file.string(), "is a layered depth cube of another scene, or its objects stood elsewhere");
+  const std::string damaged = "is a damaged layered depth cube";
   LayeredCube cube;
   try {
     std::error_code ignored;

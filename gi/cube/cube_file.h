@@ -13,6 +13,8 @@ uint64_t cubeKey(const SceneView& view);
 
 /// Replaces the file in one step. Throws RunError where it cannot be written.
 void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64_t key);
+/// Whether a file claims to be one, of whatever version.
+bool isCube(const std::filesystem::path& file);
 /// Throws InputError for a file that is no cube, is damaged, of another version, or of other geometry.
 LayeredCube loadCube(const std::filesystem::path& file, uint64_t key);
 

@@ -1,72 +1,52 @@
-// Surfaces in the layered depth cube: what rays along the three axes meet (paper 5, section 3). The paper fills its
-// images with what hemicubes see, so that layers come in the order of lights; filled from the axes they depend on
-// geometry alone, and a moved object changes the columns that it touches and no other.
+// Surfaces of a scene in one layered depth cube, or in a tree of them (the further work of paper 5): a cube is given up
+// for eight of half its edge and as many texels while more of what it holds is edges than `cube.split`, as deep as
+// `cube.levels` says. Floors and walls then keep wide texels, and what is small or cluttered gets narrow ones. The tree
+// depends on geometry alone. World space, metres.
 #pragma once
 
-#include "engine/trace/ray_query.h"
+#include "gi/cube/depth_cube.h"
 #include "gi/plan/settings.h"
-#include "gi/vpl/disturbance.h"
+#include "shaders/shared/layered_cube.h"
 
 namespace lambent {
 
-/// A piece of a surface, one side of it, about as large as a texel. Its plane: dot(normal, p - position) = 0.
-struct CubeEntry {
-  vec3 position{0};        // on the surface, as near to the texel's middle as it reaches
-  vec3 normal{0};          // geometric, unit
-  vec3 shading{0};         // unit
-  uint32_t neighbours = 0; // bit k: it sees the entry that carries its surface on in column neighbour k
-  bool operator==(const CubeEntry&) const = default;
-};
-
-/// Steps in an image's two directions to neighbour k.
-inline constexpr int kCubeNeighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-
-/// Images of resolution × resolution texels along x, y and z; the box is a cube. A column, the texel (u, v) of an
-/// image, looks along its axis; u runs along the next axis, v along the one after.
 class CubeSurfaces {
  public:
-  bool empty() const { return resolution_ == 0; }
+  bool empty() const { return nodes_.empty(); }
   /// Casts all columns.
   void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts);
-  /// Casts columns that `moved` touches. Gives by entry its number before, kNone where it is new.
+  /// Casts what `moved` touches: then it is what build() would make. Gives by entry its number before, kNone where it
+  /// is new.
   std::vector<uint32_t> update(const Disturbance& moved, const RayQuery& rays, RayCounts& counts);
   /// Whether the box holds the scene, and not much more.
   bool holds(const Aabb& boundsWorld) const;
 
-  int resolution() const { return resolution_; }
-  vec3 corner() const { return corner_; }
-  float texel() const { return texel_; } // metres
-  size_t columns() const { return first_.size() - 1; }
-  /// Columns lie in blocks of 8×8: neighbours in space mostly are in memory.
-  size_t column(int axis, int u, int v) const {
-    const size_t blocks = size_t(resolution_) / 8;
-    return ((size_t(axis) * blocks + size_t(v) / 8) * blocks + size_t(u) / 8) * 64 + size_t(v % 8) * 8 + size_t(u % 8);
-  }
-  /// Its inverse.
-  struct Place {
-    int axis, u, v;
-  };
-  Place placeOf(size_t column) const;
+  float texel() const { return edge_ / float(resolution_ - 2); } // metres, the widest
+  /// The tree, as pixels descend it: the root, then eight children side by side wherever there are any.
+  std::span<const CubeNode> nodes() const { return nodes_; }
+  /// The cubes that are its leaves.
+  std::span<const CubeGrid> cubes() const { return cubes_; }
+  /// Columns of cube i are columns() · i and on, in the order of CubeGrid::column.
+  size_t columns() const { return 3 * size_t(resolution_) * size_t(resolution_); }
   /// Entries of column c are [firsts()[c], firsts()[c + 1]).
-  std::span<const uint32_t> firsts() const { return first_; }
+  std::span<const uint32_t> firsts() const { return firsts_; }
   std::span<const CubeEntry> entries() const { return entries_; }
 
-  /// Whether an entry is the surface at a place with this normal (paper 5, section 3.1), `within` metres.
-  static bool matches(const CubeEntry& entry, const vec3& position, const vec3& normal, float within);
-  /// Images that hold a surface of this normal: where two axes are nearly as near, both. Bit a: axis a.
-  static int axesOf(const vec3& normal);
-
  private:
-  friend struct CubeFile;                           // gi/cube/cube_file.cpp
-  vec3 pointOf(const Place& at, vec2 within) const; // on the box's near side; `within` the texel, 0..1
-  std::vector<CubeEntry> cast(const Place& at, const RayQuery& rays, RayCounts& counts) const;
-  void castAll(std::span<const uint32_t> columns, const RayQuery& rays, RayCounts& counts);
-  void linkAll(std::span<const uint32_t> columns, const RayQuery& rays, RayCounts& counts);
+  friend struct CubeFile; // gi/cube/cube_file.cpp
+  struct Growth;          // of a tree, beside the one before
 
-  vec3 corner_{0};
-  float texel_ = 0;
-  int resolution_ = 0;
-  std::vector<uint32_t> first_;
+  DepthCube cubeOf(uint32_t index) const;
+  Growth grow(const Disturbance* moved, const RayQuery& rays, RayCounts& counts) const;
+  void adopt(Growth& growth);
+
+  vec3 lo_{0};
+  float edge_ = 0; // of the box
+  int resolution_ = 0, levels_ = 0;
+  float split_ = 0;
+  std::vector<CubeNode> nodes_;
+  std::vector<CubeGrid> cubes_;
+  std::vector<uint32_t> firsts_;
   std::vector<CubeEntry> entries_;
 };
 

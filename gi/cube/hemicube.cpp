@@ -75,53 +75,92 @@ void castHemicube(Hemicube& hemicube, const RayQuery& rays, RayCounts& counts) {
     }
 }
 
+namespace {
+
+constexpr float kAround = 0.5f; // texels of the hemicube, of what a texel's surface goes on to
+constexpr int kWidest = 64;     // texels of a cube; where a surface is seen edge-on
+
+/// What a texel sees, and how far that may reach.
+struct Splat {
+  const Hemicube& hemicube;
+  int face;
+  vec2 texel; // its middle, in texels of the face
+  vec3 normal, middle;
+  Aabb box;
+
+  Splat(const Hemicube& h, int face_, int x, int y, const HemicubeTexel& t, float widestTexel)
+      : hemicube(h), face(face_), texel(vec2(x, y) + 0.5f), normal(t.normal),
+        middle(h.origin + t.distance * h.direction(face_, texel)) {
+    // Where its corners meet the surface's plane.
+    box.add(middle);
+    const float height = glm::dot(middle - h.origin, normal), reach = float(kWidest) * widestTexel + t.distance;
+    for (const vec2 corner : {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)}) {
+      const vec3 d = h.direction(face, texel + corner * (0.5f + kAround));
+      const float towards = glm::dot(d, normal);
+      box.add(h.origin + d * (towards * reach < height ? std::min(height / towards, reach) : reach));
+    }
+  }
+
+  bool mayLieIn(const CubeNode& node, int resolution) const {
+    const vec3 hi = node.corner + float(resolution) * node.texel;
+    return glm::all(glm::lessThanEqual(box.lo, hi)) && glm::all(glm::lessThanEqual(node.corner, box.hi));
+  }
+
+  /// The entries of a cube, with numbers from `firstColumn` on.
+  void mark(const CubeSurfaces& surfaces, const CubeGrid& grid, size_t firstColumn, std::vector<uint8_t>& seen) const {
+    constexpr float kSameSurface = 0.5f; // texels of the cube
+    const int axes = axesOf(normal);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(axes >> axis & 1)) continue;
+      const auto texels = [&](const vec3& p, int along) {
+        return int(
+            std::floor(std::clamp((p[along] - grid.corner[along]) / grid.texel, 0.0f, float(grid.resolution - 1))));
+      };
+      const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+      const ivec2 at(texels(middle, a), texels(middle, b));
+      const ivec2 lo = glm::max(ivec2(texels(box.lo, a), texels(box.lo, b)), at - kWidest);
+      const ivec2 hi = glm::min(ivec2(texels(box.hi, a), texels(box.hi, b)), at + kWidest);
+      for (int v = lo.y; v <= hi.y; ++v)
+        for (int u = lo.x; u <= hi.x; ++u) {
+          const size_t column = firstColumn + grid.column(axis, u, v);
+          for (uint32_t e = surfaces.firsts()[column]; e < surfaces.firsts()[column + 1]; ++e) {
+            if (seen[e]) continue;
+            const CubeEntry& entry = surfaces.entries()[e];
+            int f;
+            vec2 p;
+            if (!matches(entry, middle, normal, kSameSurface * grid.texel) ||
+                !hemicube.find(entry.position - hemicube.origin, f, p) || f != face)
+              continue;
+            const vec2 off = glm::abs(p - texel);
+            if (std::max(off.x, off.y) <= 0.5f + kAround) seen[e] = 1;
+          }
+        }
+    }
+  }
+};
+
+} // namespace
+
 void splat(const Hemicube& hemicube, const CubeSurfaces& surfaces, std::vector<uint8_t>& seen) {
-  constexpr float kAround = 0.5f;      // texels of the hemicube, of what a texel's surface goes on to
-  constexpr float kSameSurface = 0.5f; // texels of the cube
-  constexpr int kWidest = 64;          // texels of the cube; where a surface is seen edge-on
-  const float texel = surfaces.texel();
-  const int last = surfaces.resolution() - 1;
+  const std::span<const CubeNode> nodes = surfaces.nodes();
+  const int resolution = surfaces.cubes().front().resolution;
+  std::vector<uint32_t> open; // nodes of the tree
   for (int face = 0; face < 5; ++face)
     for (int y = 0; y < rowsOf(hemicube, face); ++y)
       for (int x = 0; x < hemicube.resolution; ++x) {
         const HemicubeTexel& t = hemicube.texels[firstOf(hemicube, face) + size_t(y) * hemicube.resolution + x];
         if (!(t.distance < kInfinity)) continue;
-        const vec3 middle = hemicube.origin + t.distance * hemicube.direction(face, vec2(x, y) + 0.5f);
-        // Where its corners meet the surface's plane.
-        Aabb box;
-        box.add(middle);
-        const float height = glm::dot(middle - hemicube.origin, t.normal);
-        for (const vec2 corner :
-             {vec2(-kAround), vec2(1 + kAround, -kAround), vec2(-kAround, 1 + kAround), vec2(1 + kAround)}) {
-          const vec3 d = hemicube.direction(face, vec2(x, y) + corner);
-          const float towards = glm::dot(d, t.normal);
-          const float reach = float(kWidest) * texel + t.distance;
-          box.add(hemicube.origin + d * (towards * reach < height ? std::min(height / towards, reach) : reach));
-        }
-        const int axes = CubeSurfaces::axesOf(t.normal);
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!(axes >> axis & 1)) continue;
-          const auto texels = [&](const vec3& p, int along) {
-            return std::clamp(int(std::floor((p[along] - surfaces.corner()[along]) / texel)), 0, last);
-          };
-          const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-          const ivec2 at(texels(middle, a), texels(middle, b));
-          const ivec2 lo = glm::max(ivec2(texels(box.lo, a), texels(box.lo, b)), at - kWidest);
-          const ivec2 hi = glm::min(ivec2(texels(box.hi, a), texels(box.hi, b)), at + kWidest);
-          for (int v = lo.y; v <= hi.y; ++v)
-            for (int u = lo.x; u <= hi.x; ++u) {
-              const size_t column = surfaces.column(axis, u, v);
-              for (uint32_t e = surfaces.firsts()[column]; e < surfaces.firsts()[column + 1]; ++e) {
-                if (seen[e]) continue;
-                const CubeEntry& entry = surfaces.entries()[e];
-                if (!CubeSurfaces::matches(entry, middle, t.normal, kSameSurface * texel)) continue;
-                int f;
-                vec2 p;
-                if (!hemicube.find(entry.position - hemicube.origin, f, p) || f != face) continue;
-                const vec2 off = glm::abs(p - (vec2(x, y) + 0.5f));
-                if (std::max(off.x, off.y) <= 0.5f + kAround) seen[e] = 1;
-              }
-            }
+        const Splat splat(hemicube, face, x, y, t, surfaces.texel());
+        open.assign(1, 0);
+        while (!open.empty()) {
+          const CubeNode& node = nodes[open.back()];
+          open.pop_back();
+          if (node.children == 0) {
+            splat.mark(surfaces, surfaces.cubes()[node.firstColumn / surfaces.columns()], node.firstColumn, seen);
+            continue;
+          }
+          for (uint32_t i = node.children; i < node.children + 8; ++i)
+            if (splat.mayLieIn(nodes[i], resolution)) open.push_back(i);
         }
       }
 }

@@ -1,5 +1,7 @@
 #include "gi/cube/layered_cube.h"
 
+#include "engine/core/error.h"
+#include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
 
@@ -44,6 +46,10 @@ size_t LayeredCube::bytesKept() const {
 }
 
 void LayeredCube::clear() {
+  const double needed = double(surfaces_.entries().size()) * double(words() * sizeof(Word) + sizeof(dvec3));
+  if (needed > double(freeMemory()) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3)))
+    throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
+                   " GB of memory, more than is left (lower cube.resolution, cube.levels or smc.vpls)");
   seen_.assign(surfaces_.entries().size() * words(), 0);
   sums_.assign(surfaces_.entries().size(), dvec3(0));
   for (VirtualLight& light : in_) light.alive = false;

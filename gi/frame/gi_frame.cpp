@@ -7,6 +7,7 @@
 #include "gi/frame/picture.h"
 #include "gi/frame/world_keeper.h"
 #include "gi/gather/stages.h"
+#include "gi/gather/stand_in.h"
 #include "gi/lights/light_source.h"
 #include "gi/surfaces/surfaces.h"
 #include "gi/visibility/map_keeper.h"
@@ -28,6 +29,11 @@ class DrawCount {
   uint64_t before_ = gl::counts().draws;
 };
 
+/// Before and after what mixes it over pixels and pictures.
+struct Indirect {
+  LightOnSurfaces gathered, light;
+};
+
 } // namespace
 
 /// The stages, in data-flow order. What one of them keeps from frame to frame is its own.
@@ -44,6 +50,7 @@ struct GiFrame::Kept {
   DirectLight direct{context};
   MapKeeper keeper{context};
   IndirectStages indirectStages{context};
+  StandIn standIn{context};
   HistoryPass history{context};
   FilterPass filter{context};
   CompositePass composite{context};
@@ -62,6 +69,12 @@ struct GiFrame::Kept {
   void begin(const SceneView& given);
   void end(Clock::time_point begin, const gl::Counts& before);
   LightSource* sourceFor(VplSource wanted);
+  Indirect lightIndirectly(const World& given, const EffectPlan& plan, const VirtualLights& lights,
+                           const GBuffer& surfaces, Patches& patches, const std::function<void(int, int)>& progress);
+  /// Light is averaged over pictures. (Forced, it has nothing to do.)
+  bool averages(const EffectPlan& plan) const {
+    return plan.on(EffectId::History) && plan.calledFor(EffectId::History);
+  }
   FilterSettings filterFor(const EffectPlan& plan) const;
   void expose(const Picture& picture);
   Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan, settings.image.antiAliasing}; }
@@ -85,20 +98,23 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   if (source) source->finish();
   k.begin(given);
   FrameStats& stats = k.stats;
+  k.standIn.watch(given, settings);
   const EffectPlan plan = k.world.plan(given, settings,
                                        {.first = !k.results.picture.radiance,
                                         .host = host != nullptr,
                                         .settled = source && source->settled(),
                                         .mapsWaiting = k.keeper.waiting(),
                                         .averaged = k.averaged,
-                                        .lightArrived = source && source->arrived()});
+                                        .lightArrived = source && source->arrived(),
+                                        .storedAlone = k.standIn.alone(),
+                                        .storing = k.standIn.busy()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
-  const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History); // forced, it has nothing to do
-  if (!averages || k.world.gatherChanged()) k.history.forget();
+  if (!k.averages(plan) || k.world.gatherChanged()) k.history.forget();
 
   VirtualLights lights;
-  if (source && plan.on(EffectId::Indirect))
+  const bool gathers = plan.on(EffectId::Gather) || rowOf(settings.vpl.source).sampled;
+  if (source && plan.on(EffectId::Indirect) && gathers)
     lights = source->run({world, plan, settings, k.seed, k.world.settingsChanged(), progress}, stats);
   stats.vplsAlive = lights.alive;
 
@@ -110,38 +126,13 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host, keep});
     Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
     const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings, patches, keep}, stats);
-    LightOnSurfaces gathered, indirect;
-    if (plan.on(EffectId::Indirect)) {
-      const DrawCount indirectDraws;
-      const SeenLights seen = k.keeper.see({world, lights, settings, k.seed}, plan, stats);
-      const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
-      const int bounces = more ? settings.smc.bounces : 1;
-      if (averages) k.history.fit(surfaces);
-      const bool changes = averages && plan.lightChanges();
-      gathered = k.indirectStages.of(settings).run(
-          {world, surfaces, patches, seen, settings, bounces, k.seed, averages ? k.history.picture() : 0, averages,
-           changes, averages && !changes && !world.view.changes.camera && !k.history.follows(), progress},
-          stats);
-      const FilterSettings filter = k.filterFor(plan);
-      LightOnSurfaces mean = gathered;
-      if (averages) {
-        const DrawCount historyDraws;
-        mean = k.history.run(
-            {surfaces, gathered, world.view.changes.camera, plan.lightChanges(), settings.history, filter});
-        stats.of(EffectId::History) = historyDraws();
-        k.averaged = plan.changed() ? 1 : k.averaged + 1;
-      }
-      const DrawCount filterDraws;
-      indirect = k.filter.run({surfaces, mean, filter, !averages});
-      if (filter.on) stats.of(EffectId::Filter) = filterDraws();
-      stats.of(EffectId::Indirect) += indirectDraws();
-    }
-    const Picture picture = k.composite.run({surfaces, direct, indirect, world.view.sky});
+    const Indirect indirect = k.lightIndirectly(world, plan, lights, surfaces, patches, progress);
+    const Picture picture = k.composite.run({surfaces, direct, indirect.light, world.view.sky});
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
     k.expose(picture);
-    k.results = {surfaces,       direct,          gathered,       indirect,
-                 picture,        k.keeper.maps(), patches.made(), source ? source->set() : nullptr,
+    k.results = {surfaces,       direct,          indirect.gathered, indirect.light,
+                 picture,        k.keeper.maps(), patches.made(),    source ? source->set() : nullptr,
                  world.view.sky, world.reach};
   }
 
@@ -166,8 +157,49 @@ void GiFrame::Kept::begin(const SceneView& given) {
   if (!world.open(*given.assets, stats)) return;
   if (source) source->forget();
   keeper.forget();
+  standIn.forget();
   history.forget();
   results = {};
+}
+
+/// Light that virtual lights bring to the surfaces: seen, gathered, averaged and mixed.
+Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& plan, const VirtualLights& lights,
+                                        const GBuffer& surfaces, Patches& patches,
+                                        const std::function<void(int, int)>& progress) {
+  Indirect out;
+  if (!plan.on(EffectId::Indirect)) return out;
+  const DrawCount draws;
+  const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
+  const int bounces = more ? settings.smc.bounces : 1;
+  if (plan.on(EffectId::Gather) || rowOf(settings.gather.mode).stored) {
+    const DrawCount gatherDraws;
+    const SeenLights seen = keeper.see({given, lights, settings, seed}, plan, stats);
+    const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
+    if (averaging) history.fit(surfaces);
+    out.gathered = indirectStages.of(settings).run(
+        {given, surfaces, patches, seen, settings, bounces, seed, averaging ? history.picture() : 0, averaging, changes,
+         averaging && !changes && !given.view.changes.camera && !history.follows(), plan.on(EffectId::Gather), ~0u,
+         progress},
+        stats);
+    if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = gatherDraws();
+    const FilterSettings filtering = filterFor(plan);
+    LightOnSurfaces mean = out.gathered;
+    if (averaging) {
+      const DrawCount historyDraws;
+      mean = history.run(
+          {surfaces, out.gathered, given.view.changes.camera, plan.lightChanges(), settings.history, filtering});
+      stats.of(EffectId::History) = historyDraws();
+      averaged = plan.changed() ? 1 : averaged + 1;
+    }
+    const DrawCount filterDraws;
+    out.light = filter.run({surfaces, mean, filtering, !averaging});
+    if (filtering.on) stats.of(EffectId::Filter) = filterDraws();
+  } else {
+    history.forget(); // it would be of another place
+  }
+  out.light = standIn.run({given, surfaces, patches, plan, settings, seed, bounces}, out.light, stats);
+  stats.of(EffectId::Indirect) += draws();
+  return out;
 }
 
 /// What was asked of the GPU, and how long the frame took.

@@ -59,10 +59,15 @@ EffectPlan WorldKeeper::plan(const SceneView& given, const Settings& settings, c
                          .settled = in.settled,
                          .mapsWaiting = in.mapsWaiting,
                          .averaged = in.averaged,
-                         .lightArrived = in.lightArrived};
+                         .lightArrived = in.lightArrived,
+                         .storedAlone = in.storedAlone,
+                         .storing = in.storing};
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
-  const auto everything = [&] { return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw); };
+  const auto everything = [&] {
+    const bool gathers = plan.on(EffectId::Gather) || !plan.calledFor(EffectId::Gather);
+    return plan.on(EffectId::Indirect) && plan.on(EffectId::Redraw) && gathers;
+  };
   if ((untold_ && everything()) || (unseen_ && plan.on(EffectId::Redraw))) {
     view.changes = kAllChanged;
     plan = planEffects(view, settings, facts);

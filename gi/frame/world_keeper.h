@@ -21,6 +21,8 @@ struct PlanInputs {
   uint32_t mapsWaiting = 0;  // of virtual lights
   int averaged = 0;          // as FrameFacts
   bool lightArrived = false; // that no picture shows yet
+  bool storedAlone = false;  // as FrameFacts
+  bool storing = false;
 };
 
 class WorldKeeper {

@@ -1,4 +1,5 @@
 // Light of pixels from the layered depth cube.
+#include "engine/core/error.h"
 #include "engine/core/image.h"
 #include "engine/gl/ring.h"
 #include "gi/cube/cube_file.h"
@@ -18,28 +19,29 @@ namespace lambent {
 namespace {
 
 class CubeGather : public IndirectStage {
+  using Clock = std::chrono::steady_clock;
+
  public:
   explicit CubeGather(PassContext context) : context_(context) {}
 
   LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
-    if (update(in, stats)) {
-      traceNear(in, stats);
-      upload();
-    }
+    if (in.stores && update(in, stats)) nearDone_ = 0;
+    if (in.stores && cube_.pending() == 0 && nearDone_ < kAllNear && traceNear(in, stats)) upload();
+    if (nearDone_ != kAllNear) return {};
     stats.cubeEntries = entries_.bytes() / sizeof(CubeTexel);
-    stats.cubeBytes = entries_.bytes() + firsts_.bytes();
+    stats.cubes = cube_.surfaces().cubes().size();
+    stats.cubeBytes = entries_.bytes() + firsts_.bytes() + nodes_.bytes();
     stats.cubeKeptBytes = cube_.bytesKept() + near_.size() * sizeof(vec3);
     const gl::PassScope scope = context_.scope(StageId::Gather);
     target_.fit(in.surfaces);
     const gl::Program& program =
         context_.programs.get({.fragment = "cube_gather.frag", .defines = bindSurfaces(in.surfaces)});
     program.use();
-    program.set("corner", cube_.surfaces().corner());
-    program.set("texel", cube_.surfaces().texel());
-    program.set("resolution", cube_.surfaces().resolution());
+    program.set("resolution", cube_.surfaces().cubes().front().resolution);
     program.set("brightest", brightest_);
     firsts_.bindStorage(2);
     entries_.bindStorage(5);
+    nodes_.bindStorage(6);
     target_.bind();
     gl::PipelineState{.width = target_.size().x, .height = target_.size().y}.apply();
     gl::drawFullscreen();
@@ -49,57 +51,78 @@ class CubeGather : public IndirectStage {
  private:
   bool update(const IndirectInputs& in, FrameStats& stats) {
     constexpr uint32_t kAtOnce = 64; // lights, between two reports
-    constexpr std::chrono::seconds kSaveAfter{5};
     const CpuScope scope(stats.stages, key(StageId::Cube));
     const VirtualLights& lights = in.seen.lights;
     bool changed = false, first = true;
-    auto saved = std::chrono::steady_clock::now();
-    const bool stored = in.world.view.changes.first && !in.settings.cubeFile.empty(); // this build goes to the file
-    if (stored) open(in);
-    for (uint32_t total = 0;; first = false) {
+    // This build goes to the file, now and then while it lasts.
+    const bool stored = in.world.view.changes.first && !in.settings.cubeFile.empty() && open(in, stats);
+    Clock::time_point saved = Clock::now();
+    Clock::duration saveAfter = std::chrono::seconds(5);
+    for (uint32_t total = 0, put = 0;; first = false) {
       const CubeWork work =
           cube_.update({in.world.view.boundsWorld, in.world.rays, first && !opened_ ? in.world.moved : kNothingMoved,
                         first && in.world.view.changes.first && !opened_, lights.slots, lights.direct, in.settings.cube,
                         in.settings.gather},
-                       kAtOnce);
+                       std::min(kAtOnce, in.most));
       stats.raysCube += work.rays;
       changed |= work.changed;
       if (first) total = work.lightsIn + cube_.pending();
       if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
       const bool done = cube_.pending() == 0;
-      if (stored && changed && (done || std::chrono::steady_clock::now() - saved > kSaveAfter)) {
+      if (stored && changed && (done || Clock::now() - saved > saveAfter)) {
+        const Clock::time_point begin = Clock::now();
         saveCube(in.settings.cubeFile, cube_, cubeKey(in.world.view));
-        saved = std::chrono::steady_clock::now();
+        saved = Clock::now();
+        saveAfter = std::max(saveAfter, 20 * (saved - begin));
       }
-      if (done) return std::exchange(opened_, false) || changed;
+      if (done || (put += work.lightsIn) >= in.most) return std::exchange(opened_, false) || changed;
     }
   }
 
-  /// Takes over what is in the file of the settings. One that does not fit is left as it is: InputError.
-  void open(const IndirectInputs& in) {
+  /// Takes over what is in the file of the settings. A cube that does not fit is built anew; what is no cube at all
+  /// stays as it is. Whether the file is to be written.
+  bool open(const IndirectInputs& in, FrameStats& stats) {
     const std::filesystem::path file = in.settings.cubeFile;
     removeLeftovers(file);
-    if (!std::filesystem::exists(file)) return;
-    cube_ = loadCube(file, cubeKey(in.world.view));
-    opened_ = true;
+    if (!std::filesystem::exists(file)) {
+      checkWritable(file);
+      return true;
+    }
+    try {
+      cube_ = loadCube(file, cubeKey(in.world.view));
+      opened_ = true;
+      return true;
+    } catch (const InputError& e) {
+      const bool replaced = isCube(file);
+      stats.warning = std::string(e.what()) +
+                      (replaced ? "; it is built anew and replaced" : "; it stays as it is, and this one is not kept");
+      return replaced;
+    }
   }
 
-  /// What bounds take from near lights, at every entry that light reaches.
-  void traceNear(const IndirectInputs& in, FrameStats& stats) {
-    near_.assign(cube_.surfaces().entries().size(), vec3(0));
+  /// What bounds take from near lights, at entries that light reaches: all, or in pictures that put few lights at once
+  /// the next few. Whether it is done.
+  bool traceNear(const IndirectInputs& in, FrameStats& stats) {
+    constexpr size_t kPerLight = 2048; // entries
+    const size_t entries = cube_.surfaces().entries().size();
     const GatherSettings& gather = in.settings.gather;
-    if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) return;
+    if (nearDone_ == 0) near_.assign(entries, vec3(0));
+    if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) {
+      nearDone_ = kAllNear;
+      return true;
+    }
     const CpuScope scope(stats.stages, key(StageId::NearLight));
+    const size_t begin = nearDone_, end = std::min(entries, begin + kPerLight * std::min<size_t>(in.most, entries));
     std::vector<SurfaceHit> places;
     std::vector<uint32_t> of;
-    for (uint32_t e = 0; e < near_.size(); ++e) {
+    for (size_t e = begin; e < end; ++e) {
       if (cube_.irradiance(e) == vec3(0)) continue;
       const CubeEntry& entry = cube_.surfaces().entries()[e];
       SurfaceHit& place = places.emplace_back();
       place.position = entry.position;
       place.geometricNormal = entry.normal;
       place.normal = entry.shading;
-      of.push_back(e);
+      of.push_back(uint32_t(e));
     }
     constexpr int kRays = 4; // times gather.near: nothing is mixed between entries
     const std::vector<vec3> light = traceNearLightAt(places,
@@ -113,6 +136,8 @@ class CubeGather : public IndirectStage {
                                                       .seed = in.seed},
                                                      stats.raysNear);
     for (size_t i = 0; i < of.size(); ++i) near_[of[i]] = light[i];
+    nearDone_ = end < entries ? end : kAllNear;
+    return nearDone_ == kAllNear;
   }
 
   vec3 irradiance(size_t entry) const { return cube_.irradiance(entry) + near_[entry]; }
@@ -127,14 +152,15 @@ class CubeGather : public IndirectStage {
       brightest_ = std::max(brightest_, maxComponent(irradiance(i)));
     std::vector<CubeTexel> texels;
     std::vector<uint32_t> firsts{0};
-    firsts.reserve(surfaces.columns() + 1);
-    for (size_t c = 0; c < surfaces.columns(); ++c) {
-      const CubeSurfaces::Place at = surfaces.placeOf(c);
+    firsts.reserve(surfaces.firsts().size());
+    for (size_t c = 0; c + 1 < surfaces.firsts().size(); ++c) {
+      const CubeGrid& grid = surfaces.cubes()[c / surfaces.columns()];
+      const CubeGrid::Place at = grid.placeOf(c % surfaces.columns());
       for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
         const CubeEntry& entry = surfaces.entries()[e];
         if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
-        const vec3 x = entry.position - surfaces.corner();
-        const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / surfaces.texel() - vec2(at.u, at.v);
+        const vec3 x = entry.position - grid.corner;
+        const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
         const uvec2 place = uvec2(glm::clamp(within, 0.0f, 0.999f) * 256.0f);
         const vec3 light = glm::max(irradiance(e), vec3(0)) / (brightest_ * kCubeRange);
         texels.push_back({glm::packSnorm2x16(octahedralFromUnit(entry.normal)), glm::dot(x, entry.normal),
@@ -144,6 +170,7 @@ class CubeGather : public IndirectStage {
     }
     copy(entries_, "cube/entries", std::span<const CubeTexel>(texels));
     copy(firsts_, "cube/firsts", std::span<const uint32_t>(firsts));
+    copy(nodes_, "cube/nodes", surfaces.nodes());
   }
 
   template <class T> void copy(gl::Buffer& buffer, const char* label, std::span<const T> data) {
@@ -156,10 +183,12 @@ class CubeGather : public IndirectStage {
 
   PassContext context_;
   LayeredCube cube_;
+  static constexpr size_t kAllNear = ~size_t(0);
   std::vector<vec3> near_; // by entry
+  size_t nearDone_ = 0;    // entries below it have theirs
   bool opened_ = false;    // from a file, and not uploaded yet
   float brightest_ = 1;    // W/m²
-  gl::Buffer firsts_, entries_;
+  gl::Buffer firsts_, entries_, nodes_;
   gl::Ring changes_{"cube/changes"};
   LightTarget target_{"cube gather"};
 };

@@ -22,6 +22,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"history", "indirect light of a pixel is averaged over pictures; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
+    {"gather", "light of VPLs is brought to surfaces; off: what a cube holds stays, and else there is none", "draws"},
     {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
 };
 
@@ -176,8 +177,10 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                : moved                 ? Answer{true, movers}
                                : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
                                                        : Answer{false, "nothing moved"});
+  const bool sameLight = !changes.first && !changes.lights && !moved && !facts.settingsChanged;
+  const bool alone = facts.storedAlone && sameLight;
   // By photons or chains; photons take the same ways as long as nothing is in another place.
-  const bool sameWays = source.anyView && !changes.first && !changes.lights && !moved && !facts.settingsChanged;
+  const bool sameWays = source.anyView && sameLight;
   const bool placedAnew = source.sampled && !source.persistent;
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
@@ -192,14 +195,22 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : !smc.cache && !(still && facts.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
-  decide(EffectId::Replace, !lights                  ? none
-                            : source.fixed           ? Answer{false, "the samples stay on their surfaces"}
-                            : reflective             ? fromMaps
+  decide(EffectId::Replace, !lights        ? none
+                            : source.fixed ? Answer{false, "the samples stay on their surfaces"}
+                            : alone        ? Answer{false, "nothing has changed for long: a cube holds all light"}
+                            : reflective   ? fromMaps
                             : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
                             : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                  ? Answer{true, "the VPLs have not settled yet"}
                                                      : Answer{true, "the view or the scene changed"});
+  const bool stored = rowOf(settings.gather.mode).stored;
+  decide(EffectId::Gather, !indirect ? Answer{false, "no indirect light"}
+                           : alone   ? Answer{false, "nothing has changed for long: a cube holds all light"}
+                           : stored  ? sameLight && !facts.drawingChanged
+                                           ? Answer{false, "the cube holds the light of what there is"}
+                                           : Answer{true, "the cube follows lights and objects"}
+                                     : Answer{true, "every picture gathers its light"});
   const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History);
   const int historyFrames = averages ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
@@ -208,12 +219,13 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
   plan.seenChanges_ = !still || facts.drawingChanged || facts.first;
   plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
-  decide(EffectId::Redraw, !still                           ? Answer{true, "the view, the scene or settings changed"}
-                           : facts.drawingChanged           ? Answer{true, "settings or shaders changed"}
-                           : newLight                       ? Answer{true, "VPLs change"}
-                           : waiting                        ? Answer{true, "shadow maps are waiting"}
-                           : facts.averaged < historyFrames ? Answer{true, "light is averaged over pictures"}
-                                                            : Answer{false, "nothing changed"});
+  decide(EffectId::Redraw, !still                 ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged ? Answer{true, "settings or shaders changed"}
+                           : newLight             ? Answer{true, "VPLs change"}
+                           : waiting              ? Answer{true, "shadow maps are waiting"}
+                           : facts.storing        ? Answer{true, "a cube takes the place of the gather"}
+                           : facts.averaged < historyFrames && !alone ? Answer{true, "light is averaged over pictures"}
+                                                                      : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no picture yet";

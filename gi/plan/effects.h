@@ -36,6 +36,8 @@ struct FrameFacts {
   uint32_t mapsWaiting = 0;    // maps that show where a moved object was
   int averaged = 0;            // pictures in the history since anything last changed
   bool lightArrived = false;   // VPLs were updated beside the last picture and are not in it
+  bool storedAlone = false;    // a layered depth cube shows all indirect light (cube.after)
+  bool storing = false;        // one is built beside the technique, or comes or goes
 };
 
 class EffectPlan {

@@ -174,11 +174,21 @@ class Table {
     number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
     number("cube.resolution", &Settings::cube, &CubeSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Set,
-           "along an edge of the layered depth cube; time to build it and memory grow with the square");
+           "along an edge of a layered depth cube; time to build it and memory grow with the square");
+    number("cube.levels", &Settings::cube, &CubeSettings::levels, {0, 8, "levels"}, Set,
+           "of a tree of cubes: each halves the texels where cube.split says so; 0 = one cube over all of the scene");
+    number("cube.split", &Settings::cube, &CubeSettings::split, {0, 1}, Set,
+           "share of edges among what a cube of the tree holds that makes eight of it; 0 splits all but the empty");
     choice("cube.sights", &Settings::cube, &CubeSettings::sights, {"rays", "hemicubes"}, Set,
            "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
     number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Set,
            "along an edge of these images; half of it for lights after the first bounce");
+    number(
+        "cube.after", &Settings::cube, &CubeSettings::after, {0, 1000000, "frames"}, Nothing,
+        "frames in which neither lights nor objects change until a layered depth cube takes the place of the gather; "
+        "0 = never");
+    number("cube.perFrame", &Settings::cube, &CubeSettings::perFrame, {1, 65536, "lights", PowersOfTwo}, Nothing,
+           "cube.after: lights put into that cube in a frame");
     number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
            "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
     number("lpv.size", &Settings::lpv, &VolumeSettings::size, {0, kNoLimit, "m"}, Nothing,

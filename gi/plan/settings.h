@@ -50,6 +50,7 @@ enum class EffectId : int {
   History,
   Glossy,
   SoftShadows,
+  Gather,
   Redraw,
 };
 inline constexpr size_t kEffects = size_t(EffectId::Redraw) + 1;
@@ -167,9 +168,13 @@ struct VolumeSettings {
 
 /// The layered depth cube: irradiance of all surfaces, whatever the view (paper 5).
 struct CubeSettings {
-  int resolution = 128; // texels along an edge of the scene's box
+  int resolution = 128; // texels along an edge of a cube
+  int levels = 0;       // of a tree of cubes below the one over all of the scene
+  float split = 0.15f;  // share of edges among a cube's entries that makes eight of it
   CubeSights sights = CubeSights::Rays;
   int hemicube = 128; // texels along an edge of a light's hemicube; half of it after the first bounce
+  int after = 0;      // frames without change until a cube stands in for another technique; 0: never
+  int perFrame = 4;   // lights put into that one in a frame
   bool operator==(const CubeSettings&) const = default;
 };
 

@@ -106,6 +106,12 @@ bool Disturbance::touches(const Ray& ray) const {
   return any([&](const Aabb& box) { return crosses(ray, box); });
 }
 
+bool Disturbance::touches(const Aabb& box) const {
+  return any([&](const Aabb& b) {
+    return glm::all(glm::lessThanEqual(b.lo, box.hi)) && glm::all(glm::lessThanEqual(box.lo, b.hi));
+  });
+}
+
 bool Disturbance::touches(const vec3& centre, float radius) const {
   return any([&](const Aabb& box) {
     const vec3 d = glm::max(glm::max(box.lo - centre, centre - box.hi), vec3(0));

@@ -20,6 +20,7 @@ class Disturbance {
   bool empty() const { return nodes_.empty(); }
   bool touches(const Ray& ray) const; // tMax may be infinite
   bool touches(const vec3& centre, float radius) const;
+  bool touches(const Aabb& box) const;
   std::span<const Aabb> boxes() const { return boxes_; }
 
  private:

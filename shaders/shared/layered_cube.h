@@ -11,11 +11,21 @@ struct CubeTexel {
   uint place;      // bits 0..7: neighbours (CubeEntry); 8..15 and 16..23: place in its texel, u and v
 };
 
+/// Of a tree of cubes: a cube, or where there are children, the one that these replace.
+struct CubeNode {
+  vec3 corner;      // world
+  float texel;      // metres
+  uint children;    // number of the first of eight, x fastest; 0: none
+  uint firstColumn; // of the cube
+  uint unused0, unused1;
+};
+
 const float kCubeRange = 1.0f / 32768.0f;
 const int kCubeBlock = 8; // columns lie in blocks of so many squared
 
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::CubeTexel) == 16);
+static_assert(sizeof(lambent::CubeNode) == 32);
 #endif
 #endif

@@ -57,22 +57,23 @@ TEST(CubeSurfaces, AFloorIsALayerOnEachOfItsSides) {
   surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
   EXPECT_GT(counts.closest, 0u);
   size_t up = 0, down = 0;
+  const CubeGrid grid = surfaces.cubes()[0];
   for (size_t c = 0; c < surfaces.columns(); ++c) {
-    const CubeSurfaces::Place at = surfaces.placeOf(c);
-    EXPECT_EQ(surfaces.column(at.axis, at.u, at.v), c);
+    const CubeGrid::Place at = grid.placeOf(c);
+    EXPECT_EQ(grid.column(at.axis, at.u, at.v), c);
     for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
       const CubeEntry& entry = surfaces.entries()[e];
       ASSERT_EQ(at.axis, 1);
       EXPECT_NEAR(entry.position.y, 1, 1e-5f);
-      EXPECT_NEAR(entry.position.z, surfaces.corner().z + (float(at.u) + 0.5f) * surfaces.texel(), 1e-4f);
-      EXPECT_NEAR(entry.position.x, surfaces.corner().x + (float(at.v) + 0.5f) * surfaces.texel(), 1e-4f);
+      EXPECT_NEAR(entry.position.z, grid.corner.z + (float(at.u) + 0.5f) * grid.texel, 1e-4f);
+      EXPECT_NEAR(entry.position.x, grid.corner.x + (float(at.v) + 0.5f) * grid.texel, 1e-4f);
       (entry.normal.y > 0 ? up : down)++;
     }
   }
   EXPECT_EQ(up, 30u * 30u); // a texel on every side lies outside
   EXPECT_EQ(down, up);
   // Every one within sees its eight neighbours, none past the rim.
-  const size_t middle = surfaces.column(1, 16, 16), corner = surfaces.column(1, 1, 1);
+  const size_t middle = grid.column(1, 16, 16), corner = grid.column(1, 1, 1);
   EXPECT_EQ(surfaces.entries()[surfaces.firsts()[middle]].neighbours, 255u);
   EXPECT_EQ(surfaces.entries()[surfaces.firsts()[corner]].neighbours, 1u | 4u | 16u);
 }
@@ -87,12 +88,13 @@ TEST(CubeSurfaces, NeighboursBehindAWallAreNotLinked) {
   RayCounts counts;
   surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
   size_t across = 0, along = 0;
+  const CubeGrid grid = surfaces.cubes()[0];
   for (size_t c = 0; c < surfaces.columns(); ++c) {
-    const CubeSurfaces::Place at = surfaces.placeOf(c);
+    const CubeGrid::Place at = grid.placeOf(c);
     if (at.axis != 1) continue;
     for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
       const CubeEntry& entry = surfaces.entries()[e];
-      if (entry.normal.y < 0 || std::abs(entry.position.x - 2.03f) > 0.4f * surfaces.texel()) continue;
+      if (entry.normal.y < 0 || std::abs(entry.position.x - 2.03f) > 0.4f * grid.texel) continue;
       // v runs along x: the way over the wall is +v from this side, -v from the other.
       across += entry.neighbours >> (entry.position.x < 2.03f ? 2 : 3) & 1;
       along += entry.neighbours & 1;
@@ -100,6 +102,48 @@ TEST(CubeSurfaces, NeighboursBehindAWallAreNotLinked) {
   }
   EXPECT_EQ(across, 0u);
   EXPECT_GT(along, 20u);
+}
+
+/// A wide floor with small blocks in one corner: narrow texels there, wide ones on the rest.
+TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
+  CubeWorld w;
+  const uint32_t grey = w.scene.material(vec3(0.5f));
+  w.scene.quad({0, 0, 0}, {0, 0, 32}, {32, 0, 0}, grey);
+  for (int i = 0; i < 9; ++i) {
+    const vec3 at = vec3(1 + i % 3, 0.1f, 1 + i / 3);
+    w.scene.box(at, at + 0.4f, grey, false);
+  }
+  w.place();
+  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  settings.levels = 5;
+  CubeSurfaces tree, wide, narrow;
+  RayCounts counts;
+  tree.build(w.view.boundsWorld, settings, *w.rays, counts);
+  settings.levels = 0;
+  wide.build(w.view.boundsWorld, settings, *w.rays, counts);
+  settings.resolution = 512;
+  narrow.build(w.view.boundsWorld, settings, *w.rays, counts);
+  float least = kInfinity;
+  size_t onBlocks = 0;
+  for (size_t c = 0; c + 1 < tree.firsts().size(); ++c) {
+    const CubeGrid& grid = tree.cubes()[c / tree.columns()];
+    least = std::min(least, grid.texel);
+    for (uint32_t e = tree.firsts()[c]; e < tree.firsts()[c + 1]; ++e) {
+      const vec3 p = tree.entries()[e].position;
+      const bool atBlock = p.y > 0.05f && p.x < 4 && p.z < 4;
+      if (!atBlock) continue;
+      ++onBlocks;
+      EXPECT_LT(grid.texel, 0.25f * wide.texel()) << p.x << ' ' << p.z;
+    }
+  }
+  EXPECT_LT(least, 0.1f);
+  EXPECT_GT(onBlocks, 9u * 5 * 2 * 9);
+  EXPECT_GT(tree.entries().size(), 2 * wide.entries().size());
+  EXPECT_LT(tree.entries().size(), narrow.entries().size() / 20);
+  // The cubes fill the one over all, but for what their borders overlap.
+  double volume = 0;
+  for (const CubeGrid& grid : tree.cubes()) volume += std::pow(double(grid.texel) * (grid.resolution - 2), 3);
+  EXPECT_NEAR(volume, 32.0 * 32 * 32, 1);
 }
 
 TEST(LayeredCube, ALightOverAFloorBringsWhatItsFormulaSays) {
@@ -142,19 +186,24 @@ std::vector<VirtualLight> photonLights(const SceneView& view, const RayQuery& ra
   return lightsOf(set);
 }
 
-class CubeSightsTest : public ::testing::TestWithParam<CubeSights> {};
+struct CubeKind {
+  CubeSights sights;
+  int levels;
+};
+class CubeSightsTest : public ::testing::TestWithParam<CubeKind> {};
 
 /// After anything happened the cube is the one that is built from what there is now.
 TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   test::RandomWorld world(0.01f);
-  const CubeSettings settings = smallCube(GetParam(), 16);
+  CubeSettings settings = smallCube(GetParam().sights, 16);
+  settings.levels = GetParam().levels;
   const GatherSettings gather;
   Aabb room;
   room.add(vec3(-4, -1, -4)), room.add(vec3(4, 4, 4));
   LayeredCube kept;
   VplSet set;
   size_t reused = 0, compared = 0;
-  for (int frame = 0; frame < (test::kSanitized ? 4 : 12); ++frame) {
+  for (int frame = 0; frame < (test::kSanitized ? 4 : GetParam().levels == 0 ? 9 : 6); ++frame) {
     const SceneView& view = world.step(frame % 3 == 2 ? 0 : 2);
     const Disturbance moved(view);
     const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
@@ -164,6 +213,7 @@ TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
     anew.update({room, world.rays(), kNothingMoved, true, lights, 48, settings, gather});
     const std::span<const CubeEntry> a = kept.surfaces().entries(), b = anew.surfaces().entries();
     ASSERT_EQ(a.size(), b.size()) << frame;
+    ASSERT_EQ(kept.surfaces().cubes().size(), anew.surfaces().cubes().size()) << frame;
     float brightest = 0;
     for (size_t e = 0; e < a.size(); ++e) brightest = std::max(brightest, maxComponent(anew.irradiance(e)));
     ASSERT_GT(brightest, 0);
@@ -181,7 +231,9 @@ TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   EXPECT_GT(compared, 10000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sights, CubeSightsTest, ::testing::Values(CubeSights::Rays, CubeSights::Hemicubes));
+INSTANTIATE_TEST_SUITE_P(Sights, CubeSightsTest,
+                         ::testing::Values(CubeKind{CubeSights::Rays, 0}, CubeKind{CubeSights::Hemicubes, 0},
+                                           CubeKind{CubeSights::Rays, 2}, CubeKind{CubeSights::Hemicubes, 2}));
 
 TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
   test::RandomWorld world(0.01f);

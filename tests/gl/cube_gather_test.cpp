@@ -60,6 +60,35 @@ TEST_F(CubeGatherTest, GivesThePicturesOfItsLights) {
   EXPECT_LE(dark, 2u);
 }
 
+/// Walls with wide texels, the block with narrow ones: nearly as near as one cube that has these everywhere.
+TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
+  Settings every = settings;
+  applyTechnique(every, "ir");
+  every.vpl.visibility = VplVisibility::Rays;
+  every.filter.on = false;
+  every.history.frames = 0;
+  GiFrame truth(every);
+  truth.run(room.scene.view());
+  const Image rays = truth.read(Buffer::Irradiance);
+  struct Kind {
+    int resolution, levels;
+  };
+  double differences[3];
+  uint64_t entries[3];
+  constexpr Kind kKinds[3] = {{16, 0}, {16, 3}, {128, 0}};
+  for (int k = 0; k < 3; ++k) {
+    settings.cube.resolution = kKinds[k].resolution;
+    settings.cube.levels = kKinds[k].levels;
+    GiFrame gi(settings);
+    entries[k] = gi.run(room.scene.view()).cubeEntries;
+    differences[k] = differenceOf(gi.read(Buffer::Irradiance), rays);
+    std::printf("%d texels, %d levels: %.2f %%, %llu entries\n", kKinds[k].resolution, kKinds[k].levels,
+                100 * differences[k], static_cast<unsigned long long>(entries[k]));
+  }
+  EXPECT_LT(differences[1], 0.5 * differences[0]);
+  EXPECT_LT(entries[1], entries[2] / 2);
+}
+
 /// While nothing but the camera moves a frame draws surfaces and looks up.
 TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
   GiFrame gi(settings);
@@ -111,6 +140,69 @@ TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
   EXPECT_GT(differenceOf(before.read(Buffer::Irradiance), fresh), 0.05) << "the block makes a difference";
 }
 
+/// The cube comes where nothing changes for long, goes where a lamp moves, and neither is seen.
+TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
+  settings = {};
+  settings.smc.vpls = 512;
+  settings.smc.bounces = 2;
+  settings.image.exposure = 1;
+  settings.cube.resolution = 64;
+  settings.cube.after = 20;
+  settings.cube.perFrame = 64;
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  double mean = 0, most = 0;
+  const auto step = [&](bool counts) {
+    const double now = meanLuminance(gi.read(Buffer::Irradiance));
+    if (counts) most = std::max(most, std::abs(now / mean - 1));
+    mean = now;
+  };
+  step(false);
+  int alone = 0, frames = 0;
+  for (; frames < 200 && alone < 3; ++frames) {
+    const FrameStats& stats = gi.run(still());
+    EXPECT_TRUE(frames >= settings.cube.after || stats.raysCube.closest == 0) << frames;
+    alone += !stats.plan.on(EffectId::Gather);
+    step(frames > 5); // before, the history is short
+  }
+  ASSERT_EQ(alone, 3);
+  EXPECT_GT(frames, settings.cube.after + 16 + 4);
+  const Image cube = gi.read(Buffer::Irradiance);
+  Settings own = settings;
+  applyTechnique(own, "ibrr");
+  GiFrame stored(own);
+  stored.run(room.scene.view());
+  EXPECT_EQ(cube.pixels, stored.read(Buffer::Irradiance).pixels) << "the light of ibrr";
+  EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw)) << "and then nothing is done";
+
+  // The camera alone: no light is sampled, no map drawn, nothing gathered.
+  const mat4 pose = room.scene.camera.worldFromView;
+  room.scene.camera.worldFromView[3].x += 0.05f;
+  SceneView view = still();
+  view.changes.camera = true;
+  const FrameStats& walk = gi.run(view);
+  EXPECT_FALSE(walk.plan.on(EffectId::Gather));
+  EXPECT_FALSE(walk.plan.on(EffectId::Replace));
+  EXPECT_EQ(walk.raysCandidates.closest + walk.raysCube.closest + walk.mapsDrawn, 0u);
+  room.scene.camera.worldFromView = pose;
+  view = still();
+  view.changes.camera = true;
+  gi.run(view);
+  step(false);
+
+  room.scene.lights[0].position.x += 0.01f;
+  view = still();
+  view.changes.lights = true;
+  EXPECT_TRUE(gi.run(view).plan.on(EffectId::Gather));
+  step(true);
+  for (int f = 0; f < 18; ++f) {
+    EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
+    step(true);
+  }
+  std::printf("largest step of mean light from frame to frame: %.2f %%\n", 100 * most);
+  EXPECT_LT(most, 0.02);
+}
+
 TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
   for (const float turn : {0.0f, 0.3f, 0.785f}) {
     HandScene scene;
@@ -137,6 +229,7 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("lambent-gather-" + std::to_string(::getpid()) + ".cube");
   settings.cubeFile = file.string();
+  Settings plainSettings;
   Image first;
   for (int run = 0; run < 2; ++run) {
     GiFrame gi(settings);
@@ -153,10 +246,29 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   moved.run(room.scene.view());
   plain.run(room.scene.view());
   EXPECT_LT(differenceOf(moved.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)), 1e-3);
-  // Whatever else the file may be, it is not touched.
-  std::ofstream(file, std::ios::trunc) << "{\"asset\": {\"version\": \"2.0\"}}";
+  // A damaged one, and one of another scene: said, built anew and replaced.
   settings.cubeFile = file.string();
-  EXPECT_THROW(GiFrame(settings).run(room.scene.view()), InputError);
+  for (const bool damaged : {true, false}) {
+    if (damaged) {
+      std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+      bytes.seekp(4000);
+      bytes.put(0x5a);
+    } else {
+      room.scene.instances.pop_back();
+    }
+    GiFrame anew(settings), without((plainSettings = settings, plainSettings.cubeFile.clear(), plainSettings));
+    const std::string warning = anew.run(room.scene.view()).warning;
+    EXPECT_NE(warning.find(damaged ? "damaged" : "another scene"), std::string::npos) << warning;
+    without.run(room.scene.view());
+    EXPECT_EQ(anew.read(Buffer::Irradiance).pixels, without.read(Buffer::Irradiance).pixels);
+    GiFrame again(settings);
+    const FrameStats& stats = again.run(room.scene.view());
+    EXPECT_EQ(stats.warning, "");
+    EXPECT_EQ(stats.raysCube.occlusion, 0u);
+  }
+  // What is no cube is not touched.
+  std::ofstream(file, std::ios::trunc) << "{\"asset\": {\"version\": \"2.0\"}}";
+  EXPECT_NE(GiFrame(settings).run(room.scene.view()).warning, "");
   EXPECT_EQ(std::filesystem::file_size(file), 29u);
   std::filesystem::remove(file);
 }

@@ -122,8 +122,9 @@ void bench(const BenchOptions& options) {
   if (options.area) return benchArea(options);
   if (options.cube) return benchCube(options);
   if (options.launch.scene.empty())
-    throw InputError(options.scenes[1],
-                     "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
+    throw InputError(
+        options.scenes[1],
+        "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
   if (options.growth) return benchGrowth(options);
   if (options.rays) return benchRays(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
@@ -236,7 +237,9 @@ void declareBench(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));
   command->add_option("--seeds", options->seeds, "--equal-error: so many (default 3)")->check(CLI::Range(1, 1000));
-  command->add_option("--spp", options->samples, "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
+  command
+      ->add_option("--spp", options->samples,
+                   "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--frame", options->frame, "--equal-error: of a shot in motion (default 30, or the last)")
       ->check(CLI::Range(1, 1000000));

@@ -18,7 +18,8 @@ struct BenchOptions {
   std::vector<std::string> scenes, techniques;
   std::vector<std::string> against; // NAME=VALUE
   std::vector<std::string> along;   // what --growth sweeps; empty: all
-  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, cube = false, quick = false;
+  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, cube = false,
+       quick = false;
   int frames = 0, skip = 2;
   int seeds = 3, frame = 0;   // --equal-error; frame 0: 30, or the last
   std::optional<int> samples; // --equal-error, --area

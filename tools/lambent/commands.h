@@ -37,6 +37,8 @@ void declareTechniques(CLI::App& app);
 void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp);
 /// Notes and warnings of a stage on stderr, unless quiet.
 void say(const Stage& stage, bool quiet);
+/// What a frame warns of, if anything: also where quiet.
+void sayWarning(const FrameStats& stats);
 /// Writes figures for programs; nothing when `file` is empty.
 void writeJson(const std::string& file, const nlohmann::json& figures);
 /// What to write for a buffer by the file's extension: .exr linear, .png as a display shows it. Throws InputError for

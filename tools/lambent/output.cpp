@@ -16,6 +16,10 @@ void addOutputOptions(CLI::App& command, OutputOptions& options, const std::stri
   command.add_flag("--quiet", options.quiet, "print nothing but errors");
 }
 
+void sayWarning(const FrameStats& stats) {
+  if (!stats.warning.empty()) std::fprintf(stderr, "warning: %s\n", printable(stats.warning).c_str());
+}
+
 void say(const Stage& stage, bool quiet) {
   if (quiet) return;
   for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());

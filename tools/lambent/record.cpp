@@ -201,6 +201,7 @@ void record(const RecordOptions& options) {
       const double t = done / stage->shot->fps;
       if (governor) stage->camera = whole.scaled(governor->scale);
       const FrameStats& stats = gi.run(stage->at(t));
+      sayWarning(stats);
       const auto begin = std::chrono::steady_clock::now();
       if (options.format != "none" && done >= kept) { // frames of before are computed: later ones build on them
         writeBuffer(picture(done).string(), gi, buffer, whole.width, whole.height);

@@ -38,6 +38,7 @@ void render(const RenderOptions& options) {
   int frames = std::max(1, options.frames);
   for (int i = 0; i < frames; ++i) {
     stats = &gi.run(stage->at(0), [&](int done, int total) { progress.update(done, total); });
+    sayWarning(*stats);
     if (options.frames == 0 && stats->plan.on(EffectId::History)) frames = stage->settings.history.frames;
   }
   writeBuffer(out, gi, buffer);

@@ -1,0 +1,19 @@
+#version 450
+// One technique's indirect light mixed into another's. Variant: GLOSSY.
+layout(binding = 2) uniform sampler2D irradianceA;
+layout(binding = 4) uniform sampler2D irradianceB;
+uniform float share; // of B
+layout(location = 0) out vec4 outIrradiance;
+#ifdef GLOSSY
+layout(binding = 3) uniform sampler2D glossyA;
+layout(binding = 5) uniform sampler2D glossyB;
+layout(location = 1) out vec4 outGlossy;
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  outIrradiance = mix(texelFetch(irradianceA, pixel, 0), texelFetch(irradianceB, pixel, 0), share);
+#ifdef GLOSSY
+  outGlossy = mix(texelFetch(glossyA, pixel, 0), texelFetch(glossyB, pixel, 0), share);
+#endif
+}
