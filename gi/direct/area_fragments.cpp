@@ -3,7 +3,11 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
+#include <algorithm>
 #include <bit>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace lambent {
 
@@ -145,107 +149,270 @@ void markBorders(std::span<FragmentLevel> levels) {
   }
 }
 
-} // namespace
-
-FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
-                            const AreaSettings& settings, std::span<FragmentLevel> levels) {
-  CHECK(!levels.empty() && settings.rays <= kMostAreaRays);
-  const AreaVisibility visibility(rays, lights, surfaces, settings.rays);
-  const bool neighbours = settings.refinement == AreaRefinement::Neighbours;
-  FragmentCounts counts;
-  std::vector<std::vector<uint8_t>> states(levels.size());
-  for (size_t l = 0; l < levels.size(); ++l) {
-    states[l].assign(levels[l].smooth.size(), Nothing);
-    levels[l].visible.assign(levels[l].smooth.size(), vec4(0));
-  }
-  std::fill(states.back().begin(), states.back().end(), Test);
-  std::array<std::vector<glm::ivec2>, 2> extra; // single pixels in large fragments that are fully lit, and others
-  const auto split = [&](int level, const glm::ivec2& texel, const std::array<bool, 4>& twice) {
-    FragmentLevel& finer = levels[size_t(level - 1)];
-    for (int s = 0; s < 4; ++s) {
-      const glm::ivec2 child = texel * 2 + glm::ivec2(s & 1, s >> 1);
-      states[size_t(level - 1)][size_t(child.y * finer.size.x + child.x)] =
-          twice[size_t(s)] && level > 1 ? Split : Test;
+/// The fragments of a picture: tested from the coarsest level down, split, kept.
+class Fragments {
+ public:
+  Fragments(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+            const AreaSettings& settings, std::span<FragmentLevel> levels)
+      : visibility_(rays, lights, surfaces, settings.rays), surfaces_(surfaces), settings_(settings), levels_(levels),
+        neighbours_(settings.refinement == AreaRefinement::Neighbours),
+        byCounts_(settings.refinement == AreaRefinement::Counts), states_(levels.size()), open_(levels.size()) {
+    for (size_t l = 0; l < levels.size(); ++l) {
+      states_[l].assign(levels[l].smooth.size(), Nothing);
+      levels[l].visible.assign(levels[l].smooth.size(), vec4(0));
+      open_[l].assign(levels[l].smooth.size(), kNotAsked);
     }
-  };
+    std::fill(states_.back().begin(), states_.back().end(), Test);
+  }
 
-  for (int level = int(levels.size()) - 1; level >= 0; --level) {
-    FragmentLevel& at = levels[size_t(level)];
+  FragmentCounts run() {
+    descend();
+    // Fragments of other levels beside one, and the single pixels in it, may tell what its own rays missed.
+    while (byCounts_ && splitBesideOthers()) descend();
+    while (askExtra()) {
+      descend();
+      while (splitBesideOthers()) descend();
+    }
+    return counts_;
+  }
+
+ private:
+  using Open = std::array<float, 4>; // AreaSeen::open
+  static constexpr Open kNotAsked = {-1, -1, -1, -1};
+
+  size_t index(int level, const glm::ivec2& texel) const {
+    return size_t(texel.y * levels_[size_t(level)].size.x + texel.x);
+  }
+
+  void split(int level, const glm::ivec2& texel, const std::array<bool, 4>& twice) {
+    for (int s = 0; s < 4; ++s)
+      states_[size_t(level - 1)][index(level - 1, texel * 2 + glm::ivec2(s & 1, s >> 1))] =
+          twice[size_t(s)] && level > 1 ? Split : Test;
+  }
+
+  void keep(int level, const glm::ivec2& texel, const AreaSeen& seen) {
+    const size_t i = index(level, texel);
+    levels_[size_t(level)].visible[i] = vec4(seen.visible, 1);
+    for (size_t s = 0; s < 4; ++s) open_[size_t(level)][i][s] = seen.open(s);
+    if (level == 0) open_[0][i].fill(seen.rays > 0 || seen.lit() ? luminance(seen.visible) : -1);
+    ++counts_.fragments;
+    counts_.dark += !seen.lit();
+  }
+
+  /// Undoes keep() and splits.
+  void splitKept(int level, const glm::ivec2& texel) {
+    const size_t i = index(level, texel);
+    const Open& open = open_[size_t(level)][i];
+    counts_.dark -= std::ranges::all_of(open, [](float o) { return o <= 0; });
+    --counts_.fragments;
+    levels_[size_t(level)].visible[i] = vec4(0);
+    open_[size_t(level)][i] = kNotAsked;
+    split(level, texel, {});
+  }
+
+  void descend() {
+    for (int level = int(levels_.size()) - 1; level >= 0; --level) {
+      const std::vector<Fragment> fragments = fragmentsOf(level);
+      if (!fragments.empty()) decide(level, fragments);
+    }
+  }
+
+  /// What is to be tested of a level; what needs no test is split.
+  std::vector<Fragment> fragmentsOf(int level) {
     std::vector<Fragment> fragments;
+    FragmentLevel& at = levels_[size_t(level)];
     for (int y = 0; y < at.size.y; ++y)
       for (int x = 0; x < at.size.x; ++x) {
-        const size_t i = size_t(y * at.size.x + x);
-        const State state = State(states[size_t(level)][i]);
+        const size_t i = index(level, {x, y});
+        const State state = State(std::exchange(states_[size_t(level)][i], uint8_t(Nothing)));
         const glm::ivec2 origin = glm::ivec2(x, y) * (1 << level);
-        if (state == Nothing || origin.x >= surfaces.width || origin.y >= surfaces.height) continue;
+        if (state == Nothing || origin.x >= surfaces_.width || origin.y >= surfaces_.height) continue;
         if (level > 0 && (state == Split || !at.smooth[i]))
           split(level, {x, y}, {});
         else if (at.smooth[i])
           fragments.push_back({{x, y}});
       }
+    return fragments;
+  }
+
+  void decide(int level, std::vector<Fragment> fragments) {
+    const glm::ivec2 size = levels_[size_t(level)].size;
     std::vector<uint8_t> around;
-    if (neighbours && level > 0) {
-      around = askAround(visibility, surfaces, level, at.size, settings.threshold, fragments, counts.rays.occlusion);
+    if (neighbours_ && level > 0) {
+      around = askAround(visibility_, surfaces_, level, size, settings_.threshold, fragments, counts_.rays.occlusion);
     } else {
       std::vector<glm::ivec2> texels;
       for (const Fragment& f : fragments) texels.push_back(f.texel);
       const std::vector<AreaSeen> seen =
-          level == 0 ? visibility.ofPixels(texels, neighbours) : visibility.ofPatches(texels, level);
+          level == 0 ? visibility_.ofPixels(texels, neighbours_) : visibility_.ofPatches(texels, level);
       for (size_t i = 0; i < fragments.size(); ++i) fragments[i].seen = seen[i];
-      for (const Fragment& f : fragments) counts.rays.occlusion += f.seen.rays;
+      for (const Fragment& f : fragments) counts_.rays.occlusion += f.seen.rays;
     }
-    const auto keep = [&](const glm::ivec2& texel, FragmentLevel& in, const AreaSeen& seen) {
-      in.visible[size_t(texel.y * in.size.x + texel.x)] = vec4(seen.visible, 1);
-      ++counts.fragments;
-      counts.dark += !seen.lit();
-    };
-
-    const bool byCounts = level > 0 && settings.refinement == AreaRefinement::Counts;
-    const std::vector<int> numbers = byCounts ? numbersOf(fragments, at.size) : std::vector<int>();
+    const bool beyond = byCounts_ && level > 0;
+    const std::vector<int> numbers = beyond ? numbersOf(fragments, size) : std::vector<int>();
     std::vector<glm::ivec2> quads; // patches of which all pixels are asked
     std::vector<AreaSeen> quadsSeen;
     for (size_t i = 0; i < fragments.size(); ++i) {
       const Fragment& f = fragments[i];
       std::array<bool, 4> twice{};
       bool apart = false;
-      if (level > 0) apart = neighbours ? around[i] != 0 : f.seen.lit() && isSplit(f.seen, settings, twice);
-      if (byCounts && !apart) apart = differsBeyondBorders(f, fragments, numbers, at.size, settings.threshold);
-      if (apart && level == 1 && !neighbours) {
+      if (level > 0) apart = neighbours_ ? around[i] != 0 : f.seen.lit() && isSplit(f.seen, settings_, twice);
+      if (beyond && !apart) apart = differsBeyondBorders(f, fragments, numbers, size, settings_.threshold);
+      if (apart && level == 1 && !neighbours_) {
         quads.push_back(f.texel);
         quadsSeen.push_back(f.seen);
-        continue;
-      }
-      if (apart) {
+      } else if (apart) {
         split(level, f.texel, twice);
-        continue;
-      }
-      keep(f.texel, at, f.seen);
-      if (settings.extra && settings.upsample == AreaUpsample::Rbf && !neighbours && level > 2 && f.seen.lit()) {
-        const int side = 1 << level;
-        for (const glm::ivec2& within : singlePixels(side)) {
-          const glm::ivec2 pixel = f.texel * side + within;
-          if (pixel.x < surfaces.width && pixel.y < surfaces.height && surfaces.seen(pixel))
-            extra[f.seen.visible != vec3(1)].push_back(pixel);
-        }
+      } else {
+        keep(level, f.texel, f.seen);
       }
     }
-    const std::vector<AreaSeen> pixels = visibility.ofQuads(quads, quadsSeen);
+    const std::vector<AreaSeen> pixels = visibility_.ofQuads(quads, quadsSeen);
     for (size_t i = 0; i < pixels.size(); ++i) {
-      keep(quads[i / 4] * 2 + glm::ivec2(i & 1, i >> 1 & 1), levels[0], pixels[i]);
-      counts.rays.occlusion += pixels[i].rays;
+      keep(0, quads[i / 4] * 2 + glm::ivec2(i & 1, i >> 1 & 1), pixels[i]);
+      counts_.rays.occlusion += pixels[i].rays;
     }
   }
 
-  for (const bool partly : {false, true}) { // a quarter of the rays does not tell a little shadow from none
-    const std::vector<AreaSeen> seen = visibility.ofPixels(extra[partly], partly);
-    for (size_t i = 0; i < seen.size(); ++i) {
-      const glm::ivec2& pixel = extra[partly][i];
-      levels[0].visible[size_t(pixel.y * levels[0].size.x + pixel.x)] = vec4(seen[i].visible, 1);
-      counts.rays.occlusion += seen[i].rays;
-    }
-    counts.extra += seen.size();
-    counts.fragments += seen.size();
+  bool apart(float a, float b) const {
+    return a >= 0 && b >= 0 && std::abs(a - b) * float(settings_.rays) >= float(settings_.threshold);
   }
+
+  /// Splits fragments whose sub-fragments see other shares than finer ones, or others as large, across a border.
+  bool splitBesideOthers() {
+    std::vector<std::pair<int, glm::ivec2>> found;
+    for (int level = 1; level < int(levels_.size()); ++level) {
+      const glm::ivec2 size = levels_[size_t(level)].size;
+      std::vector<uint8_t> differs(levels_[size_t(level)].smooth.size(), 0);
+      parallelFor(size_t(size.y), 1, [&](size_t begin, size_t end) {
+        for (int y = int(begin); y < int(end); ++y)
+          for (int x = 0; x < size.x; ++x)
+            differs[index(level, {x, y})] =
+                levels_[size_t(level)].visible[index(level, {x, y})].w > 0 && differsAround(level, {x, y});
+      });
+      for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+          if (differs[index(level, {x, y})]) found.emplace_back(level, glm::ivec2(x, y));
+    }
+    for (const auto& [level, texel] : found) splitKept(level, texel);
+    return !found.empty();
+  }
+
+  bool differsAround(int level, const glm::ivec2& texel) const {
+    const int side = 1 << level, step = std::max(side / 8, 1);
+    const glm::ivec2 lo = texel * side;
+    const Open& own = open_[size_t(level)][index(level, texel)];
+    for (int i = step / 2; i < side; i += step)
+      for (int border = 0; border < 4; ++border) {
+        const int along = border & 2 ? 1 : 0, up = border & 1; // axis across the border
+        glm::ivec2 inside = lo + i;
+        inside[along] = lo[along] + (up ? side - 1 : 0);
+        glm::ivec2 outside = inside;
+        outside[along] += up ? 1 : -1;
+        if (apart(own[quarterOf(inside - lo, side)], openAt(outside, level)) && visibility_.oneSurface(inside, outside))
+          return true;
+      }
+    return false;
+  }
+
+  static size_t quarterOf(const glm::ivec2& within, int side) {
+    return size_t(2 * within.x >= side) + 2 * size_t(2 * within.y >= side);
+  }
+
+  /// What the fragment at a pixel sees there, if it is not coarser than a level.
+  float openAt(const glm::ivec2& pixel, int coarsest) const {
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= surfaces_.width || pixel.y >= surfaces_.height) return -1;
+    for (int level = 0; level <= coarsest; ++level) {
+      const glm::ivec2 texel = pixel >> level;
+      const size_t i = index(level, texel);
+      if (levels_[size_t(level)].visible[i].w > 0)
+        return open_[size_t(level)][i][level == 0 ? 0 : quarterOf(pixel - texel * (1 << level), 1 << level)];
+    }
+    return -1;
+  }
+
+  /// Single pixels in large fragments that have none yet. Says whether one of them tells otherwise than the fragment
+  /// around it, which is then split.
+  bool askExtra() {
+    if (!settings_.extra || settings_.upsample != AreaUpsample::Rbf || neighbours_) return false;
+    struct Extra {
+      glm::ivec2 pixel;
+      int level;
+    };
+    std::array<std::vector<Extra>, 2> extra; // in fragments that are fully lit, and others
+    for (int level = 3; level < int(levels_.size()); ++level) {
+      const FragmentLevel& at = levels_[size_t(level)];
+      for (int y = 0; y < at.size.y; ++y)
+        for (int x = 0; x < at.size.x; ++x) {
+          const size_t i = index(level, {x, y});
+          const vec4& visible = at.visible[i];
+          const bool lit = std::ranges::any_of(open_[size_t(level)][i], [](float o) { return o > 0; });
+          if (visible.w == 0 || !lit || hasExtra({x, y}, level)) continue;
+          for (const glm::ivec2& within : singlePixels(1 << level)) {
+            const glm::ivec2 pixel = glm::ivec2(x, y) * (1 << level) + within;
+            if (pixel.x < surfaces_.width && pixel.y < surfaces_.height && surfaces_.seen(pixel))
+              extra[vec3(visible) != vec3(1)].push_back({pixel, level});
+          }
+        }
+    }
+    std::set<std::tuple<int, int, int>> differ; // level, texel
+    for (const bool partly : {false, true}) {   // a quarter of the rays does not tell a little shadow from none
+      std::vector<glm::ivec2> pixels;
+      for (const Extra& e : extra[partly]) pixels.push_back(e.pixel);
+      const std::vector<AreaSeen> seen = visibility_.ofPixels(pixels, partly);
+      for (size_t i = 0; i < seen.size(); ++i) {
+        const auto [pixel, level] = extra[partly][i];
+        const glm::ivec2 texel = pixel >> level;
+        counts_.rays.occlusion += seen[i].rays;
+        const float here = luminance(seen[i].visible),
+                    around =
+                        open_[size_t(level)][index(level, texel)][quarterOf(pixel - texel * (1 << level), 1 << level)];
+        if (byCounts_ && seen[i].rays > 0 && apart(here, around)) differ.emplace(level, texel.x, texel.y);
+        levels_[0].visible[index(0, pixel)] = vec4(seen[i].visible, 1);
+        open_[0][index(0, pixel)].fill(seen[i].rays > 0 ? here : -1);
+      }
+      counts_.extra += seen.size();
+      counts_.fragments += seen.size();
+    }
+    for (const auto& [level, x, y] : differ) {
+      for (const glm::ivec2& within : singlePixels(1 << level)) {
+        const glm::ivec2 pixel = glm::ivec2(x, y) * (1 << level) + within;
+        if (pixel.x >= surfaces_.width || pixel.y >= surfaces_.height || !surfaces_.seen(pixel)) continue;
+        levels_[0].visible[index(0, pixel)] = vec4(0);
+        open_[0][index(0, pixel)] = kNotAsked;
+        --counts_.extra;
+        --counts_.fragments;
+      }
+      splitKept(level, {x, y});
+    }
+    return !differ.empty();
+  }
+
+  bool hasExtra(const glm::ivec2& texel, int level) const {
+    for (const glm::ivec2& within : singlePixels(1 << level)) {
+      const glm::ivec2 pixel = texel * (1 << level) + within;
+      if (pixel.x < surfaces_.width && pixel.y < surfaces_.height && levels_[0].visible[index(0, pixel)].w > 0)
+        return true;
+    }
+    return false;
+  }
+
+  const AreaVisibility visibility_;
+  const PictureSurfaces& surfaces_;
+  const AreaSettings& settings_;
+  const std::span<FragmentLevel> levels_;
+  const bool neighbours_, byCounts_;
+  std::vector<std::vector<uint8_t>> states_; // State, by level and texel
+  std::vector<std::vector<Open>> open_;      // of what is kept
+  FragmentCounts counts_;
+};
+
+} // namespace
+
+FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+                            const AreaSettings& settings, std::span<FragmentLevel> levels) {
+  CHECK(!levels.empty() && settings.rays <= kMostAreaRays);
+  const FragmentCounts counts = Fragments(rays, lights, surfaces, settings, levels).run();
   markBorders(levels);
   return counts;
 }

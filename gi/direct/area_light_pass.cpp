@@ -35,27 +35,50 @@ gl::Texture lobeTexture() {
 void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
                         const LightTarget& target, FrameStats& stats) {
   const SceneChanges& changes = world.view.changes;
-  if (changes.first || changes.lights || changes.geometry || changes.instances || lights_.lights.empty())
-    lights_ = areaLights(world.lights);
+  if (changes.first || changes.lights || changes.geometry || changes.instances || lights_.lights.empty()) {
+    const CpuScope scope(stats.stages, key(StageId::AreaRays));
+    collect(world);
+  }
   if (lights_.lights.empty()) return;
   const PatchPyramid& pyramid = patches.pyramid();
   GBuffer plain = surfaces; // shares have no lobes
   plain.finish = nullptr;
   atlas_.fit(plain, pyramid, false);
   readSurfaces(surfaces, pyramid);
+  const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+  const RayQuery& rays = tracerFor(world, seen, settings.area);
+  stats.areaTracer = tracer_;
+  std::vector<AreaLights> groups;
   {
-    const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
-    const RayQuery& rays = tracerFor(world, seen, settings.area);
-    stats.areaTracer = tracer_;
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
-    const FragmentCounts counts = shareVisible(rays, lights_, seen, settings.area, levels_);
-    stats.areaFragments = counts.fragments;
-    stats.raysArea += counts.rays;
+    groups = groupsOf(lights_, rays, seen, stats.raysArea);
   }
-  const gl::PassScope scope = context_.scope(StageId::AreaLight);
-  for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
-  const gl::Texture& share = upsample(plain, settings);
-  shade(surfaces, share, target);
+  blocks_.reserve((lights_.pieces.size() + 2 * groups.size() * kPiecesPerBlock) * sizeof(AreaPiece));
+  for (const AreaLights& group : groups) {
+    FragmentCounts counts;
+    {
+      const CpuScope scope(stats.stages, key(StageId::AreaRays));
+      counts = shareVisible(rays, group, seen, settings.area, levels_);
+    }
+    stats.areaFragments += counts.fragments;
+    stats.raysArea += counts.rays;
+    if (counts.dark == counts.fragments) continue; // nothing of it arrives
+    const gl::PassScope scope = context_.scope(StageId::AreaLight);
+    for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
+    shade(surfaces, group.pieces, upsample(plain, settings), target);
+  }
+}
+
+/// The lights anew where emitters changed: what else moves does not change them.
+void AreaLightPass::collect(const World& world) {
+  const std::vector<EmitterTriangle>& now = world.lights.triangles;
+  const bool same = now.size() == triangles_.size() &&
+                    std::ranges::equal(now, triangles_, [](const EmitterTriangle& a, const EmitterTriangle& b) {
+                      return a.p0 == b.p0 && a.e1 == b.e1 && a.e2 == b.e2 && a.radiance == b.radiance;
+                    });
+  if (same && !world.view.changes.first && !lights_.lights.empty()) return;
+  lights_ = areaLights(world.lights);
+  triangles_ = now;
 }
 
 /// Embree or the GPU. Their answers differ for rays that graze an edge, so the GPU has to be twice as fast to be taken.
@@ -73,13 +96,7 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfac
   gpuRays_->update(world.view);
   if (settings.tracer == AreaTracer::Gpu) tracer_ = "gpu";
   if (!measures) return *gpuRays_;
-  constexpr size_t kPixels = 256; // with 64 rays each
-  std::vector<glm::ivec2> pixels;
-  for (size_t i = 0; i < kPixels; ++i) {
-    const size_t p = (2 * i + 1) * surfaces.depth.size() / (2 * kPixels);
-    const glm::ivec2 pixel(int(p % size_t(surfaces.width)), int(p / size_t(surfaces.width)));
-    if (surfaces.seen(pixel)) pixels.push_back(pixel);
-  }
+  const std::vector<glm::ivec2> pixels = surfaces.some(256); // with 64 rays each
   const auto millionsPerSecond = [&](const RayQuery& rays) {
     uint64_t count = 0;
     const double seconds = gl::secondsOf([&] {
@@ -169,7 +186,8 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
   return share_;
 }
 
-void AreaLightPass::shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target) {
+void AreaLightPass::shade(const GBuffer& surfaces, std::vector<AreaPiece> pieces, const gl::Texture& share,
+                          const LightTarget& target) {
   share.bind(2);
   if (surfaces.finish) {
     if (!lobes_) lobes_ = lobeTexture();
@@ -177,9 +195,7 @@ void AreaLightPass::shade(const GBuffer& surfaces, const gl::Texture& share, con
   }
   target.bind();
   gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
-  std::vector<AreaPiece> pieces = lights_.pieces;
   const auto disks = std::ranges::stable_partition(pieces, [](const AreaPiece& p) { return p.corners[0].w > 0; });
-  blocks_.reserve(pieces.size() * sizeof(AreaPiece) + 2 * kPiecesPerBlock * sizeof(AreaPiece));
   shadePieces(surfaces, std::span(pieces).first(pieces.size() - disks.size()), false);
   shadePieces(surfaces, disks, true);
 }

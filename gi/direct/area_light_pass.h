@@ -8,6 +8,7 @@
 #include "gi/contract/patches.h"
 #include "gi/contract/world.h"
 #include "gi/direct/area_fragments.h"
+#include "gi/direct/area_groups.h"
 #include "gi/gather/patch_atlas.h"
 #include "gi/visibility/gpu_rays.h"
 
@@ -33,13 +34,16 @@ class AreaLightPass {
   const RayQuery& tracerFor(const World& world, const PictureSurfaces& surfaces, const AreaSettings& settings);
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
-  void shade(const GBuffer& surfaces, const gl::Texture& share, const LightTarget& target);
+  void collect(const World& world);
+  void shade(const GBuffer& surfaces, std::vector<AreaPiece> pieces, const gl::Texture& share,
+             const LightTarget& target);
   void shadePieces(const GBuffer& surfaces, std::span<const AreaPiece> pieces, bool disks);
 
   PassContext context_;
   AreaLights lights_;
-  std::unique_ptr<GpuRays> gpuRays_; // where the GPU traces
-  std::optional<bool> gpuIsFaster_;  // once measured
+  std::vector<EmitterTriangle> triangles_; // that they are of
+  std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
+  std::optional<bool> gpuIsFaster_;        // once measured
   std::string tracer_;
   std::vector<float> depth_;
   std::vector<vec4> normal_;

@@ -1,6 +1,7 @@
 #include "gi/direct/area_visibility.h"
 
 #include "engine/core/parallel.h"
+#include "engine/core/rng.h"
 
 namespace lambent {
 
@@ -11,13 +12,19 @@ namespace {
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
 constexpr int kMostAll = 4 * kMostAreaRays;
-constexpr int kMostRounds = 8;           // of rays to ever fewer lights
-constexpr int kEnoughHidden = 16;        // rays that tell that nothing of a light is seen; fewer do where nearly
-constexpr float kAllHidden = 15.0f / 16; // all rays are blocked, for lights that are about
-constexpr float kLikeBrightest = 0.125f; // as bright as the brightest that is hidden
-constexpr float kMostlyHidden = 0.75f;   // of the light: rays to the others, again as many as to all
 
 } // namespace
+
+std::vector<glm::ivec2> PictureSurfaces::some(size_t count) const {
+  std::vector<glm::ivec2> pixels;
+  for (uint32_t i = 0; i < count; ++i) {
+    const vec3 at = additiveRecurrence3(i, vec3(0.5f));
+    const glm::ivec2 pixel(std::min(int(at.x * float(width)), width - 1),
+                           std::min(int(at.y * float(height)), height - 1));
+    if (seen(pixel)) pixels.push_back(pixel);
+  }
+  return pixels;
+}
 
 /// The rays of a fragment: where they go, and what is known of them.
 struct AreaVisibility::Question {
@@ -27,9 +34,6 @@ struct AreaVisibility::Question {
   std::array<float, kMostAll> weights; // of a sample's light, for a receiver; 0: not traced
   std::array<bool, kMostAll> open;
   std::array<bool, 4> quarters{}; // to be traced next
-  std::array<bool, 4> known{};    // traced
-  vec3 whole{0};                  // what all lights bring; `from` loses those that are found hidden
-  int rounds = 0;
   uint64_t traced = 0;
   size_t quad = ~size_t(0); // whose lights and samples these are
 
@@ -57,9 +61,8 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAt(const Place& place) cons
   Unshadowed out{std::vector<vec3>(lights_.lights.size())};
   for (size_t l = 0; l < out.light.size(); ++l) {
     out.light[l] = unshadowed(lights_, lights_.lights[l], place.position, place.normal);
-    out.sum += out.light[l];
+    out.total += luminance(out.light[l]);
   }
-  out.total = luminance(out.sum);
   return out;
 }
 
@@ -68,61 +71,6 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle,
   Unshadowed from = unshadowedAt(middle);
   for (size_t s = 0; s < 4 && !(from.total > 0); ++s) from = unshadowedAt(parts[s]);
   return from;
-}
-
-bool AreaVisibility::begin(Question& q, Unshadowed from) const {
-  q.from = std::move(from);
-  q.whole = q.from.sum;
-  q.rounds = 1;
-  q.known = {};
-  if (!(q.from.total > 0)) return false;
-  choose(q);
-  return true;
-}
-
-/// Leaves out lights that are hidden, where they were due most of the rays: what is left gets as many again. A lamp
-/// behind a wall would else take the rays of all that it outshines, and these its darkness. Whether there is any left.
-bool AreaVisibility::askRest(Question& q) const {
-  if (q.rounds == kMostRounds) return false;
-  const auto answered = [&](int k) { return q.known[size_t(k % 4)] && q.weights[size_t(k)] > 0; };
-  int asked = 0, blocked = 0;
-  for (int k = 0; k < all(); ++k)
-    if (answered(k)) ++asked, blocked += !q.open[size_t(k)];
-  if (blocked == 0) return false;
-  struct Hidden {
-    uint32_t light;
-    int rays;
-    float brightness;
-  };
-  std::array<Hidden, kMostAll> hidden;
-  size_t count = 0;
-  float brightest = 0;
-  for (int k = 0; k < all();) {
-    const uint32_t light = q.lights[size_t(k)];
-    int rays = 0, open = 0;
-    for (; k < all() && q.lights[size_t(k)] == light; ++k)
-      if (answered(k)) ++rays, open += q.open[size_t(k)];
-    if (rays == 0 || open > 0) continue;
-    hidden[count++] = {light, rays, luminance(q.from.light[light])};
-    brightest = std::max(brightest, hidden[count - 1].brightness);
-  }
-  const bool nearlyAll = float(blocked) >= kAllHidden * float(asked);
-  Unshadowed left{q.from.light};
-  float gone = 0;
-  for (const Hidden& h : std::span(hidden).first(count)) {
-    if (h.rays < kEnoughHidden && !(nearlyAll && h.brightness >= kLikeBrightest * brightest)) continue;
-    left.light[h.light] = vec3(0);
-    gone += h.brightness;
-  }
-  if (!(gone > 0) || (blocked < asked && gone < kMostlyHidden * q.from.total)) return false;
-  for (const vec3& light : left.light) left.sum += light;
-  left.total = luminance(left.sum);
-  if (!(left.total > 0)) return false;
-  q.from = std::move(left);
-  ++q.rounds;
-  q.known = {};
-  choose(q);
-  return true;
 }
 
 void AreaVisibility::choose(Question& q) const {
@@ -142,6 +90,12 @@ void AreaVisibility::choose(Question& q) const {
   }
 }
 
+Ray AreaVisibility::rayTo(const AreaSample& sample, const Place& from) const {
+  const bool behind = glm::dot(sample.normal, from.position - sample.position) < 0;
+  return segment(offsetPoint(from.position, from.normal, rays_.grain()),
+                 offsetPoint(sample.position, behind ? -sample.normal : sample.normal, rays_.grain()));
+}
+
 void AreaVisibility::aim(Question& q, int k, const Place& place) const {
   const AreaSample& sample = lights_.samples[q.samples[size_t(k)]];
   const bool doubleSided = lights_.lights[q.lights[size_t(k)]].doubleSided;
@@ -150,19 +104,34 @@ void AreaVisibility::aim(Question& q, int k, const Place& place) const {
   const float cosine = std::max(glm::dot(place.normal, way), 0.0f), cosineLight = -glm::dot(sample.normal, way);
   q.weights[size_t(k)] =
       cosine * (doubleSided ? std::abs(cosineLight) : std::max(cosineLight, 0.0f)) / (distance2 * distance2);
-  q.segments[size_t(k)] =
-      segment(offsetPoint(place.position, place.normal, rays_.grain()),
-              offsetPoint(sample.position, cosineLight < 0 ? -sample.normal : sample.normal, rays_.grain()));
+  q.segments[size_t(k)] = rayTo(sample, place);
+}
+
+bool AreaVisibility::oneSurface(const glm::ivec2& a, const glm::ivec2& b) const {
+  if (!surfaces_.seen(a) || !surfaces_.seen(b)) return false;
+  constexpr float kMostHeight = 0.3f, kLeastCos = 0.9f;
+  const Place one = placeAt(a), other = placeAt(b);
+  const vec3 way = other.position - one.position;
+  return glm::dot(one.normal, other.normal) > kLeastCos &&
+         std::abs(glm::dot(one.normal, way)) < kMostHeight * glm::length(way);
+}
+
+void AreaVisibility::askEach(const glm::ivec2& pixel, std::span<double> brought,
+                             std::vector<std::pair<uint32_t, Ray>>& asked) const {
+  const Place place = placeAt(pixel);
+  for (uint32_t l = 0; l < brought.size(); ++l) {
+    const float light = luminance(unshadowed(lights_, lights_.lights[l], place.position, place.normal));
+    if (!(light > 0)) continue;
+    brought[l] += double(light);
+    const AreaLight& of = lights_.lights[l];
+    const uint32_t sample = uint32_t(mix64(uint64_t(surfaces_.at(pixel)) << 32 | l) % of.samples);
+    asked.emplace_back(l, rayTo(lights_.samples[of.firstSample + sample], place));
+  }
 }
 
 template <class Begin, class Asked>
 void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) const {
   constexpr size_t kGrain = 32;
-  const auto take = [&](Question& q, std::span<const uint8_t> blocked, size_t& n) {
-    for (int k = 0; k < all(); ++k)
-      if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++], ++q.traced;
-    for (size_t s = 0; s < 4; ++s) q.known[s] |= q.quarters[s];
-  };
   if (!rays_.ownThread()) {
     parallelFor(count, kGrain, [&](size_t first, size_t end) {
       Question q;
@@ -176,8 +145,10 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
           for (int k = 0; k < all(); ++k)
             if (q.wanted(k)) segments[n++] = q.segments[size_t(k)];
           rays_.occluded(std::span(segments).first(n), std::span(blocked).first(n));
+          q.traced += n;
           n = 0;
-          take(q, blocked, n);
+          for (int k = 0; k < all(); ++k)
+            if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++];
         }
       }
     });
@@ -201,7 +172,8 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
       for (size_t i = 0; i < questions.size(); ++i) {
         if (!more[i]) continue;
         Question& q = questions[i];
-        take(q, blocked, n);
+        for (int k = 0; k < all(); ++k)
+          if (q.wanted(k)) q.open[size_t(k)] = !blocked[n++], ++q.traced;
         more[i] = asked(first + i, q);
       }
     }
@@ -211,7 +183,6 @@ void AreaVisibility::ask(size_t count, const Begin& begin, const Asked& asked) c
 /// The share that the rays found open, over their weights: 1 where all are.
 void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
   to.rays = q.traced;
-  to.rounds = q.rounds;
   vec3 lit(0), whole(0);
   for (int k = 0; k < all();) {
     const uint32_t light = q.lights[size_t(k)];
@@ -220,6 +191,7 @@ void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
       if (!(q.weights[size_t(k)] > 0)) continue;
       const vec3 weight = q.weights[size_t(k)] * lights_.samples[q.samples[size_t(k)]].radiance;
       sum += weight;
+      ++to.asked[size_t(kPartOf[k % 4])];
       if (!q.open[size_t(k)]) continue;
       open += weight;
       to.bits[size_t(kPartOf[k % 4])] |= uint64_t(1) << (k / 4);
@@ -235,10 +207,7 @@ void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
   }
   // A colour that no light has that was asked goes by the brightness.
   const float bright = luminance(whole) > 0 ? luminance(lit) / luminance(whole) : 0;
-  for (int c = 0; c < 3; ++c) {
-    const float left = q.whole[c] > 0 ? q.from.sum[c] / q.whole[c] : 1;
-    to.visible[c] = std::min((whole[c] > 0 ? lit[c] / whole[c] : bright) * left, 1.0f);
-  }
+  for (int c = 0; c < 3; ++c) to.visible[c] = std::min(whole[c] > 0 ? lit[c] / whole[c] : bright, 1.0f);
 }
 
 std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texels, int level) const {
@@ -247,17 +216,14 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
       texels.size(),
       [&](size_t i, Question& q) {
         const std::array<Place, 4> parts = partsOf(texels[i], level);
-        if (!begin(q, unshadowedAround(placeAt(middleOf(texels[i], level)), parts))) return false;
+        q.from = unshadowedAround(placeAt(middleOf(texels[i], level)), parts);
+        if (!(q.from.total > 0)) return false;
+        choose(q);
         for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
         q.quarters.fill(true);
         return true;
       },
-      [&](size_t i, Question& q) {
-        if (askRest(q)) {
-          const std::array<Place, 4> parts = partsOf(texels[i], level);
-          for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
-          return true;
-        }
+      [&](size_t i, const Question& q) {
         addUp(q, seen[i]);
         return false;
       });
@@ -267,28 +233,29 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
 std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const {
   constexpr int kFirst = 1; // the quarter that is asked before the others
   std::vector<AreaSeen> seen(pixels.size());
-  const auto aimAll = [&](size_t i, Question& q) {
-    const Place place = placeAt(pixels[i]);
-    for (int k = 0; k < all(); ++k) aim(q, k, place);
-    q.quarters.fill(askAll || q.rounds > 1);
-    q.quarters[kFirst] = true;
-    return true;
-  };
   ask(
-      pixels.size(), [&](size_t i, Question& q) { return begin(q, unshadowedAt(placeAt(pixels[i]))) && aimAll(i, q); },
+      pixels.size(),
       [&](size_t i, Question& q) {
-        if (!askAll && q.rounds == 1 && q.quarters[kFirst]) {
-          int asked = 0, opened = 0;
-          for (int k = 0; k < all(); ++k)
-            if (q.wanted(k)) ++asked, opened += q.open[size_t(k)];
-          if (asked == 0 || (opened != 0 && opened != asked)) {
+        const Place place = placeAt(pixels[i]);
+        q.from = unshadowedAt(place);
+        if (!(q.from.total > 0)) return false;
+        choose(q);
+        for (int k = 0; k < all(); ++k) aim(q, k, place);
+        q.quarters.fill(askAll);
+        q.quarters[kFirst] = true;
+        return true;
+      },
+      [&](size_t i, Question& q) {
+        if (!askAll && q.quarters[kFirst]) {
+          uint64_t opened = 0;
+          for (int k = 0; k < all(); ++k) opened += q.wanted(k) && q.open[size_t(k)];
+          if (q.traced == 0 || (opened != 0 && opened != q.traced)) {
             q.quarters.fill(true);
             q.quarters[kFirst] = false;
             return true;
           }
           for (int k = 0; k < all(); ++k) q.open[size_t(k)] = opened > 0;
         }
-        if (askRest(q)) return aimAll(i, q);
         addUp(q, seen[i]);
         return false;
       });
@@ -306,28 +273,19 @@ std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels
         const std::array<Place, 4> parts = partsOf(texel, 1);
         if (q.quad != i / 4) { // the four come one after the other
           q.quad = i / 4;
-          begin(q, unshadowedAround(placeAt(middleOf(texel, 1)), parts)); // as when the patch was asked
+          q.from = unshadowedAround(placeAt(middleOf(texel, 1)), parts); // as when the patch was asked
+          if (q.from.total > 0) choose(q);
         }
         if (!(q.from.total > 0)) return false;
         for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
-        q.quarters.fill(true);
-        q.known = {};
-        if (patches[i / 4].rounds > 1) return true; // its bits are of other rays
         const int known = kQuarterOf[s];
         for (int k = 0; k < all(); ++k)
           if (k % 4 == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
+        q.quarters.fill(true);
         q.quarters[size_t(known)] = false;
-        q.known[size_t(known)] = true;
         return true;
       },
-      [&](size_t i, Question& q) {
-        if (askRest(q)) {
-          q.quad = ~size_t(0); // the next of the four begins with all lights
-          const std::array<Place, 4> parts = partsOf(texels[i / 4], 1);
-          for (int k = 0; k < all(); ++k) aim(q, k, parts[i % 4]);
-          q.quarters.fill(true);
-          return true;
-        }
+      [&](size_t i, const Question& q) {
         addUp(q, seen[i]);
         return false;
       });

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct PictureSurfaces {
   CameraBlock camera;
 
   bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
+  /// Up to `count` pixels that show a surface, spread over the picture.
+  std::vector<glm::ivec2> some(size_t count) const;
   size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
 };
 
@@ -30,8 +33,11 @@ struct PictureSurfaces {
 struct AreaSeen {
   std::array<uint64_t, 4> bits{}; // by sub-fragment; of a single pixel by quarter of its rays
   vec3 visible{0};                // share of the unshadowed light
-  int rounds = 1;                 // 2 and more: the bits are of what was left when the brightest were found hidden
+  std::array<uint8_t, 4> asked{}; // rays that have an answer, by sub-fragment
   uint64_t rays = 0;              // that were traced
+
+  /// Share of a sub-fragment's rays that are open; −1 where no light could reach it.
+  float open(size_t s) const { return asked[s] > 0 ? float(std::popcount(bits[s])) / float(asked[s]) : -1; }
 
   bool lit() const {
     return std::any_of(bits.begin(), bits.end(), [](uint64_t b) { return b != 0; });
@@ -51,6 +57,11 @@ class AreaVisibility {
   /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
   /// are a quarter.
   std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
+  /// Whether two pixels beside each other show one smooth surface.
+  bool oneSurface(const glm::ivec2& a, const glm::ivec2& b) const;
+  /// Of a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to `asked` a
+  /// ray to each that brings any.
+  void askEach(const glm::ivec2& pixel, std::span<double> brought, std::vector<std::pair<uint32_t, Ray>>& asked) const;
   /// Pixel in the middle of a patch.
   glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {
     return clamped(texel * (1 << level) + (1 << level) / 2);
@@ -64,20 +75,18 @@ class AreaVisibility {
   /// What the lights bring where nothing is between.
   struct Unshadowed {
     std::vector<vec3> light;
-    vec3 sum{0};
     float total = 0; // luminance
   };
   Unshadowed unshadowedAt(const Place& place) const;
   /// At the middle of a patch, or where that gets none, at the first of its parts that gets any.
   Unshadowed unshadowedAround(const Place& middle, const std::array<Place, 4>& parts) const;
+  Ray rayTo(const AreaSample& sample, const Place& from) const;
   std::array<Place, 4> partsOf(const glm::ivec2& texel, int level) const;
   Place placeAt(const glm::ivec2& pixel) const;
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
-  bool begin(Question& q, Unshadowed from) const;
   void choose(Question& q) const;
-  bool askRest(Question& q) const;
   void aim(Question& q, int k, const Place& place) const;
   void addUp(const Question& q, AreaSeen& to) const;
   /// `begin(i, q)` aims the rays of question i; `asked(i, q)` takes the answers and says whether there is more to

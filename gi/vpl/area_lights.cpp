@@ -51,9 +51,11 @@ LightSet byParts(const LightSet& lights) {
         const auto [known, anew] = at.try_emplace({int(place.x), int(place.y), int(place.z)}, i);
         if (!anew) part[root(i)] = root(known->second);
       }
+    constexpr size_t kMostParts = 512; // of an emitter; with more it stays whole
     std::map<uint32_t, std::vector<EmitterTriangle>> triangles;
     for (uint32_t i = 0; i < of.size(); ++i)
       if (of[i].area > 0) triangles[root(i)].push_back(of[i]);
+    if (triangles.size() > kMostParts) triangles = {{0, {of.begin(), of.end()}}};
     for (auto& [first, some] : triangles)
       addEmitter(parts, emitter.instance, emitter.primitive, std::move(some), emitter.doubleSided);
   }
@@ -96,28 +98,33 @@ void addSamples(std::span<const SurfaceLight> points, uint32_t count, std::vecto
   }
 }
 
-/// Every so many of a light's samples as disks, with their share of the surface.
-void addDisks(std::span<const AreaSample> samples, float area, bool doubleSided, std::vector<AreaPiece>& to) {
-  const size_t step = std::max<size_t>(samples.size() / AreaLights::kMostPieces, 1);
-  for (size_t i = step / 2; i < samples.size(); i += step) {
+/// `count` of a light's samples as disks that share its surface.
+void addDisks(std::span<const AreaSample> samples, size_t count, float area, bool doubleSided,
+              std::vector<AreaPiece>& to) {
+  count = std::min(count, samples.size());
+  for (size_t i = 0; i < count; ++i) {
+    const AreaSample& sample = samples[(2 * i + 1) * samples.size() / (2 * count)];
     AreaPiece& piece = to.emplace_back();
-    piece.corners[0] = vec4(samples[i].position, 0);
-    piece.normalArea = vec4(samples[i].normal, area * float(step) / float(samples.size()));
-    piece.radianceSides = vec4(samples[i].radiance, doubleSided ? 1 : 0);
+    piece.corners[0] = vec4(sample.position, 0);
+    piece.normalArea = vec4(sample.normal, area / float(count));
+    piece.radianceSides = vec4(sample.radiance, doubleSided ? 1 : 0);
   }
 }
 
 } // namespace
 
 AreaLights areaLights(const LightSet& lights) {
-  constexpr uint32_t kTexturedPoints = 1 << 14; // looked at of a texture
+  constexpr uint32_t kAllTexturedPoints = 1 << 18, kLeastTexturedPoints = 1 << 8, kTexturedPoints = 1 << 14;
   AreaLights out;
   const LightSet parts = byParts(lights);
-  const uint32_t samples = std::clamp(AreaLights::kAllSamples / std::max(1u, uint32_t(parts.emitters.size())),
-                                      AreaLights::kLeastSamples, AreaLights::kSamples);
+  const uint32_t count = std::max(1u, uint32_t(parts.emitters.size()));
+  const uint32_t samples = std::clamp(AreaLights::kAllSamples / count, AreaLights::kLeastSamples, AreaLights::kSamples);
+  const uint32_t texturedPoints = std::clamp(kAllTexturedPoints / count, kLeastTexturedPoints, kTexturedPoints);
+  const uint32_t most = std::clamp(AreaLights::kAllPieces / count, 1u, AreaLights::kMostPieces);
   for (const Emitter& emitter : parts.emitters) {
     const bool uneven = textured(parts, emitter);
-    const std::vector<SurfaceLight> points = pointsOf(parts, emitter, uneven ? kTexturedPoints : samples);
+    const std::vector<SurfaceLight> points =
+        pointsOf(parts, emitter, uneven ? std::max(texturedPoints, samples) : samples);
     if (std::ranges::none_of(points, [](const SurfaceLight& p) { return luminance(p.radiance) > 0; })) continue;
     AreaLight light{.firstPiece = uint32_t(out.pieces.size()),
                     .firstSample = uint32_t(out.samples.size()),
@@ -127,13 +134,13 @@ AreaLights areaLights(const LightSet& lights) {
     const std::span of = std::span(parts.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);
     std::vector<uint32_t> pieceOf;
     std::vector<AreaPiece> pieces = mergedPieces(of, emitter.doubleSided, pieceOf);
-    if (pieces.size() > AreaLights::kMostPieces) {
+    if (pieces.size() > most) {
       float area = 0;
       for (const EmitterTriangle& t : of) area += t.area;
       pieces.clear();
-      addDisks(std::span(out.samples).last(samples), area, emitter.doubleSided, pieces);
+      addDisks(std::span(out.samples).last(samples), most, area, emitter.doubleSided, pieces);
     } else if (uneven) {
-      pieces = piecesByRadiance(std::move(pieces), points, pieceOf, AreaLights::kMostPieces);
+      pieces = piecesByRadiance(std::move(pieces), points, pieceOf, most);
     }
     out.pieces.insert(out.pieces.end(), pieces.begin(), pieces.end());
     light.pieces = uint32_t(pieces.size());

@@ -26,6 +26,7 @@ struct AreaLights {
   std::vector<AreaSample> samples;
 
   static constexpr uint32_t kMostPieces = 64;       // of a light; polygons, or where these are more, disks
+  static constexpr uint32_t kAllPieces = 2048;      // of all lights, but for one of each
   static constexpr uint32_t kSamples = 256;         // of a light, at most
   static constexpr uint32_t kAllSamples = 1u << 18; // of all lights, but for kLeastSamples of each
   static constexpr uint32_t kLeastSamples = 16;
