@@ -23,9 +23,9 @@ struct FrameStats {
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
       raysMapTests, raysShadows, raysArea, raysVolume, raysCube;
-  uint64_t patches = 0;       // of the multiresolution buffer that gathered, as far as the GPU has told
-  uint64_t areaFragments = 0; // of area lights
-  uint64_t cubeEntries = 0;   // of the layered depth cube that light reaches
+  uint64_t patches = 0;                      // of the multiresolution buffer that gathered, as far as the GPU has told
+  uint64_t areaFragments = 0;                // of area lights
+  uint64_t cubeEntries = 0;                  // of the layered depth cube that light reaches
   uint64_t cubeBytes = 0, cubeKeptBytes = 0; // of these, and of what brings them up to date
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
@@ -37,8 +37,9 @@ struct FrameStats {
   bool burst = false;
   EffectPlan plan;
   std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
-  std::string areaTracer;                // who traced rays from patches to emissive surfaces, and how fast each would be
-  std::string shadowMaker, makerTimes;   // who drew VPL maps last; both makers' times where they were measured
+  std::string areaTracer;              // who traced rays from patches to emissive surfaces, and how fast each would be
+  std::string shadowMaker, makerTimes; // who drew VPL maps last; both makers' times where they were measured
+  std::string cubeMaker, cubeMakerTimes; // the same of hemicubes
   std::string timing;                    // how GPU times were taken
 
   uint64_t& of(EffectId id) { return work[size_t(id)]; }

@@ -179,6 +179,8 @@ class Table {
            "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
     number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Set,
            "along an edge of these images; half of it for lights after the first bounce");
+    choice("cube.maker", &Settings::hemicubes, &HemicubeSettings::maker, {"auto", "raster", "rays"}, Nothing,
+           "who makes these images: the GPU, rays on the CPU, or whoever is faster on the first of them");
     number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
            "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
     number("lpv.size", &Settings::lpv, &VolumeSettings::size, {0, kNoLimit, "m"}, Nothing,

@@ -28,6 +28,7 @@ enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeSights : int { Rays, Hemicubes };
+enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -173,6 +174,12 @@ struct CubeSettings {
   bool operator==(const CubeSettings&) const = default;
 };
 
+/// How hemicubes are made. Not what is in the cube: it stays as it is when this changes.
+struct HemicubeSettings {
+  CubeMaker maker = CubeMaker::Auto;
+  bool operator==(const HemicubeSettings&) const = default;
+};
+
 struct FilterSettings {
   bool on = true;
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
@@ -218,6 +225,7 @@ struct Settings {
   RsmSettings rsm;
   VolumeSettings lpv;
   CubeSettings cube;
+  HemicubeSettings hemicubes;
   std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube)
   HistorySettings history;
   FilterSettings filter;

@@ -120,7 +120,7 @@ const std::vector<NoKnob>& noKnobTable() {
        "of techniques from reflective shadow maps; their curves: --curve clusters"},
       {{"lpv.cells", "lpv.size", "lpv.steps", "lpv.occlusion"}, "of light propagation volumes; their table: --volume"},
       {{"cube.resolution", "cube.sights", "cube.hemicube"}, "of the layered depth cube; their table: bench --cube"},
-      {{"smc.cache", "shadow.maker", "area.tracer", "frame.overlap"},
+      {{"smc.cache", "shadow.maker", "area.tracer", "cube.maker", "frame.overlap"},
        "time alone: the picture is the same, or a frame late"},
       {{"shadow.bias", "filter.normalPower"}, "error alone: any value costs the same"},
       {{"shadow.spotResolution"}, "as shadow.sunResolution, of lights that these scenes have not"},
