@@ -15,9 +15,9 @@ static_assert(sizeof(HemicubeTexel) == 4 * sizeof(float)); // as distance_normal
 void HemicubePass::prepare(const World& world, CubeMaker maker) {
   scene_ = &world.gpu;
   rays_ = &world.rays;
-  // Less than lights stand off their surfaces. Depth is as precise as floats whatever it is, but for triangles that
-  // come this near: theirs is rounded to 2^-24 of the nearest.
-  near_ = 1e-5f * world.reach;
+  // Lights stand farther off their surfaces, and no surface is known better. Reversed depth of floats is as precise
+  // whatever it is.
+  near_ = std::max(world.rays.grain(), 1e-20f);
   maker_ = maker;
 }
 

@@ -30,6 +30,15 @@ class HemicubeTest : public GlTest {
     for (size_t i = 0; i < drawn.size(); ++i) compare(world.rays, drawn[i], cast[i], sum);
   }
 
+  /// But for edges that pass a texel's middle; some of these are of slivers that no ray happens to find.
+  static void expectAlike(const Agreement& sum) {
+    std::printf("%zu texels: %.4f %% apart, %.4f %% astray\n", sum.texels, 100 * sum.share(),
+                100 * double(sum.astray) / double(sum.texels));
+    EXPECT_GT(sum.texels, 10000u);
+    EXPECT_LT(sum.share(), 1e-3);
+    EXPECT_LT(double(sum.astray), 1e-4 * double(sum.texels));
+  }
+
   static void compare(const RayQuery& rays, const Hemicube& drawn, const Hemicube& cast, Agreement& sum) {
     for (int face = 0; face < 5; ++face)
       for (int y = 0; y < cast.rows(face); ++y)
@@ -37,17 +46,20 @@ class HemicubeTest : public GlTest {
           ++sum.texels;
           const HemicubeTexel& is = drawn.at(face, x, y);
           const vec2 middle = vec2(x, y) + 0.5f;
-          if (same(is, cast.at(face, x, y), drawn.direction(face, middle), rays.grain())) continue;
+          const vec3 direction = drawn.direction(face, middle);
+          if (same(is, direction, cast.at(face, x, y), direction, rays.grain())) continue;
           ++sum.apart;
           sum.astray += !metBeside(rays, drawn, face, middle, is);
         }
   }
 
-  static bool same(const HemicubeTexel& a, const HemicubeTexel& b, const vec3& direction, float grain) {
+  /// Whether two texels show one surface; each with the direction that it looks in.
+  static bool same(const HemicubeTexel& a, const vec3& directionA, const HemicubeTexel& b, const vec3& directionB,
+                   float grain) {
     if (!(a.distance < kInfinity) || !(b.distance < kInfinity)) return a.distance == b.distance;
-    const float off = std::abs((a.distance - b.distance) * glm::dot(b.normal, direction));
-    return off < 2 * grain + 2e-5f * b.distance && glm::dot(a.normal, b.normal) > 1 - 1e-4f &&
-           glm::dot(a.normal, direction) < 1e-3f;
+    const float off = std::abs(glm::dot(b.normal, a.distance * directionA - b.distance * directionB));
+    return off < 2 * grain + 1e-5f * b.distance && glm::dot(a.normal, b.normal) > 1 - 1e-4f &&
+           glm::dot(a.normal, directionA) < 1e-3f;
   }
 
   /// A GPU rounds corners of triangles to 1/256 of a texel.
@@ -59,7 +71,7 @@ class HemicubeTest : public GlTest {
         const vec3 direction = hemicube.direction(face, middle + 0.5f * kAside * vec2(u, v));
         const SurfaceHit hit = rays.closest(Ray{hemicube.origin, direction});
         const HemicubeTexel met = hit.valid() ? HemicubeTexel{hit.t, hit.geometricNormal} : HemicubeTexel{};
-        if (same(texel, met, direction, rays.grain())) return true;
+        if (same(texel, hemicube.direction(face, middle), met, direction, rays.grain())) return true;
       }
     return false;
   }
@@ -93,7 +105,7 @@ TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetInARoom) {
   for (const int resolution : {32, 64, 128}) {
     Agreement sum;
     compare(placed.world(), lights, resolution, sum);
-    std::printf("%d texels: %.3f %% apart, %zu astray\n", resolution, 100 * sum.share(), sum.astray);
+    expectAlike(sum);
   }
 }
 
@@ -107,8 +119,8 @@ TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetWhileAnythingMoves) {
     gpu.place(view.instances);
     const World now{view, gpu, world.rays(), kNothingMoved, none, view.boundsWorld.diameter()};
     compare(now, photonLights(view, world.rays(), 24), 64, sum);
-    std::printf("%.3f %% apart, %zu astray\n", 100 * sum.share(), sum.astray);
   }
+  expectAlike(sum);
 }
 
 /// A mask, seen from near and from far, on objects that are turned, mirrored and bent.
@@ -126,7 +138,8 @@ TEST_F(HemicubeTest, MasksAreCutOutAsRaysDo) {
   m.alphaMode = AlphaMode::Mask;
   m.alphaCutoff = 0.5f;
   m.baseColorTexture.image = 0;
-  scene.box(vec3(-4, 0, -4), vec3(4, 4, 4), white, true);
+  scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, white); // under the sky
+  scene.quad({-4, 0, -4}, {0, 4, 0}, {0, 0, 8}, white);
   scene.assets.meshes.push_back(sheet(8, leaves));
   const uint32_t mesh = uint32_t(scene.assets.meshes.size() - 1);
   for (int i = 0; i < 8; ++i) {
@@ -142,7 +155,7 @@ TEST_F(HemicubeTest, MasksAreCutOutAsRaysDo) {
                                             lightAt({-4, 2, 1}, {1, 0, 0}, vec3(1), 0.01f)};
   Agreement sum;
   compare(placed.world(), lights, 64, sum);
-  std::printf("%.3f %% apart, %zu astray\n", 100 * sum.share(), sum.astray);
+  expectAlike(sum);
 }
 
 /// A plate that lies nearly on the light hides all that is above it.
@@ -159,7 +172,7 @@ TEST_F(HemicubeTest, NothingIsTooNear) {
                                               lightAt({-1, 0.4f, 0}, {-1, 0, 0}, vec3(1), 0.01f)};
     Agreement sum;
     compare(placed.world(), lights, 64, sum);
-    std::printf("%g m: %.3f %% apart, %zu astray\n", double(gap), 100 * sum.share(), sum.astray);
+    expectAlike(sum);
   }
 }
 
@@ -190,7 +203,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
     difference += luminance(glm::abs(drawn.irradiance(e) - cast.irradiance(e)));
     sum += luminance(cast.irradiance(e));
   }
-  std::printf("mean difference of entries: %.3f %%\n", 100 * difference / sum);
+  std::printf("mean difference of entries: %.2g %%\n", 100 * difference / sum);
   EXPECT_GT(sum, 0);
   EXPECT_LT(difference, 0.005 * sum);
 }
@@ -214,9 +227,8 @@ class HemicubeFrameTest : public HemicubeTest {
   Result run(CubeMaker maker) {
     settings.hemicubes.maker = maker;
     GiFrame gi(settings);
-    Result result{.stats = gi.run(room.scene.view())};
-    result.light = gi.read(Buffer::Irradiance);
-    return result;
+    const FrameStats& stats = gi.run(room.scene.view());
+    return {gi.read(Buffer::Irradiance), stats};
   }
 
   Room room;
@@ -235,7 +247,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
     difference += luminance(glm::abs(drawn.light.pixels[i] - cast.light.pixels[i]));
     sum += luminance(cast.light.pixels[i]);
   }
-  std::printf("mean difference of pixels: %.3f %%\n", 100 * difference / sum);
+  std::printf("mean difference of pixels: %.2g %%\n", 100 * difference / sum);
   EXPECT_LT(difference, 0.005 * sum);
   EXPECT_NE(measured.stats.cubeMakerTimes.find("ms a hemicube"), std::string::npos) << measured.stats.cubeMakerTimes;
   EXPECT_EQ(measured.stats.cubeMakerTimes.find(measured.stats.cubeMaker), 0u);
