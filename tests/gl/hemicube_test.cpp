@@ -205,7 +205,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
   }
   std::printf("mean difference of entries: %.2g %%\n", 100 * difference / sum);
   EXPECT_GT(sum, 0);
-  EXPECT_LT(difference, 0.005 * sum);
+  EXPECT_LT(difference, 0.001 * sum);
 }
 
 class HemicubeFrameTest : public HemicubeTest {
@@ -248,7 +248,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
     sum += luminance(cast.light.pixels[i]);
   }
   std::printf("mean difference of pixels: %.2g %%\n", 100 * difference / sum);
-  EXPECT_LT(difference, 0.005 * sum);
+  EXPECT_LT(difference, 0.001 * sum);
   EXPECT_NE(measured.stats.cubeMakerTimes.find("ms a hemicube"), std::string::npos) << measured.stats.cubeMakerTimes;
   EXPECT_EQ(measured.stats.cubeMakerTimes.find(measured.stats.cubeMaker), 0u);
   EXPECT_EQ(measured.light.pixels, measured.stats.cubeMaker == "rays" ? cast.light.pixels : drawn.light.pixels);
