@@ -126,6 +126,7 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameS
       ImGui::TextUnformatted(figureText(figure).c_str());
     }
     if (!stats.makerTimes.empty()) ImGui::TextWrapped("%s", stats.makerTimes.c_str());
+    if (!stats.cubeMakerTimes.empty()) ImGui::TextWrapped("hemicubes: %s", stats.cubeMakerTimes.c_str());
     if (!stats.areaTracer.empty()) ImGui::TextWrapped("area rays: %s", stats.areaTracer.c_str());
   }
   if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());

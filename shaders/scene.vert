@@ -1,5 +1,6 @@
 #version 450
-// Triangles of an instance, for every pass that draws the scene. DEPTH_ONLY leaves out what depth does not need.
+// Triangles of an instance, for every pass that draws the scene. DEPTH_ONLY leaves out what depth does not need;
+// POSITION puts back where it is.
 layout(location = 0) in vec3 positionObject;
 layout(location = 4) in vec4 worldRow0; // rows of worldFromObject, one per instance
 layout(location = 5) in vec4 worldRow1;
@@ -7,8 +8,10 @@ layout(location = 6) in vec4 worldRow2;
 #if !defined(DEPTH_ONLY)
 layout(location = 1) in vec3 normalObject;
 layout(location = 0) out vec3 normalWorld;
-layout(location = 1) out vec3 positionEye; // world axes, origin at the eye: keeps the derivatives precise
 layout(location = 4) flat out float handedness;
+#endif
+#if !defined(DEPTH_ONLY) || defined(POSITION)
+layout(location = 1) out vec3 positionEye; // world axes, origin at the eye: keeps the derivatives precise
 uniform vec3 eye;
 #endif
 #if !defined(DEPTH_ONLY) || defined(ALPHA_MASK)
@@ -29,6 +32,8 @@ void main() {
        c2 = cross(worldRow0.xyz, worldRow1.xyz);
   handedness = dot(worldRow0.xyz, c0) < 0.0 ? -1.0 : 1.0;
   normalWorld = handedness * normalize(vec3(dot(c0, normalObject), dot(c1, normalObject), dot(c2, normalObject)));
+#endif
+#if !defined(DEPTH_ONLY) || defined(POSITION)
   positionEye = positionWorld - eye;
 #endif
 #if !defined(DEPTH_ONLY) || defined(ALPHA_MASK)

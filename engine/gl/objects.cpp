@@ -262,6 +262,10 @@ void Framebuffer::attachDepthLayer(const Texture& texture, int layer) const {
   glNamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture.name(), 0, layer);
 }
 
+void Framebuffer::attachColorLayer(const Texture& texture, int layer) const {
+  glNamedFramebufferTextureLayer(name(), GL_COLOR_ATTACHMENT0, texture.name(), 0, layer);
+}
+
 void Framebuffer::bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name()); }
 
 VertexArray::VertexArray(const std::string& label)

@@ -145,8 +145,9 @@ class Framebuffer : public detail::Object {
   /// own.
   static Framebuffer empty(const std::string& label);
 
-  /// Attaches one layer (cube face: 6·cube + face) as depth.
+  /// Attaches one layer (cube face: 6·cube + face) as depth, or as the first colour.
   void attachDepthLayer(const Texture& texture, int layer) const;
+  void attachColorLayer(const Texture& texture, int layer) const;
   void bind() const;
 };
 

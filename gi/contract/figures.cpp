@@ -50,6 +50,7 @@ constexpr FigureRow kRows[] = {
      [](const S& s) -> Figure { return s.cubeEntries; }},
     {"cube.bytes", "that pixels look up", [](const S& s) -> Figure { return s.cubeBytes; }},
     {"cube.kept_bytes", "that bring these up to date", [](const S& s) -> Figure { return s.cubeKeptBytes; }},
+    {"cube.maker", "who makes hemicubes", [](const S& s) -> Figure { return s.cubeMaker; }},
     {"draws", "draw calls", [](const S& s) -> Figure { return s.draws; }},
     {"waits", "of the CPU for something that the GPU had yet to say", [](const S& s) -> Figure { return s.waits; }},
     {"read_backs", "copies from the GPU's memory", [](const S& s) -> Figure { return s.readBacks; }},

@@ -39,8 +39,9 @@ struct FrameStats {
   std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row
   std::string areaTracer;              // who traced rays from patches to emissive surfaces, and how fast each would be
   std::string shadowMaker, makerTimes; // who drew VPL maps last; both makers' times where they were measured
-  std::string timing;                  // how GPU times were taken
-  std::string warning;                 // one line for whoever started the program; empty: nothing to say
+  std::string cubeMaker, cubeMakerTimes; // the same of hemicubes
+  std::string timing;                    // how GPU times were taken
+  std::string warning;                   // one line for whoever started the program; empty: nothing to say
 
   uint64_t& of(EffectId id) { return work[size_t(id)]; }
   /// Milliseconds that the machine was at it: the longer of the frame's wall time and the GPU's passes.

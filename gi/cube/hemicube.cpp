@@ -7,29 +7,8 @@
 
 namespace lambent {
 
-namespace {
-
-/// Of face: the direction of its middle, of its columns and of its rows, in the light's frame.
-struct FaceAxes {
-  vec3 forward, right, up;
-};
-constexpr FaceAxes kFaces[5] = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
-                                {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
-                                {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
-                                {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
-
-/// Rows of a face, and the first texel of it.
-int rowsOf(const Hemicube& h, int face) { return face == 0 ? h.resolution : h.resolution / 2; }
-size_t firstOf(const Hemicube& h, int face) {
-  const size_t whole = size_t(h.resolution) * h.resolution;
-  return face == 0 ? 0 : whole + size_t(face - 1) * (whole / 2);
-}
-
-} // namespace
-
 vec3 Hemicube::direction(int face, vec2 at) const {
-  const FaceAxes& f = kFaces[face];
+  const HemicubeFace& f = kHemicubeFaces[face];
   const float x = 2 * at.x / float(resolution) - 1;
   const float y =
       face == 0 ? 2 * at.y / float(resolution) - 1 : 2 * at.y / float(resolution); // sides: from the horizon
@@ -41,7 +20,7 @@ bool Hemicube::find(const vec3& direction, int& face, vec2& at) const {
   if (!(d.z > 0)) return false;
   const vec3 a = glm::abs(d);
   face = d.z >= a.x && d.z >= a.y ? 0 : a.x >= a.y ? (d.x > 0 ? 1 : 2) : (d.y > 0 ? 3 : 4);
-  const FaceAxes& f = kFaces[face];
+  const HemicubeFace& f = kHemicubeFaces[face];
   const float z = glm::dot(d, f.forward), half = 0.5f * float(resolution);
   at.x = (glm::dot(d, f.right) / z + 1) * half;
   at.y = face == 0 ? (glm::dot(d, f.up) / z + 1) * half : glm::dot(d, f.up) / z * half;
@@ -62,14 +41,14 @@ void castHemicube(Hemicube& hemicube, const RayQuery& rays, RayCounts& counts) {
   std::vector<Ray> asked;
   std::vector<SurfaceHit> hits;
   for (int face = 0; face < 5; ++face)
-    for (int y = 0; y < rowsOf(hemicube, face); ++y) {
+    for (int y = 0; y < hemicube.rows(face); ++y) {
       asked.clear();
       for (int x = 0; x < hemicube.resolution; ++x)
         asked.push_back({hemicube.origin, hemicube.direction(face, vec2(x, y) + 0.5f)});
       hits.resize(asked.size());
       rays.closest(asked, hits);
       counts.closest += asked.size();
-      HemicubeTexel* row = &hemicube.texels[firstOf(hemicube, face) + size_t(y) * hemicube.resolution];
+      HemicubeTexel* row = &hemicube.at(face, 0, y);
       for (size_t x = 0; x < hits.size(); ++x)
         row[x] = hits[x].valid() ? HemicubeTexel{hits[x].t, hits[x].geometricNormal} : HemicubeTexel{};
     }
@@ -146,9 +125,9 @@ void splat(const Hemicube& hemicube, const CubeSurfaces& surfaces, std::vector<u
   const int resolution = surfaces.cubes().front().resolution;
   std::vector<uint32_t> open; // nodes of the tree
   for (int face = 0; face < 5; ++face)
-    for (int y = 0; y < rowsOf(hemicube, face); ++y)
+    for (int y = 0; y < hemicube.rows(face); ++y)
       for (int x = 0; x < hemicube.resolution; ++x) {
-        const HemicubeTexel& t = hemicube.texels[firstOf(hemicube, face) + size_t(y) * hemicube.resolution + x];
+        const HemicubeTexel& t = hemicube.at(face, x, y);
         if (!(t.distance < kInfinity)) continue;
         const Splat splat(hemicube, face, x, y, t, surfaces.texel());
         open.assign(1, 0);

@@ -13,6 +13,16 @@ struct HemicubeTexel {
   vec3 normal{0};             // geometric, unit, towards the light
 };
 
+/// Of one of its five images, in the light's frame: the directions of its middle, of its columns and of its rows.
+struct HemicubeFace {
+  vec3 forward, right, up;
+};
+inline constexpr HemicubeFace kHemicubeFaces[5] = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
+                                                   {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                   {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
+                                                   {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
+                                                   {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+
 /// One image of resolution × resolution texels along the normal, then four of resolution × resolution/2 to its sides:
 /// the halves in front of the light. Rows from the horizon up.
 struct Hemicube {
@@ -22,10 +32,18 @@ struct Hemicube {
   std::vector<HemicubeTexel> texels; // 3 resolution²
 
   size_t size() const { return 3 * size_t(resolution) * resolution; }
+  int rows(int face) const { return face == 0 ? resolution : resolution / 2; }
+  /// Of all rows, one face after the other.
+  int firstRow(int face) const { return face == 0 ? 0 : resolution + (face - 1) * (resolution / 2); }
+  HemicubeTexel& at(int face, int x, int y) { return texels[index(face, x, y)]; }
+  const HemicubeTexel& at(int face, int x, int y) const { return texels[index(face, x, y)]; }
   /// Unit, through texel coordinates of a face (0, 0 is the corner of the first texel).
   vec3 direction(int face, vec2 at) const;
   /// Face and texel coordinates of a direction; false below the horizon.
   bool find(const vec3& direction, int& face, vec2& at) const;
+
+ private:
+  size_t index(int face, int x, int y) const { return size_t(firstRow(face) + y) * size_t(resolution) + size_t(x); }
 };
 
 /// `light` looks around, from just off its surface.

@@ -4,6 +4,7 @@
 #include "engine/gl/ring.h"
 #include "gi/cube/cube_file.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/gather/hemicube_pass.h"
 #include "gi/gather/stages.h"
 #include "gi/vpl/near_light.h"
 #include "shaders/shared/layered_cube.h"
@@ -58,13 +59,15 @@ class CubeGather : public IndirectStage {
     const bool stored = in.world.view.changes.first && !in.settings.cubeFile.empty() && open(in, stats);
     Clock::time_point saved = Clock::now();
     Clock::duration saveAfter = std::chrono::seconds(5);
+    hemicubes_.prepare(in.world, in.settings.hemicubes.maker);
     for (uint32_t total = 0, put = 0;; first = false) {
       const CubeWork work =
           cube_.update({in.world.view.boundsWorld, in.world.rays, first && !opened_ ? in.world.moved : kNothingMoved,
                         first && in.world.view.changes.first && !opened_, lights.slots, lights.direct, in.settings.cube,
-                        in.settings.gather},
+                        in.settings.gather, &hemicubes_},
                        std::min(kAtOnce, in.most));
       stats.raysCube += work.rays;
+      hemicubes_.tell(stats);
       changed |= work.changed;
       if (first) total = work.lightsIn + cube_.pending();
       if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
@@ -182,6 +185,7 @@ class CubeGather : public IndirectStage {
   }
 
   PassContext context_;
+  HemicubePass hemicubes_{context_};
   LayeredCube cube_;
   static constexpr size_t kAllNear = ~size_t(0);
   std::vector<vec3> near_; // by entry

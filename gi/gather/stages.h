@@ -8,6 +8,7 @@
 //   patch_gather    at the patches that it marks
 //   splat, splat_gather  lights into patches
 //   light_volume, volume_gather  lights into a grid, through it, and from there to pixels
+//   hemicube_pass   what these lights see, drawn or cast
 //   cube_gather     lights into a layered depth cube (gi/cube), and from there to pixels
 //   tree_gather     the draw of light trees
 //   map_checks      rays that check what maps say at pixels

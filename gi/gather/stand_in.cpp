@@ -25,7 +25,7 @@ void StandIn::watch(const SceneView& view, const Settings& settings) {
   settings_ = settings;
   still_ = changed ? 0 : still_ + 1;
   const GatherRow& gather = rowOf(settings.gather.mode);
-  wanted_ = settings.cube.after > 0 && still_ >= settings.cube.after && !gather.stored &&
+  wanted_ = settings.standIn.after > 0 && still_ >= settings.standIn.after && !gather.stored &&
             settings.vpl.source != VplSource::None;
   if (wanted_ || share_ > 0) return;
   photons_ = nullptr;
@@ -54,7 +54,7 @@ LightOnSurfaces StandIn::run(const StandInInputs& in, const LightOnSurfaces& gat
                                              .bounces = in.bounces,
                                              .seed = in.seed,
                                              .stores = wanted_,
-                                             .most = uint32_t(settings.cube.perFrame)},
+                                             .most = uint32_t(settings.standIn.perFrame)},
                                             stats);
   if (!stored.irradiance) return gathered; // not all is in it yet
   share_ = std::clamp(share_ + (wanted_ ? 1 : -1) / kMixed, 0.0f, 1.0f);

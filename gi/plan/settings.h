@@ -28,6 +28,7 @@ enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeSights : int { Rays, Hemicubes };
+enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -173,9 +174,20 @@ struct CubeSettings {
   float split = 0.15f;  // share of edges among a cube's entries that makes eight of it
   CubeSights sights = CubeSights::Rays;
   int hemicube = 128; // texels along an edge of a light's hemicube; half of it after the first bounce
-  int after = 0;      // frames without change until a cube stands in for another technique; 0: never
-  int perFrame = 4;   // lights put into that one in a frame
   bool operator==(const CubeSettings&) const = default;
+};
+
+/// How hemicubes are made. Not what is in the cube: it stays as it is when this changes.
+struct HemicubeSettings {
+  CubeMaker maker = CubeMaker::Auto;
+  bool operator==(const HemicubeSettings&) const = default;
+};
+
+/// A layered depth cube in place of another technique (gi/gather/stand_in.h).
+struct StandInSettings {
+  int after = 0;    // frames without change until it is built; 0: never
+  int perFrame = 4; // lights put into it in a frame
+  bool operator==(const StandInSettings&) const = default;
 };
 
 struct FilterSettings {
@@ -223,6 +235,8 @@ struct Settings {
   RsmSettings rsm;
   VolumeSettings lpv;
   CubeSettings cube;
+  StandInSettings standIn;
+  HemicubeSettings hemicubes;
   std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube)
   HistorySettings history;
   FilterSettings filter;

@@ -51,7 +51,8 @@ enum class StageId : uint16_t {
   VolumeSights, // which cells of a volume see one another
   Inject,
   Propagate,
-  Cube, // lights put into it and taken out
+  Cube,      // lights put into it and taken out
+  Hemicubes, // of these, drawn
   Upsample,
   History,
   Filter,
@@ -100,6 +101,7 @@ inline constexpr const char* kStageNames[] = {"scene",
                                               "inject",
                                               "propagate",
                                               "cube",
+                                              "hemicubes",
                                               "upsample",
                                               "history",
                                               "filter",

@@ -64,12 +64,23 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   changes_.upload(instanceRows_, 0, rows.size() * sizeof(vec4), rows.data());
 }
 
+namespace {
+
+/// Whether it shows materials, and not only where their masks are cut out.
+bool showsMaterials(DrawKind kind) { return kind == DrawKind::GBuffer || kind == DrawKind::GlossyGBuffer; }
+
+} // namespace
+
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
-  gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth ? "depth.frag" : "gbuffer.frag"};
-  if (kind == DrawKind::Depth) desc.defines.push_back("DEPTH_ONLY");
+  gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth            ? "depth.frag"
+                                     : kind == DrawKind::DistanceNormal ? "distance_normal.frag"
+                                                                        : "gbuffer.frag"};
+  const bool shows = showsMaterials(kind);
+  if (!shows) desc.defines.push_back("DEPTH_ONLY");
+  if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
   if (tested(material)) desc.defines.push_back("ALPHA_MASK");
-  if (material.baseTexture && (kind != DrawKind::Depth || tested(material))) desc.defines.push_back("BASE_TEXTURE");
-  if (material.emissiveTexture && kind != DrawKind::Depth) desc.defines.push_back("EMISSIVE_TEXTURE");
+  if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
+  if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
   if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
   if (material.finishTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
   return programs_.get(desc);
@@ -92,13 +103,12 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   for (const Item& item : items_)
     if (frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
   if (shown.empty()) return 0;
-  // Depth alone looks the same in any order, and without alpha test whatever the material: those go first, as one call
-  // per vertex array.
-  const auto plain = [&](const Item& item) {
-    return kind == DrawKind::Depth && !tested(materialDraws_[item.range.material]);
-  };
+  // Depth and distance look the same in any order, and without alpha test whatever the material: those go first, as one
+  // call per vertex array.
+  const bool shows = showsMaterials(kind);
+  const auto plain = [&](const Item& item) { return !shows && !tested(materialDraws_[item.range.material]); };
   const auto place = [&](const Item* item) { return plain(*item) ? int(item->deformed) : 2; };
-  if (kind == DrawKind::Depth)
+  if (!shows)
     std::stable_sort(shown.begin(), shown.end(), [&](const Item* a, const Item* b) { return place(a) < place(b); });
 
   std::vector<gl::IndexedDraw> commands;

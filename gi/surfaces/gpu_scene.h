@@ -24,8 +24,9 @@ struct Frustum {
   bool mayShow(const Aabb& box) const;
 };
 
-/// What a draw writes: the G-buffer, the same with roughness and metalness, or depth alone.
-enum class DrawKind { GBuffer, GlossyGBuffer, Depth };
+/// What a draw writes: the G-buffer, the same with roughness and metalness, distance (metres) and geometric normal of
+/// what the eye sees, or depth alone.
+enum class DrawKind { GBuffer, GlossyGBuffer, DistanceNormal, Depth };
 
 class GpuScene {
  public:
@@ -36,8 +37,9 @@ class GpuScene {
   void place(std::span<const InstanceView> instances);
 
   /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer: one call per
-  /// material and vertex array, and for depth one for all materials without alpha test. Sets programs, vertex array and
-  /// textures; the caller sets the pipeline state and, for a G-buffer, binds the camera block and gives the eye.
+  /// material and vertex array, and without a G-buffer one for all materials without alpha test. Sets programs, vertex
+  /// array and textures; the caller sets the pipeline state, gives the eye but for depth, and for a G-buffer binds the
+  /// camera block.
   /// Returns the number of calls.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0)) const;
 

@@ -15,7 +15,12 @@ vec2 transformUv(vec4 rowU, vec4 rowV, vec4 uv01) {
 vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
   vec4 base = material.baseColor * vertexColor;
 #ifdef BASE_TEXTURE
-  base *= texture(baseTexture, transformUv(material.baseUvU, material.baseUvV, uv01));
+  vec2 uv = transformUv(material.baseUvU, material.baseUvV, uv01);
+#ifdef FINEST_LEVEL
+  base *= textureLod(baseTexture, uv, 0.0);
+#else
+  base *= texture(baseTexture, uv);
+#endif
 #endif
   return base;
 }

@@ -147,8 +147,8 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   settings.smc.bounces = 2;
   settings.image.exposure = 1;
   settings.cube.resolution = 64;
-  settings.cube.after = 20;
-  settings.cube.perFrame = 64;
+  settings.standIn.after = 20;
+  settings.standIn.perFrame = 64;
   GiFrame gi(settings);
   gi.run(room.scene.view());
   double mean = 0, most = 0;
@@ -161,12 +161,12 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   int alone = 0, frames = 0;
   for (; frames < 200 && alone < 3; ++frames) {
     const FrameStats& stats = gi.run(still());
-    EXPECT_TRUE(frames >= settings.cube.after || stats.raysCube.closest == 0) << frames;
+    EXPECT_TRUE(frames + 1 >= settings.standIn.after || stats.raysCube.closest == 0) << frames;
     alone += !stats.plan.on(EffectId::Gather);
     step(frames > 5); // before, the history is short
   }
   ASSERT_EQ(alone, 3);
-  EXPECT_GT(frames, settings.cube.after + 16 + 4);
+  EXPECT_GT(frames, settings.standIn.after + 16 + 4);
   const Image cube = gi.read(Buffer::Irradiance);
   Settings own = settings;
   applyTechnique(own, "ibrr");

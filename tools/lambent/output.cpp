@@ -67,6 +67,7 @@ nlohmann::json figuresOf(const FrameStats& s) {
   }
   figures["shadow_maker_times"] = s.makerTimes;
   figures["area_tracer"] = s.areaTracer;
+  figures["cube"]["maker_times"] = s.cubeMakerTimes;
   for (const StageTime& t : s.stages)
     figures["stages"].push_back({{"name", t.stage.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
   for (size_t i = 0; i < kEffects; ++i) {

@@ -1,0 +1,44 @@
+// Hemicubes of virtual lights (gi/cube/hemicube.h), drawn by the GPU or cast on the CPU, whichever is faster here.
+#pragma once
+
+#include "gi/contract/figures.h"
+#include "gi/contract/pass_context.h"
+#include "gi/contract/world.h"
+#include "gi/cube/hemicube.h"
+#include "gi/plan/settings.h"
+
+#include <optional>
+
+namespace lambent {
+
+class HemicubePass : public HemicubeMaker {
+ public:
+  explicit HemicubePass(PassContext context) : context_(context) {}
+
+  /// What the next ones are of, and who makes them.
+  void prepare(const World& world, CubeMaker maker);
+  void make(std::span<Hemicube> hemicubes) override;
+  /// Adds rays since it was last asked, and who made hemicubes: "rays (2.1 ms a hemicube, raster 14.0 ms)".
+  void tell(FrameStats& stats);
+
+ private:
+  void measureMakers(std::span<const Hemicube> hemicubes);
+  void cast(std::span<Hemicube> hemicubes);
+  void draw(std::span<Hemicube> hemicubes);
+  void allocate(int resolution, int layers);
+  void drawInto(int layer, const Hemicube& hemicube);
+
+  PassContext context_;
+  const GpuScene* scene_ = nullptr;
+  const RayQuery* rays_ = nullptr;
+  float near_ = 0; // metres
+  CubeMaker maker_ = CubeMaker::Auto;
+  std::optional<CubeMaker> measured_;
+  std::string report_;
+  RayCounts counts_;
+  gl::Texture texels_; // a layer is a hemicube, as in Hemicube::texels
+  gl::Texture depth_;
+  gl::Framebuffer framebuffer_;
+};
+
+} // namespace lambent

@@ -1,0 +1,22 @@
+#version 450
+// Distance from the eye, metres, and the triangle's normal on its side. Masks are cut out as rays find them: at the
+// finest level, since a texel stands for the ray through its middle.
+#ifdef ALPHA_MASK
+#define FINEST_LEVEL
+#include "lib/material.glsl"
+layout(location = 2) in vec4 uv;
+layout(location = 3) in vec4 color;
+#endif
+layout(location = 1) in vec3 positionEye;
+layout(location = 0) out vec4 outDistanceNormal;
+
+void main() {
+  vec3 normal = cross(dFdx(positionEye), dFdy(positionEye));
+  float size = length(normal);
+#ifdef ALPHA_MASK
+  if (baseColorAt(uv, color).a < material.emission.a) discard;
+#endif
+  float distance = length(positionEye);
+  normal = size > 0.0 ? normal / size : -positionEye / distance;
+  outDistanceNormal = vec4(distance, dot(normal, positionEye) > 0.0 ? -normal : normal);
+}
