@@ -173,15 +173,15 @@ class Table {
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
     number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
-    number("cube.resolution", &Settings::cube, &CubeSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Set,
+    number("cube.resolution", &Settings::cube, &CubeSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of a layered depth cube; time to build it and memory grow with the square");
-    number("cube.levels", &Settings::cube, &CubeSettings::levels, {0, 8, "levels"}, Set,
+    number("cube.levels", &Settings::cube, &CubeSettings::levels, {0, 8, "levels"}, Nothing,
            "of a tree of cubes: each halves the texels where cube.split says so; 0 = one cube over all of the scene");
-    number("cube.split", &Settings::cube, &CubeSettings::split, {0, 1}, Set,
+    number("cube.split", &Settings::cube, &CubeSettings::split, {0, 1}, Nothing,
            "share of edges among what a cube of the tree holds that makes eight of it; 0 splits all but the empty");
-    choice("cube.sights", &Settings::cube, &CubeSettings::sights, {"rays", "hemicubes"}, Set,
+    choice("cube.sights", &Settings::cube, &CubeSettings::sights, {"rays", "hemicubes"}, Nothing,
            "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
-    number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Set,
+    number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of these images; half of it for lights after the first bounce");
     number(
         "cube.after", &Settings::standIn, &StandInSettings::after, {0, 1000000, "frames"}, Nothing,

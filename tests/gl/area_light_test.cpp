@@ -366,7 +366,8 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   settings.area.threshold = 1;
   irradianceOf(scene);
   EXPECT_GT(stats.areaFragments, fragments);
-  EXPECT_GT(stats.raysArea.occlusion, 2 * rays);
+  EXPECT_GT(2 * stats.raysArea.occlusion, 3 * rays)
+      << "twice as many where fragments are not held to finer ones beside them";
   settings.multires.depth = 0; // every pixel asks all
   irradianceOf(scene);
   EXPECT_GT(stats.areaFragments, 384u * 256u / 2);
