@@ -78,14 +78,6 @@ Geometry roundColumn(const Fineness& f) {
   return g;
 }
 
-Geometry plinth(double width, double depth, double height) {
-  const double x = 0.5 * width, z = 0.5 * depth;
-  Geometry g = box({-x - 0.05, -0.02, -z - 0.05}, {x + 0.05, 0.1, z + 0.05});
-  g.add(box({-x, 0.09, -z}, {x, height - 0.05, z}));
-  g.add(box({-x - 0.04, height - 0.06, -z - 0.04}, {x + 0.04, height, z + 0.04}));
-  return g;
-}
-
 class MuseumBuilder {
  public:
   explicit MuseumBuilder(MuseumSize size) : fine_(fineness(size)) {}

@@ -38,6 +38,10 @@ const std::vector<ContentRecipe>& contentRecipes() {
     addSizes(all, "atrium", "galleries around a court with one moving lantern", content::writeAtrium);
     addSizes(all, "knot", "carved knot on a plinth in a plain room under one spot", content::writeKnot);
     addSizes(all, "garden", "glasshouse with thin-leaved plants in beds under one spot", content::writeGarden);
+    addSizes(all, "gallery", "three rooms of finely meshed organic sculptures under barred roof lights",
+             content::writeGallery);
+    addSizes(all, "street", "street at night after rain: street lamps, shops, signs, lit windows, cars, a moon",
+             content::writeStreet);
     const auto museum = [](content::MuseumSize size) {
       return [size](const std::filesystem::path& folder) { return content::writeMuseum(folder, size); };
     };

@@ -11,6 +11,7 @@ GeneratedScene writeCitadel(const std::filesystem::path& folder, SceneSize size)
 GeneratedScene writeCornell(const std::filesystem::path& folder);
 GeneratedScene writeCornellSpot(const std::filesystem::path& folder);
 GeneratedScene writeDoor(const std::filesystem::path& folder);
+GeneratedScene writeGallery(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeGarden(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeHall(const std::filesystem::path& folder);
 GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size);
@@ -22,5 +23,6 @@ enum class MuseumSize { Of15k, Of26k, Of97k };
 GeneratedScene writeMuseum(const std::filesystem::path& folder, MuseumSize size);
 GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeRedBox(const std::filesystem::path& folder);
+GeneratedScene writeStreet(const std::filesystem::path& folder, SceneSize size);
 
 } // namespace lambent::content
