@@ -90,6 +90,10 @@ TEST_P(Content, HasTheSizeThatItsNamePromises) {
     EXPECT_LT(w.scene.bytes, 2u << 20);
   } else if (small) {
     EXPECT_LE(w.scene.triangles, 30000u);
+  } else if (const size_t dash = GetParam().name.rfind('-');
+             GetParam().name.ends_with("k") && dash != std::string::npos) {
+    const double thousands = std::stod(GetParam().name.substr(dash + 1));
+    EXPECT_NEAR(double(w.scene.triangles), 1000 * thousands, 20 * thousands);
   } else if (GetParam().name == "garden") { // thin sheets: more of them would only be smaller than a pixel
     EXPECT_GE(w.scene.triangles, 60000u);
     EXPECT_LE(w.scene.triangles, 120000u);

@@ -112,8 +112,8 @@ std::map<std::string, dvec3> fights(const PlacedScene& scene) {
 class Coplanar : public testing::TestWithParam<ContentRecipe> {};
 
 TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
-  const bool large = !GetParam().bundled && !GetParam().name.ends_with("-small");
-  if (large && !std::getenv("LAMBENT_TEST_LARGE")) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
+  if (isLarge(GetParam()) && !std::getenv("LAMBENT_TEST_LARGE"))
+    GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
   const WrittenScene w(GetParam());
   const PlacedScene scene(loadScene(w.scene.file));
   for (const auto& [pair, at] : fights(scene))

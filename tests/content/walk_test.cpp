@@ -33,8 +33,7 @@ class Walks : public testing::TestWithParam<Walk> {};
 
 TEST_P(Walks, KeepClearOfWalls) {
   const auto& [name, recipe] = GetParam();
-  if (!recipe.name.ends_with("-small") && !std::getenv("LAMBENT_TEST_LARGE"))
-    GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
+  if (isLarge(recipe) && !std::getenv("LAMBENT_TEST_LARGE")) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + name + ".json");
   EXPECT_EQ(shot.pixels.size(), 8u);
 

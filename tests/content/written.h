@@ -24,6 +24,10 @@ inline std::string testName(const ContentRecipe& recipe) {
   for (char& c : name) c = c == '-' ? '_' : c;
   return name;
 }
+/// More than some 30 000 triangles: each ray against all of them takes too long for every run of the tests.
+inline bool isLarge(const ContentRecipe& r) {
+  return !r.bundled && !r.name.ends_with("-small") && r.name != "museum-15k" && r.name != "museum-26k";
+}
 inline void PrintTo(const ContentRecipe& recipe, std::ostream* out) { *out << recipe.name; }
 
 struct WrittenScene {

@@ -153,6 +153,14 @@ Geometry lampShade(uint32_t segments) {
                segments);
 }
 
+Geometry plinth(double width, double depth, double height) {
+  const double x = 0.5 * width, z = 0.5 * depth;
+  Geometry g = box({-x - 0.05, -0.02, -z - 0.05}, {x + 0.05, 0.1, z + 0.05});
+  g.add(box({-x, 0.09, -z}, {x, height - 0.05, z}));
+  g.add(box({-x - 0.04, height - 0.06, -z - 0.04}, {x + 0.04, height, z + 0.04}));
+  return g;
+}
+
 Geometry panelHousing(double width, double depth) {
   return box({-0.5 * width - 0.04, -0.05, -0.5 * depth - 0.04}, {0.5 * width + 0.04, 0.02, 0.5 * depth + 0.04});
 }

@@ -30,6 +30,9 @@ Geometry mug(uint32_t segments);
 /// Shade that hangs with its top at y = 0, open downwards; a lamp fits 0.12 m below its rim.
 Geometry lampShade(uint32_t segments);
 
+/// Block with a foot and a cap, for a sculpture.
+Geometry plinth(double width, double depth, double height);
+
 /// Flat fixture on a ceiling at y = 0, and the sheet 1 cm below it that emits downwards.
 Geometry panelHousing(double width, double depth);
 Geometry panelEmitter(double width, double depth);

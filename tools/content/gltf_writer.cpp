@@ -122,11 +122,13 @@ Index GltfWriter::addTexture(Texture texture) {
 }
 
 Index GltfWriter::addMaterial(const MaterialSpec& m) {
-  json surface{{"metallicFactor", 0}, {"roughnessFactor", 1}};
+  const auto whole = [](double v) { return v == std::round(v) ? json(int(v)) : json(rounded(v)); };
+  json surface{{"metallicFactor", whole(m.metalness)}, {"roughnessFactor", whole(m.roughness)}};
   json factor = array(m.albedo);
   factor.push_back(1);
   surface["baseColorFactor"] = std::move(factor);
   if (m.texture != kAbsent) surface["baseColorTexture"] = {{"index", m.texture}};
+  if (m.finishTexture != kAbsent) surface["metallicRoughnessTexture"] = {{"index", m.finishTexture}};
   json material{{"name", m.name}, {"pbrMetallicRoughness", std::move(surface)}};
   if (m.alphaMask) material["alphaMode"] = "MASK";
   if (m.doubleSided) material["doubleSided"] = true;

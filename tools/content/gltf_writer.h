@@ -26,6 +26,8 @@ struct MaterialSpec {
   std::string name;
   dvec3 albedo{0.7};
   Index texture = kAbsent;
+  double roughness = 1, metalness = 0;
+  Index finishTexture = kAbsent; // roughness in green, metalness in blue, times the two above
   bool alphaMask = false;
   bool doubleSided = false;
   dvec3 emissionColor{0};      // each channel in [0, 1]

@@ -29,7 +29,8 @@ const std::vector<ContentRecipe>& contentRecipes() {
         {"door", "a dark room beside a bright one, and the door leaf between them", true, content::writeDoor},
         {"red-box", "white corridor, and a red box to be carried along it", true, content::writeRedBox},
         {"lift", "hall of three storeys with a lift in front of lit rooms", true, content::writeLift},
-        {"lamps", "gallery with fifty lamps of unlike size, thin poles, a fence, small trees", true, content::writeLamps},
+        {"lamps", "gallery with fifty lamps of unlike size, thin poles, a fence, small trees", true,
+         content::writeLamps},
     };
     addSizes(all, "office", "office building: corridors, rooms with open doors, 14 lights", content::writeOffice);
     addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);
@@ -37,6 +38,17 @@ const std::vector<ContentRecipe>& contentRecipes() {
     addSizes(all, "atrium", "galleries around a court with one moving lantern", content::writeAtrium);
     addSizes(all, "knot", "carved knot on a plinth in a plain room under one spot", content::writeKnot);
     addSizes(all, "garden", "glasshouse with thin-leaved plants in beds under one spot", content::writeGarden);
+    addSizes(all, "gallery", "three rooms of finely meshed organic sculptures under barred roof lights",
+             content::writeGallery);
+    addSizes(all, "street", "street at night after rain: street lamps, shops, signs, lit windows, cars, a moon",
+             content::writeStreet);
+    const auto museum = [](content::MuseumSize size) {
+      return [size](const std::filesystem::path& folder) { return content::writeMuseum(folder, size); };
+    };
+    all.push_back({"museum-15k", "two rooms of sculptures parted by a board of 2 cm, 15 000 triangles", false,
+                   museum(content::MuseumSize::Of15k)});
+    all.push_back({"museum-26k", "the same with 26 000 triangles", false, museum(content::MuseumSize::Of26k)});
+    all.push_back({"museum-97k", "the same with 97 000 triangles", false, museum(content::MuseumSize::Of97k)});
     return all;
   }();
   return recipes;

@@ -59,6 +59,17 @@ void mapFromAbove(Geometry& geometry, double tileMetres) {
   for (const dvec3& p : geometry.positions) geometry.uvs.emplace_back(p.x / tileMetres, p.z / tileMetres);
 }
 
+void mapFromSides(Geometry& geometry, double tileMetres) {
+  geometry.uvs.clear();
+  for (size_t i = 0; i < geometry.positions.size(); ++i) {
+    const dvec3 p = geometry.positions[i] / tileMetres, n = glm::abs(geometry.normals[i]);
+    if (n.y > std::max(n.x, n.z))
+      geometry.uvs.emplace_back(p.x, p.z);
+    else
+      geometry.uvs.emplace_back(n.x > n.z ? p.z : p.x, -p.y);
+  }
+}
+
 Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments) {
   Geometry g;
   for (const ProfilePiece& piece : profile) {

@@ -33,6 +33,10 @@ Geometry box(const dvec3& lo, const dvec3& hi);
 /// Gives every vertex texture coordinates from its horizontal position: (x, z) / tileMetres.
 void mapFromAbove(Geometry& geometry, double tileMetres);
 
+/// Gives every vertex texture coordinates from above, or from the side that it faces most, upright; `tileMetres` a
+/// tile.
+void mapFromSides(Geometry& geometry, double tileMetres);
+
 /// Piece of a profile that is shaded smoothly along its length; x is the radius and y the height.
 using ProfilePiece = std::vector<dvec2>;
 
