@@ -122,8 +122,9 @@ void bench(const BenchOptions& options) {
   if (options.area) return benchArea(options);
   if (options.cube) return benchCube(options);
   if (options.launch.scene.empty())
-    throw InputError(options.scenes[1],
-                     "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
+    throw InputError(
+        options.scenes[1],
+        "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
   if (options.growth) return benchGrowth(options);
   if (options.rays) return benchRays(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
@@ -195,8 +196,8 @@ RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress,
 
 void declareBench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against of two settings, "
-                                                  "with --techniques of several techniques, frame by frame in turn");
+  CLI::App* command =
+      app.add_subcommand("bench", "time per stage and work per frame, of one way or of several in turn");
   command
       ->add_option("SCENE", options->scenes,
                    "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube")
@@ -210,7 +211,7 @@ void declareBench(CLI::App& app) {
       ->check(CLI::Range(1, 1000000));
   command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
       ->check(CLI::Range(1, 1000000));
-  CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
+  CLI::App* forms = command->add_option_group("Forms", "at most one")->require_option(0, 1);
   forms->add_option("--against", options->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
   forms->add_option("--techniques", options->techniques, "comma-separated: measure each")->delimiter(',');
   forms->add_flag("--multires", options->multires,
@@ -236,7 +237,9 @@ void declareBench(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));
   command->add_option("--seeds", options->seeds, "--equal-error: so many (default 3)")->check(CLI::Range(1, 1000));
-  command->add_option("--spp", options->samples, "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
+  command
+      ->add_option("--spp", options->samples,
+                   "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--frame", options->frame, "--equal-error: of a shot in motion (default 30, or the last)")
       ->check(CLI::Range(1, 1000000));
