@@ -115,7 +115,7 @@ Image8 shownPicture(const std::vector<Side>& sides, Buffer buffer, int frame, in
 }
 
 void writeFrame(const fs::path& file, const std::vector<Side>& sides, const RecordOptions& options, int frame,
-                  const CameraView& whole) {
+                const CameraView& whole) {
   const Buffer buffer = bufferByName(options.buffer);
   if (options.format == "png")
     return writePng(file, shownPicture(sides, buffer, frame, whole.width, whole.height, options.captions));

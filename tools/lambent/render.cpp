@@ -54,7 +54,7 @@ void render(const RenderOptions& options) {
   figures["picture"] = out;
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s: %dx%d, %s, exposure %.3g, %d frame%s in %.2g s (the last drawn took %.3g ms)\n", out.c_str(),
+    std::printf("%s: %dx%d, %s, exposure %.3g, %d frame%s in %.1f s (the last drawn took %.1f ms)\n", out.c_str(),
                 stage->camera.width, stage->camera.height, lightsText(drawn, stage->settings).c_str(),
                 double(gi.exposure()), frames, frames == 1 ? "" : "s", took.count(), drawn.wallMs);
 }
