@@ -58,15 +58,16 @@ RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer) {
 
 void declareAccuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command = app.add_subcommand("accuracy", "what the approximations cost in error: shadow maps of virtual "
-                                                     "lights, or one of the forms below");
+  CLI::App* command =
+      app.add_subcommand("accuracy", "what approximations cost in error: shadow maps of virtual lights, "
+                                     "or a form of its own");
   command->add_option("SCENE", options->scenes, "glTF or shot file; several with --report")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output,
                    "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
   command->add_option("--lights", options->slots, "virtual lights to compare")->check(CLI::Range(1, 32768));
   command->add_option("--points", options->points, "visible points to compare at")->check(CLI::Range(1, 1000000));
-  CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
+  CLI::App* forms = command->add_option_group("Forms", "at most one")->require_option(0, 1);
   forms
       ->add_option(
           "--curve", options->curve,

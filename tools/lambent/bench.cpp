@@ -196,8 +196,8 @@ RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress,
 
 void declareBench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = app.add_subcommand("bench", "time per stage and work per frame; with --against of two settings, "
-                                                  "with --techniques of several techniques, frame by frame in turn");
+  CLI::App* command =
+      app.add_subcommand("bench", "time per stage and work per frame, of one way or of several in turn");
   command
       ->add_option("SCENE", options->scenes,
                    "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube")
@@ -211,7 +211,7 @@ void declareBench(CLI::App& app) {
       ->check(CLI::Range(1, 1000000));
   command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
       ->check(CLI::Range(1, 1000000));
-  CLI::App* forms = command->add_option_group("forms", "at most one")->require_option(0, 1);
+  CLI::App* forms = command->add_option_group("Forms", "at most one")->require_option(0, 1);
   forms->add_option("--against", options->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
   forms->add_option("--techniques", options->techniques, "comma-separated: measure each")->delimiter(',');
   forms->add_flag("--multires", options->multires,

@@ -35,6 +35,8 @@ void declareSettings(CLI::App& app);
 void declareTechniques(CLI::App& app);
 
 void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp);
+/// --buffer with the names of all that can be looked at. `doing`: "draw", "record".
+void addBufferOption(CLI::App& command, std::string& buffer, const std::string& doing);
 /// Notes and warnings of a stage on stderr, unless quiet.
 void say(const Stage& stage, bool quiet);
 /// What a frame warns of, if anything: also where quiet.

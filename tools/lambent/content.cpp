@@ -46,10 +46,11 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
 void declareContent(CLI::App& app) {
   auto names = std::make_shared<std::vector<std::string>>();
   auto output = std::make_shared<OutputOptions>();
-  std::string known;
+  std::string known = "Scenes:";
   for (const ContentRecipe& r : contentRecipes())
     known += "\n  " + r.name + (r.bundled ? " (bundled): " : ": ") + r.description;
-  CLI::App* command = app.add_subcommand("content", "generates scenes (default: the bundled ones):" + known);
+  CLI::App* command = app.add_subcommand("content", "generates scenes (default: the bundled ones)");
+  command->footer(known);
   command->add_option("NAME", *names, "scenes to make");
   addOutputOptions(*command, *output, "folder to write to (default: the bundled scenes' own)");
   command->callback([names, output] { generate(*names, *output); });

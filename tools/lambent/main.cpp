@@ -1,5 +1,5 @@
 #include "engine/core/error.h"
-#include "engine/core/text.h"
+#include "tools/lambent/command_line.h"
 #include "tools/lambent/commands.h"
 #include "tools/launch/streams.h"
 
@@ -14,6 +14,8 @@ namespace {
 
 int runProgram(int argc, char** argv) {
   CLI::App app{"Lambent: global illumination for moving worlds", "lambent"};
+  app.formatter(helpFormatter());
+  app.set_version_flag("--version", "lambent " LAMBENT_VERSION, "name and version, and nothing else");
   app.require_subcommand(1);
   declareDoctor(app);
   declareInspect(app);
@@ -30,14 +32,12 @@ int runProgram(int argc, char** argv) {
   declareTechniques(app);
   for (CLI::App* command : app.get_subcommands({})) refuseNotANumber(*command);
   try {
+    checkCommand(app, argc, argv);
     app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& e) {
+  } catch (const CLI::Success& e) { // help, version
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::string text = e.what();
-    for (char& c : text)
-      if (c == '\n') c = ' ';
-    std::fprintf(stderr, "error: command line: %s (see lambent --help)\n", printable(text).c_str());
+    std::fprintf(stderr, "error: %s\n", textOf(e, app).c_str());
     return 2;
   } catch (const InputError& e) {
     std::fprintf(stderr, "error: %s\n", e.what());

@@ -20,6 +20,15 @@ void sayWarning(const FrameStats& stats) {
   if (!stats.warning.empty()) std::fprintf(stderr, "warning: %s\n", printable(stats.warning).c_str());
 }
 
+void addBufferOption(CLI::App& command, std::string& buffer, const std::string& doing) {
+  std::string names, views;
+  for (const std::string& name : bufferNames()) {
+    std::string& list = bufferByName(name) <= Buffer::Depth ? names : views;
+    list += (list.empty() ? "" : ", ") + name + (name == buffer ? " (default)" : "");
+  }
+  command.add_option("--buffer", buffer, "what to " + doing + ": " + names + "; to look inside: " + views);
+}
+
 void say(const Stage& stage, bool quiet) {
   if (quiet) return;
   for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());

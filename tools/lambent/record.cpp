@@ -1,21 +1,21 @@
-// lambent record SHOT: every frame of a shot → images, frame log, video.
+// lambent record SHOT: every frame of a shot → images, frame log, video; two techniques side by side, a contact sheet.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/conditions.h"
+#include "tools/lambent/frame_log.h"
+#include "tools/lambent/montage.h"
 #include "tools/lambent/text.h"
+#include "tools/lambent/video.h"
 
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <optional>
-#include <sstream>
 
 namespace lambent {
 
@@ -26,63 +26,11 @@ namespace {
 struct RecordOptions {
   LaunchOptions launch;
   OutputOptions output;
-  std::string buffer = "beauty", format = "png";
+  std::string buffer = "beauty", format = "png", beside;
   int frames = 0; // 0 = the whole shot
-  bool video = false, resume = false;
+  int sheet = 0;  // pictures on the contact sheet; 0 = none
+  bool video = false, captions = false, resume = false;
   std::optional<double> targetMs;
-};
-
-/// Keeps the log in memory and writes it whole, so that it is never half-written.
-class FrameLog {
- public:
-  /// `governed`: of the frame; null: nothing governs.
-  void add(double time, const FrameStats& s, double writeMs, const Governed* governed) {
-    rows_.push_back({time, s, writeMs, governed ? governed->scale : 1, governed ? governed->preset : ""});
-    governed_ |= governed != nullptr;
-    for (const StageTime& t : s.stages) stages_[t.stage.id] = true;
-  }
-
-  /// Columns are those of the table of figures, and scene time and time to write a picture.
-  void write(const fs::path& file) const {
-    writeAtomically(file, [&](const fs::path& temporary) {
-      std::ofstream out(temporary);
-      for (size_t i = 0; i < std::max<size_t>(1, rows_.size()); ++i) {
-        const Row row = rows_.empty() ? Row{} : rows_[i];
-        const std::vector<FigureColumn> columns = columnsOf(row.stats, stages_);
-        if (i == 0) {
-          out << "time_s,write_ms" << (governed_ ? ",scale,preset" : "");
-          for (const FigureColumn& c : columns) out << ',' << c.name;
-          out << '\n';
-          if (rows_.empty()) break;
-        }
-        out << format("%.6f,%.3f", row.time, row.writeMs);
-        if (governed_) out << format(",%.4f,", double(row.scale)) << row.preset;
-        for (const FigureColumn& c : columns) out << ',' << c.text;
-        out << '\n';
-      }
-      if (!out.flush()) throw RunError(file.string() + ": cannot be written");
-    });
-  }
-
-  /// Frames per second over all frames but the first (which warms the set up), pictures on disk included.
-  double framesPerSecond() const {
-    double ms = 0;
-    for (size_t i = 1; i < rows_.size(); ++i) ms += rows_[i].stats.wallMs + rows_[i].writeMs;
-    return ms > 0 ? 1000 * double(rows_.size() - 1) / ms : 0;
-  }
-
- private:
-  struct Row {
-    double time = 0;
-    FrameStats stats;
-    double writeMs = 0;
-    float scale = 1;
-    std::string preset = {};
-  };
-
-  std::vector<Row> rows_;
-  bool governed_ = false;
-  std::array<bool, kStages> stages_{}; // that ran in any frame
 };
 
 /// In the folder: whose pictures they are, and how many are whole.
@@ -105,7 +53,6 @@ class RecordingMark {
   }
 
   void write(int frames) const {
-
     writeAtomically(file_, [&](const fs::path& temporary) {
       std::ofstream out(temporary);
       out << nlohmann::json{{"conditions", conditions_}, {"frames", frames}} << '\n';
@@ -118,38 +65,7 @@ class RecordingMark {
   const std::string conditions_;
 };
 
-/// A path as ffmpeg's image readers take it: neither an option nor a pattern of its own.
-std::string forFfmpeg(const fs::path& path) {
-  std::string out;
-  for (char c : fs::absolute(path).string()) out += c == '%' ? std::string("%%") : std::string(1, c);
-  return out;
-}
-
-/// Of the first `frames` pictures: an earlier, longer recording may have left more. Runs ffmpeg without a shell. Throws
-/// RunError when it is missing or fails.
-void encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
-  const fs::path temporary = fs::absolute(folder) / ".video.mp4";
-  const pid_t child = fork();
-  if (child == 0) {
-    std::ostringstream rate;
-    rate << fps;
-    const std::string pictures = forFfmpeg(folder) + "/%06d.png";
-    execlp("ffmpeg", "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", rate.str().c_str(), "-i",
-           pictures.c_str(), "-frames:v", std::to_string(frames).c_str(), "-pix_fmt", "yuv420p", "-vf",
-           "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18", temporary.c_str(), static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw RunError(video.string() +
-                   (WIFEXITED(status) && WEXITSTATUS(status) == 127
-                        ? ": ffmpeg is not installed (the frames are written; install ffmpeg for a video)"
-                        : ": ffmpeg failed (the frames are written)"));
-  }
-  fs::rename(temporary, video);
-}
+constexpr int kSheetWidth = 320; // pixels, of a picture on the contact sheet at most
 
 double peakMemoryMiB() {
   rusage usage{};
@@ -157,17 +73,98 @@ double peakMemoryMiB() {
   return double(usage.ru_maxrss) / 1024;
 }
 
-void record(const RecordOptions& options) {
+/// One technique that is recorded: alone, or one of two beside each other.
+struct Side {
+  std::string technique;
+  std::unique_ptr<GiFrame> gi;
+  FrameLog log = {};
+  const FrameStats* stats = nullptr; // of the last frame
+  std::string logName = "frames.csv";
+};
+
+/// Of each side, from left to right.
+std::vector<Settings> settingsOf(const RecordOptions& options, Stage& stage) {
+  std::vector<Settings> all = {stage.settings};
+  if (options.beside.empty()) return all;
+  LaunchOptions right = options.launch;
+  right.technique = options.beside;
+  all.push_back(chosenSettings(right, stage.shot));
+  tellWhatIsLeftOut(stage, all[1]);
+  return all;
+}
+
+/// What the pictures depend on besides what was opened.
+std::string choicesOf(const RecordOptions& options, const std::vector<Settings>& sides) {
+  std::string text = options.buffer + ' ' + options.format + (options.captions ? " captions" : "");
+  if (sides.size() > 1)
+    for (const SettingRow& row : settingsTable()) text += ' ' + settingText(sides[1], row.name);
+  return text;
+}
+
+/// Of both sides as they are shown, each of this size.
+Image8 shownPicture(const std::vector<Side>& sides, Buffer buffer, int frame, int width, int height, bool captions) {
+  Image8 all;
+  for (const Side& side : sides) {
+    Image8 picture = side.gi->readDisplay(buffer);
+    if (picture.width != width || picture.height != height) picture = resized(picture, width, height);
+    if (captions)
+      writeCaption(picture, format("%s  frame %d  %.0f ms", side.technique.c_str(), frame, side.stats->costMs()));
+    all = &side == &sides[0] ? std::move(picture) : beside(all, picture);
+  }
+  return all;
+}
+
+void writeFrame(const fs::path& file, const std::vector<Side>& sides, const RecordOptions& options, int frame,
+                const CameraView& whole) {
   const Buffer buffer = bufferByName(options.buffer);
-  if (options.format != "png" && options.format != "exr" && options.format != "none")
-    throw InputError("--format " + options.format, "no such format (png, exr or none)");
-  if (options.video && options.format != "png") throw InputError("--video", "needs --format png");
-  if (options.targetMs && options.format == "exr")
+  if (options.format == "png")
+    return writePng(file, shownPicture(sides, buffer, frame, whole.width, whole.height, options.captions));
+  const Image left = sides[0].gi->read(buffer);
+  writeExr(file, sides.size() > 1 ? beside(left, sides[1].gi->read(buffer)) : left);
+}
+
+/// Options that do not go together, before anything is opened.
+void checkOptions(const RecordOptions& o) {
+  bufferByName(o.buffer);
+  if (o.format != "png" && o.format != "exr" && o.format != "none")
+    throw InputError("--format " + o.format, "no such format (png, exr or none)");
+  if (o.video && o.format != "png") throw InputError("--video", "needs --format png");
+  if (o.captions && o.format == "exr") throw InputError("--captions", "are burnt into what is shown (--format png)");
+  if (o.targetMs && o.format == "exr")
     throw InputError("--target-ms", "changes the size at which pictures are computed (--format png or none)");
-  if (options.targetMs && options.resume)
+  if (o.targetMs && !o.beside.empty())
+    throw InputError("--target-ms", "holds the time of one technique (leave out --beside)");
+  if (o.targetMs && o.resume)
     throw InputError("--resume", "cannot go on with --target-ms: what a frame costs is never the same");
+}
+
+void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs::path& folder, int done, int total,
+          bool filmed) {
+  const std::string video = filmed ? (folder / "video.mp4").string() : "";
+  nlohmann::json figures = {{"folder", folder.string()},
+                            {"frames", done},
+                            {"frames_per_second", sides[0].log.framesPerSecond()},
+                            {"peak_memory_mib", peakMemoryMiB()},
+                            {"exposure", sides[0].gi->exposure()},
+                            {"video", video}};
+  for (const Side& side : sides)
+    figures["sides"].push_back({{"technique", side.technique},
+                                {"log", (folder / side.logName).string()},
+                                {"frames_per_second", side.log.framesPerSecond()}});
+  writeJson(options.output.json, figures);
+  if (options.output.quiet) return;
+  for (const Side& side : sides)
+    std::printf("%s: %s, %d of %d frames, %.2f frames per second after the first\n", folder.c_str(),
+                side.technique.c_str(), done, total, side.log.framesPerSecond());
+  std::printf("peak memory %.0f MiB\n", peakMemoryMiB());
+  if (filmed) std::printf("video: %s\n", video.c_str());
+}
+
+void record(const RecordOptions& options) {
+  checkOptions(options);
   const auto stage = openStage(options.launch);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
+  const std::vector<Settings> settings = settingsOf(options, *stage);
   say(*stage, options.output.quiet);
   const fs::path folder = options.output.out.empty() ? fs::path("out") / fs::path(options.launch.scene).stem()
                                                      : fs::path(options.output.out);
@@ -177,21 +174,21 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  const RecordingMark mark(folder, conditionsOf(*stage, options.launch, options.buffer + options.format));
-  const auto picture = [&](int frame) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.%s", frame, options.format.c_str());
-    return folder / name;
-  };
+  const RecordingMark mark(folder, conditionsOf(*stage, options.launch, choicesOf(options, settings)));
+  const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
   int kept = 0;
   for (const int marked = options.resume ? mark.kept() : 0; kept < marked; ++kept) // as far as none is missing
     if (!fs::exists(picture(kept))) break;
   if (options.resume) removeLeftovers(picture(kept));
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
-  GiFrame gi(stage->settings, stage->seed);
-  FrameLog log;
+  std::vector<Side> sides;
+  for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<GiFrame>(s, stage->seed)});
+  if (sides.size() > 1) sides[1].logName = "frames-" + options.beside + ".csv";
+  GiFrame& gi = *sides[0].gi;
   const CameraView whole = stage->camera;
+  const int small = std::min(whole.width, kSheetWidth), smallHeight = std::max(1, whole.height * small / whole.width);
+  ContactSheet sheet(options.sheet, total, small * int(sides.size()), smallHeight);
   std::optional<Governed> governor;
   if (options.targetMs) governor = {.settings = stage->settings, .choosesPreset = options.launch.preset.empty()};
   int done = 0;
@@ -200,39 +197,36 @@ void record(const RecordOptions& options) {
     for (; done < total && !interrupted; ++done) {
       const double t = done / stage->shot->fps;
       if (governor) stage->camera = whole.scaled(governor->scale);
-      const FrameStats& stats = gi.run(stage->at(t));
-      sayWarning(stats);
+      const SceneView view = stage->at(t);
+      for (size_t i = 0; i < sides.size(); ++i) { // in turn, so that none has the caches to itself
+        Side& side = sides[(i + size_t(done)) % sides.size()];
+        side.stats = &side.gi->run(view);
+        sayWarning(*side.stats);
+        if (done == 0 && i == 0 && sides.size() > 1) sides[1].gi->settings().image.exposure = gi.exposure(); // one eye
+      }
       const auto begin = std::chrono::steady_clock::now();
       if (options.format != "none" && done >= kept) { // frames of before are computed: later ones build on them
-        writeBuffer(picture(done).string(), gi, buffer, whole.width, whole.height);
+        writeFrame(picture(done), sides, options, done, whole);
         mark.write(done + 1);
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
-      log.add(t, stats, writing.count(), governor ? &*governor : nullptr);
-      if (governor && stats.plan.on(EffectId::Redraw)) {
-        governor = governed(std::move(*governor), stats.costMs(), *options.targetMs);
+      for (Side& side : sides) side.log.add(t, *side.stats, writing.count(), governor ? &*governor : nullptr);
+      if (sheet.wants(done))
+        sheet.add(shownPicture(sides, bufferByName(options.buffer), done, small, smallHeight, options.captions));
+      if (governor && sides[0].stats->plan.on(EffectId::Redraw)) {
+        governor = governed(std::move(*governor), sides[0].stats->costMs(), *options.targetMs);
         gi.settings() = governor->settings;
       }
       progress.update(done + 1, total);
     }
   }
-  log.write(folder / "frames.csv");
-  std::string video;
-  if (options.video && done > 0) {
-    video = (folder / "video.mp4").string();
-    encodeVideo(folder, done, stage->shot->fps, video);
-  }
-  writeJson(options.output.json, {{"folder", folder.string()},
-                                  {"frames", done},
-                                  {"frames_per_second", log.framesPerSecond()},
-                                  {"peak_memory_mib", peakMemoryMiB()},
-                                  {"exposure", gi.exposure()},
-                                  {"video", video}});
-  if (!options.output.quiet) {
-    std::printf("%s: %d of %d frames, %.2f frames per second after the first, peak memory %.0f MiB\n", folder.c_str(),
-                done, total, log.framesPerSecond(), peakMemoryMiB());
-    if (!video.empty()) std::printf("video: %s\n", video.c_str());
-  }
+  for (const Side& side : sides) side.log.write(folder / side.logName);
+  if (const Image8 all = sheet.sheet(); all.width > 0) writePng(folder / "contact-sheet.png", all);
+  const bool filmed = options.video && done > 0 && encodeVideo(folder, done, stage->shot->fps, folder / "video.mp4");
+  tell(options, sides, folder, done, total, filmed);
+  if (options.video && done > 0 && !filmed && !options.output.quiet)
+    std::printf("ffmpeg is not installed: the film stays a sequence of pictures (%s makes it)\n",
+                videoCommand(folder, stage->shot->fps).c_str());
   if (interrupted)
     throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole" +
                    (options.targetMs ? "" : " (--resume goes on)"));
@@ -246,10 +240,16 @@ void declareRecord(CLI::App& app) {
   command->add_option("SHOT", options->launch.scene, "shot file (.json)")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "folder (default out/NAME)");
-  command->add_option("--buffer", options->buffer, "what to record (default beauty)");
+  addBufferOption(*command, options->buffer, "record");
   command->add_option("--format", options->format, "png, exr or none (default png)");
   command->add_option("--frames", options->frames, "only the first so many")->check(CLI::Range(1, 1000000));
-  command->add_flag("--video", options->video, "also make video.mp4 with ffmpeg");
+  command->add_flag("--video", options->video, "also make video.mp4, where ffmpeg is installed");
+  command->add_flag("--captions", options->captions, "burn technique, frame and milliseconds into the pictures");
+  command->add_option("--beside", options->beside,
+                      "a second technique: both see the same frames, and stand side by side in one picture; its log is "
+                      "frames-NAME.csv");
+  command->add_option("--contact-sheet", options->sheet, "also make contact-sheet.png of so many frames, evenly spaced")
+      ->check(CLI::Range(1, 1000));
   command->add_flag("--resume", options->resume,
                     "go on where the same command was interrupted: pictures that are there stay, frames before them "
                     "are computed but not written");

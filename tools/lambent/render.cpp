@@ -4,6 +4,7 @@
 #include "engine/platform/gl_context.h"
 #include "tools/lambent/commands.h"
 
+#include <chrono>
 #include <cstdio>
 
 namespace lambent {
@@ -17,12 +18,15 @@ struct RenderOptions {
   int frames = 0; // as many as light is averaged over
 };
 
-/// How many virtual lights there are, of so many that may be.
+/// What brought the indirect light of a frame that was drawn.
 std::string lightsText(const FrameStats& stats, const Settings& settings) {
+  if (!stats.plan.on(EffectId::Indirect)) return "direct light only";
   const SourceRow& source = rowOf(settings.vpl.source);
-  if (source.tree) return "lights in trees";
-  const std::string of = source.sampled ? " of " + std::to_string(settings.smc.vpls) : "";
-  return std::to_string(stats.vplsAlive) + of + " virtual lights";
+  if (source.tree) return "virtual lights in trees";
+  if (settings.vpl.source == VplSource::None) return "no virtual lights";
+  const std::string count = std::to_string(stats.vplsAlive);
+  if (source.fixed) return count + " samples of surfaces";
+  return count + (source.sampled ? " of " + std::to_string(settings.smc.vpls) : "") + " virtual lights";
 }
 
 void render(const RenderOptions& options) {
@@ -34,22 +38,26 @@ void render(const RenderOptions& options) {
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
   Progress progress("placing virtual lights", options.output.quiet);
+  const auto begin = std::chrono::steady_clock::now();
   const FrameStats* stats = nullptr;
+  FrameStats drawn; // of the last frame that was: once the lights have settled the picture stays
   int frames = std::max(1, options.frames);
   for (int i = 0; i < frames; ++i) {
     stats = &gi.run(stage->at(0), [&](int done, int total) { progress.update(done, total); });
     sayWarning(*stats);
+    if (stats->plan.on(EffectId::Redraw)) drawn = *stats;
     if (options.frames == 0 && stats->plan.on(EffectId::History)) frames = stage->settings.history.frames;
   }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   writeBuffer(out, gi, buffer);
   nlohmann::json figures = figuresOf(*stats);
   figures["exposure"] = gi.exposure();
   figures["picture"] = out;
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s: %dx%d, %s, exposure %.3g, last frame %.0f ms\n", out.c_str(), stage->camera.width,
-                stage->camera.height, lightsText(*stats, stage->settings).c_str(), double(gi.exposure()),
-                stats->wallMs);
+    std::printf("%s: %dx%d, %s, exposure %.3g, %d frame%s in %.1f s (the last drawn took %.1f ms)\n", out.c_str(),
+                stage->camera.width, stage->camera.height, lightsText(drawn, stage->settings).c_str(),
+                double(gi.exposure()), frames, frames == 1 ? "" : "s", took.count(), drawn.wallMs);
 }
 
 } // namespace
@@ -60,8 +68,7 @@ void declareRender(CLI::App& app) {
   command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
   addLaunchOptions(*command, options->launch);
   addOutputOptions(*command, options->output, "picture, .png or linear .exr (default lambent.png)");
-  command->add_option("--buffer", options->buffer,
-                      "beauty, direct, indirect, irradiance, albedo, normal, depth, or a debug view");
+  addBufferOption(*command, options->buffer, "draw");
   command
       ->add_option("--frames", options->frames,
                    "frames up to the picture (default: as many as its light is averaged over, history.frames)")

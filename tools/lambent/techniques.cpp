@@ -65,6 +65,8 @@ void listTechniques(const OutputOptions& output) {
   axis("gather.mode", kGathers);
   std::printf("\n%d combinations of these go together; the others do not:\n", together);
   for (const auto& [reason, count] : reasons) std::printf("  %s\n", reason.c_str());
+  std::printf("\npapers: 1 Hedman et al. 2017, 2 Nichols and Wyman 2009, 3 Nichols et al. 2009, 4 Koa and Johan 2016,\n"
+              "        5 Mertens and Van Reeth 2002 (their titles: README.md)\n");
 }
 
 } // namespace

@@ -198,16 +198,6 @@ void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lac
   addLight(stage.scene, light, "default light");
 }
 
-/// Reflective shadow maps see light of some kinds only.
-void tellWhatIsLeftOut(Stage& stage, const SceneView& view) {
-  const std::string technique = "technique " + std::string(techniqueOf(stage.settings).name);
-  if (view.lights.empty() && (hasEmitters(stage.scene) || !view.sky.black()))
-    stage.notes.push_back(technique +
-                          " reflects punctual lights only, and there is none: no indirect light (--point, --sun)");
-  else if (hasEmitters(stage.scene) || !view.sky.black())
-    stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
-}
-
 } // namespace
 
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot) {
@@ -231,6 +221,9 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   std::string techniques; // but the first
   for (const Technique& t : techniqueTable().subspan(1))
     techniques += (techniques.empty() ? "" : ", ") + std::string(t.name);
+  // Help shows groups in the order in which they begin: a command's own options stand before these.
+  const std::string own = command.option_defaults()->get_group();
+  command.option_defaults()->group("Scene, view, light and settings");
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
@@ -257,6 +250,7 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
       "to 10 (default 3)");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
+  command.option_defaults()->group(own);
 }
 
 void refuseNotANumber(CLI::App& command) {
@@ -293,10 +287,11 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   if (file.extension() == ".json") {
     stage->shot = loadShot(file);
     file = stage->shot->scene;
-    if (std::error_code error; !fs::exists(file, error))
-      throw InputError(options.scene, "there is no scene " + file.string() + " (a generated one: lambent content " +
-                                          file.stem().string() + ")");
   }
+  const bool oneOfOurs = stage->shot || file.stem() == file.parent_path().filename(); // hall/hall.gltf
+  if (std::error_code error; oneOfOurs && !fs::exists(file, error))
+    throw InputError(options.scene, "there is no scene " + file.string() + " (a generated one: lambent content " +
+                                        file.stem().string() + ")");
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
   stage->scene = loadScene(file, options.sceneName);
@@ -311,8 +306,20 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
-  if (rowOf(stage->settings.vpl.source).reflective) tellWhatIsLeftOut(*stage, view);
+  tellWhatIsLeftOut(*stage, stage->settings);
   return stage;
+}
+
+void tellWhatIsLeftOut(Stage& stage, const Settings& settings) {
+  if (!rowOf(settings.vpl.source).reflective) return;
+  SceneExtractor probe;
+  const SceneView view = probe.extract(stage.scene, stage.camera, 0);
+  const std::string technique = "technique " + std::string(techniqueOf(settings).name);
+  if (view.lights.empty() && (hasEmitters(stage.scene) || !view.sky.black()))
+    stage.notes.push_back(technique +
+                          " reflects punctual lights only, and there is none: no indirect light (--point, --sun)");
+  else if (hasEmitters(stage.scene) || !view.sky.black())
+    stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
 }
 
 void needPunctualLight(Stage& stage) {

@@ -61,6 +61,10 @@ class Stage {
 /// Throws InputError.
 std::unique_ptr<Stage> openStage(const LaunchOptions& options);
 
+/// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openStage
+/// does it for the stage's own.
+void tellWhatIsLeftOut(Stage& stage, const Settings& settings);
+
 /// The same default for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual lights.
 void needPunctualLight(Stage& stage);
 

@@ -1,0 +1,45 @@
+#include "tools/lambent/frame_log.h"
+
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+#include "tools/lambent/text.h"
+
+#include <algorithm>
+#include <fstream>
+
+namespace lambent {
+
+void FrameLog::add(double time, const FrameStats& stats, double writeMs, const Governed* governed) {
+  rows_.push_back({time, stats, writeMs, governed ? governed->scale : 1, governed ? governed->preset : ""});
+  governed_ |= governed != nullptr;
+  for (const StageTime& t : stats.stages) stages_[t.stage.id] = true;
+}
+
+void FrameLog::write(const std::filesystem::path& file) const {
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream out(temporary);
+    for (size_t i = 0; i < std::max<size_t>(1, rows_.size()); ++i) {
+      const Row row = rows_.empty() ? Row{} : rows_[i];
+      const std::vector<FigureColumn> columns = columnsOf(row.stats, stages_);
+      if (i == 0) {
+        out << "time_s,write_ms" << (governed_ ? ",scale,preset" : "");
+        for (const FigureColumn& c : columns) out << ',' << c.name;
+        out << '\n';
+        if (rows_.empty()) break;
+      }
+      out << format("%.6f,%.3f", row.time, row.writeMs);
+      if (governed_) out << format(",%.4f,", double(row.scale)) << row.preset;
+      for (const FigureColumn& c : columns) out << ',' << c.text;
+      out << '\n';
+    }
+    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+  });
+}
+
+double FrameLog::framesPerSecond() const {
+  double ms = 0;
+  for (size_t i = 1; i < rows_.size(); ++i) ms += rows_[i].stats.wallMs + rows_[i].writeMs;
+  return ms > 0 ? 1000 * double(rows_.size() - 1) / ms : 0;
+}
+
+} // namespace lambent
