@@ -101,6 +101,7 @@ void Hud::draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats&
     drawViewLegend(model);
   else
     drawTruthLegend(truth, model.buffer);
+  drawOffer(model);
   if (model.help) drawHelp();
 }
 
@@ -205,6 +206,21 @@ void Hud::drawViewLegend(const HudModel& model) {
   ImGui::SetNextWindowBgAlpha(0.6f);
   ImGui::Begin("view", nullptr, kOverlay);
   ImGui::Text("%s: %s (1: the picture)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
+  ImGui::End();
+}
+
+/// A point where one looks, and what could be done there.
+void Hud::drawOffer(const HudModel& model) const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const ImVec2 middle{0.5f * size.x, 0.5f * size.y};
+  list->AddCircleFilled(middle, 2.5f * scale_, IM_COL32(0, 0, 0, 120));
+  list->AddCircleFilled(middle, 1.5f * scale_, IM_COL32(255, 255, 255, 200));
+  if (model.offer.empty()) return;
+  ImGui::SetNextWindowPos({middle.x, middle.y + 24 * scale_}, ImGuiCond_Always, {0.5f, 0});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("offer", nullptr, kOverlay);
+  ImGui::TextUnformatted(model.offer.c_str());
   ImGui::End();
 }
 

@@ -32,8 +32,9 @@ struct HudModel {
   bool hasPath = false, followPath = false; // a camera path: of a shot, or recorded
   std::optional<double> recordedSeconds = {};
 
-  bool lamp = false;
-  vec3 lampIntensity{1};  // W/sr
+  bool torch = false;
+  vec3 lampIntensity{1};  // W/sr, of all lamps
+  std::string offer = {}; // what using would do now
   Gait gait = Gait::Walk; // shown
   float speed = 1;        // of the player, times the usual
   Pacer pacer{{}, false}; // of frames, by the picture's scale
@@ -87,6 +88,7 @@ class Hud {
   void change(Settings& settings, const std::function<void(Settings&)>& edit);
   void drawSpeed(const HudModel& model, const FrameTimes& times);
   void drawViewLegend(const HudModel& model);
+  void drawOffer(const HudModel& model) const;
   void drawHelp() const;
   void drawMessages();
 

@@ -20,10 +20,12 @@ std::vector<std::pair<const char*, const char*>> keyHelp() {
           {"G", "walk, fly, fly through walls"},
           {"H", "home: back to where you began"},
           {"F", "follow the camera of the shot, or of your recording"},
-          {"Light", ""},
+          {"Hands", ""},
+          {"E", "use a door, a lift or a button; take, put down"},
+          {"B", "a white board; again: boxes, white, red, green, blue, none"},
+          {"L", "a lamp; again: put it away"},
+          {"click", "throw what you carry (once the mouse looks around)"},
           {"Q", "flashlight"},
-          {"L", "carry a lamp"},
-          {"T", "let the day go by, or stop it"},
           {"[ ]", "darker, brighter picture"},
           {"Seeing", ""},
           {"1 ... 9, 0", "what the picture shows (the panel names them)"},
@@ -93,6 +95,8 @@ void Input::readKeys(Wishes& w) {
   w.panel = tapped(GLFW_KEY_TAB);
   w.pause = tapped(GLFW_KEY_P);
   w.lamp = tapped(GLFW_KEY_L);
+  w.box = tapped(GLFW_KEY_B);
+  w.use = tapped(GLFW_KEY_E);
   w.torch = tapped(GLFW_KEY_Q);
   w.record = tapped(GLFW_KEY_R);
   w.followPath = tapped(GLFW_KEY_F);

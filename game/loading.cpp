@@ -19,7 +19,11 @@ void Loading::load() {
     LoadedScene loaded;
     loaded.stage = loadStage(options_, [this](const char* at, float share) { tell(at, kFile * share); });
     tell("walls and floors", kFile);
-    loaded.solids = std::make_unique<Solids>(loaded.stage->scene);
+    Scene& scene = loaded.stage->scene;
+    const float height = bodySizeFor(worldBounds(scene)).height;
+    loaded.movers = std::make_unique<Movers>(scene);
+    loaded.things = std::make_unique<Things>(scene, height);
+    loaded.solids = std::make_unique<Solids>(scene);
     tell("done", 1);
     loaded_ = std::move(loaded);
   } catch (...) {

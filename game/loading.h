@@ -1,7 +1,8 @@
 // A scene on its way from disk, on a thread of its own, while the window goes on.
 #pragma once
 
-#include "game/rules/solids.h"
+#include "game/rules/movers.h"
+#include "game/rules/things.h"
 #include "tools/launch/launch.h"
 
 #include <atomic>
@@ -15,6 +16,8 @@ namespace lambent {
 /// A scene with all that needs no OpenGL.
 struct LoadedScene {
   std::unique_ptr<Stage> stage;
+  std::unique_ptr<Movers> movers;
+  std::unique_ptr<Things> things;
   std::unique_ptr<Solids> solids;
 };
 

@@ -80,9 +80,8 @@ void Hud::drawPlayer(HudModel& model) {
                                             : model.gait == Gait::Fly ? "flying"
                                                                       : "flying through walls");
   ImGui::SliderFloat("speed, times", &model.speed, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
-  ImGui::Checkbox("carry a lamp (L)", &model.lamp);
-  if (model.lamp)
-    ImGui::ColorEdit3("its light, W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
+  ImGui::Checkbox("flashlight (Q)", &model.torch);
+  ImGui::ColorEdit3("lamps (L), W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
 }
 
 void Hud::drawTime(HudModel& model) {

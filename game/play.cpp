@@ -21,6 +21,8 @@ constexpr int kRoughLights = 256;     // of the first picture
 constexpr int kRoughWarmup = 12;      // iterations before it
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
+constexpr float kTorch = 5; // intensity in its middle, of a lamp's
+
 const char* gaitText(Gait gait) {
   return gait == Gait::Walk ? "walking" : gait == Gait::Fly ? "flying: walls stop you" : "flying through walls";
 }
@@ -29,9 +31,9 @@ const char* gaitText(Gait gait) {
 
 Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
     : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)),
-      solids_(std::move(loaded.solids)), shot_(stage_->shot), scene_(stage_->scene),
-      diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
-      gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
+      movers_(std::move(loaded.movers)), things_(std::move(loaded.things)), solids_(std::move(loaded.solids)),
+      shot_(stage_->shot), scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()),
+      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
@@ -56,8 +58,10 @@ Play::~Play() {
 
 void Play::restart() {
   model_.time = 0;
-  model_.paused = model_.lamp = false;
-  pose();
+  model_.paused = model_.torch = false;
+  movers_->reset();
+  things_->clear();
+  pose(0);
   home();
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
 }
@@ -93,11 +97,12 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
   gi_.run(viewAt(model_.pacer.scale()), report("all lights", roughFirst ? 0.3f : 0.1f, 1));
 }
 
-void Play::pose() {
+void Play::pose(double seconds) {
   if (shot_)
     poseShot(scene_, *shot_, model_.time);
   else
     animate(scene_, model_.time);
+  movers_->update(std::min(seconds, double(kLongestStep)));
   solids_->update();
 }
 
@@ -114,9 +119,12 @@ void Play::frame(const Wishes& wishes, double seconds) {
     model_.time += seconds;
     if (!recorder_.recording()) model_.time = std::fmod(model_.time, model_.duration);
   }
-  pose();
+  pose(seconds);
   movePlayer(wishes, float(seconds));
-  carryLamp();
+  handle(wishes);
+  things_->lampIntensity = model_.lampIntensity;
+  things_->update(*solids_, player_, std::min(float(seconds), kLongestStep));
+  carryTorch();
 
   const auto [width, height] = context_.framebufferSize();
   const SceneView view =
@@ -135,6 +143,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
   model_.hasPath = path_.has_value();
   model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
   model_.gait = player_.gait();
+  model_.offer = offer();
   hud_.draw(model_, gi_, truth_, stats, times_);
   player_.pace = model_.speed;
   if (wishes.screenshot) report([&] { return saveScreenshot(); });
@@ -153,7 +162,7 @@ void Play::obey(const Wishes& wishes, float seconds) {
   model_.paused ^= wishes.pause;
   model_.help ^= wishes.help;
   model_.panel ^= wishes.panel;
-  model_.lamp ^= wishes.lamp;
+  model_.torch ^= wishes.torch;
   if (wishes.restart) restart();
   if (wishes.home) {
     home();
@@ -190,6 +199,8 @@ void Play::movePlayer(const Wishes& wishes, float seconds) {
     player_.place(shotCamera(*path_, model_.time, scene_.origin));
   else if (player_.move(solids_->rays(), solids_->view(), wishes.move, std::min(seconds, kLongestStep)))
     hud_.say("you fell out of the scene: back where you began");
+  const bool before = std::exchange(cramped_, player_.body().cramped(solids_->rays()));
+  if (cramped_ && !before) movers_->turnBack(); // nobody is crushed
   if (recorder_.recording()) recorder_.add(model_.time, player_.view(1, 1), scene_.origin);
 }
 
@@ -243,22 +254,27 @@ void Play::showTruth(TruthMode mode) {
   model_.paused = is ? (pausedBefore_ = model_.paused, true) : pausedBefore_;
 }
 
-/// Keeps a point light a little below and before the player's eyes while the lamp is carried.
-void Play::carryLamp() {
-  if (!model_.lamp) {
-    if (lamp_) scene_.registry.destroy(*lamp_);
-    lamp_.reset();
+/// The torch shines from beside the eyes to where they look.
+void Play::carryTorch() {
+  if (!model_.torch) {
+    if (torch_) scene_.registry.destroy(*torch_);
+    torch_.reset();
     return;
   }
-  const float reach = 0.01f * diameter_;
+  const float height = player_.body().size().height;
   LightView light;
-  light.position = player_.position() + reach * player_.forward() - vec3(0, reach, 0);
-  light.intensity = model_.lampIntensity;
-  if (!lamp_) lamp_ = addLight(scene_, light, "carried lamp");
-  Transform& place = scene_.registry.get<Transform>(*lamp_);
+  light.type = LightType::Spot;
+  light.direction = player_.forward();
+  light.position = player_.position() + 0.04f * height * vec3(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
+  light.intensity = kTorch * vec3(luminance(model_.lampIntensity));
+  light.innerConeCos = 0.985f; // 10 degrees
+  light.outerConeCos = 0.927f; // 22
+  if (!torch_) torch_ = addLight(scene_, light, "torch");
+  Transform& place = scene_.registry.get<Transform>(*torch_);
   place.translation = scene_.origin + dvec3(light.position);
-  scene_.registry.get<WorldTransform>(*lamp_).worldFromNode = place.local();
-  scene_.registry.get<PunctualLight>(*lamp_).intensity = model_.lampIntensity;
+  place.rotation = rotationTowards(light.direction);
+  scene_.registry.get<WorldTransform>(*torch_).worldFromNode = place.local();
+  scene_.registry.get<PunctualLight>(*torch_).intensity = light.intensity;
 }
 
 /// What the window shows now, the panel included.
@@ -289,18 +305,21 @@ std::string Play::saveScreenshot() const {
 
 std::string Play::state() const {
   const vec3 p = player_.position(), d = player_.forward();
-  char text[512];
+  char text[1024];
   std::snprintf(text, sizeof text,
                 "\"eye\": [%.4f, %.4f, %.4f], \"forward\": [%.4f, %.4f, %.4f], \"gait\": \"%s\", \"grounded\": %s, "
                 "\"time\": %.4f, \"paused\": %s, \"following\": %s, \"recorded\": %.3f, \"buffer\": \"%s\", "
-                "\"scale\": %.3f, \"exposure\": %.5f",
+                "\"scale\": %.3f, \"exposure\": %.5f, \"things\": %zu, \"carried\": \"%s\", \"offer\": \"%s\", "
+                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f",
                 double(p.x), double(p.y), double(p.z), double(d.x), double(d.y), double(d.z),
                 player_.gait() == Gait::Walk  ? "walk"
                 : player_.gait() == Gait::Fly ? "fly"
                                               : "ghost",
                 player_.body().grounded() ? "true" : "false", model_.time, model_.paused ? "true" : "false",
                 model_.followPath ? "true" : "false", recorder_.recording() ? recorder_.seconds() : -1.0,
-                bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()));
+                bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
+                things_->count(), things_->carried() ? thingName(*things_->carried()) : "", model_.offer.c_str(),
+                model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"));
   return text;
 }
 

@@ -51,14 +51,18 @@ class Play {
 
  private:
   void obey(const Wishes& wishes, float seconds);
-  void pose();
+  void handle(const Wishes& wishes);
+  void use();
+  std::string offer() const;
+  std::optional<uint32_t> lookedAt() const;
+  void pose(double seconds);
   void movePlayer(const Wishes& wishes, float seconds);
   SceneView viewAt(float scale);
   void pace(const FrameStats& stats, bool moved);
   void toggleRecording();
   void toggleFollowing();
   void showTruth(TruthMode mode);
-  void carryLamp();
+  void carryTorch();
   std::string saveScreenshot() const;
   template <class Action> void report(Action&& action);
 
@@ -66,6 +70,8 @@ class Play {
   GlContext& context_;
   Hud& hud_;
   const std::unique_ptr<Stage> stage_;
+  const std::unique_ptr<Movers> movers_;
+  const std::unique_ptr<Things> things_;
   const std::unique_ptr<Solids> solids_;
   const std::optional<Shot>& shot_;
   Scene& scene_;
@@ -76,9 +82,10 @@ class Play {
   HudModel model_;
   FrameTimes times_;
   PathRecorder recorder_;
-  std::optional<Shot> path_; // that F follows: of the shot, or recorded
-  std::optional<Entity> lamp_;
-  mat4 pose_{0}; // of the camera in the last frame
+  std::optional<Shot> path_;    // that F follows: of the shot, or recorded
+  std::optional<Entity> torch_; // while it is lit
+  bool cramped_ = false;        // something was where the player is
+  mat4 pose_{0};                // of the camera in the last frame
   TruthView truth_;
   bool pausedBefore_ = false; // when the truth was asked for
 };

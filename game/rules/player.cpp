@@ -15,17 +15,17 @@ constexpr float kSteepest = 1.55f;       // radians, just short of straight up
 constexpr float kShareOfScene = 0.25f;   // of its diameter that a body may be high
 constexpr float kLost = 3;               // heights below the scene at which nobody falls any further
 
-BodySize sizeFor(const Aabb& bounds) {
+} // namespace
+
+BodySize bodySizeFor(const Aabb& scene) {
   BodySize size;
-  if (bounds.diameter() > 0) size.height = std::min(size.height, kShareOfScene * bounds.diameter());
+  if (scene.diameter() > 0) size.height = std::min(size.height, kShareOfScene * scene.diameter());
   return size;
 }
 
-} // namespace
-
 Player::Player(const CameraView& start, const Aabb& bounds)
     : start_(start), lowest_(bounds.empty() ? -kInfinity : bounds.lo.y),
-      flight_(glm::max(kFlyPerDiameter * bounds.diameter(), 1e-3f)), body_(sizeFor(bounds)) {
+      flight_(glm::max(kFlyPerDiameter * bounds.diameter(), 1e-3f)), body_(bodySizeFor(bounds)) {
   place(start);
 }
 

@@ -14,6 +14,9 @@ struct MoveInput {
   bool any() const { return direction != vec3(0) || look != vec2(0) || jump; }
 };
 
+/// A person's body, in a doll's house a doll's.
+BodySize bodySizeFor(const Aabb& scene);
+
 class Player {
  public:
   /// Begins at `start`, with a body that suits a scene in `bounds`: a person's, or a doll's.
