@@ -1,35 +1,52 @@
 #include "game/hud.h"
 
-#include "engine/core/error.h"
-#include "game/interaction.h"
-#include "gi/plan/presets.h"
+#include "engine/gl/objects.h"
+#include "game/input.h"
+
+#include <GLFW/glfw3.h>
 
 #include <imgui/backends/imgui_impl_glfw.h>
 #include <imgui/backends/imgui_impl_opengl3.h>
 #include <imgui/imgui.h>
-#include <imgui/imgui_stdlib.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <filesystem>
 
 namespace lambent {
 
 namespace {
 
 constexpr double kMessageSeconds = 8;
-constexpr double kSmoothing = 0.1; // share of the newest frame in a shown time
 
-/// A list to choose from; true when another one was chosen.
-bool choose(const char* label, const std::vector<std::string>& names, std::string& chosen) {
-  bool changed = false;
-  if (!ImGui::BeginCombo(label, chosen.c_str())) return false;
-  for (const std::string& name : names)
-    if (ImGui::Selectable(name.c_str(), name == chosen) && name != chosen) {
-      chosen = name;
-      changed = true;
-    }
-  ImGui::EndCombo();
-  return changed;
+constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                      ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
+                                      ImGuiWindowFlags_NoNav;
+constexpr ImGuiWindowFlags kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                     ImGuiWindowFlags_AlwaysAutoResize;
+
+/// What each buffer shows, in words; beside bufferNames().
+constexpr std::array<const char*, 13> kViews = {
+    "the picture",
+    "light that comes straight from lamps, sun and sky",
+    "light that has bounced, as surfaces send it on",
+    "light that has bounced, as it arrives",
+    "colours of surfaces",
+    "where surfaces face: red east, green up, blue south",
+    "distance: near dark, far bright",
+    "light that surfaces emit",
+    "light that has bounced, before it is smoothed: each pixel of 4 x 4 has lights of its own",
+    "virtual lights: colour is their light, rings grow with age",
+    "what the first virtual lights see: near dark, far bright",
+    "patches that gather as one: blue large, red small",
+    "faults: magenta not a number, cyan infinite",
+};
+
+void centre(float width) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  if (width > 0) ImGui::SetNextWindowSize({std::min(width, size.x - 16), 0});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
 }
 
 } // namespace
@@ -40,6 +57,11 @@ Hud::Hud(GLFWwindow* window) {
   ImGui::GetIO().IniFilename = nullptr; // leave no file behind
   ImGui::StyleColorsDark();
   ImGui::GetStyle().WindowRounding = 4;
+  float sideways = 1;
+  glfwGetWindowContentScale(window, &scale_, &sideways);
+  scale_ = std::clamp(scale_, 1.0f, 4.0f);
+  ImGui::GetStyle().ScaleAllSizes(scale_);
+  ImGui::GetIO().FontGlobalScale = scale_;
   ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 450");
 }
@@ -55,217 +77,164 @@ bool Hud::mouseTaken() const { return ImGui::GetIO().WantCaptureMouse; }
 
 void Hud::say(std::string message) {
   constexpr size_t kMost = 5;
+  lastSaid_ = message;
   messages_.push_back({std::move(message), ImGui::GetTime() + kMessageSeconds});
   if (messages_.size() > kMost) messages_.pop_front();
 }
 
-void Hud::draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
+void Hud::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  if (model.panel) drawPanel(model, gi, truth, stats);
-  drawTruthLegend(truth, model.buffer);
-  if (model.help) drawHelp();
+}
+
+void Hud::end() {
   drawMessages();
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
-  ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-  const float height = ImGui::GetIO().DisplaySize.y - 16;
-  ImGui::SetNextWindowSize({340, std::min(620.0f, height)}, ImGuiCond_FirstUseEver);
-  if (!ImGui::Begin("Lambent")) {
-    ImGui::End();
-    return;
+void Hud::draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats, const FrameTimes& times) {
+  if (model.panel) drawPanel(model, gi, truth, stats);
+  drawSpeed(model, times);
+  if (truth.mode() == TruthMode::Off)
+    drawViewLegend(model);
+  else
+    drawTruthLegend(truth, model.buffer);
+  drawOffer(model);
+  if (model.help) drawHelp();
+}
+
+void Hud::drawProgress(const std::string& scene, const std::string& at, float share) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (picture_) {
+    const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(picture_->name()));
+    ImGui::GetBackgroundDrawList()->AddImage(texture, {0, 0}, size, {0, 1}, {1, 0}); // GL's first row is the lowest
   }
-  ImGui::PushItemWidth(-110);
-  ImGui::PushAllowKeyboardFocus(false); // Tab shows this panel, and would begin to type into it
-  std::string view = bufferNames()[size_t(model.buffer)];
-  if (choose("show", bufferNames(), view)) model.buffer = bufferByName(view);
-  std::string technique = techniqueOf(gi.settings()).name;
-  if (choose("technique", techniqueNames(), technique))
-    change(gi.settings(), [&](Settings& s) { applyTechnique(s, technique); });
-  if (choose("preset", presetNames(), model.preset))
-    change(gi.settings(), [&](Settings& s) { applyPreset(s, model.preset); });
-  const auto preset = std::ranges::find(presetTable(), model.preset, &Preset::name);
-  if (preset != presetTable().end() && ImGui::IsItemHovered())
-    ImGui::SetTooltip("measured: %.2f of the default's time, %.2f of its error", preset->time, preset->error);
-  if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
-
-  if (truth.mode() != TruthMode::Off && ImGui::CollapsingHeader("Truth", ImGuiTreeNodeFlags_DefaultOpen))
-    drawTruthFigures(truth);
-
-  ImGui::Separator();
-  ImGui::Checkbox("paused", &model.paused);
-  if (model.hasPath) {
-    ImGui::SameLine();
-    ImGui::Checkbox("follow the shot's camera", &model.followPath);
-  }
-  float time = float(model.time);
-  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f")) model.time = time;
-  ImGui::SliderFloat("speed, m/s", &model.speed, 0.01f, 100, "%.2f", ImGuiSliderFlags_Logarithmic);
-  drawPace(model.pacer);
-  ImGui::Checkbox("carry a lamp", &model.lamp);
-  if (model.lamp)
-    ImGui::ColorEdit3("W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
-
-  float exposure = gi.exposure();
-  if (ImGui::SliderFloat("exposure", &exposure, 1e-3f, 1e3f, "%.4g", ImGuiSliderFlags_Logarithmic))
-    gi.settings().image.exposure = exposure;
-
-  if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) drawStages(stats);
-  if (ImGui::CollapsingHeader("Effects", ImGuiTreeNodeFlags_DefaultOpen)) drawEffects(gi.settings(), stats);
-  if (ImGui::CollapsingHeader("Figures", ImGuiTreeNodeFlags_DefaultOpen)) {
-    for (const FigureRow& row : figureTable()) {
-      const Figure figure = row.value(stats);
-      if (std::holds_alternative<double>(figure) || std::string_view(row.name) == "plan") continue; // stand elsewhere
-      ImGui::TextUnformatted(row.name);
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.help);
-      ImGui::SameLine(130);
-      ImGui::TextUnformatted(figureText(figure).c_str());
-    }
-    if (!stats.makerTimes.empty()) ImGui::TextWrapped("%s", stats.makerTimes.c_str());
-    if (!stats.cubeMakerTimes.empty()) ImGui::TextWrapped("hemicubes: %s", stats.cubeMakerTimes.c_str());
-    if (!stats.areaTracer.empty()) ImGui::TextWrapped("area rays: %s", stats.areaTracer.c_str());
-  }
-  if (ImGui::CollapsingHeader("Settings")) drawSettings(gi.settings());
-  ImGui::TextDisabled("F1: keys   Tab: hide this panel");
-  ImGui::PopAllowKeyboardFocus();
-  ImGui::PopItemWidth();
+  centre(360 * scale_);
+  ImGui::Begin("opening", nullptr, kDialog | ImGuiWindowFlags_NoTitleBar);
+  ImGui::Text("opening %s", scene.c_str());
+  ImGui::ProgressBar(share);
+  ImGui::TextDisabled("%s   (Esc: cancel)", at.c_str());
   ImGui::End();
 }
 
-/// The governor with its target, or the picture's scale by hand.
-void Hud::drawPace(Pacer& pacer) {
-  bool governs = pacer.governs();
-  if (ImGui::Checkbox("hold the time of a frame", &governs)) {
-    if (governs)
-      pacer.govern(pacer.targetMs());
-    else
-      pacer.hold(pacer.scale());
+MenuChoice Hud::drawMenu(const std::vector<std::string>& scenes, bool playing) {
+  MenuChoice choice;
+  centre(0);
+  ImGui::Begin("Lambent", nullptr, kDialog);
+  const float width = 300 * scale_;
+  const auto button = [&](const char* label) { return ImGui::Button(label, {width, 0}); };
+  if (playing) {
+    choice.resume = button("go on (Esc)");
+    choice.home = button("back to where you began (H)");
+    choice.restart = button("begin anew (F2)");
+    ImGui::Separator();
   }
-  float value = governs ? float(pacer.targetMs()) : pacer.scale();
-  if (governs && ImGui::SliderFloat("target, ms", &value, 4, 500, "%.0f", ImGuiSliderFlags_Logarithmic))
-    pacer.govern(double(value));
-  if (!governs && ImGui::SliderFloat("picture scale", &value, 0.1f, 1, "%.2f")) pacer.hold(value);
-  ImGui::TextDisabled("%s", pacer.text().c_str());
+  ImGui::TextDisabled("open a scene, or drop a .gltf, .glb or shot here");
+  const float row = ImGui::GetTextLineHeightWithSpacing();
+  const float most = std::max(3 * row, ImGui::GetIO().DisplaySize.y - 14 * row);
+  if (!scenes.empty() && ImGui::BeginChild("scenes", {width, std::min(most, row * float(scenes.size()) + 8)}, true)) {
+    for (const std::string& scene : scenes)
+      if (ImGui::Selectable(std::filesystem::path(scene).stem().string().c_str())) choice.scene = scene;
+  }
+  if (!scenes.empty()) ImGui::EndChild();
+  ImGui::Separator();
+  choice.quit = button(playing ? "quit" : "quit (Esc)");
+  ImGui::End();
+  return choice;
 }
 
-/// Each effect with whether it runs and why; a click goes from auto to forced on to forced off.
-void Hud::drawEffects(Settings& settings, const FrameStats& stats) {
-  for (size_t i = 0; i < kEffects; ++i) {
-    const EffectId id = EffectId(i);
-    const EffectRow& row = effectRow(id);
-    const Effect& effect = stats.plan[id];
-    EffectMode& mode = settings.effects[id];
-    bool on = effect.on;
-    ImGui::PushID(int(i));
-    if (ImGui::Checkbox(row.name, &on)) mode = EffectMode((int(mode) + 1) % 3);
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%llu %s\nclick: auto, on, off", row.help, (unsigned long long)stats.work[i], row.work);
-    ImGui::PopID();
-    ImGui::SameLine(130);
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextDisabled("%s", effect.reason.c_str());
-    ImGui::PopTextWrapPos();
-  }
+void Hud::keepPicture() {
+  const ImVec2 size = ImGui::GetIO().DisplaySize, pixels = ImGui::GetIO().DisplayFramebufferScale;
+  const int width = int(size.x * pixels.x), height = int(size.y * pixels.y);
+  picture_ = std::make_unique<gl::Texture>(
+      "hud/first picture", gl::TextureDesc{.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glCopyTextureSubImage2D(picture_->name(), 0, 0, 0, 0, 0, width, height);
 }
 
-void Hud::drawStages(const FrameStats& stats) {
-  // The first frame prepares everything: it would stand in the averages for a minute.
-  const bool settled = stats.frame > 1;
-  const auto smooth = [&](double& shown, double now) {
-    shown = settled && shown > 0 ? shown + kSmoothing * (now - shown) : now;
-  };
-  smooth(smoothedFrameMs_, stats.wallMs);
-  ImGui::Text("frame %u: %.1f ms, GPU timed by %s", stats.frame, smoothedFrameMs_, stats.timing.c_str());
-  if (!ImGui::BeginTable("stages", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return;
-  ImGui::TableSetupColumn("stage", ImGuiTableColumnFlags_WidthStretch);
-  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, 60);
-  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, 60);
-  ImGui::TableHeadersRow();
-  for (const StageTime& stage : stats.stages) {
-    auto& [cpu, gpu] = smoothedMs_[stage.stage.id];
-    smooth(cpu, stage.cpuMs);
-    smooth(gpu, stage.gpuMs);
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(stage.stage.name);
-    ImGui::TableNextColumn();
-    ImGui::Text("%6.2f", cpu);
-    ImGui::TableNextColumn();
-    if (stage.gpuMs > 0) ImGui::Text("%6.2f", gpu);
-  }
-  ImGui::EndTable();
-}
+void Hud::forgetPicture() { picture_.reset(); }
 
-/// Settings change together or not at all: what contradicts itself is not taken, and the panel says why.
-void Hud::change(Settings& settings, const std::function<void(Settings&)>& edit) {
-  Settings wanted = settings;
-  try {
-    edit(wanted);
-    settingError_ = whyNot(wanted);
-  } catch (const InputError& e) {
-    settingError_ = e.what();
-  }
-  if (settingError_.empty()) settings = wanted;
-}
-
-void Hud::drawSettings(Settings& settings) {
-  const auto apply = [&](const std::string& name, const std::string& value) {
-    change(settings, [&](Settings& s) { applySetting(s, name, value); });
-  };
-  std::string group;
-  bool open = false;
-  for (const SettingRow& row : settingsTable()) {
-    const size_t dot = row.name.find('.');
-    if (row.name.substr(0, dot) != group) {
-      if (open) ImGui::TreePop();
-      group = row.name.substr(0, dot);
-      open = ImGui::TreeNode(group.c_str());
+/// Frames per second, and what the last ones spent their time on.
+void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 8, 8}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("speed", nullptr, kOverlay);
+  ImGui::Text("%4.0f fps %6.1f ms", times.perSecond(), times.meanMs());
+  if (model.recordedSeconds) ImGui::TextColored({1, 0.35f, 0.3f, 1}, "recording %.1f s", *model.recordedSeconds);
+  const auto& frames = times.frames();
+  if (size.x >= 480 * scale_ && frames.size() > 1) {
+    constexpr ImU32 kCpu = IM_COL32(90, 160, 255, 255), kGpu = IM_COL32(255, 170, 60, 255),
+                    kRest = IM_COL32(110, 110, 110, 255);
+    const float width = 170 * scale_, height = 40 * scale_;
+    double most = 1000.0 / 60;
+    for (const FrameTimes::Frame& f : frames) most = std::max(most, f.wholeMs);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float each = std::max(1.0f, width / float(frames.size()));
+    const size_t shown = std::min(frames.size(), size_t(width / each));
+    for (size_t i = 0; i < shown; ++i) {
+      const FrameTimes::Frame& f = frames[frames.size() - shown + i];
+      const float x = at.x + each * float(i);
+      const auto bar = [&](double from, double to, ImU32 color) {
+        const float scale = height / float(most);
+        list->AddRectFilled({x, at.y + height - scale * float(to)}, {x + each, at.y + height - scale * float(from)},
+                            color);
+      };
+      bar(0, f.wholeMs, kRest);
+      bar(0, std::min(f.cpuMs + f.gpuMs, f.wholeMs), kGpu);
+      bar(0, std::min(f.cpuMs, f.wholeMs), kCpu);
     }
-    if (!open) continue;
-    const std::string label = row.name.substr(dot + 1) + "##" + group;
-    std::string value = settingText(settings, row.name);
-    if (row.kind == SettingKind::Flag) {
-      bool on = row.get(settings) != 0;
-      if (ImGui::Checkbox(label.c_str(), &on)) apply(row.name, row.text(on));
-    } else if (!row.choices.empty()) {
-      if (choose(label.c_str(), row.choices, value)) apply(row.name, value);
-    } else {
-      // A value counts when Enter is pressed or the field is left, not while it is being typed.
-      const auto typed = edited_.find(row.name);
-      if (typed != edited_.end()) value = typed->second;
-      if (ImGui::InputText(label.c_str(), &value)) edited_[row.name] = value;
-      if (ImGui::IsItemDeactivatedAfterEdit()) apply(row.name, value);
-      if (!ImGui::IsItemActive()) edited_.erase(row.name);
-      if (row.scale == Scale::PowersOfTwo) {
-        const double now = row.get(settings);
-        const std::string half = "/2##" + row.name, twice = "x2##" + row.name;
-        ImGui::SameLine();
-        if (ImGui::SmallButton(half.c_str())) apply(row.name, row.text(std::max(row.low, std::floor(now / 2))));
-        ImGui::SameLine();
-        if (ImGui::SmallButton(twice.c_str())) apply(row.name, row.text(std::min(row.high, std::max(1.0, 2 * now))));
-      }
-    }
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%s\nrange %s %s, default %s\nchanging it costs: %s", row.name.c_str(), row.help.c_str(),
-                        row.range().c_str(), row.unit, row.text(row.standard).c_str(), costText(row.change));
+    ImGui::Dummy({width, height});
+    ImGui::TextColored(ImColor(kCpu), "CPU %.0f", frames.back().cpuMs);
+    ImGui::SameLine();
+    ImGui::TextColored(ImColor(kGpu), "GPU %.0f", frames.back().gpuMs);
+    ImGui::SameLine();
+    ImGui::TextDisabled("of %.0f ms", most);
   }
-  if (open) ImGui::TreePop();
+  if (model.pacer.scale() < 1) ImGui::TextDisabled("picture at %.0f %%", 100 * double(model.pacer.scale()));
+  ImGui::End();
+}
+
+/// What the picture shows, where it is not the picture.
+void Hud::drawViewLegend(const HudModel& model) {
+  if (model.buffer == Buffer::Beauty) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, size.y - 8}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("view", nullptr, kOverlay);
+  ImGui::Text("%s: %s (1: the picture)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
+  ImGui::End();
+}
+
+/// A point where one looks, and what could be done there.
+void Hud::drawOffer(const HudModel& model) const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const ImVec2 middle{0.5f * size.x, 0.5f * size.y};
+  list->AddCircleFilled(middle, 2.5f * scale_, IM_COL32(0, 0, 0, 120));
+  list->AddCircleFilled(middle, 1.5f * scale_, IM_COL32(255, 255, 255, 200));
+  if (model.offer.empty()) return;
+  ImGui::SetNextWindowPos({middle.x, middle.y + 24 * scale_}, ImGuiCond_Always, {0.5f, 0});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("offer", nullptr, kOverlay);
+  ImGui::TextUnformatted(model.offer.c_str());
+  ImGui::End();
 }
 
 void Hud::drawHelp() const {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
-  ImGui::Begin("Keys", nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
-  if (ImGui::BeginTable("keys", 2)) {
+  centre(0);
+  ImGui::Begin("Keys", nullptr, kDialog);
+  if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
     for (const auto& [key, meaning] : keyHelp()) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(key);
+      if (*meaning)
+        ImGui::TextUnformatted(key);
+      else
+        ImGui::TextDisabled("%s", key);
       ImGui::TableNextColumn();
       ImGui::TextUnformatted(meaning);
     }
@@ -278,12 +247,13 @@ void Hud::drawMessages() {
   std::erase_if(messages_, [](const Message& m) { return m.until < ImGui::GetTime(); });
   if (messages_.empty()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({size.x - 8, size.y - 8}, ImGuiCond_Always, {1, 1});
+  ImGui::SetNextWindowPos({8, size.y - 8}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y});
   ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("messages", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::Begin("messages", nullptr, kOverlay);
+  ImGui::PushTextWrapPos(size.x - 40 * scale_);
   for (const Message& m : messages_) ImGui::TextUnformatted(m.text.c_str());
+  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 

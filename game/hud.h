@@ -1,19 +1,27 @@
-// The panel over the picture: what is shown, where the time goes, and every setting.
+// What is drawn over the picture: the panel, the frame rate, messages, the menu, and how far loading is.
 #pragma once
 
+#include "game/frame_times.h"
 #include "game/pace.h"
+#include "game/rules/body.h"
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 
 #include <deque>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 
 struct GLFWwindow;
 
 namespace lambent {
 
-/// What panel and keys change and the main loop obeys.
+namespace gl {
+class Texture;
+}
+
+/// What panel and keys change and the play obeys.
 struct HudModel {
   Buffer buffer = Buffer::Beauty;
   std::string preset = {}; // the last one chosen, empty: none; single settings may differ from it
@@ -21,12 +29,21 @@ struct HudModel {
 
   double time = 0, duration = 1; // seconds of the scene; the slider's length
   bool paused = false;
-  bool hasPath = false, followPath = false; // camera path of a shot
+  bool hasPath = false, followPath = false; // a camera path: of a shot, or recorded
+  std::optional<double> recordedSeconds = {};
 
-  bool lamp = false;
-  vec3 lampIntensity{1};  // W/sr
-  float speed = 1;        // of the player, m/s
+  bool torch = false;
+  vec3 lampIntensity{1};  // W/sr, of all lamps
+  std::string offer = {}; // what using would do now
+  Gait gait = Gait::Walk; // shown
+  float speed = 1;        // of the player, times the usual
   Pacer pacer{{}, false}; // of frames, by the picture's scale
+};
+
+/// What was pressed in the menu.
+struct MenuChoice {
+  bool resume = false, restart = false, home = false, quit = false;
+  std::string scene = {}; // to be opened
 };
 
 class Hud {
@@ -41,16 +58,37 @@ class Hud {
 
   /// One line at the bottom, for some seconds.
   void say(std::string message);
-  /// Draws into the framebuffer that is bound, over the picture of the last GiFrame::run.
-  void draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  const std::string& lastSaid() const { return lastSaid_; }
+
+  // Between these two, what is to be drawn into the framebuffer that is bound at the end.
+  void begin();
+  void end();
+  /// Over the picture of the last GiFrame::run.
+  void draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats, const FrameTimes& times);
+  void drawProgress(const std::string& scene, const std::string& at, float share);
+  /// `playing`: there is a scene to go back to.
+  MenuChoice drawMenu(const std::vector<std::string>& scenes, bool playing);
+
+  /// Keeps what the window's next picture is so far, to stand behind drawProgress.
+  void keepPicture();
+  void forgetPicture();
 
  private:
   void drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  void drawPicture(HudModel& model, GiFrame& gi);
+  void drawPlayer(HudModel& model);
+  void drawTime(HudModel& model);
+  void drawQuality(HudModel& model, GiFrame& gi);
   void drawPace(Pacer& pacer);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
+  void drawFigures(const FrameStats& stats);
   void drawSettings(Settings& settings);
+  void drawSetting(Settings& settings, const struct SettingRow& row);
   void change(Settings& settings, const std::function<void(Settings&)>& edit);
+  void drawSpeed(const HudModel& model, const FrameTimes& times);
+  void drawViewLegend(const HudModel& model);
+  void drawOffer(const HudModel& model) const;
   void drawHelp() const;
   void drawMessages();
 
@@ -59,10 +97,12 @@ class Hud {
     double until = 0; // seconds of the ImGui clock
   };
   std::deque<Message> messages_;
+  std::string lastSaid_;
+  std::unique_ptr<gl::Texture> picture_;
+  float scale_ = 1;                                          // of the display's pixels
   std::map<uint16_t, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
-  double smoothedFrameMs_ = 0;
-  std::map<std::string, std::string> edited_; // settings in the middle of being typed
-  std::string settingError_;
+  std::map<std::string, std::string> edited_;                // settings in the middle of being typed
+  std::string settingError_, filter_;
 };
 
 } // namespace lambent

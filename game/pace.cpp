@@ -5,7 +5,13 @@
 namespace lambent {
 
 Pacer::Pacer(std::optional<double> targetMs, bool choosesPreset) : targetMs_(targetMs.value_or(kUsable)) {
-  governed_.choosesPreset = targetMs && choosesPreset;
+  governed_.choosesPreset = choosesPreset;
+}
+
+void Pacer::expect(double fullMs, Settings& settings) {
+  governed_.settings = settings;
+  governed_ = begun(std::move(governed_), fullMs, targetMs_);
+  settings = governed_.settings;
 }
 
 void Pacer::took(const FrameStats& stats, bool moved, Settings& settings) {

@@ -10,8 +10,11 @@ namespace lambent {
 
 class Pacer {
  public:
-  /// Without a target the settings stay as they are, and the scale is lowered where frames take longer than kUsable.
+  /// Without a target, frames are held at kUsable where they would take longer.
   Pacer(std::optional<double> targetMs, bool choosesPreset);
+
+  /// Scale and preset to begin with, where a frame at full scale and with these settings is expected to take so long.
+  void expect(double fullMs, Settings& settings);
 
   /// For the next frame. Where nothing has moved for a while: 1.
   float scale() const { return moving() ? governed_.scale : 1.0f; }
@@ -28,7 +31,7 @@ class Pacer {
   std::string text() const;                                      // what it does, one line
 
  private:
-  static constexpr double kUsable = 150; // ms
+  static constexpr double kUsable = 100; // ms
   static constexpr int kStillFrames = 10;
   bool moving() const { return !governs_ || stillFrames_ < kStillFrames; }
 

@@ -124,7 +124,7 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
   if (view.mode() == TruthMode::Off) return;
   const bool heat = view.mode() == TruthMode::Heat;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({size.x - 8, 8}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowPos({size.x - 8, size.y - 8}, ImGuiCond_Always, {1, 1});
   ImGui::SetNextWindowBgAlpha(0.6f);
   // A window of its own for each: one that grows would be cut off for a frame.
   const LiveTruth* truth = view.truth();

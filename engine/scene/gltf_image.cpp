@@ -4,6 +4,7 @@
 #include "engine/scene/gltf_import.h"
 #include "engine/scene/texture_decode.h"
 
+#include <atomic>
 #include <memory>
 
 #include <stb/stb_image.h>
@@ -94,7 +95,9 @@ void decodeImages(Import& import) {
       doc.spend(size_t(width) * size_t(height), 2 * sizeof(u8vec4),
                 placeOf(doc.images[size_t(order[i].first)], order[i].first));
   }
+  std::atomic<size_t> done = 0;
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
+    import.tell("textures", Import::kMeshes, 1, done++, order.size());
     for (size_t i = begin; i < end; ++i)
       if (defects[i].empty()) images[i] = decode(doc, order[i].first, order[i].second, defects[i]);
   });

@@ -25,8 +25,15 @@ struct Import {
   std::map<int, uint32_t> materials;               // -1: the default one
   std::map<std::pair<int, bool>, uint32_t> images; // by (image, whether its colours are sRGB)
   std::vector<Entity> entities;                    // by node; invalid where the scene does not reach it
+  LoadStep step;                                   // empty: nobody listens
 
   bool reached(int node) const { return entities[size_t(node)] != Entity(); }
+
+  // Shares of the time that loading takes: of Sponza, with 69 pictures, 4 %, 6 % and 90 %.
+  static constexpr float kRead = 0.04f, kMeshes = 0.1f;
+  void tell(const char* at, float from, float to, size_t done, size_t of) const {
+    if (step) step(at, from + (to - from) * float(done) / float(std::max<size_t>(of, 1)));
+  }
 
   // Told once each, with their counts, when the import is done.
   std::map<std::string, size_t> counted; // text → how often

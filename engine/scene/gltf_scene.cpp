@@ -114,7 +114,9 @@ void importNodes(Import& import, const std::string& sceneName) {
     push(node.children, index);
   }
 
+  size_t done = 0;
   for (const int index : order) { // after all nodes are placed, because skins refer to joints anywhere
+    import.tell("meshes", Import::kRead, Import::kMeshes, done++, order.size());
     const Node& node = doc.nodes[size_t(index)];
     const std::string place = label("node", size_t(index), node.name);
     const Entity e = import.entities[size_t(index)];
@@ -165,9 +167,11 @@ void findOrigin(Scene& scene) {
 
 } // namespace
 
-Scene loadScene(const std::filesystem::path& file, const std::string& sceneName) {
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName, const LoadStep& step) {
   gltf::Import import;
+  import.step = step;
   try {
+    import.tell("file", 0, gltf::Import::kRead, 0, 1);
     import.doc = gltf::readDocument(file);
     gltf::importNodes(import, sceneName);
     gltf::importAnimations(import);

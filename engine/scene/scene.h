@@ -9,6 +9,7 @@
 #include "engine/scene/scene_view.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -37,9 +38,12 @@ struct Scene {
   std::vector<std::string> warnings; // one line each: what the file holds that is shown differently or left out
 };
 
+/// Told what loading is at, and the share of it that is done, from any thread. May throw, which ends the loading.
+using LoadStep = std::function<void(const char* at, float share)>;
+
 /// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).
 /// Throws InputError naming file, place and reason.
-Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {});
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {}, const LoadStep& step = {});
 
 /// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
 void animate(Scene& scene, double time);

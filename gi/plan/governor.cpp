@@ -94,4 +94,16 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
   return g;
 }
 
+Governed begun(Governed g, double ms, double targetMs, const GovernorGains& gains) {
+  CHECK(targetMs > 0 && ms > 0);
+  const double target = gains.aim * targetMs;
+  if (const std::optional<double> time = g.choosesPreset && ms > target ? timeOf(g.settings) : std::nullopt)
+    choosePreset(g, *time, ms, target, gains);
+  else
+    g.scale = float(scaleFor(g.scale, ms, target));
+  g.scale = std::clamp(g.scale, gains.least, 1.0f);
+  g.choosesPreset = false;
+  return g;
+}
+
 } // namespace lambent

@@ -51,4 +51,8 @@ struct Governed {
 /// falls short of the target and never overshoots, and the next one closes in: nothing oscillates.
 Governed governed(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
 
+/// Before the first frame, where one at full scale and with these settings is expected to take `ms`: preset and scale
+/// to begin with. The preset is then chosen; the calibration only finds the scale.
+Governed begun(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
+
 } // namespace lambent

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <tuple>
 
 namespace lambent {
 
@@ -106,16 +107,19 @@ void addDaylight(Stage& stage, const LaunchOptions& options) {
   if (maxComponent(sun.intensity) > 0) addLight(stage.scene, sun, "sun");
 }
 
-void readSize(const std::string& text, CameraView& camera) {
+} // namespace
+
+std::pair<int, int> sizeOf(const std::string& text) {
   char cross = 0, rest = 0;
   int width = 0, height = 0;
   constexpr int kLargest = 16384; // texels per side that OpenGL 4.5 guarantees
   const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &width, &cross, &height, &rest);
   if (fields != 3 || cross != 'x' || width < 1 || height < 1 || width > kLargest || height > kLargest)
     throw InputError("--size " + text, "not a size (WIDTHxHEIGHT, 1 to 16384 each, for example 1280x720)");
-  camera.width = width;
-  camera.height = height;
+  return {width, height};
 }
+
+namespace {
 
 CameraView namedCamera(const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
@@ -158,9 +162,7 @@ void chooseCamera(Stage& stage, const LaunchOptions& options) {
   if (!isNear(stage.camera.position()))
     throw InputError(stage.scene.file.string(), "its camera is farther than 1e12 m away (--eye, --target)");
   if (options.fovDegrees) stage.camera.fovY = glm::radians(*options.fovDegrees);
-  stage.camera.width = 320;
-  stage.camera.height = 180;
-  if (!options.size.empty()) readSize(options.size, stage.camera);
+  std::tie(stage.camera.width, stage.camera.height) = sizeOf(options.size.empty() ? "320x180" : options.size);
   checkPictureFits(stage.camera);
 }
 
@@ -279,9 +281,17 @@ SceneView Stage::at(double t) {
   return extractor_.extract(scene, view, t);
 }
 
+void useThreads(int threads) {
+  setThreadCount(threads);
+  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+}
+
 std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
-  setThreadCount(options.threads);
-  if (options.threads > 0) setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
+  useThreads(options.threads);
+  return loadStage(options, {});
+}
+
+std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& step) {
   auto stage = std::make_unique<Stage>();
   fs::path file = options.scene;
   if (file.extension() == ".json") {
@@ -294,7 +304,7 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
                                         file.stem().string() + ")");
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
-  stage->scene = loadScene(file, options.sceneName);
+  stage->scene = loadScene(file, options.sceneName, step);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

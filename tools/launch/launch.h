@@ -64,6 +64,12 @@ std::unique_ptr<Stage> openStage(const LaunchOptions& options);
 /// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openStage
 /// does it for the stage's own.
 void tellWhatIsLeftOut(Stage& stage, const Settings& settings);
+/// Its two halves, for who loads beside a window: the first before there is a context, the second on any thread.
+void useThreads(int threads);
+std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& step);
+
+/// Width and height of --size. Throws InputError.
+std::pair<int, int> sizeOf(const std::string& text);
 
 /// The same default for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual lights.
 void needPunctualLight(Stage& stage);

@@ -1,0 +1,207 @@
+#include "game/app.h"
+
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+#include "game/scene_list.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kTestFrameSeconds = 1.0 / 30; // scene time per frame under --frames
+constexpr double kTurnSeconds = 1.0 / 60;      // of the window while nothing is played
+using Clock = std::chrono::steady_clock;
+
+std::pair<int, int> windowSize(const LaunchOptions& launch) {
+  useThreads(launch.threads); // before there is a context
+  return sizeOf(launch.size);
+}
+
+} // namespace
+
+App::App(const GameOptions& options)
+    : options_(options), context_([&] {
+        const auto [width, height] = windowSize(options.launch);
+        return GlContext::window("Lambent", width, height);
+      }()),
+      hud_(context_.handle()), input_(context_.handle()), scenes_(bundledScenes()) {
+  glfwSetWindowUserPointer(context_.handle(), &dropped_);
+  glfwSetDropCallback(context_.handle(), [](GLFWwindow* window, int count, const char** files) {
+    auto& dropped = *static_cast<std::deque<std::string>*>(glfwGetWindowUserPointer(window));
+    for (int i = 0; i < count; ++i) dropped.push_back(files[i]);
+  });
+  if (!options_.frames) glfwSwapInterval(1); // a still picture need not be shown a thousand times a second
+}
+
+App::~App() = default;
+
+void App::run() {
+  if (options_.frames == 0) return; // tools/demo asks only whether a window can be opened
+  open(options_.launch.scene);
+  given_ = true;
+  auto before = Clock::now();
+  while (!context_.shouldClose() && (!options_.frames || frames_ < *options_.frames)) {
+    context_.poll();
+    std::erase_if(cancelled_, [](const auto& loading) { return loading->done(); });
+    if (!dropped_.empty()) {
+      open(dropped_.back());
+      dropped_.clear();
+    }
+    const auto now = Clock::now();
+    const double seconds = options_.frames ? kTestFrameSeconds : std::chrono::duration<double>(now - before).count();
+    before = now;
+    if (loading_) {
+      load();
+      before = Clock::now(); // the first frame is not as long as that took
+    } else if (play_)
+      play(seconds);
+    else
+      choose();
+  }
+  if (play_ && !options_.screenshot.empty()) play_->writeScreenshot(options_.screenshot);
+}
+
+/// Gives up what is there for another scene.
+void App::open(const std::string& file) {
+  cancelLoading();
+  play_.reset();
+  input_.release();
+  menu_ = given_ = false;
+  LaunchOptions launch = options_.launch;
+  launch.scene = file;
+  loading_ = std::make_unique<Loading>(launch);
+}
+
+void App::cancelLoading() {
+  if (!loading_) return;
+  loading_->cancel();
+  cancelled_.push_back(std::move(loading_));
+}
+
+void App::load() {
+  if (!loading_->done()) {
+    if (input_.escape()) {
+      hud_.say("cancelled: " + fs::path(loading_->file()).filename().string());
+      cancelLoading();
+      return;
+    }
+    showProgress(loading_->progress());
+    glfwWaitEventsTimeout(kTurnSeconds);
+    return;
+  }
+  const std::unique_ptr<Loading> loading = std::move(loading_);
+  try {
+    prepare(loading->take());
+  } catch (const InputError& e) {
+    if (given_) throw; // the command line asked for it
+    hud_.say(e.what());
+  } catch (const Cancelled&) {
+    play_.reset();
+    hud_.say("cancelled: " + fs::path(loading->file()).filename().string());
+  }
+}
+
+/// The first pictures, the window going on between their parts.
+void App::prepare(LoadedScene loaded) {
+  play_ = std::make_unique<Play>(options_, context_, hud_, std::move(loaded));
+  glfwSetWindowTitle(context_.handle(), ("Lambent: " + play_->name()).c_str());
+  auto shown = Clock::now() - std::chrono::seconds(1);
+  play_->prepare(
+      [&](const Progressed& progress) {
+        if (Clock::now() - shown < std::chrono::duration<double>(kTurnSeconds)) return;
+        context_.poll();
+        if (input_.escape() || context_.shouldClose() || !dropped_.empty()) throw Cancelled();
+        showProgress(progress);
+        shown = Clock::now();
+      },
+      [&] { hud_.keepPicture(); });
+  hud_.forgetPicture();
+}
+
+void App::showProgress(const Progressed& progress) {
+  hud_.begin();
+  hud_.drawProgress(loading_ ? fs::path(loading_->file()).filename().string() : play_->name(), progress.at,
+                    progress.share);
+  show();
+  writeState();
+}
+
+void App::show() {
+  const auto [width, height] = context_.framebufferSize();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, width, height);
+  glClearColor(0.06f, 0.06f, 0.07f, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  hud_.end();
+  context_.swap();
+}
+
+/// No scene is open: one is to be chosen.
+void App::choose() {
+  if (input_.escape()) glfwSetWindowShouldClose(context_.handle(), GLFW_TRUE);
+  hud_.begin();
+  const MenuChoice choice = hud_.drawMenu(scenes_, false);
+  show();
+  writeState();
+  if (choice.quit) glfwSetWindowShouldClose(context_.handle(), GLFW_TRUE);
+  if (!choice.scene.empty()) open(choice.scene);
+  glfwWaitEventsTimeout(kTurnSeconds);
+}
+
+void App::play(double seconds) {
+  const auto [width, height] = context_.framebufferSize();
+  if (width == 0 || height == 0) { // minimised
+    glfwWaitEventsTimeout(0.1);
+    return;
+  }
+  Wishes wishes = input_.read(hud_.keysTaken(), hud_.mouseTaken(), !menu_ && !play_->mouseDivides(), float(seconds));
+  if (std::exchange(wishes.menu, false)) menu_ = !menu_;
+  if (menu_) {
+    input_.release();
+    wishes = {}; // what is pressed now is not for the scene
+    seconds = 0;
+  }
+  hud_.begin();
+  const MenuChoice choice = menu_ ? hud_.drawMenu(scenes_, true) : MenuChoice{};
+  play_->frame(wishes, seconds);
+  hud_.end();
+  ++frames_;
+  if (options_.frames == frames_ && !options_.screenshot.empty()) {
+    play_->writeScreenshot(options_.screenshot);
+    options_.screenshot.clear();
+  }
+  context_.swap();
+  writeState();
+  menu_ &= !choice.resume && !choice.restart && !choice.home;
+  if (choice.restart) play_->restart();
+  if (choice.home) play_->home();
+  if (choice.quit) glfwSetWindowShouldClose(context_.handle(), GLFW_TRUE);
+  if (!choice.scene.empty()) open(choice.scene);
+}
+
+/// For tests that press keys: what became of them.
+void App::writeState() const {
+  if (options_.state.empty()) return;
+  const char* phase = loading_ ? "loading" : !play_ ? "choosing" : menu_ ? "menu" : frames_ ? "playing" : "preparing";
+  std::string said;
+  for (const char c : hud_.lastSaid())
+    if (c != '"' && c != '\\') said += c;
+  writeAtomically(options_.state, [&](const fs::path& temporary) {
+    std::ofstream out(temporary);
+    out << "{\"phase\": \"" << phase << "\", \"frames\": " << frames_ << ", \"said\": \"" << said << "\"";
+    if (play_ && frames_) out << ", " << play_->state();
+    out << "}\n";
+  });
+}
+
+} // namespace lambent

@@ -1,0 +1,29 @@
+// How fast frames follow one another, and what they spend their time on: for the corner of the window.
+#pragma once
+
+#include "gi/contract/figures.h"
+
+#include <deque>
+
+namespace lambent {
+
+class FrameTimes {
+ public:
+  /// A frame that came `seconds` after the one before.
+  void add(double seconds, const FrameStats& stats);
+
+  struct Frame {
+    double wholeMs = 0; // from frame to frame
+    double cpuMs = 0, gpuMs = 0;
+  };
+  const std::deque<Frame>& frames() const { return frames_; } // oldest first
+  double perSecond() const;                                   // over the last second
+  double meanMs() const;
+
+ private:
+  static constexpr size_t kMost = 240;
+  size_t lastSecond() const; // index of its first frame
+  std::deque<Frame> frames_;
+};
+
+} // namespace lambent

@@ -1,0 +1,61 @@
+// A scene on its way from disk, on a thread of its own, while the window goes on.
+#pragma once
+
+#include "game/rules/movers.h"
+#include "game/rules/things.h"
+#include "tools/launch/launch.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace lambent {
+
+/// A scene with all that needs no OpenGL.
+struct LoadedScene {
+  std::unique_ptr<Stage> stage;
+  std::unique_ptr<Movers> movers;
+  std::unique_ptr<Things> things;
+  std::unique_ptr<Solids> solids;
+};
+
+/// How far something long is.
+struct Progressed {
+  std::string at;
+  float share = 0;
+};
+
+/// Thrown out of long work where the person no longer wants it.
+struct Cancelled {};
+
+class Loading {
+ public:
+  explicit Loading(const LaunchOptions& options);
+  /// Cancels, and waits until the thread has noticed.
+  ~Loading();
+  Loading(const Loading&) = delete;
+
+  bool done() const { return done_; }
+  Progressed progress() const;
+  /// Once done. Throws what ended the loading: InputError, RunError.
+  LoadedScene take();
+  /// The thread ends at its next step: a mesh or a texture.
+  void cancel() { cancelled_ = true; }
+  const std::string& file() const { return options_.scene; }
+
+ private:
+  void load();
+  void tell(const char* at, float share);
+
+  const LaunchOptions options_;
+  std::atomic<bool> cancelled_ = false, done_ = false;
+  mutable std::mutex mutex_;
+  Progressed progress_;
+  LoadedScene loaded_;
+  std::exception_ptr failure_;
+  std::thread thread_; // last: it uses the rest
+};
+
+} // namespace lambent

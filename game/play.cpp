@@ -1,0 +1,326 @@
+#include "game/play.h"
+
+#include "engine/core/error.h"
+#include "engine/gl/objects.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A slow frame must not turn one key press into a jump through a door.
+constexpr float kLongestStep = 0.25f; // seconds
+constexpr int kRoughLights = 256;     // of the first picture
+constexpr int kRoughWarmup = 12;      // iterations before it
+constexpr float kRoughScale = 0.35f;  // of its width and height
+
+constexpr float kTorch = 5; // intensity in its middle, of a lamp's
+
+const char* gaitText(Gait gait) {
+  return gait == Gait::Walk ? "walking" : gait == Gait::Fly ? "flying: walls stop you" : "flying through walls";
+}
+
+} // namespace
+
+Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
+    : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)),
+      movers_(std::move(loaded.movers)), things_(std::move(loaded.things)), solids_(std::move(loaded.solids)),
+      shot_(stage_->shot), scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()),
+      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
+  for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
+  for (const std::string& note : stage_->notes) hud_.say(note);
+  // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
+  model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter_ * diameter_, 1e-6f);
+  // What a person chose is not chosen again.
+  const LaunchOptions& launch = options.launch;
+  model_.pacer = Pacer(options.targetMs, launch.preset.empty() && launch.set.empty() && launch.technique.empty());
+  model_.buffer = bufferByName(options.buffer);
+  model_.preset = options.launch.preset;
+  if (shot_ && !shot_->camera.empty()) path_ = *shot_;
+  double longest = 0;
+  for (const AnimationClip& clip : scene_.animations) longest = std::max(longest, clip.duration);
+  const double duration = shot_ ? shot_->seconds : longest;
+  model_.duration = duration > 0 ? duration : 1;
+  restart();
+  if (!options.truth.empty()) showTruth(options.truth == "heat" ? TruthMode::Heat : TruthMode::Split);
+}
+
+Play::~Play() {
+  if (recorder_.recording()) toggleRecording(); // what was walked is not lost
+}
+
+void Play::restart() {
+  model_.time = 0;
+  model_.paused = model_.torch = false;
+  movers_->reset();
+  things_->clear();
+  pose(0);
+  home();
+  model_.followPath = path_.has_value() && !stage_->cameraGiven;
+}
+
+void Play::home() {
+  model_.followPath = false;
+  player_.home(solids_->rays());
+}
+
+void Play::prepare(const std::function<void(const Progressed&)>& progress, const std::function<void()>& shown) {
+  const Settings wanted = gi_.settings();
+  const auto report = [&](const char* at, float from, float to) {
+    return [&progress, at, from, to](int done, int total) {
+      progress({at, from + (to - from) * float(done) / float(std::max(total, 1))});
+    };
+  };
+  progress({"shaders and textures", 0});
+  const auto [width, height] = context_.framebufferSize();
+  const bool roughFirst = !options_.frames && wanted.smc.vpls > 2 * kRoughLights && wanted.smc.warmup > kRoughWarmup;
+  if (roughFirst) {
+    gi_.settings().smc.vpls = kRoughLights;
+    gi_.settings().smc.warmup = kRoughWarmup;
+    gi_.run(viewAt(kRoughScale), report("first lights", 0.1f, 0.3f));
+    gi_.present(model_.buffer, 0, width, height);
+    shown();
+    // The second of a kind says what pictures cost: shaders are compiled, maps are drawn.
+    const FrameStats& stats = gi_.run(viewAt(0.99f * kRoughScale));
+    const double gather = stats.ms(StageId::Gather), lights = double(wanted.smc.vpls) / kRoughLights;
+    gi_.settings() = wanted;
+    model_.pacer.expect((stats.costMs() + gather * (lights - 1)) / double(kRoughScale * kRoughScale), gi_.settings());
+    if (!model_.pacer.preset().empty()) model_.preset = model_.pacer.preset();
+  }
+  gi_.run(viewAt(model_.pacer.scale()), report("all lights", roughFirst ? 0.3f : 0.1f, 1));
+}
+
+void Play::pose(double seconds) {
+  if (shot_)
+    poseShot(scene_, *shot_, model_.time);
+  else
+    animate(scene_, model_.time);
+  movers_->update(std::min(seconds, double(kLongestStep)));
+  solids_->update();
+}
+
+SceneView Play::viewAt(float scale) {
+  const auto [width, height] = context_.framebufferSize();
+  if (model_.followPath) player_.place(shotCamera(*path_, model_.time, scene_.origin));
+  const CameraView camera = player_.view(std::max(width, 1), std::max(height, 1));
+  return extractor_.extract(scene_, camera.scaled(scale), model_.time);
+}
+
+void Play::frame(const Wishes& wishes, double seconds) {
+  obey(wishes, float(seconds));
+  if (!model_.paused) {
+    model_.time += seconds;
+    if (!recorder_.recording()) model_.time = std::fmod(model_.time, model_.duration);
+  }
+  pose(seconds);
+  movePlayer(wishes, float(seconds));
+  handle(wishes);
+  things_->lampIntensity = model_.lampIntensity;
+  things_->update(*solids_, player_, std::min(float(seconds), kLongestStep));
+  carryTorch();
+
+  const auto [width, height] = context_.framebufferSize();
+  const SceneView view =
+      extractor_.extract(scene_, player_.view(width, height).scaled(model_.pacer.scale()), model_.time);
+  const FrameStats& stats = gi_.run(view);
+  times_.add(seconds, stats);
+
+  const SceneChanges& c = view.changes;
+  const mat4 pose = view.camera.worldFromView; // the camera changes also where the scale does
+  const bool moved = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
+  if (!options_.frames || options_.targetMs) pace(stats, moved);
+  truth_.update(view, gi_, stats, model_.buffer, options_.frames.has_value());
+  truth_.present(gi_, model_.buffer, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, width, height);
+  model_.hasPath = path_.has_value();
+  model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
+  model_.gait = player_.gait();
+  model_.offer = offer();
+  hud_.draw(model_, gi_, truth_, stats, times_);
+  player_.pace = model_.speed;
+  if (wishes.screenshot) report([&] { return saveScreenshot(); });
+}
+
+/// Tells the person what `action` did, or why it failed; a full disk must not end the walk.
+template <class Action> void Play::report(Action&& action) {
+  try {
+    hud_.say(action());
+  } catch (const RunError& e) {
+    hud_.say(e.what());
+  }
+}
+
+void Play::obey(const Wishes& wishes, float seconds) {
+  model_.paused ^= wishes.pause;
+  model_.help ^= wishes.help;
+  model_.panel ^= wishes.panel;
+  model_.torch ^= wishes.torch;
+  if (wishes.restart) restart();
+  if (wishes.home) {
+    home();
+    hud_.say("back where you began");
+  }
+  if (wishes.gait) {
+    player_.setGait(Gait((int(player_.gait()) + 1) % 3));
+    hud_.say(gaitText(player_.gait()));
+  }
+  if (wishes.followPath) toggleFollowing();
+  if (wishes.record) toggleRecording();
+  if (wishes.buffer && *wishes.buffer < int(bufferNames().size())) model_.buffer = Buffer(*wishes.buffer);
+  if (wishes.exposure != 0) gi_.settings().image.exposure = gi_.exposure() * std::exp2(float(wishes.exposure) / 3);
+  if (wishes.truth) showTruth(nextMode(truth_.mode()));
+  if (truth_.mode() == TruthMode::Split) {
+    constexpr float kSharePerSecond = 0.5f;
+    truth_.moveDivider(kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider);
+    truth_.divider = wishes.dividerAt.value_or(truth_.divider);
+  }
+  if (wishes.reloadShaders) {
+    const std::vector<std::string> messages = gi_.reloadShaders();
+    for (const std::string& message : messages) hud_.say(message);
+    if (messages.empty()) hud_.say("no shader file has changed");
+  }
+}
+
+/// Along the path, until the person takes over.
+void Play::movePlayer(const Wishes& wishes, float seconds) {
+  if (model_.followPath && wishes.move.any()) {
+    model_.followPath = false;
+    player_.takeOver(solids_->rays());
+  }
+  if (model_.followPath)
+    player_.place(shotCamera(*path_, model_.time, scene_.origin));
+  else if (player_.move(solids_->rays(), solids_->view(), wishes.move, std::min(seconds, kLongestStep)))
+    hud_.say("you fell out of the scene: back where you began");
+  const bool before = std::exchange(cramped_, player_.body().cramped(solids_->rays()));
+  if (cramped_ && !before) movers_->turnBack(); // nobody is crushed
+  if (recorder_.recording()) recorder_.add(model_.time, player_.view(1, 1), scene_.origin);
+}
+
+void Play::toggleFollowing() {
+  if (!path_) {
+    hud_.say("there is no camera path to follow: R records one, or open a shot (.json)");
+    return;
+  }
+  model_.followPath = !model_.followPath;
+  if (!model_.followPath) player_.takeOver(solids_->rays());
+  hud_.say(model_.followPath ? "following " + path_->file.filename().string() + " (any step ends it)"
+                             : "you have the camera");
+}
+
+/// Scene time begins with the recording, so that everything in it moves as it did.
+void Play::toggleRecording() {
+  if (!recorder_.recording()) {
+    model_.time = 0;
+    model_.paused = false;
+    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr);
+    hud_.say("recording: every frame is a camera key (R ends it)");
+    return;
+  }
+  report([&]() -> std::string {
+    const std::optional<Shot> walk = recorder_.end("out");
+    if (!walk) return "nothing was recorded";
+    path_ = *walk;
+    model_.duration = std::max(model_.duration, walk->seconds);
+    model_.followPath = true;
+    model_.time = 0;
+    return std::to_string(walk->camera.size()) + " frames in " + fs::absolute(walk->file).string() +
+           ": shown now (any step ends it), lambent record makes pictures of it";
+  });
+}
+
+void Play::pace(const FrameStats& stats, bool moved) {
+  const std::string before = model_.pacer.preset();
+  model_.pacer.took(stats, moved, gi_.settings());
+  const std::string& now = model_.pacer.preset();
+  if (now == before) return;
+  model_.preset = now;
+  hud_.say("preset " + now + ": the dearest that this machine draws in time");
+}
+
+/// A truth accumulates while nothing moves: time stands still with it, and goes on after it.
+void Play::showTruth(TruthMode mode) {
+  const bool was = truth_.mode() != TruthMode::Off, is = mode != TruthMode::Off;
+  truth_.set(mode);
+  if (was == is) return;
+  if (is && !model_.paused) hud_.say("time stands still for the truth (P lets it run)");
+  model_.paused = is ? (pausedBefore_ = model_.paused, true) : pausedBefore_;
+}
+
+/// The torch shines from beside the eyes to where they look.
+void Play::carryTorch() {
+  if (!model_.torch) {
+    if (torch_) scene_.registry.destroy(*torch_);
+    torch_.reset();
+    return;
+  }
+  const float height = player_.body().size().height;
+  LightView light;
+  light.type = LightType::Spot;
+  light.direction = player_.forward();
+  light.position = player_.position() + 0.04f * height * vec3(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
+  light.intensity = kTorch * vec3(luminance(model_.lampIntensity));
+  light.innerConeCos = 0.985f; // 10 degrees
+  light.outerConeCos = 0.927f; // 22
+  if (!torch_) torch_ = addLight(scene_, light, "torch");
+  Transform& place = scene_.registry.get<Transform>(*torch_);
+  place.translation = scene_.origin + dvec3(light.position);
+  place.rotation = rotationTowards(light.direction);
+  scene_.registry.get<WorldTransform>(*torch_).worldFromNode = place.local();
+  scene_.registry.get<PunctualLight>(*torch_).intensity = light.intensity;
+}
+
+/// What the window shows now, the panel included.
+void Play::writeScreenshot(const fs::path& png) const {
+  const auto [width, height] = context_.framebufferSize();
+  Image8 picture;
+  picture.width = width;
+  picture.height = height;
+  picture.rgb = gl::readWindow(width, height);
+  const size_t row = size_t(3) * width;
+  for (int y = 0; y < height / 2; ++y) // GL's first row is the lowest
+    std::swap_ranges(picture.rgb.begin() + y * row, picture.rgb.begin() + (y + 1) * row,
+                     picture.rgb.begin() + (height - 1 - y) * row);
+  writePng(png, picture);
+}
+
+std::string Play::saveScreenshot() const {
+  std::error_code ignored; // writePng says it when the folder is missing
+  fs::create_directories("out", ignored);
+  int number = 1;
+  const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
+  while (fs::exists(name(), ignored)) ++number;
+  const fs::path png = name();
+  writeScreenshot(png);
+  writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
+  return "screenshot in " + png.string() + ", its light beside it as .exr";
+}
+
+std::string Play::state() const {
+  const vec3 p = player_.position(), d = player_.forward();
+  char text[1024];
+  std::snprintf(text, sizeof text,
+                "\"eye\": [%.4f, %.4f, %.4f], \"forward\": [%.4f, %.4f, %.4f], \"gait\": \"%s\", \"grounded\": %s, "
+                "\"time\": %.4f, \"paused\": %s, \"following\": %s, \"recorded\": %.3f, \"buffer\": \"%s\", "
+                "\"scale\": %.3f, \"exposure\": %.5f, \"things\": %zu, \"carried\": \"%s\", \"offer\": \"%s\", "
+                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f",
+                double(p.x), double(p.y), double(p.z), double(d.x), double(d.y), double(d.z),
+                player_.gait() == Gait::Walk  ? "walk"
+                : player_.gait() == Gait::Fly ? "fly"
+                                              : "ghost",
+                player_.body().grounded() ? "true" : "false", model_.time, model_.paused ? "true" : "false",
+                model_.followPath ? "true" : "false", recorder_.recording() ? recorder_.seconds() : -1.0,
+                bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
+                things_->count(), things_->carried() ? thingName(*things_->carried()) : "", model_.offer.c_str(),
+                model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"));
+  return text;
+}
+
+} // namespace lambent

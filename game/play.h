@@ -1,0 +1,93 @@
+// One scene being played. Each turn of Play::frame reads what is wished, poses the scene, moves the player, runs GI and
+// shows the result.
+#pragma once
+
+#include "engine/platform/gl_context.h"
+#include "game/hud.h"
+#include "game/input.h"
+#include "game/loading.h"
+#include "game/rules/path_recorder.h"
+#include "game/rules/player.h"
+#include "game/truth_view.h"
+#include "gi/frame/gi_frame.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+namespace lambent {
+
+struct GameOptions {
+  LaunchOptions launch;
+  std::string buffer = "beauty";
+  std::optional<double> targetMs; // of a frame
+  std::optional<int> frames;      // for tests: quit after so many
+  std::string screenshot;         // for tests: what the window shows at the end
+  std::string truth;              // for tests: split or heat from the start
+  std::string state;              // for tests: a file that says what is going on
+};
+
+class Play {
+ public:
+  Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded);
+  ~Play();
+  Play(const Play&) = delete;
+
+  /// Draws the first pictures: a rough one, which `shown` is told of, then that of all lights. `progress` hears of
+  /// both, and may throw to end it; the play is then of no more use.
+  void prepare(const std::function<void(const Progressed&)>& progress, const std::function<void()>& shown);
+  /// One frame of so many seconds, in the window and not yet swapped.
+  void frame(const Wishes& wishes, double seconds);
+
+  /// Back to how it began.
+  void restart();
+  void home();
+  void writeScreenshot(const std::filesystem::path& png) const;
+  /// A click into the picture belongs to the divider.
+  bool mouseDivides() const { return truth_.mode() == TruthMode::Split; }
+  const std::string name() const { return scene_.file.stem().string(); }
+  /// For tests: name and value of what is going on, as JSON members.
+  std::string state() const;
+
+ private:
+  void obey(const Wishes& wishes, float seconds);
+  void handle(const Wishes& wishes);
+  void use();
+  std::string offer() const;
+  std::optional<uint32_t> lookedAt() const;
+  void pose(double seconds);
+  void movePlayer(const Wishes& wishes, float seconds);
+  SceneView viewAt(float scale);
+  void pace(const FrameStats& stats, bool moved);
+  void toggleRecording();
+  void toggleFollowing();
+  void showTruth(TruthMode mode);
+  void carryTorch();
+  std::string saveScreenshot() const;
+  template <class Action> void report(Action&& action);
+
+  const GameOptions options_;
+  GlContext& context_;
+  Hud& hud_;
+  const std::unique_ptr<Stage> stage_;
+  const std::unique_ptr<Movers> movers_;
+  const std::unique_ptr<Things> things_;
+  const std::unique_ptr<Solids> solids_;
+  const std::optional<Shot>& shot_;
+  Scene& scene_;
+  const float diameter_; // of the scene as it starts, metres
+  Player player_;
+  GiFrame gi_;
+  SceneExtractor extractor_;
+  HudModel model_;
+  FrameTimes times_;
+  PathRecorder recorder_;
+  std::optional<Shot> path_;    // that F follows: of the shot, or recorded
+  std::optional<Entity> torch_; // while it is lit
+  bool cramped_ = false;        // something was where the player is
+  mat4 pose_{0};                // of the camera in the last frame
+  TruthView truth_;
+  bool pausedBefore_ = false; // when the truth was asked for
+};
+
+} // namespace lambent
