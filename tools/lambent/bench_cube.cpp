@@ -29,26 +29,30 @@ std::vector<CubeVariant> variantsOf(const Stage& stage, bool quick) {
   all.push_back({techniqueOf(other).name, other});
   Settings cube = other;
   applyTechnique(cube, "ibrr");
-  const auto add = [&](int resolution, int lights, CubeSights sights) {
+  const auto add = [&](int resolution, int levels, int lights, CubeSights sights) {
     Settings s = cube;
     s.cube.resolution = resolution;
+    s.cube.levels = levels;
     s.cube.sights = sights;
     s.smc.vpls = lights;
-    all.push_back({"ibrr " + std::to_string(resolution) + ", " + std::to_string(lights) + " lights, " +
+    const std::string tree = levels > 0 ? " in " + std::to_string(levels) + " levels" : "";
+    all.push_back({"ibrr " + std::to_string(resolution) + tree + ", " + std::to_string(lights) + " lights, " +
                        (sights == CubeSights::Rays ? "rays" : "hemicubes"),
                    s});
   };
+  using enum CubeSights;
   const int standard = cube.cube.resolution;
   if (quick) {
-    add(16, 64, CubeSights::Rays);
+    add(16, 0, 64, Rays);
+    add(16, 2, 64, Rays);
     return all;
   }
-  for (const int resolution : {standard / 2, standard, standard * 2, standard * 4})
-    add(resolution, 750, CubeSights::Rays);
-  add(standard, 200, CubeSights::Rays);
-  add(standard, 2048, CubeSights::Rays);
-  add(standard, 200, CubeSights::Hemicubes);
-  add(standard, 750, CubeSights::Hemicubes);
+  for (const int resolution : {standard, standard * 2, standard * 4}) add(resolution, 0, 200, Rays);
+  add(standard / 4, 4, 200, Rays);
+  add(standard, 0, 750, Rays);
+  add(standard, 0, 2048, Rays);
+  add(standard, 0, 200, Hemicubes);
+  add(standard, 0, 750, Hemicubes);
   return all;
 }
 
@@ -75,7 +79,7 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
   const SceneView still = stage->at(0);
   const TracedPicture truth = tracePicture(still, stage->settings,
                                            {.buffer = ReferenceBuffer::Irradiance,
-                                            .samples = uint32_t(options.samples.value_or(options.quick ? 16 : 1024)),
+                                            .samples = uint32_t(options.samples.value_or(options.quick ? 16 : 256)),
                                             .seed = stage->seed,
                                             .cancelled = [] { return bool(interrupted); }});
   const double noise = expectedRelMse(truth.picture.mean, truth.picture.error);
@@ -116,6 +120,7 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
       row["build_s"] = (first.ms(StageId::Cube) + first.ms(StageId::NearLight)) / 1000;
       row["share"] = spreadOf(cubeMs).median / spreadOf(otherMs).median;
       row["entries"] = first.cubeEntries;
+      row["cubes"] = first.cubes;
       row["looked_up_mib"] = double(first.cubeBytes) / (1 << 20);
       row["kept_mib"] = double(first.cubeKeptBytes) / (1 << 20);
     }
@@ -135,6 +140,7 @@ void benchCube(const BenchOptions& options) {
                                {"triangles", "triangles", "%.0f"},
                                {"variant", "technique"},
                                {"build_s", "built in, s", "%.1f"},
+                               {"cubes", "cubes", "%.0f"},
                                {"entries", "entries", "%.0f"},
                                {"looked_up_mib", "looked up, MiB", "%.1f"},
                                {"kept_mib", "kept, MiB", "%.0f"},
