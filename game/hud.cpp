@@ -94,8 +94,9 @@ void Hud::end() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void Hud::draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats, const FrameTimes& times) {
-  if (model.panel) drawPanel(model, gi, truth, stats);
+void Hud::draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats,
+               const FrameTimes& times) {
+  if (model.panel) drawPanel(model, scene, gi, truth, stats);
   drawSpeed(model, times);
   if (truth.mode() == TruthMode::Off)
     drawViewLegend(model);

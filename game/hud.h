@@ -1,6 +1,7 @@
 // What is drawn over the picture: the panel, the frame rate, messages, the menu, and how far loading is.
 #pragma once
 
+#include "engine/scene/scene.h"
 #include "game/frame_times.h"
 #include "game/pace.h"
 #include "game/rules/body.h"
@@ -32,6 +33,8 @@ struct HudModel {
   bool hasPath = false, followPath = false; // a camera path: of a shot, or recorded
   std::optional<double> recordedSeconds = {};
 
+  std::optional<double> hour = {}; // of the day, 0 to 24; none: the scene's own light
+  bool dayRuns = false;
   bool torch = false;
   vec3 lampIntensity{1};  // W/sr, of all lamps
   std::string offer = {}; // what using would do now
@@ -64,7 +67,8 @@ class Hud {
   void begin();
   void end();
   /// Over the picture of the last GiFrame::run.
-  void draw(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats, const FrameTimes& times);
+  void draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats,
+            const FrameTimes& times);
   void drawProgress(const std::string& scene, const std::string& at, float share);
   /// `playing`: there is a scene to go back to.
   MenuChoice drawMenu(const std::vector<std::string>& scenes, bool playing);
@@ -74,7 +78,9 @@ class Hud {
   void forgetPicture();
 
  private:
-  void drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  void drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  void drawDay(HudModel& model);
+  void drawLights(Scene& scene);
   void drawPicture(HudModel& model, GiFrame& gi);
   void drawPlayer(HudModel& model);
   void drawTime(HudModel& model);

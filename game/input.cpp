@@ -26,6 +26,7 @@ std::vector<std::pair<const char*, const char*>> keyHelp() {
           {"L", "a lamp; again: put it away"},
           {"click", "throw what you carry (once the mouse looks around)"},
           {"Q", "flashlight"},
+          {"T", "let the day go by, or stop it"},
           {"[ ]", "darker, brighter picture"},
           {"Seeing", ""},
           {"1 ... 9, 0", "what the picture shows (the panel names them)"},
@@ -97,6 +98,7 @@ void Input::readKeys(Wishes& w) {
   w.lamp = tapped(GLFW_KEY_L);
   w.box = tapped(GLFW_KEY_B);
   w.use = tapped(GLFW_KEY_E);
+  w.dayRuns = tapped(GLFW_KEY_T);
   w.torch = tapped(GLFW_KEY_Q);
   w.record = tapped(GLFW_KEY_R);
   w.followPath = tapped(GLFW_KEY_F);

@@ -1,5 +1,7 @@
 #include "game/pace.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace lambent {
@@ -19,6 +21,8 @@ void Pacer::took(const FrameStats& stats, bool moved, Settings& settings) {
   stillFrames_ = moved ? 0 : stillFrames_ + 1;
   if (!governs_ || !asGoverned || !stats.plan[EffectId::Redraw].on) return;
   if (!moved) return; // cheaper than frames in motion will be
+  const double larger = std::sqrt(kHalfwayMs / std::max(stats.costMs(), 1.0));
+  halfway_ = std::clamp(governed_.scale * float(larger), governed_.scale, 1.0f);
   governed_.settings = settings;
   const std::string before = governed_.preset;
   governed_ = governed(std::move(governed_), stats.costMs(), targetMs_);

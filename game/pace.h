@@ -16,8 +16,9 @@ class Pacer {
   /// Scale and preset to begin with, where a frame at full scale and with these settings is expected to take so long.
   void expect(double fullMs, Settings& settings);
 
-  /// For the next frame. Where nothing has moved for a while: 1.
-  float scale() const { return moving() ? governed_.scale : 1.0f; }
+  /// For the next frame. Where nothing has moved for a while as large as half a second draws, so that whoever moves
+  /// again need not wait; in the end 1.
+  float scale() const { return moving() ? governed_.scale : stillFrames_ < 2 * kStillFrames ? halfway_ : 1.0f; }
   /// After a frame: what it took, and whether anything had moved for it. `settings` may get another preset.
   void took(const FrameStats& stats, bool moved, Settings& settings);
 
@@ -32,6 +33,7 @@ class Pacer {
 
  private:
   static constexpr double kUsable = 100; // ms
+  static constexpr double kHalfwayMs = 500;
   static constexpr int kStillFrames = 10;
   bool moving() const { return !governs_ || stillFrames_ < kStillFrames; }
 
@@ -39,6 +41,7 @@ class Pacer {
   double targetMs_;
   bool governs_ = true;
   int stillFrames_ = 0;
+  float halfway_ = 1; // scale that takes kHalfwayMs
 };
 
 } // namespace lambent

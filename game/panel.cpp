@@ -31,7 +31,7 @@ bool choose(const char* label, const std::vector<std::string>& names, std::strin
 
 } // namespace
 
-void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
+void Hud::drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float width = std::min(std::clamp(0.3f * size.x, 300 * scale_, 400 * scale_), size.x - 16);
   ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
@@ -55,6 +55,8 @@ void Hud::drawPanel(HudModel& model, GiFrame& gi, TruthView& truth, const FrameS
   if (section("Picture", true)) drawPicture(model, gi);
   if (section("You", true)) drawPlayer(model);
   if (section("Time", false)) drawTime(model);
+  if (section("Time of day", true)) drawDay(model);
+  if (section("Lights", false)) drawLights(scene);
   if (section("Speed and quality", true)) drawQuality(model, gi);
   if (truth.mode() != TruthMode::Off && section("Truth", true)) drawTruthFigures(truth);
   if (section("Where the time goes", false)) drawStages(stats);

@@ -21,7 +21,9 @@ constexpr int kRoughLights = 256;     // of the first picture
 constexpr int kRoughWarmup = 12;      // iterations before it
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
-constexpr float kTorch = 5; // intensity in its middle, of a lamp's
+constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
+constexpr double kMorning = 9;           // that it begins at
+constexpr float kTorch = 5;              // intensity in its middle, of a lamp's
 
 const char* gaitText(Gait gait) {
   return gait == Gait::Walk ? "walking" : gait == Gait::Fly ? "flying: walls stop you" : "flying through walls";
@@ -33,7 +35,8 @@ Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene
     : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)),
       movers_(std::move(loaded.movers)), things_(std::move(loaded.things)), solids_(std::move(loaded.solids)),
       shot_(stage_->shot), scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()),
-      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
+      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), day_(scene_),
+      truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
@@ -102,6 +105,10 @@ void Play::pose(double seconds) {
     poseShot(scene_, *shot_, model_.time);
   else
     animate(scene_, model_.time);
+  if (model_.hour && model_.dayRuns && !model_.paused)
+    model_.hour = std::fmod(*model_.hour + kHoursPerSecond * seconds, 24.0);
+  if (day_.hour() != model_.hour) day_.set(model_.hour);
+  day_.apply();
   movers_->update(std::min(seconds, double(kLongestStep)));
   solids_->update();
 }
@@ -144,7 +151,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
   model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
   model_.gait = player_.gait();
   model_.offer = offer();
-  hud_.draw(model_, gi_, truth_, stats, times_);
+  hud_.draw(model_, scene_, gi_, truth_, stats, times_);
   player_.pace = model_.speed;
   if (wishes.screenshot) report([&] { return saveScreenshot(); });
 }
@@ -163,6 +170,10 @@ void Play::obey(const Wishes& wishes, float seconds) {
   model_.help ^= wishes.help;
   model_.panel ^= wishes.panel;
   model_.torch ^= wishes.torch;
+  if (wishes.dayRuns) {
+    model_.dayRuns = !model_.dayRuns || !model_.hour;
+    if (!model_.hour) model_.hour = kMorning;
+  }
   if (wishes.restart) restart();
   if (wishes.home) {
     home();
@@ -310,7 +321,7 @@ std::string Play::state() const {
                 "\"eye\": [%.4f, %.4f, %.4f], \"forward\": [%.4f, %.4f, %.4f], \"gait\": \"%s\", \"grounded\": %s, "
                 "\"time\": %.4f, \"paused\": %s, \"following\": %s, \"recorded\": %.3f, \"buffer\": \"%s\", "
                 "\"scale\": %.3f, \"exposure\": %.5f, \"things\": %zu, \"carried\": \"%s\", \"offer\": \"%s\", "
-                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f",
+                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f, \"hour\": %.3f",
                 double(p.x), double(p.y), double(p.z), double(d.x), double(d.y), double(d.z),
                 player_.gait() == Gait::Walk  ? "walk"
                 : player_.gait() == Gait::Fly ? "fly"
@@ -319,7 +330,8 @@ std::string Play::state() const {
                 model_.followPath ? "true" : "false", recorder_.recording() ? recorder_.seconds() : -1.0,
                 bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
                 things_->count(), things_->carried() ? thingName(*things_->carried()) : "", model_.offer.c_str(),
-                model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"));
+                model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"),
+                model_.hour.value_or(-1));
   return text;
 }
 

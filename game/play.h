@@ -6,6 +6,7 @@
 #include "game/hud.h"
 #include "game/input.h"
 #include "game/loading.h"
+#include "game/rules/day.h"
 #include "game/rules/path_recorder.h"
 #include "game/rules/player.h"
 #include "game/truth_view.h"
@@ -82,7 +83,8 @@ class Play {
   HudModel model_;
   FrameTimes times_;
   PathRecorder recorder_;
-  std::optional<Shot> path_;    // that F follows: of the shot, or recorded
+  std::optional<Shot> path_; // that F follows: of the shot, or recorded
+  Day day_;
   std::optional<Entity> torch_; // while it is lit
   bool cramped_ = false;        // something was where the player is
   mat4 pose_{0};                // of the camera in the last frame
