@@ -9,9 +9,10 @@
 #include "shared/layered_cube.h"
 #include "shared/octahedral.h"
 
-layout(std430, binding = 2) restrict readonly buffer Firsts { uint firsts[]; };
-layout(std430, binding = 5) restrict readonly buffer Entries { CubeTexel entries[]; };
-layout(std430, binding = 6) restrict readonly buffer Nodes { CubeNode nodes[]; };
+// Texture buffers: software Mesa reads them faster than storage buffers.
+layout(binding = 10) uniform usamplerBuffer firsts;  // two texels a column: of entries that face back along its axis, and of others
+layout(binding = 11) uniform usamplerBuffer entries; // CubeTexel
+layout(binding = 12) uniform usamplerBuffer nodes;   // CubeNode, two texels each
 uniform int resolution;  // texels along an edge of each cube
 uniform float brightest; // irradiance of the brightest entry, W/m²
 layout(location = 0) out vec4 outIrradiance;
@@ -43,13 +44,14 @@ struct Cube {
 };
 
 Cube cubeAt(vec3 position) {
-  uint node = 0u;
-  while (nodes[node].children != 0u) {
-    CubeNode n = nodes[node];
-    uvec3 far = uvec3(greaterThan(position, n.corner + 0.5 * float(resolution) * n.texel));
-    node = n.children + far.x + 2u * far.y + 4u * far.z;
+  for (int node = 0;;) {
+    uvec4 place = texelFetch(nodes, 2 * node), links = texelFetch(nodes, 2 * node + 1);
+    vec3 corner = uintBitsToFloat(place.xyz);
+    float texel = uintBitsToFloat(place.w);
+    if (links.x == 0u) return Cube(corner, texel, int(links.y));
+    ivec3 far = ivec3(greaterThan(position, corner + 0.5 * float(resolution) * texel));
+    node = int(links.x) + far.x + 2 * far.y + 4 * far.z;
   }
-  return Cube(nodes[node].corner, nodes[node].texel, int(nodes[node].firstColumn));
 }
 
 struct Found {
@@ -67,9 +69,11 @@ Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal)
   int blocks = resolution / kCubeBlock;
   ivec2 block = column / kCubeBlock, within = column % kCubeBlock;
   int index = cube.firstColumn + ((axis * blocks + block.y) * blocks + block.x) * kCubeBlock * kCubeBlock + within.y * kCubeBlock + within.x;
-  uint last = firsts[index + 1];
-  for (uint i = firsts[index]; i < last; ++i) {
-    CubeTexel t = entries[i];
+  index = 2 * index + int(normal[axis] > 0.0);
+  int last = int(texelFetch(firsts, index + 1).r);
+  for (int i = int(texelFetch(firsts, index).r); i < last; ++i) {
+    uvec4 packed_ = texelFetch(entries, i);
+    CubeTexel t = CubeTexel(packed_.x, uintBitsToFloat(packed_.y), packed_.z, packed_.w);
     vec3 n = unitFromOctahedral(unpackSnorm2x16(t.normal));
     float height = abs(dot(x, n) - t.distance) / cube.texel;
     if (height > kSamePlane || dot(n, normal) < kLeastCos) continue;

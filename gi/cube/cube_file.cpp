@@ -127,7 +127,7 @@ LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
   std::ifstream in(file, std::ios::binary);
   Header header;
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
-    throw InputError(file.string(), "is not a layered depth cube (--cube wants a new name, or what it wrote before)");
+    throw InputError(file.string(), "is not a layered depth cube (--cube-file wants a new name, or what it wrote before)");
   if (header.version != kVersion || header.entryBytes != kBytes)
     throw InputError(file.string(), "is a layered depth cube of another version of the program");
   if (header.key != key)

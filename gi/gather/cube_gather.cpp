@@ -29,9 +29,9 @@ class CubeGather : public IndirectStage {
     if (in.stores && update(in, stats)) nearDone_ = 0;
     if (in.stores && cube_.pending() == 0 && nearDone_ < kAllNear && traceNear(in, stats)) upload();
     if (nearDone_ != kAllNear) return {};
-    stats.cubeEntries = entries_.bytes() / sizeof(CubeTexel);
+    stats.cubeEntries = entries_.buffer.bytes() / sizeof(CubeTexel);
     stats.cubes = cube_.surfaces().cubes().size();
-    stats.cubeBytes = entries_.bytes() + firsts_.bytes() + nodes_.bytes();
+    stats.cubeBytes = entries_.buffer.bytes() + firsts_.buffer.bytes() + nodes_.buffer.bytes();
     stats.cubeKeptBytes = cube_.bytesKept() + near_.size() * sizeof(vec3);
     const gl::PassScope scope = context_.scope(StageId::Gather);
     target_.fit(in.surfaces);
@@ -40,9 +40,9 @@ class CubeGather : public IndirectStage {
     program.use();
     program.set("resolution", cube_.surfaces().cubes().front().resolution);
     program.set("brightest", brightest_);
-    firsts_.bindStorage(2);
-    entries_.bindStorage(5);
-    nodes_.bindStorage(6);
+    firsts_.texels.bind(10);
+    entries_.texels.bind(11);
+    nodes_.texels.bind(12);
     target_.bind();
     gl::PipelineState{.width = target_.size().x, .height = target_.size().y}.apply();
     gl::drawFullscreen();
@@ -155,33 +155,46 @@ class CubeGather : public IndirectStage {
       brightest_ = std::max(brightest_, maxComponent(irradiance(i)));
     std::vector<CubeTexel> texels;
     std::vector<uint32_t> firsts{0};
-    firsts.reserve(surfaces.firsts().size());
+    firsts.reserve(2 * surfaces.firsts().size());
     for (size_t c = 0; c + 1 < surfaces.firsts().size(); ++c) {
       const CubeGrid& grid = surfaces.cubes()[c / surfaces.columns()];
       const CubeGrid::Place at = grid.placeOf(c % surfaces.columns());
-      for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
-        const CubeEntry& entry = surfaces.entries()[e];
-        if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
-        const vec3 x = entry.position - grid.corner;
-        const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
-        const uvec2 place = uvec2(glm::clamp(within, 0.0f, 0.999f) * 256.0f);
-        const vec3 light = glm::max(irradiance(e), vec3(0)) / (brightest_ * kCubeRange);
-        texels.push_back({glm::packSnorm2x16(octahedralFromUnit(entry.normal)), glm::dot(x, entry.normal),
-                          glm::packF3x9_E1x5(light), entry.neighbours | place.x << 8 | place.y << 16});
+      for (const bool side : {false, true}) {
+        for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+          const CubeEntry& entry = surfaces.entries()[e];
+          if (entry.normal[at.axis] > 0 != side) continue;
+          if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
+          const vec3 x = entry.position - grid.corner;
+          const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
+          const uvec2 place = uvec2(glm::clamp(within, 0.0f, 0.999f) * 256.0f);
+          const vec3 light = glm::max(irradiance(e), vec3(0)) / (brightest_ * kCubeRange);
+          texels.push_back({glm::packSnorm2x16(octahedralFromUnit(entry.normal)), glm::dot(x, entry.normal),
+                            glm::packF3x9_E1x5(light), entry.neighbours | place.x << 8 | place.y << 16});
+        }
+        firsts.push_back(uint32_t(texels.size()));
       }
-      firsts.push_back(uint32_t(texels.size()));
     }
-    copy(entries_, "cube/entries", std::span<const CubeTexel>(texels));
-    copy(firsts_, "cube/firsts", std::span<const uint32_t>(firsts));
-    copy(nodes_, "cube/nodes", surfaces.nodes());
+    copy(entries_, "cube/entries", GL_RGBA32UI, std::span<const CubeTexel>(texels));
+    copy(firsts_, "cube/firsts", GL_R32UI, std::span<const uint32_t>(firsts));
+    copy(nodes_, "cube/nodes", GL_RGBA32UI, surfaces.nodes());
   }
 
-  template <class T> void copy(gl::Buffer& buffer, const char* label, std::span<const T> data) {
+  /// What a shader fetches by number.
+  struct Texels {
+    gl::Buffer buffer;
+    gl::Texture texels;
+  };
+
+  template <class T> void copy(Texels& to, const char* label, GLenum format, std::span<const T> data) {
     const uint64_t bytes = std::max<uint64_t>(data.size_bytes(), sizeof(T));
-    if (!buffer || buffer.bytes() != bytes) buffer = gl::Buffer(label, bytes, nullptr);
+    if (!to.buffer || to.buffer.bytes() != bytes) {
+      to.texels = {};
+      to.buffer = gl::Buffer(label, bytes, nullptr);
+      to.texels = gl::Texture::ofBuffer(label, format, to.buffer);
+    }
     if (data.empty()) return;
     changes_.reserve(bytes);
-    changes_.upload(buffer, 0, data.size_bytes(), data.data());
+    changes_.upload(to.buffer, 0, data.size_bytes(), data.data());
   }
 
   PassContext context_;
@@ -192,7 +205,7 @@ class CubeGather : public IndirectStage {
   size_t nearDone_ = 0;    // entries below it have theirs
   bool opened_ = false;    // from a file, and not uploaded yet
   float brightest_ = 1;    // W/m²
-  gl::Buffer firsts_, entries_, nodes_;
+  Texels firsts_, entries_, nodes_;
   gl::Ring changes_{"cube/changes"};
   LightTarget target_{"cube gather"};
 };

@@ -237,7 +237,7 @@ struct Settings {
   CubeSettings cube;
   StandInSettings standIn;
   HemicubeSettings hemicubes;
-  std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube)
+  std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube-file)
   HistorySettings history;
   FilterSettings filter;
   ImageSettings image;

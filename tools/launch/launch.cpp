@@ -238,7 +238,7 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
-  command.add_option("--cube", options.cube,
+  command.add_option("--cube-file", options.cube,
                      "ibrr: file that keeps its layered depth cube; read where it fits the scene, else written; a "
                      "build that was stopped goes on from it");
   command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")
