@@ -70,7 +70,12 @@ class CubeGather : public IndirectStage {
       hemicubes_.tell(stats);
       changed |= work.changed;
       if (first) total = work.lightsIn + cube_.pending();
-      if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
+      try {
+        if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
+      } catch (...) { // somebody stops it: another run goes on from here
+        if (stored) saveCube(in.settings.cubeFile, cube_, cubeKey(in.world.view));
+        throw;
+      }
       const bool done = cube_.pending() == 0;
       if (stored && changed && (done || Clock::now() - saved > saveAfter)) {
         const Clock::time_point begin = Clock::now();

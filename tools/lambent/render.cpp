@@ -43,7 +43,10 @@ void render(const RenderOptions& options) {
   FrameStats drawn; // of the last frame that was: once the lights have settled the picture stays
   int frames = std::max(1, options.frames);
   for (int i = 0; i < frames; ++i) {
-    stats = &gi.run(stage->at(0), [&](int done, int total) { progress.update(done, total); });
+    stats = &gi.run(stage->at(0), [&](int done, int total) {
+      progress.update(done, total);
+      if (interrupted) throw RunError("interrupted");
+    });
     sayWarning(*stats);
     if (stats->plan.on(EffectId::Redraw)) drawn = *stats;
     if (options.frames == 0 && stats->plan.on(EffectId::History)) frames = stage->settings.history.frames;
