@@ -131,7 +131,7 @@ void main() {
   if (nearest.w > 1e8) // a mapped normal may lead to another image than the surface's own
     for (int axis = 0; axis < 3; ++axis) lookUp(cube, axis, 1.0, x, normal, sum, total, nearest);
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
-  outIrradiance = vec4(irradiance, 1.0);
+  outIrradiance = vec4(irradiance, total > 1e-3 || nearest.w < 1e8 ? 1.0 : 0.0);
 #ifdef GLOSSY
   // As if light from around the mirrored direction were even.
   Receiver receiver = receiverAt(pixel, position, normal);

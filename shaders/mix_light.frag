@@ -12,8 +12,10 @@ layout(location = 1) out vec4 outGlossy;
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = mix(texelFetch(irradianceA, pixel, 0), texelFetch(irradianceB, pixel, 0), share);
+  vec4 b = texelFetch(irradianceB, pixel, 0);
+  float part = share * b.a; // it knows nothing of some pixels
+  outIrradiance = vec4(mix(texelFetch(irradianceA, pixel, 0).rgb, b.rgb, part), 1.0);
 #ifdef GLOSSY
-  outGlossy = mix(texelFetch(glossyA, pixel, 0), texelFetch(glossyB, pixel, 0), share);
+  outGlossy = mix(texelFetch(glossyA, pixel, 0), texelFetch(glossyB, pixel, 0), part);
 #endif
 }

@@ -127,7 +127,8 @@ LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
   std::ifstream in(file, std::ios::binary);
   Header header;
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
-    throw InputError(file.string(), "is not a layered depth cube (--cube-file wants a new name, or what it wrote before)");
+    throw InputError(file.string(),
+                     "is not a layered depth cube (--cube-file wants a new name, or what it wrote before)");
   if (header.version != kVersion || header.entryBytes != kBytes)
     throw InputError(file.string(), "is a layered depth cube of another version of the program");
   if (header.key != key)
@@ -142,7 +143,9 @@ LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
     in.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
     if (!in || in.peek() != std::ifstream::traits_type::eof() || checksum != reader.hash.result())
       throw InputError(file.string(), damaged);
-  } catch (const std::ios_base::failure&) {
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) { // short, or counts that no memory holds
     throw InputError(file.string(), damaged);
   }
   if (!CubeFile::whole(cube)) throw InputError(file.string(), damaged);

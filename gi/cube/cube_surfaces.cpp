@@ -1,5 +1,7 @@
 #include "gi/cube/cube_surfaces.h"
 
+#include "engine/core/error.h"
+
 #include <algorithm>
 #include <iterator>
 
@@ -21,6 +23,9 @@ struct CubeSurfaces::Growth {
     return moved->touches(Aabb{box.lo - kAround * grid.texel, box.hi + kAround * grid.texel});
   }
   void addLeaf(uint32_t node, DepthCube cube, uint32_t was) {
+    constexpr size_t kMostColumns = size_t(1) << 30;
+    if ((cubes.size() + 1) * before.columns() > kMostColumns)
+      throw RunError("the tree of layered depth cubes has too many columns (lower cube.levels or raise cube.split)");
     nodes[node].firstColumn = uint32_t(cubes.size() * before.columns());
     cubes.push_back(std::move(cube));
     from.push_back(was);
@@ -55,8 +60,9 @@ struct CubeSurfaces::Growth {
 };
 
 bool CubeSurfaces::holds(const Aabb& boundsWorld) const {
-  return !empty() && glm::all(glm::greaterThanEqual(boundsWorld.lo, lo_ - texel())) &&
-         glm::all(glm::lessThanEqual(boundsWorld.hi, lo_ + edge_ + texel())) &&
+  const float around = levels_ > 0 ? 0 : texel(); // narrow cubes of a tree reach less far
+  return !empty() && glm::all(glm::greaterThanEqual(boundsWorld.lo, lo_ - around)) &&
+         glm::all(glm::lessThanEqual(boundsWorld.hi, lo_ + edge_ + around)) &&
          maxComponent(boundsWorld.size()) > 0.5f * edge_;
 }
 

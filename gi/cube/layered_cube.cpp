@@ -31,12 +31,10 @@ bool touches(const Disturbance& moved, const Ray& ray, float radius) {
   });
 }
 
-/// Whether anything within `reach` of what moved is in front of a light.
-bool sees(const VirtualLight& light, const Disturbance& moved, float reach) {
-  return std::any_of(moved.boxes().begin(), moved.boxes().end(), [&](const Aabb& box) {
-    const vec3 farthest = glm::mix(box.lo, box.hi, glm::greaterThan(light.normal, vec3(0)));
-    return glm::dot(farthest - light.position, light.normal) > -reach;
-  });
+/// Whether anything within `reach` of a box is in front of a light.
+bool sees(const VirtualLight& light, const Aabb& box, float reach) {
+  const vec3 farthest = glm::mix(box.lo, box.hi, glm::greaterThan(light.normal, vec3(0)));
+  return glm::dot(farthest - light.position, light.normal) > -reach;
 }
 
 } // namespace
@@ -67,7 +65,7 @@ dvec3 LayeredCube::bring(const CubeEntry& entry, const VirtualLight& light) cons
 CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   CubeWork work;
   const bool anew = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
-                    !surfaces_.holds(in.boundsWorld) || (in.lights.size() + kBatch - 1) / kBatch != words();
+                    !surfaces_.holds(in.boundsWorld) || in.lights.size() != in_.size();
   if (anew) {
     settings_ = in.settings;
     gather_ = in.gather;
@@ -79,7 +77,6 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   } else if (!in.moved.empty()) {
     adoptSurfaces(in, work);
   }
-  in_.resize(in.lights.size());
   pending_ = 0;
   for (size_t w = 0; w < words(); ++w) {
     Word out = 0, relit = 0, add = 0;
@@ -88,7 +85,7 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
       const VirtualLight& light = in.lights[w * kBatch + b];
       if (sameLight(next[b], light)) continue;
       const Word bit = Word(1) << b;
-      if (sameHemisphere(next[b], light))
+      if (sameHemisphere(next[b], light) && next[b].radiance != vec3(0)) // black ones were not looked at
         relit |= bit;
       else if (next[b].alive)
         out |= bit;
@@ -227,13 +224,20 @@ void LayeredCube::adoptSurfaces(const CubeInputs& in, CubeWork& work) {
   sums_ = std::move(sums);
   work.changed = true;
   std::vector<uint8_t> isNew(from.size());
-  for (size_t e = 0; e < from.size(); ++e) isNew[e] = from[e] == kNone;
+  std::vector<Aabb> places(in.moved.boxes().begin(), in.moved.boxes().end());
+  Aabb anew; // also behind what moved, and where a tree grew
+  for (size_t e = 0; e < from.size(); ++e) {
+    isNew[e] = from[e] == kNone;
+    if (isNew[e]) anew.add(surfaces_.entries()[e].position);
+  }
+  if (!anew.empty()) places.push_back(anew);
   for (size_t w = 0; w < words(); ++w) {
     Word which = 0;
     for (size_t b = 0; b < kBatch && w * kBatch + b < in_.size(); ++b) {
       const VirtualLight& light = in_[w * kBatch + size_t(b)];
       // A hemicube that sees the place of a mover, or entries that are new beside it, is made anew.
-      if (light.alive && (settings_.sights == CubeSights::Rays || sees(light, in.moved, 4 * surfaces_.texel())))
+      const auto inFront = [&](const Aabb& box) { return sees(light, box, 4 * surfaces_.texel()); };
+      if (light.alive && (settings_.sights == CubeSights::Rays || std::ranges::any_of(places, inFront)))
         which |= Word(1) << b;
     }
     if (which) put(in, w, which, work, &isNew);

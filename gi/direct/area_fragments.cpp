@@ -274,8 +274,11 @@ class Fragments {
     }
   }
 
+  /// By as many rays as the threshold; beside what is dark, by one: a step from nothing is seen however small.
   bool apart(float a, float b) const {
-    return a >= 0 && b >= 0 && std::abs(a - b) * float(settings_.rays) >= float(settings_.threshold);
+    if (a < 0 || b < 0) return false;
+    const float rays = std::abs(a - b) * float(settings_.rays);
+    return rays >= float(std::min(a, b) > 0 ? settings_.threshold : 1);
   }
 
   /// Splits fragments whose sub-fragments see other shares than finer ones, or others as large, across a border.

@@ -249,12 +249,12 @@ std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixel
         if (!askAll && q.quarters[kFirst]) {
           uint64_t opened = 0;
           for (int k = 0; k < all(); ++k) opened += q.wanted(k) && q.open[size_t(k)];
-          if (q.traced == 0 || (opened != 0 && opened != q.traced)) {
+          if (opened == 0 || opened != q.traced) { // few that are open hide among many that are not
             q.quarters.fill(true);
             q.quarters[kFirst] = false;
             return true;
           }
-          for (int k = 0; k < all(); ++k) q.open[size_t(k)] = opened > 0;
+          q.open.fill(true);
         }
         addUp(q, seen[i]);
         return false;

@@ -52,7 +52,7 @@ class AreaVisibility {
 
   /// Of patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
   std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
-  /// Of pixels. Unless all rays are asked for: where a quarter of them agree, the others are not.
+  /// Of pixels. Unless all rays are asked for: where a quarter of them is open, the others are not asked.
   std::vector<AreaSeen> ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const;
   /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
   /// are a quarter.

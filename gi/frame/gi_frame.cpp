@@ -167,7 +167,10 @@ Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& pl
                                         const GBuffer& surfaces, Patches& patches,
                                         const std::function<void(int, int)>& progress) {
   Indirect out;
-  if (!plan.on(EffectId::Indirect)) return out;
+  if (!plan.on(EffectId::Indirect)) {
+    standIn.forget();
+    return out;
+  }
   const DrawCount draws;
   const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
   const int bounces = more ? settings.smc.bounces : 1;

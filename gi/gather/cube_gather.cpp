@@ -73,18 +73,23 @@ class CubeGather : public IndirectStage {
       try {
         if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
       } catch (...) { // somebody stops it: another run goes on from here
-        if (stored) saveCube(in.settings.cubeFile, cube_, cubeKey(in.world.view));
+        if (stored) saveCube(in.settings.cubeFile, cube_, keyOf(in));
         throw;
       }
       const bool done = cube_.pending() == 0;
       if (stored && changed && (done || Clock::now() - saved > saveAfter)) {
         const Clock::time_point begin = Clock::now();
-        saveCube(in.settings.cubeFile, cube_, cubeKey(in.world.view));
+        saveCube(in.settings.cubeFile, cube_, keyOf(in));
         saved = Clock::now();
         saveAfter = std::max(saveAfter, 20 * (saved - begin));
       }
       if (done || (put += work.lightsIn) >= in.most) return std::exchange(opened_, false) || changed;
     }
+  }
+
+  /// Masks that are not cut out make other surfaces.
+  static uint64_t keyOf(const IndirectInputs& in) {
+    return cubeKey(in.world.view) + (in.settings.effects[EffectId::Alpha] == EffectMode::Off ? 1 : 0);
   }
 
   /// Takes over what is in the file of the settings. A cube that does not fit is built anew; what is no cube at all
@@ -97,7 +102,7 @@ class CubeGather : public IndirectStage {
       return true;
     }
     try {
-      cube_ = loadCube(file, cubeKey(in.world.view));
+      cube_ = loadCube(file, keyOf(in));
       opened_ = true;
       return true;
     } catch (const InputError& e) {
@@ -192,6 +197,8 @@ class CubeGather : public IndirectStage {
 
   template <class T> void copy(Texels& to, const char* label, GLenum format, std::span<const T> data) {
     const uint64_t bytes = std::max<uint64_t>(data.size_bytes(), sizeof(T));
+    if (bytes / (format == GL_R32UI ? 4 : 16) > gl::mostBufferTexels())
+      throw RunError("the layered depth cube is larger than this GPU's buffers (lower cube.resolution or cube.levels)");
     if (!to.buffer || to.buffer.bytes() != bytes) {
       to.texels = {};
       to.buffer = gl::Buffer(label, bytes, nullptr);

@@ -24,12 +24,12 @@ void StandIn::watch(const SceneView& view, const Settings& settings) {
   const bool changed = c.first || c.lights || c.geometry || c.instances || !sameLight(settings, settings_);
   settings_ = settings;
   still_ = changed ? 0 : still_ + 1;
+  stale_ |= changed && cube_;
+  if (stale_ && share_ <= 0) drop();
   const GatherRow& gather = rowOf(settings.gather.mode);
-  wanted_ = settings.standIn.after > 0 && still_ >= settings.standIn.after && !gather.stored &&
+  wanted_ = !stale_ && settings.standIn.after > 0 && still_ >= settings.standIn.after && !gather.stored &&
             settings.vpl.source != VplSource::None;
-  if (wanted_ || share_ > 0) return;
-  photons_ = nullptr;
-  cube_ = nullptr;
+  if (!wanted_ && share_ <= 0) drop();
 }
 
 LightOnSurfaces StandIn::run(const StandInInputs& in, const LightOnSurfaces& gathered, FrameStats& stats) {
@@ -58,7 +58,7 @@ LightOnSurfaces StandIn::run(const StandInInputs& in, const LightOnSurfaces& gat
                                             stats);
   if (!stored.irradiance) return gathered; // not all is in it yet
   share_ = std::clamp(share_ + (wanted_ ? 1 : -1) / kMixed, 0.0f, 1.0f);
-  if (alone()) return stored;
+  if (alone() || !gathered.irradiance) return stored;
   const gl::PassScope scope = context_.scope(StageId::Gather);
   if (!mixed_) mixed_ = std::make_unique<LightTarget>("stand-in");
   mixed_->fit(in.surfaces);

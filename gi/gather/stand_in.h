@@ -31,15 +31,13 @@ class StandIn {
   void watch(const SceneView& view, const Settings& settings);
   /// The scene is another.
   void forget() {
-    photons_ = nullptr;
-    cube_ = nullptr;
+    drop();
     still_ = 0;
     wanted_ = false;
-    share_ = 0;
   }
 
   /// It shows all of the indirect light: nothing else need be gathered.
-  bool alone() const { return share_ >= 1; }
+  bool alone() const { return wanted_ && share_ >= 1; }
   /// The cube is being built, or comes or goes: pictures change though nothing moves.
   bool busy() const { return (wanted_ && !alone()) || (!wanted_ && share_ > 0); }
 
@@ -47,6 +45,14 @@ class StandIn {
   LightOnSurfaces run(const StandInInputs& in, const LightOnSurfaces& gathered, FrameStats& stats);
 
  private:
+  /// Gives up the cube.
+  void drop() {
+    photons_ = nullptr;
+    cube_ = nullptr;
+    share_ = 0;
+    stale_ = false;
+  }
+
   PassContext context_;
   std::unique_ptr<LightSource> photons_;
   std::unique_ptr<IndirectStage> cube_;
@@ -55,7 +61,8 @@ class StandIn {
   Settings settings_; // that the cube was built for
   int still_ = 0;     // frames
   bool wanted_ = false;
-  float share_ = 0; // of the light that is shown
+  bool stale_ = false; // light changed after the cube was begun: it goes before another is built
+  float share_ = 0;    // of the light that is shown
 };
 
 } // namespace lambent

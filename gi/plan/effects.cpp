@@ -207,7 +207,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool stored = rowOf(settings.gather.mode).stored;
   decide(EffectId::Gather, !indirect ? Answer{false, "no indirect light"}
                            : alone   ? Answer{false, "nothing has changed for long: a cube holds all light"}
-                           : stored  ? sameLight && !facts.drawingChanged
+                           : stored  ? sameLight && !facts.drawingChanged && !facts.lightArrived
                                            ? Answer{false, "the cube holds the light of what there is"}
                                            : Answer{true, "the cube follows lights and objects"}
                                      : Answer{true, "every picture gathers its light"});

@@ -260,6 +260,37 @@ TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
   EXPECT_EQ(less.rays.occlusion, 0u);
 }
 
+/// As many words of bits, and other lights in them.
+TEST(LayeredCube, FewerSlotsLeaveNoLightBehind) {
+  CubeWorld w;
+  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
+  w.place();
+  for (int i = 0; i < 20; ++i) w.lights.push_back(lightAt({0.09f * float(i) - 0.9f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
+  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  LayeredCube cube, anew;
+  cube.update(w.inputs(settings));
+  w.lights.resize(5);
+  cube.update(w.inputs(settings));
+  anew.update(w.inputs(settings));
+  for (size_t e = 0; e < anew.surfaces().entries().size(); ++e)
+    ASSERT_LT(glm::length(cube.irradiance(e) - anew.irradiance(e)), 1e-6f);
+}
+
+TEST(LayeredCube, ALightThatWasBlackIsLookedAtWhenItShines) {
+  CubeWorld w;
+  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
+  w.place();
+  w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(0)));
+  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  LayeredCube cube;
+  cube.update(w.inputs(settings));
+  w.lights[0].radiance = vec3(100);
+  cube.update(w.inputs(settings));
+  float most = 0;
+  for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) most = std::max(most, cube.irradiance(e).x);
+  EXPECT_GT(most, 0.1f);
+}
+
 /// A hemicube's texels are wider than the rays that ask for each entry: they disagree along the edges of shadows.
 TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
   test::RandomWorld world(0.01f);

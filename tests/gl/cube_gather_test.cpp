@@ -203,6 +203,47 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   EXPECT_LT(most, 0.02);
 }
 
+/// A cube that is wanted again before it is gone shows the light of now, and settings may change while it stands in.
+TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
+  settings = {};
+  settings.smc.vpls = 128;
+  settings.smc.bounces = 2;
+  settings.image.exposure = 1;
+  settings.cube.resolution = 32;
+  settings.standIn.after = 4;
+  settings.standIn.perFrame = 256;
+  GiFrame gi(settings);
+  gi.run(room.scene.view());
+  const auto untilAlone = [&] {
+    for (int f = 0; f < 200; ++f)
+      if (!gi.run(still()).plan.on(EffectId::Gather)) return;
+    FAIL() << "it never stands in";
+  };
+  const auto isThatOfNow = [&](const char* when) {
+    Settings own = gi.settings();
+    applyTechnique(own, "ibrr");
+    GiFrame stored(own);
+    stored.run(room.scene.view());
+    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, stored.read(Buffer::Irradiance).pixels) << when;
+  };
+  untilAlone();
+  room.scene.lights[0].position.x = -0.4f;
+  SceneView view = still();
+  view.changes.lights = true;
+  gi.run(view);
+  untilAlone();
+  isThatOfNow("after a lamp moved");
+  gi.settings().gather.disk = 2;
+  EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
+  untilAlone();
+  isThatOfNow("after a setting changed");
+  gi.settings().standIn.after = 0;
+  for (int f = 0; f < 20; ++f) EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
+  gi.settings().standIn.after = 4;
+  gi.settings().effects[EffectId::Gather] = EffectMode::Off;
+  for (int f = 0; f < 12; ++f) gi.run(still());
+}
+
 TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
   for (const float turn : {0.0f, 0.3f, 0.785f}) {
     HandScene scene;
