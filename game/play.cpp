@@ -331,8 +331,13 @@ std::string Play::state() const {
                 bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
                 things_->count(), things_->carried() ? thingName(*things_->carried()) : "", model_.offer.c_str(),
                 model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"),
-                model_.hour.value_or(-1));
-  return text;
+                model_.hour.value_or(-1), times_.meanMs());
+  std::string all = text;
+  std::array<bool, kStages> stages{};
+  stages.fill(true);
+  for (const FigureColumn& column : columnsOf(gi_.stats(), stages))
+    if (column.name.ends_with("_ms")) all += ", \"" + column.name + "\": " + column.text;
+  return all;
 }
 
 } // namespace lambent

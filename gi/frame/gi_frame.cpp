@@ -326,6 +326,7 @@ std::vector<std::string> GiFrame::reloadShaders() {
 }
 
 Settings& GiFrame::settings() { return kept_->settings; }
+const FrameStats& GiFrame::stats() const { return kept_->stats; }
 const VplSet& GiFrame::vpls() const {
   static const VplSet none;
   if (kept_->source) kept_->source->finish();

@@ -86,6 +86,7 @@ class GiFrame {
   /// version.
   std::vector<std::string> reloadShaders();
 
+  const FrameStats& stats() const; // of the last frame
   const VplSet& vpls() const;
   const RayQuery& rays() const;
   float exposure() const;
