@@ -58,7 +58,9 @@ void App::run() {
       dropped_.clear();
     }
     const auto now = Clock::now();
-    const double seconds = options_.frames ? kTestFrameSeconds : std::chrono::duration<double>(now - before).count();
+    const double seconds = options_.fps      ? 1 / *options_.fps
+                           : options_.frames ? kTestFrameSeconds
+                                             : std::chrono::duration<double>(now - before).count();
     before = now;
     if (loading_) {
       load();

@@ -20,9 +20,7 @@ void Loading::load() {
     loaded.stage = loadStage(options_, [this](const char* at, float share) { tell(at, kFile * share); });
     tell("walls and floors", kFile);
     Scene& scene = loaded.stage->scene;
-    const float height = bodySizeFor(worldBounds(scene)).height;
-    loaded.movers = std::make_unique<Movers>(scene);
-    loaded.things = std::make_unique<Things>(scene, height);
+    if (!loaded.stage->props) loaded.stage->props = std::make_unique<Props>(scene);
     loaded.solids = std::make_unique<Solids>(scene);
     tell("done", 1);
     loaded_ = std::move(loaded);

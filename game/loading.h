@@ -1,8 +1,8 @@
 // A scene on its way from disk, on a thread of its own, while the window goes on.
 #pragma once
 
-#include "game/rules/movers.h"
-#include "game/rules/things.h"
+#include "game/rules/props.h"
+#include "game/rules/solids.h"
 #include "tools/launch/launch.h"
 
 #include <atomic>
@@ -16,8 +16,6 @@ namespace lambent {
 /// A scene with all that needs no OpenGL.
 struct LoadedScene {
   std::unique_ptr<Stage> stage;
-  std::unique_ptr<Movers> movers;
-  std::unique_ptr<Things> things;
   std::unique_ptr<Solids> solids;
 };
 

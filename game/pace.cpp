@@ -16,16 +16,17 @@ void Pacer::expect(double fullMs, Settings& settings) {
   settings = governed_.settings;
 }
 
-void Pacer::took(const FrameStats& stats, bool moved, Settings& settings) {
+void Pacer::took(const FrameStats& stats, double wholeMs, bool moved, Settings& settings) {
   const bool asGoverned = moving(); // else it was drawn at full scale
   stillFrames_ = moved ? 0 : stillFrames_ + 1;
   if (!governs_ || !asGoverned || !stats.plan[EffectId::Redraw].on) return;
   if (!moved) return; // cheaper than frames in motion will be
-  const double larger = std::sqrt(kHalfwayMs / std::max(stats.costMs(), 1.0));
+  const double ms = std::max(stats.costMs(), wholeMs);
+  const double larger = std::sqrt(kHalfwayMs / std::max(ms, 1.0));
   halfway_ = std::clamp(governed_.scale * float(larger), governed_.scale, 1.0f);
   governed_.settings = settings;
   const std::string before = governed_.preset;
-  governed_ = governed(std::move(governed_), stats.costMs(), targetMs_);
+  governed_ = governed(std::move(governed_), ms, targetMs_);
   if (governed_.preset != before) settings = governed_.settings;
 }
 

@@ -22,6 +22,7 @@ constexpr int kRoughWarmup = 12;      // iterations before it
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
 constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
+constexpr double kRecordedFps = 30;      // of a walk, when lambent record plays it
 constexpr double kMorning = 9;           // that it begins at
 constexpr float kTorch = 5;              // intensity in its middle, of a lamp's
 
@@ -32,11 +33,10 @@ const char* gaitText(Gait gait) {
 } // namespace
 
 Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
-    : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)),
-      movers_(std::move(loaded.movers)), things_(std::move(loaded.things)), solids_(std::move(loaded.solids)),
-      shot_(stage_->shot), scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()),
-      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), day_(scene_),
-      truth_(stage_->seed) {
+    : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)), props_(*stage_->props),
+      solids_(std::move(loaded.solids)), shot_(stage_->shot), scene_(stage_->scene),
+      diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
+      gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
@@ -62,8 +62,8 @@ Play::~Play() {
 void Play::restart() {
   model_.time = 0;
   model_.paused = model_.torch = false;
-  movers_->reset();
-  things_->clear();
+  props_.movers.reset();
+  props_.things.clear();
   pose(0);
   home();
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
@@ -107,9 +107,13 @@ void Play::pose(double seconds) {
     animate(scene_, model_.time);
   if (model_.hour && model_.dayRuns && !model_.paused)
     model_.hour = std::fmod(*model_.hour + kHoursPerSecond * seconds, 24.0);
-  if (day_.hour() != model_.hour) day_.set(model_.hour);
-  day_.apply();
-  movers_->update(std::min(seconds, double(kLongestStep)));
+  if (model_.followPath && !path_->played.empty()) {
+    followMoment();
+  } else {
+    if (props_.day.hour() != model_.hour) props_.day.set(model_.hour);
+    props_.day.apply();
+    props_.movers.update(std::min(seconds, double(kLongestStep)));
+  }
   solids_->update();
 }
 
@@ -121,28 +125,42 @@ SceneView Play::viewAt(float scale) {
 }
 
 void Play::frame(const Wishes& wishes, double seconds) {
+  if ((!options_.frames && !options_.fps) || options_.targetMs) pace(seconds);
   obey(wishes, float(seconds));
-  if (!model_.paused) {
-    model_.time += seconds;
+  const bool begins = recorder_.recording() && recorder_.frames() == 0;
+  if (!model_.paused && !begins) {
+    model_.time = recorder_.recording() && options_.fps ? double(recorder_.frames()) / *options_.fps // not a sum
+                                                        : model_.time + seconds;
     if (!recorder_.recording()) model_.time = std::fmod(model_.time, model_.duration);
   }
   pose(seconds);
   movePlayer(wishes, float(seconds));
-  handle(wishes);
-  things_->lampIntensity = model_.lampIntensity;
-  things_->update(*solids_, player_, std::min(float(seconds), kLongestStep));
-  carryTorch();
+  if (!model_.followPath) {
+    handle(wishes);
+    props_.things.lampIntensity = model_.lampIntensity;
+    props_.things.update(*solids_, player_, std::min(float(seconds), kLongestStep));
+    carryTorch();
+  }
+  const bool recorded =
+      recorder_.recording() && recorder_.add(player_.view(1, 1), scene_.origin, props_.moment(model_.time));
 
   const auto [width, height] = context_.framebufferSize();
-  const SceneView view =
-      extractor_.extract(scene_, player_.view(width, height).scaled(model_.pacer.scale()), model_.time);
-  const FrameStats& stats = gi_.run(view);
+  CameraView camera = player_.view(width, height);
+  if (recorder_.recording()) {
+    camera = recorder_.camera(scene_.origin);
+    camera.width = width;
+    camera.height = height;
+  }
+  const SceneView view = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
+  // What is recorded at fixed steps is drawn as often as its replay is: not again where no time went by.
+  if (recorded || !recorder_.recording() || !options_.fps) gi_.run(view);
+  const FrameStats& stats = gi_.stats();
+  if (recorded) log_.add(model_.time, stats, 0, nullptr);
   times_.add(seconds, stats);
 
   const SceneChanges& c = view.changes;
   const mat4 pose = view.camera.worldFromView; // the camera changes also where the scale does
-  const bool moved = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
-  if (!options_.frames || options_.targetMs) pace(stats, moved);
+  moved_ = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
   truth_.update(view, gi_, stats, model_.buffer, options_.frames.has_value());
   truth_.present(gi_, model_.buffer, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -211,8 +229,7 @@ void Play::movePlayer(const Wishes& wishes, float seconds) {
   else if (player_.move(solids_->rays(), solids_->view(), wishes.move, std::min(seconds, kLongestStep)))
     hud_.say("you fell out of the scene: back where you began");
   const bool before = std::exchange(cramped_, player_.body().cramped(solids_->rays()));
-  if (cramped_ && !before) movers_->turnBack(); // nobody is crushed
-  if (recorder_.recording()) recorder_.add(model_.time, player_.view(1, 1), scene_.origin);
+  if (cramped_ && !before) props_.movers.turnBack(); // nobody is crushed
 }
 
 void Play::toggleFollowing() {
@@ -226,18 +243,37 @@ void Play::toggleFollowing() {
                              : "you have the camera");
 }
 
-/// Scene time begins with the recording, so that everything in it moves as it did.
+/// As it was played at this time of the path; who takes over goes on from there.
+void Play::followMoment() {
+  const PlayedMoment now = playedAt(*path_, model_.time);
+  props_.show(now, path_->file.string());
+  model_.hour = now.hour;
+  model_.torch = now.torch.has_value();
+  if (!now.things.empty()) model_.lampIntensity = now.lampIntensity;
+}
+
+/// Scene time begins with the recording, so that everything in it moves as it did; at fixed steps the lights do too, so
+/// that its replay is the same to the last ray.
 void Play::toggleRecording() {
   if (!recorder_.recording()) {
     model_.time = 0;
     model_.paused = false;
-    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr);
+    std::map<std::string, std::string> set;
+    for (const SettingRow& row : settingsTable())
+      if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
+    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set));
+    log_ = {};
+    if (options_.fps) {
+      gi_.restart();
+      extractor_ = {};
+    }
     hud_.say("recording: every frame is a camera key (R ends it)");
     return;
   }
   report([&]() -> std::string {
     const std::optional<Shot> walk = recorder_.end("out");
     if (!walk) return "nothing was recorded";
+    log_.write(fs::path(walk->file).replace_extension(".csv"));
     path_ = *walk;
     model_.duration = std::max(model_.duration, walk->seconds);
     model_.followPath = true;
@@ -247,9 +283,11 @@ void Play::toggleRecording() {
   });
 }
 
-void Play::pace(const FrameStats& stats, bool moved) {
+/// By what the frame before took: all of it, panel and window too, but where seconds are not the clock's.
+void Play::pace(double seconds) {
   const std::string before = model_.pacer.preset();
-  model_.pacer.took(stats, moved, gi_.settings());
+  const double ms = options_.frames || options_.fps ? 0 : 1000 * seconds;
+  model_.pacer.took(gi_.stats(), ms, moved_, gi_.settings());
   const std::string& now = model_.pacer.preset();
   if (now == before) return;
   model_.preset = now;
@@ -267,25 +305,11 @@ void Play::showTruth(TruthMode mode) {
 
 /// The torch shines from beside the eyes to where they look.
 void Play::carryTorch() {
-  if (!model_.torch) {
-    if (torch_) scene_.registry.destroy(*torch_);
-    torch_.reset();
-    return;
-  }
+  if (!model_.torch) return props_.setTorch(std::nullopt);
   const float height = player_.body().size().height;
-  LightView light;
-  light.type = LightType::Spot;
-  light.direction = player_.forward();
-  light.position = player_.position() + 0.04f * height * vec3(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
-  light.intensity = kTorch * vec3(luminance(model_.lampIntensity));
-  light.innerConeCos = 0.985f; // 10 degrees
-  light.outerConeCos = 0.927f; // 22
-  if (!torch_) torch_ = addLight(scene_, light, "torch");
-  Transform& place = scene_.registry.get<Transform>(*torch_);
-  place.translation = scene_.origin + dvec3(light.position);
-  place.rotation = rotationTowards(light.direction);
-  scene_.registry.get<WorldTransform>(*torch_).worldFromNode = place.local();
-  scene_.registry.get<PunctualLight>(*torch_).intensity = light.intensity;
+  const vec3 beside(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
+  props_.setTorch(PlayedMoment::Torch{player_.position() + 0.04f * height * beside, player_.forward(),
+                                      kTorch * vec3(luminance(model_.lampIntensity))});
 }
 
 /// What the window shows now, the panel included.
@@ -321,7 +345,8 @@ std::string Play::state() const {
                 "\"eye\": [%.4f, %.4f, %.4f], \"forward\": [%.4f, %.4f, %.4f], \"gait\": \"%s\", \"grounded\": %s, "
                 "\"time\": %.4f, \"paused\": %s, \"following\": %s, \"recorded\": %.3f, \"buffer\": \"%s\", "
                 "\"scale\": %.3f, \"exposure\": %.5f, \"things\": %zu, \"carried\": \"%s\", \"offer\": \"%s\", "
-                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f, \"hour\": %.3f",
+                "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f, \"hour\": %.3f, "
+                "\"frame_ms\": %.2f",
                 double(p.x), double(p.y), double(p.z), double(d.x), double(d.y), double(d.z),
                 player_.gait() == Gait::Walk  ? "walk"
                 : player_.gait() == Gait::Fly ? "fly"
@@ -329,9 +354,9 @@ std::string Play::state() const {
                 player_.body().grounded() ? "true" : "false", model_.time, model_.paused ? "true" : "false",
                 model_.followPath ? "true" : "false", recorder_.recording() ? recorder_.seconds() : -1.0,
                 bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
-                things_->count(), things_->carried() ? thingName(*things_->carried()) : "", model_.offer.c_str(),
-                model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"),
-                model_.hour.value_or(-1), times_.meanMs());
+                props_.things.count(), props_.things.carried() ? thingName(*props_.things.carried()) : "",
+                model_.offer.c_str(), model_.torch ? "true" : "false", props_.movers.place("door leaf"),
+                props_.movers.place("cabin"), model_.hour.value_or(-1), times_.meanMs());
   std::string all = text;
   std::array<bool, kStages> stages{};
   stages.fill(true);

@@ -6,11 +6,11 @@
 #include "game/hud.h"
 #include "game/input.h"
 #include "game/loading.h"
-#include "game/rules/day.h"
 #include "game/rules/path_recorder.h"
 #include "game/rules/player.h"
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
+#include "tools/launch/frame_log.h"
 
 #include <filesystem>
 #include <functional>
@@ -22,6 +22,7 @@ struct GameOptions {
   LaunchOptions launch;
   std::string buffer = "beauty";
   std::optional<double> targetMs; // of a frame
+  std::optional<double> fps;      // scene time goes by in steps of 1/fps, however long frames take
   std::optional<int> frames;      // for tests: quit after so many
   std::string screenshot;         // for tests: what the window shows at the end
   std::string truth;              // for tests: split or heat from the start
@@ -59,11 +60,12 @@ class Play {
   void pose(double seconds);
   void movePlayer(const Wishes& wishes, float seconds);
   SceneView viewAt(float scale);
-  void pace(const FrameStats& stats, bool moved);
+  void pace(double seconds);
   void toggleRecording();
   void toggleFollowing();
   void showTruth(TruthMode mode);
   void carryTorch();
+  void followMoment();
   std::string saveScreenshot() const;
   template <class Action> void report(Action&& action);
 
@@ -71,8 +73,7 @@ class Play {
   GlContext& context_;
   Hud& hud_;
   const std::unique_ptr<Stage> stage_;
-  const std::unique_ptr<Movers> movers_;
-  const std::unique_ptr<Things> things_;
+  Props& props_;
   const std::unique_ptr<Solids> solids_;
   const std::optional<Shot>& shot_;
   Scene& scene_;
@@ -83,11 +84,11 @@ class Play {
   HudModel model_;
   FrameTimes times_;
   PathRecorder recorder_;
+  FrameLog log_;             // of what is recorded
   std::optional<Shot> path_; // that F follows: of the shot, or recorded
-  Day day_;
-  std::optional<Entity> torch_; // while it is lit
-  bool cramped_ = false;        // something was where the player is
-  mat4 pose_{0};                // of the camera in the last frame
+  bool cramped_ = false;     // something was where the player is
+  mat4 pose_{0};             // of the camera in the last frame
+  bool moved_ = false;       // anything, for the last frame
   TruthView truth_;
   bool pausedBefore_ = false; // when the truth was asked for
 };

@@ -16,42 +16,42 @@ std::optional<uint32_t> Play::lookedAt() const {
 
 /// What E would do now, in words; empty: nothing.
 std::string Play::offer() const {
-  if (const std::optional<ThingKind> carried = things_->carried())
+  if (const std::optional<ThingKind> carried = props_.things.carried())
     return std::string("E: put the ") + thingName(*carried) + " down, click: throw it" +
            (*carried == ThingKind::Lamp ? "" : ", B: another");
   const std::optional<uint32_t> seen = lookedAt();
   if (!seen) return {};
-  if (const std::optional<ThingKind> kind = things_->kindOf(*seen))
+  if (const std::optional<ThingKind> kind = props_.things.kindOf(*seen))
     return std::string("E: take the ") + thingName(*kind);
-  const std::string offer = movers_->offer(*seen);
+  const std::string offer = props_.movers.offer(*seen);
   return offer.empty() ? offer : "E: " + offer;
 }
 
 void Play::use() {
-  if (things_->carries()) {
-    things_->putDown();
+  if (props_.things.carries()) {
+    props_.things.putDown();
     return;
   }
   const std::optional<uint32_t> seen = lookedAt();
-  if (!seen || !(movers_->use(*seen) || things_->pick(*seen, player_)))
+  if (!seen || !(props_.movers.use(*seen) || props_.things.pick(*seen, player_)))
     hud_.say("nothing to use within reach: doors, lifts and their red buttons; B and L give you boxes and lamps");
 }
 
 void Play::handle(const Wishes& wishes) {
   if (wishes.use) use();
-  if (wishes.hurl) things_->hurl(player_);
+  if (wishes.hurl) props_.things.hurl(player_);
   const auto take = [&](ThingKind kind) {
-    if (!things_->take(kind, player_)) hud_.say("there are enough things about (F2 clears them away)");
+    if (!props_.things.take(kind, player_)) hud_.say("there are enough things about (F2 clears them away)");
   };
   if (wishes.box) {
-    if (things_->carries() && things_->carried() != ThingKind::Lamp)
-      things_->exchangeCarried(player_);
+    if (props_.things.carries() && props_.things.carried() != ThingKind::Lamp)
+      props_.things.exchangeCarried(player_);
     else
       take(ThingKind::WhiteBoard);
   }
   if (wishes.lamp) {
-    if (things_->carried() == ThingKind::Lamp)
-      things_->removeCarried();
+    if (props_.things.carried() == ThingKind::Lamp)
+      props_.things.removeCarried();
     else
       take(ThingKind::Lamp);
   }

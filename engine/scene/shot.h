@@ -23,6 +23,29 @@ struct NodeKey {
   std::optional<vec3> intensity; // lights: per channel
 };
 
+/// What somebody who played did to the scene, at time t and until the next moment: game/rules/props.h shows it. World
+/// space, from the scene's origin.
+struct PlayedMoment {
+  struct Thing {
+    uint32_t number = 0; // of those taken so far
+    std::string kind;
+    vec3 centre{0};
+    float yaw = 0; // radians
+    bool operator==(const Thing&) const = default;
+  };
+  struct Torch {
+    vec3 position{0}, direction{0, 0, -1}, intensity{0};
+    bool operator==(const Torch&) const = default;
+  };
+  double t = 0;
+  std::map<std::string, double> movers; // where doors and lifts are that were used, in stops
+  std::vector<Thing> things;
+  vec3 lampIntensity{0}; // of carried lamps, W/sr
+  std::optional<double> hour;
+  std::optional<Torch> torch;
+  bool operator==(const PlayedMoment&) const = default;
+};
+
 struct Shot {
   std::filesystem::path file;
   std::filesystem::path scene;
@@ -30,6 +53,7 @@ struct Shot {
   std::vector<CameraKey> camera;                      // empty: the scene's own camera
   std::map<std::string, std::vector<NodeKey>> lights; // by node name
   std::map<std::string, std::vector<NodeKey>> objects;
+  std::vector<PlayedMoment> played;
   std::vector<vec2> pixels;               // tracked pixels, (u,v) in [0,1], v down
   std::map<std::string, std::string> set; // settings that belong to the shot, as --set key=value
 
@@ -44,6 +68,9 @@ void saveShot(const Shot& shot, const std::filesystem::path& file);
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
 /// after the last, counted from `origin`: the scene's. Requires shot.camera not empty.
 CameraView shotCamera(const Shot& shot, double t, const dvec3& origin);
+
+/// What was played at time t: between two moments what both have is mixed. Requires shot.played not empty.
+PlayedMoment playedAt(const Shot& shot, double t);
 
 /// animate(scene, t), then the shot's light and object keys (linear between keys), then world transforms.
 /// Throws InputError for a node that the scene lacks (nearest name given).

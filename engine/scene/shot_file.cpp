@@ -135,6 +135,19 @@ std::vector<CameraKey> readCamera(const Field& camera) {
   return keys;
 }
 
+vec3 lightOf(const Field& field) {
+  const vec3 light = field.vector<3>();
+  if (glm::min(light.x, glm::min(light.y, light.z)) < 0) field.fail("is negative");
+  if (maxComponent(light) > kMostLight) field.fail("is beyond what pictures can hold (1e30)");
+  return light;
+}
+
+dvec3 directionOf(const Field& field) {
+  const auto direction = field.vector<3, double>();
+  if (!(glm::length(direction) > 0)) field.fail("has no length");
+  return direction;
+}
+
 std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool lights) {
   std::map<std::string, std::vector<NodeKey>> out;
   nodes.members([&](const std::string& name, const Field& node) {
@@ -148,20 +161,60 @@ std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool l
       if (k.has("position")) key.position = k["position"].vector<3, double>();
       if (k.has("rotation")) key.rotation = k["rotation"].vector<3>();
       if (k.has("direction")) {
-        const auto direction = k["direction"].vector<3, double>();
-        if (!(glm::length(direction) > 0)) k["direction"].fail("has no length");
-        key.direction = vec3(glm::normalize(direction));
+        key.direction = vec3(glm::normalize(directionOf(k["direction"])));
       }
       if (k.has("intensity")) {
-        key.intensity = k["intensity"].vector<3>();
-        if (glm::min(key.intensity->x, glm::min(key.intensity->y, key.intensity->z)) < 0)
-          k["intensity"].fail("is negative");
-        if (maxComponent(*key.intensity) > kMostLight) k["intensity"].fail("is beyond what pictures can hold (1e30)");
+        key.intensity = lightOf(k["intensity"]);
       }
       keys.push_back(key);
     });
   });
   return out;
+}
+
+vec3 placeOf(const Field& field) {
+  const vec3 at = field.vector<3>();
+  if (!isNear(at)) field.fail("is farther than 1e12 m away");
+  return at;
+}
+
+PlayedMoment::Thing readThing(const Field& t) {
+  t.checkKeys({"number", "kind", "at", "yaw"});
+  PlayedMoment::Thing thing;
+  const double number = t["number"].number();
+  if (!(number >= 0 && number <= 1e9)) t["number"].fail("is out of range (0 to 1e9)");
+  thing.number = uint32_t(number);
+  thing.kind = t["kind"].text();
+  thing.centre = placeOf(t["at"]);
+  thing.yaw = t["yaw"].single();
+  return thing;
+}
+
+std::vector<PlayedMoment> readPlayed(const Field& list) {
+  std::vector<PlayedMoment> moments;
+  list.elements([&](const Field& m) {
+    m.checkKeys({"t", "movers", "things", "lamps", "hour", "torch"});
+    PlayedMoment moment;
+    moment.t = keyTime(m, moments.empty() ? -std::numeric_limits<double>::infinity() : moments.back().t);
+    if (m.has("movers"))
+      m["movers"].members([&](const std::string& name, const Field& at) {
+        at.single(); // larger numbers are refused
+        moment.movers[name] = at.number();
+      });
+    if (m.has("things")) m["things"].elements([&](const Field& t) { moment.things.push_back(readThing(t)); });
+    if (m.has("lamps")) moment.lampIntensity = lightOf(m["lamps"]);
+    if (m.has("hour")) {
+      moment.hour = m["hour"].number();
+      if (!(*moment.hour >= 0 && *moment.hour <= 24)) m["hour"].fail("is out of range (0 to 24)");
+    }
+    if (m.has("torch")) {
+      const Field torch = m["torch"];
+      torch.checkKeys({"at", "direction", "intensity"});
+      moment.torch = {placeOf(torch["at"]), vec3(directionOf(torch["direction"])), lightOf(torch["intensity"])};
+    }
+    moments.push_back(std::move(moment));
+  });
+  return moments;
 }
 
 json parse(const fs::path& file) {
@@ -204,12 +257,26 @@ json toJson(const std::map<std::string, std::vector<NodeKey>>& nodes) {
   return out;
 }
 
+json toJson(const PlayedMoment& m) {
+  json out{{"t", m.t}};
+  if (!m.movers.empty()) out["movers"] = m.movers;
+  for (const PlayedMoment::Thing& t : m.things)
+    out["things"].push_back({{"number", t.number}, {"kind", t.kind}, {"at", toJson(t.centre)}, {"yaw", t.yaw}});
+  if (!m.things.empty()) out["lamps"] = toJson(m.lampIntensity);
+  if (m.hour) out["hour"] = *m.hour;
+  if (m.torch)
+    out["torch"] = {{"at", toJson(m.torch->position)},
+                    {"direction", toJson(m.torch->direction)},
+                    {"intensity", toJson(m.torch->intensity)}};
+  return out;
+}
+
 } // namespace
 
 Shot loadShot(const fs::path& file) {
   const json document = parse(file);
   const Field root(document, file.string(), "");
-  root.checkKeys({"shot", "scene", "fps", "seconds", "camera", "lights", "objects", "pixels", "set"});
+  root.checkKeys({"shot", "scene", "fps", "seconds", "camera", "lights", "objects", "played", "pixels", "set"});
   if (root["shot"].number() != 1) root["shot"].fail("is not a version this program reads (1 expected)");
   Shot shot;
   shot.file = file;
@@ -221,6 +288,7 @@ Shot loadShot(const fs::path& file) {
   if (root.has("camera")) shot.camera = readCamera(root["camera"]);
   if (root.has("lights")) shot.lights = readNodes(root["lights"], true);
   if (root.has("objects")) shot.objects = readNodes(root["objects"], false);
+  if (root.has("played")) shot.played = readPlayed(root["played"]);
   if (root.has("pixels"))
     root["pixels"].elements([&](const Field& p) {
       const vec2 uv = p.vector<2>();
@@ -245,6 +313,7 @@ void saveShot(const Shot& shot, const fs::path& file) {
   }
   if (!shot.lights.empty()) out["lights"] = toJson(shot.lights);
   if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
+  for (const PlayedMoment& moment : shot.played) out["played"].push_back(toJson(moment));
   if (!shot.pixels.empty()) {
     out["pixels"] = json::array();
     for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));

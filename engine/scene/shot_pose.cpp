@@ -136,6 +136,31 @@ CameraView shotCamera(const Shot& shot, double t, const dvec3& origin) {
   return lookAt(vec3(eye - origin), vec3(target - origin), linearFov(shot.camera, t));
 }
 
+PlayedMoment playedAt(const Shot& shot, double t) {
+  CHECK(!shot.played.empty());
+  const auto after = std::upper_bound(shot.played.begin(), shot.played.end(), t,
+                                      [](double a, const PlayedMoment& m) { return a < m.t; });
+  if (after == shot.played.begin()) return shot.played.front();
+  PlayedMoment now = *(after - 1);
+  if (after == shot.played.end()) return now;
+  const double u = (t - now.t) / (after->t - now.t);
+  for (auto& [name, at] : now.movers)
+    if (const auto next = after->movers.find(name); next != after->movers.end()) at = between(at, next->second, u);
+  for (PlayedMoment::Thing& thing : now.things)
+    for (const PlayedMoment::Thing& next : after->things) {
+      if (next.number != thing.number) continue;
+      thing.centre = between(thing.centre, next.centre, float(u));
+      thing.yaw += float(u) * std::remainder(next.yaw - thing.yaw, 2 * kPi);
+    }
+  if (now.torch && after->torch) {
+    now.torch->position = between(now.torch->position, after->torch->position, float(u));
+    if (u > 0) // and to the bit what was recorded
+      now.torch->direction = glm::normalize(between(now.torch->direction, after->torch->direction, float(u)));
+  }
+  if (now.hour && after->hour && *after->hour > *now.hour) now.hour = between(*now.hour, *after->hour, u);
+  return now;
+}
+
 void poseShot(Scene& scene, const Shot& shot, double t) {
   animate(scene, t);
   std::vector<std::pair<Entity, vec3>> aims;

@@ -1,5 +1,6 @@
 #include "game/rules/movers.h"
 
+#include "engine/core/error.h"
 #include "game/rules/shapes.h"
 
 #include <algorithm>
@@ -152,11 +153,39 @@ void Movers::turnBack() {
 }
 
 void Movers::reset() {
+  for (Mover& mover : movers_) reset(mover);
+}
+
+void Movers::reset(Mover& mover) {
+  mover.at = mover.speed = 0;
+  mover.target = mover.from = 0;
+  if (std::exchange(mover.used, false)) scene_.registry.get<Transform>(mover.entity) = mover.rest;
+}
+
+std::map<std::string, double> Movers::used() const {
+  std::map<std::string, double> places;
+  for (const Mover& mover : movers_)
+    if (mover.used) places[mover.kind->node] = mover.at;
+  return places;
+}
+
+void Movers::show(const std::map<std::string, double>& places, const std::string& file) {
+  size_t known = 0;
   for (Mover& mover : movers_) {
-    mover.at = mover.speed = 0;
-    mover.target = mover.from = 0;
-    if (std::exchange(mover.used, false)) scene_.registry.get<Transform>(mover.entity) = mover.rest;
+    const auto found = places.find(mover.kind->node);
+    if (found == places.end()) {
+      reset(mover);
+      continue;
+    }
+    ++known;
+    mover.used = true;
+    mover.at = found->second;
+    mover.speed = 0;
+    mover.target = mover.from = std::clamp(int(std::lround(mover.at)), 0, mover.kind->stops() - 1);
+    apply(mover);
   }
+  if (known < places.size()) throw InputError(file, "played.movers names what is no door or lift of the scene");
+  if (!movers_.empty()) updateWorldTransforms(scene_);
 }
 
 double Movers::place(const std::string& node) const {

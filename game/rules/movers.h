@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,12 @@ class Movers {
 
   /// All as at the start.
   void reset();
+
+  /// Where those are that somebody used, in stops, by their nodes' names.
+  std::map<std::string, double> used() const;
+  /// Puts these there at once, and all others as at the start: after the scene was animated. Throws InputError, with
+  /// `file`, where there is no mover of a name.
+  void show(const std::map<std::string, double>& places, const std::string& file);
   size_t count() const { return movers_.size(); }
   /// Where the mover with that name is: 0 at its first stop, 1 at its second, and so on. -1: there is none.
   double place(const std::string& node) const;
@@ -52,6 +59,7 @@ class Movers {
   void step(Mover& mover, double seconds);
   void apply(const Mover& mover);
   void send(Mover& mover, int stop);
+  void reset(Mover& mover);
   const Button* buttonOf(uint32_t instance) const;
   const Mover* moverOf(uint32_t instance) const;
 

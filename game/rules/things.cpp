@@ -1,5 +1,6 @@
 #include "game/rules/things.h"
 
+#include "engine/core/error.h"
 #include "game/rules/shapes.h"
 
 #include <algorithm>
@@ -73,17 +74,48 @@ vec3 Things::halfSize(ThingKind kind) const { return size_ * kLooks[size_t(kind)
 bool Things::take(ThingKind kind, const Player& player) {
   putDown();
   if (things_.size() >= kMost) return false;
-  Thing thing{kind, {}, {}, player.position() + kReach * size_ * player.forward()};
-  thing.entity = addInstance(scene_, thingName(kind), meshes_[size_t(kind)], {});
+  show(make(kind, made_, player.position() + kReach * size_ * player.forward()));
+  hand_ = things_.size() - 1;
+  return true;
+}
+
+Things::Thing& Things::make(ThingKind kind, uint32_t number, const vec3& centre) {
+  Thing thing{kind, number, addInstance(scene_, thingName(kind), meshes_[size_t(kind)], {}), {}, centre};
   if (kind == ThingKind::Lamp) {
     LightView light;
     light.intensity = lampIntensity;
     thing.light = addLight(scene_, light, "lamp");
   }
   things_.push_back(thing);
-  hand_ = things_.size() - 1;
-  show(thing);
-  return true;
+  made_ = std::max(made_, number + 1);
+  return things_.back();
+}
+
+std::vector<PlayedMoment::Thing> Things::list() const {
+  std::vector<PlayedMoment::Thing> list;
+  for (const Thing& t : things_) list.push_back({t.number, thingName(t.kind), t.centre, t.yaw});
+  return list;
+}
+
+void Things::show(const std::vector<PlayedMoment::Thing>& list, const std::string& file) {
+  if (list.size() > kMost) throw InputError(file, "played.things has more than " + std::to_string(kMost) + " at once");
+  hand_.reset();
+  for (size_t i = things_.size(); i-- > 0;)
+    if (std::ranges::find(list, things_[i].number, &PlayedMoment::Thing::number) == list.end()) destroy(i);
+  for (const PlayedMoment::Thing& wanted : list) {
+    auto found = std::ranges::find(things_, wanted.number, &Thing::number);
+    if (found == things_.end()) {
+      const auto look = std::ranges::find(kLooks, wanted.kind, &Look::name);
+      if (look == kLooks.end()) throw InputError(file, "played.things has no kind '" + wanted.kind + "'");
+      make(ThingKind(look - kLooks.begin()), wanted.number, wanted.centre);
+      found = things_.end() - 1;
+    }
+    found->centre = wanted.centre;
+    found->yaw = wanted.yaw;
+    found->velocity = vec3(0);
+    found->resting = false;
+    show(*found);
+  }
 }
 
 bool Things::pick(uint32_t instance, const Player& player) {

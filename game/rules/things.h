@@ -2,6 +2,7 @@
 // is there, upright; nobody needs them to tumble for light to fall on them.
 #pragma once
 
+#include "engine/scene/shot.h"
 #include "game/rules/player.h"
 #include "game/rules/solids.h"
 
@@ -37,6 +38,12 @@ class Things {
   /// Moves them for so many seconds. What is carried follows the player's eyes and no longer counts as solid.
   void update(Solids& solids, const Player& player, float seconds);
 
+  /// All of them, as a shot has them.
+  std::vector<PlayedMoment::Thing> list() const;
+  /// Makes it so: those that are not in the list go, new ones come, none is carried. Throws InputError, with `file`,
+  /// for an unknown kind and for too many.
+  void show(const std::vector<PlayedMoment::Thing>& list, const std::string& file);
+
   size_t count() const { return things_.size(); }
   /// Where the i-th is, from the scene's origin: its middle.
   vec3 position(size_t i) const { return things_[i].centre; }
@@ -49,6 +56,7 @@ class Things {
  private:
   struct Thing {
     ThingKind kind;
+    uint32_t number;      // of all that were made
     Entity entity, light; // light: only of a lamp
     vec3 centre{0}, velocity{0};
     float yaw = 0;
@@ -61,6 +69,7 @@ class Things {
   void ride(const Solids& solids, Thing& thing);
   void fly(const Solids& solids, Thing& thing, float seconds);
   std::vector<vec3> lattice(const Thing& thing) const;
+  Thing& make(ThingKind kind, uint32_t number, const vec3& centre);
   void show(const Thing& thing);
   void destroy(size_t index);
 
@@ -68,6 +77,7 @@ class Things {
   const float size_; // height of a person, metres
   std::array<uint32_t, kThingKinds> meshes_{};
   std::vector<Thing> things_;
+  uint32_t made_ = 0;
   std::optional<size_t> hand_;
 };
 

@@ -103,6 +103,14 @@ struct KeptBlock {
   gl::Texture maps;
   LightRecords lights;
   std::vector<mat4> drawn; // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
+  /// The maps without what moves, once something does: it is drawn over a copy. By layer and face.
+  gl::Texture still;
+  struct StillMap {
+    mat4 clipFromWorld{0};
+    uint64_t version = 0; // GpuScene::stillVersion
+    bool operator==(const StillMap&) const = default;
+  };
+  std::vector<StillMap> stillDrawn;
 };
 
 } // namespace
@@ -127,6 +135,8 @@ struct LightShadowState {
 
   void fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps, const LightShadowInputs& in);
   void drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
+  void drawMoved(KeptBlock& block, int layer, const mat4& clipFromWorld, const GpuScene& scene);
+  void drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene, Drawn which);
 };
 
 /// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
@@ -148,6 +158,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
                                                                               .depthCompare = true,
                                                                               .compareGreater = true});
       target.drawn.assign(size_t(count), mat4(0));
+      target.still = {};
     }
     target.kind = kind;
     std::vector<LightRecord> lights;
@@ -162,7 +173,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
 
 void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first,
                                 const LightShadowInputs& in) {
-  const int resolution = block.maps.width();
+  if (in.allChanged) block.stillDrawn.assign(block.stillDrawn.size(), {});
   for (int layer = 0; layer < int(block.lights.held().size()); ++layer) {
     const LitMap& map = maps[first + layer];
     const bool whole = in.allChanged || block.drawn[layer] != map.clipFromWorld[0];
@@ -172,17 +183,46 @@ void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& map
     for (int face = 0; face < faces; ++face) {
       const Frustum frustum = Frustum::ofClip(map.clipFromWorld[face]);
       const auto shows = [&](const Aabb& box) { return frustum.mayShow(box); };
-      if (!whole && std::none_of(in.moved.begin(), in.moved.end(), shows)) continue;
-      framebuffer.bind();
-      gl::PipelineState{.depthTest = true, .depthWrite = true, .width = resolution, .height = resolution}.apply();
-      framebuffer.attachDepthLayer(block.maps, layer * faces + face);
-      const float nothing = 0;
-      glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
-      in.scene.draw(DrawKind::Depth, map.clipFromWorld[face]);
+      if (whole)
+        drawInto(block.maps, layer * faces + face, map.clipFromWorld[face], in.scene, Drawn::All);
+      else if (std::any_of(in.moved.begin(), in.moved.end(), shows))
+        drawMoved(block, layer * faces + face, map.clipFromWorld[face], in.scene);
+      else
+        continue;
       drawn = true;
     }
     mapsDrawn += drawn;
   }
+}
+
+/// A map, or a cube's face, whose view is as before: what stands still is not drawn again. Walking through the hall,
+/// where one ball moves: 20 ms of light maps become TODO.
+void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFromWorld, const GpuScene& scene) {
+  const int size = block.maps.width();
+  if (!block.still) {
+    block.still = gl::Texture("light maps/still", block.maps.desc());
+    block.stillDrawn.assign(size_t(block.maps.desc().layers) * (block.kind == MapKind::Cube ? 6 : 1), {});
+  }
+  const KeptBlock::StillMap wanted{clipFromWorld, scene.stillVersion()};
+  if (KeptBlock::StillMap& has = block.stillDrawn[size_t(layer)]; !(has == wanted)) {
+    drawInto(block.still, layer, clipFromWorld, scene, Drawn::Still);
+    has = wanted;
+  }
+  const GLenum target = block.kind == MapKind::Cube ? GL_TEXTURE_CUBE_MAP_ARRAY : GL_TEXTURE_2D_ARRAY;
+  glCopyImageSubData(block.still.name(), target, 0, 0, 0, layer, block.maps.name(), target, 0, 0, 0, layer, size, size,
+                     1);
+  drawInto(block.maps, layer, clipFromWorld, scene, Drawn::Restless);
+}
+
+/// Over what the map shows already, where only the restless are drawn.
+void LightShadowState::drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene,
+                                Drawn which) {
+  framebuffer.bind();
+  gl::PipelineState{.depthTest = true, .depthWrite = true, .width = maps.width(), .height = maps.width()}.apply();
+  framebuffer.attachDepthLayer(maps, layer);
+  const float nothing = 0;
+  if (which != Drawn::Restless) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
+  scene.draw(DrawKind::Depth, clipFromWorld, vec3(0), which);
 }
 
 LightShadowPass::LightShadowPass(PassContext context) : state_(std::make_unique<LightShadowState>(context)) {}

@@ -83,6 +83,13 @@ struct GiFrame::Kept {
 GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}
 GiFrame::~GiFrame() = default;
 
+void GiFrame::restart() {
+  const Settings settings = kept_->settings;
+  const uint32_t seed = kept_->seed;
+  kept_.reset(); // not both in memory
+  kept_ = std::make_unique<Kept>(settings, seed);
+}
+
 // The frame -----------------------------------------------------------------------------------------------------------
 
 const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& progress,

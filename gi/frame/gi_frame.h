@@ -45,6 +45,9 @@ class GiFrame {
   explicit GiFrame(const Settings& settings, uint32_t seed = 1);
   ~GiFrame();
 
+  /// As a new one with the present settings: nothing is known of frames before.
+  void restart();
+
   Settings& settings(); // may be changed between frames; takes effect at the next one
 
   /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up. Where nothing

@@ -26,6 +26,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   for (const InstanceView& i : instances)
     placed.push_back({i.mesh, i.worldFromObject, i.deformed ? i.deformed->revision : 0});
   if (placed == placed_) return;
+  noteMoves(placed);
   layOutDeformed(instances);
   uploadDeformed(instances);
   placed_ = std::move(placed);
@@ -64,6 +65,20 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   changes_.upload(instanceRows_, 0, rows.size() * sizeof(vec4), rows.data());
 }
 
+/// Who stands still, and whether these are others than before.
+void GpuScene::noteMoves(const std::vector<Placed>& placed) {
+  if (placed.size() != placed_.size()) {
+    rest_.assign(placed.size(), kRested);
+    ++stillVersion_;
+    return;
+  }
+  for (size_t i = 0; i < placed.size(); ++i) {
+    const bool stood = rest_[i] == kRested;
+    rest_[i] = placed[i] == placed_[i] ? uint8_t(std::min<int>(rest_[i] + 1, kRested)) : uint8_t(0);
+    stillVersion_ += stood != (rest_[i] == kRested);
+  }
+}
+
 namespace {
 
 /// Whether it shows materials, and not only where their masks are cut out.
@@ -97,11 +112,13 @@ void GpuScene::bindMaterial(uint32_t index) const {
   glBindSampler(4, material.finishSampler);
 }
 
-uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
+uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Drawn which) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
   std::vector<const Item*> shown;
-  for (const Item& item : items_)
-    if (frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
+  for (const Item& item : items_) {
+    const Drawn is = rest_[item.instance] == kRested ? Drawn::Still : Drawn::Restless;
+    if ((which == Drawn::All || which == is) && frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
+  }
   if (shown.empty()) return 0;
   // Depth and distance look the same in any order, and without alpha test whatever the material: those go first, as one
   // call per vertex array.

@@ -10,6 +10,7 @@
 
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lambent {
@@ -28,6 +29,9 @@ struct Frustum {
 /// what the eye sees, or depth alone.
 enum class DrawKind { GBuffer, GlossyGBuffer, DistanceNormal, Depth };
 
+/// Which instances are drawn: those that have not moved for a while, those that have, or both.
+enum class Drawn { All, Still, Restless };
+
 class GpuScene {
  public:
   /// Uploads meshes, materials and textures (mipmapped). `assets` is read only here.
@@ -41,10 +45,12 @@ class GpuScene {
   /// array and textures; the caller sets the pipeline state, gives the eye but for depth, and for a G-buffer binds the
   /// camera block.
   /// Returns the number of calls.
-  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0)) const;
+  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0), Drawn which = Drawn::All) const;
 
   /// Masked at the start.
-  void setAlphaTest(AlphaTest test) { alphaTest_ = test; }
+  void setAlphaTest(AlphaTest test) { stillVersion_ += std::exchange(alphaTest_, test) != test; }
+  /// What is drawn of Drawn::Still is the same as long as this is.
+  uint64_t stillVersion() const { return stillVersion_; }
 
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
   uint32_t triangleCount() const { return triangleCount_; } // of all placed instances
@@ -53,6 +59,7 @@ class GpuScene {
  private:
   static constexpr GLuint kInstanceBinding = 4;
   static constexpr uint64_t kMostCommandBytes = uint64_t(4) << 20;
+  static constexpr uint8_t kRested = 30; // placements without a move after which an instance stands still
 
   struct PrimitiveRange {
     uint32_t primitive; // of its mesh
@@ -91,6 +98,7 @@ class GpuScene {
   void uploadMeshes(const SceneAssets& assets);
   gl::VertexArray vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
                                 const gl::Buffer& uvs, const gl::Buffer& colors) const;
+  void noteMoves(const std::vector<Placed>& placed);
   void layOutDeformed(std::span<const InstanceView> instances);
   void uploadDeformed(std::span<const InstanceView> instances);
   void uploadMaterials(const SceneAssets& assets);
@@ -113,6 +121,8 @@ class GpuScene {
   std::vector<MaterialDraw> materialDraws_;
   size_t materialStride_ = 256;
   std::vector<Placed> placed_;
+  std::vector<uint8_t> rest_; // by instance: placements since it moved, at most kRested
+  uint64_t stillVersion_ = 0;
   std::vector<Item> items_; // sorted by material
   Aabb bounds_;
   uint32_t triangleCount_ = 0;

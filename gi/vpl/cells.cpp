@@ -10,7 +10,7 @@
 // all who could have drawn it leave there together (the balance heuristic: Veach and Guibas 1995). With the density of
 // its own VPL's chords alone the few points in the largest sphere stand for up to 25 squared radii each, and one of
 // them in the sun brought a quarter of a classroom's light. When a VPL moves only the points around it are looked at
-// again.
+// again; where an object moves, the chords and segments that meet where it was or is.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace lambent {
@@ -31,6 +32,11 @@ struct Scale {
   int chords;
 };
 constexpr std::array<Scale, 4> kScales{{{0.35f, 8}, {1, 32}, {2, 16}, {4, 8}}};
+constexpr size_t kChords = [] {
+  size_t chords = 0;
+  for (const Scale& s : kScales) chords += size_t(s.chords);
+  return chords;
+}();
 constexpr int kHitsPerChord = 4;
 constexpr size_t kKept = 12; // samples are kept where their VPL is among so many nearest: it may come to be among kNear
 // Where light comes up in the dark the first VPLs are few, and their cells would take in the whole room: places from
@@ -163,33 +169,47 @@ class CellSampler {
   CellSampler(const RayQuery& rays, const Neighbours& neighbours, uint32_t seed)
       : rays_(rays), neighbours_(neighbours), seed_(seed) {}
 
-  void draw(uint32_t slot, VplCell& cell, RayCounts& counts) {
-    const Vpl& vpl = neighbours_.set.slots[slot];
+  /// Draws all chords of a VPL, or those that meet what `moved`, in place of the samples that the cell has of them,
+  /// whose owners are noted. New ones stand behind those that stay; returns how many these are.
+  size_t draw(uint32_t slot, VplCell& cell, const Disturbance* moved, std::vector<uint32_t>& owners,
+              RayCounts& counts) {
     found_.clear();
-    chords(vpl, cell.radius);
+    chords(neighbours_.set.slots[slot], cell.radius);
+    std::array<bool, kChords> met;
+    for (size_t i = 0; i < kChords; ++i) met[i] = !moved || moved->touches(batch_[i]);
+    for (const SurfaceSample& p : cell.samples) {
+      if (!met[p.chord])
+        found_.push_back(p);
+      else if (p.owner != kNone)
+        owners.push_back(p.owner);
+    }
+    thin([&](size_t i) { return met[i]; });
+    const size_t stay = found_.size();
     for (int round = 0; round < kHitsPerChord && !batch_.empty(); ++round) {
       hits_.resize(batch_.size());
       rays_.closest(batch_, hits_);
       counts.closest += batch_.size();
-      size_t alive = 0;
-      for (size_t i = 0; i < batch_.size(); ++i) {
-        const Ray ray = batch_[i];
+      thin([&](size_t i) {
+        Ray& ray = batch_[i];
         const SurfaceHit& h = hits_[i];
-        if (!h.valid()) continue;
-        addSides(slot, cell.radius, h);
+        if (!h.valid()) return false;
+        addSides(slot, cell.radius, numbers_[i], h);
         // Beyond what was met, also where positions are coarse: else it is met, and counts, twice.
         const float step = h.t + std::max(2e-4f * ray.tMax, 0x1p-20f * maxComponent(glm::abs(h.position)));
-        if (step < ray.tMax) batch_[alive++] = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
-      }
-      batch_.resize(alive);
+        ray = {ray.origin + ray.direction * step, ray.direction, ray.tMax - step};
+        return ray.tMax > 0;
+      });
     }
     // Room for just these: cells that kept the most that they ever had would grow for as long as objects move.
     cell.samples = std::vector<SurfaceSample>(found_.begin(), found_.end());
+    return stay;
   }
 
  private:
   void chords(const Vpl& vpl, float radius) {
     batch_.clear();
+    numbers_.resize(kChords);
+    std::iota(numbers_.begin(), numbers_.end(), uint8_t(0));
     Rng rng(seed_, Stream::Cells, uint32_t(mix64(vpl.id)));
     const vec3 shift = rng.next3();
     const vec2 shiftDisk = rng.next2();
@@ -210,14 +230,27 @@ class CellSampler {
     }
   }
 
+  /// Only chords of the batch that `stays` says so of, by place.
+  template <class Stays> void thin(const Stays& stays) {
+    size_t count = 0;
+    for (size_t i = 0; i < batch_.size(); ++i) {
+      if (!stays(i)) continue;
+      batch_[count] = batch_[i];
+      numbers_[count++] = numbers_[i];
+    }
+    batch_.resize(count);
+    numbers_.resize(count);
+  }
+
   /// Both sides of the surface met, where they may belong to a VPL's.
-  void addSides(uint32_t slot, float radius, const SurfaceHit& h) {
+  void addSides(uint32_t slot, float radius, uint8_t chord, const SurfaceHit& h) {
     if (!isFinite(h.position) || !isFinite(h.normal)) return;
     const Vpl& vpl = neighbours_.set.slots[slot];
     const vec3 d = h.position - vpl.position;
     std::optional<Neighbours::Found> found;
     for (const float side : {1.0f, -1.0f}) {
       SurfaceSample p;
+      p.chord = chord;
       p.position = h.position;
       p.normal = side * h.normal;
       p.geometricNormal = side * h.geometricNormal;
@@ -235,11 +268,12 @@ class CellSampler {
   const uint32_t seed_;
   std::vector<SurfaceSample> found_;
   std::vector<Ray> batch_;
+  std::vector<uint8_t> numbers_; // of the chords in the batch
   std::vector<SurfaceHit> hits_;
 };
 
-/// Notes who looks at the VPL: mailbox points of the VPLs nearest to it, not its own, which sees it by definition. That
-/// one where none of them does.
+/// Notes who looks at the VPL: mailbox points of the VPLs nearest to it, not its own, which sees it by definition. Only
+/// that one where none of them does.
 void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
                  const RayQuery& rays, VplCell& cell, RayCounts& counts) {
   std::array<uint32_t, SurfaceSample::kNear> index;
@@ -259,6 +293,15 @@ void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const 
   if (cell.seenVpl > 0) return;
   cell.viewers = {vpl.mailbox};
   cell.seenVpl = 1;
+}
+
+/// Whether something moved between a place and those who look at it.
+bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, const Disturbance& disturbance,
+                 const RayQuery& rays) {
+  if (disturbance.empty()) return false;
+  const vec3 to = offsetPoint(position, normal, rays.grain());
+  return std::any_of(cell.viewers.begin(), cell.viewers.end(),
+                     [&](const vec3& from) { return disturbance.touches(segment(from, to)); });
 }
 
 /// Light leaves a cell from the place of its VPL, so a sample counts by how well it is seen compared with that place:
@@ -282,14 +325,15 @@ struct Share {
 };
 
 /// Makes the cell of `vpl` of the samples that it has.
-void assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const RayQuery& rays, RayCounts& counts) {
+void assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const Disturbance& disturbance, const RayQuery& rays,
+              RayCounts& counts) {
   std::stable_sort(shares.begin(), shares.end(),
                    [](const Share& a, const Share& b) { return a.sample->owner2 < b.sample->owner2; });
   std::vector<CellPoint> points;
   vpl.area = 0;
   for (const Share& share : shares) {
     SurfaceSample& p = *share.sample;
-    if (p.weighed != cell.drawing) {
+    if (p.weighed != cell.drawing || viewChanged(cell, p.position, p.geometricNormal, disturbance, rays)) {
       p.seen = seenBy(cell, p, rays, counts);
       p.weighed = cell.drawing;
     }
@@ -320,8 +364,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   const std::vector<float> shares =
       representedAreas(vpls.points, vpls.points, true, kScaleNeighbour, DensityEstimator::KnnSide, kInfinity);
 
-  // Whose samples are drawn anew: those that stand elsewhere, have other neighbours or see something move.
-  std::vector<uint8_t> anew(slots, 0), touched(slots, 0);
+  // Whose samples are drawn anew: those that stand elsewhere or have other neighbours; and where something moved.
+  std::vector<uint8_t> anew(slots, 0), near(slots, 0), touched(slots, 0);
   std::vector<vec3> places; // where VPLs came or went, or draw otherwise
   for (uint32_t slot : moved) anew[slot] = 1;
   for (size_t n = 0; n < vpls.slots.size(); ++n) {
@@ -330,9 +374,16 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
-    anew[slot] |= drifted || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius) ||
-                  disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
-    if (!anew[slot]) continue;
+    anew[slot] |= drifted || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius);
+    if (!anew[slot]) {
+      near[slot] = disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
+      const bool nobodySaw = cell.viewers.size() == 1;
+      if (near[slot] && (nobodySaw || viewChanged(cell, vpl.position, vpl.geometricNormal, disturbance, rays))) {
+        cell.viewers.clear();
+        cell.drawing = ++set.drawings;
+      }
+      continue;
+    }
     if (cell.radius > 0) places.push_back(cell.centre);
     places.push_back(vpl.position);
     cell.radius = radius;
@@ -343,7 +394,6 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
     VplCell& cell = set.cells[slot];
     if (set.slots[slot].alive || cell.radius == 0) continue;
     places.push_back(cell.centre);
-    anew[slot] = 1;
   }
   if (places.empty() && disturbance.empty()) return {};
 
@@ -356,50 +406,53 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
     std::vector<uint32_t>& owners = concerned[begin / kGrain];
     CellSampler sampler(rays, neighbours, seed);
     const Connection connected{rays, count};
-    std::vector<vec3> near;
+    std::vector<vec3> around;
     for (uint32_t slot = uint32_t(begin); slot < end; ++slot) {
       VplCell& cell = set.cells[slot];
       const Vpl& vpl = set.slots[slot];
       if (cell.radius == 0) continue;
-      if (anew[slot]) {
+      size_t stay = cell.samples.size();
+      if (!vpl.alive) {
         for (const SurfaceSample& p : cell.samples)
           if (p.owner != kNone) owners.push_back(p.owner);
-        if (!vpl.alive) {
-          cell = {};
-          owners.push_back(slot);
-          continue;
-        }
-        findViewers(vpl, set, vpls, tree, rays, cell, count);
-        sampler.draw(slot, cell, count);
+        cell = {};
         owners.push_back(slot);
-        for (SurfaceSample& p : cell.samples) {
-          neighbours.giveToNearest(p, connected, [](uint32_t) { return false; });
-          if (p.owner != kNone) owners.push_back(p.owner);
-        }
-      } else {
-        near.clear();
-        for (const vec3& place : places)
-          if (glm::distance(place, vpl.position) < cell.reach) near.push_back(place);
-        for (SurfaceSample& p : cell.samples) {
-          const float tried = kTried * std::sqrt(p.owner == kNone ? p.reach2 : p.owner2);
-          const bool disturbed = disturbance.touches(p.position, tried);
-          const bool others = std::any_of(near.begin(), near.end(), [&](const vec3& place) {
-            const vec3 d = place - p.position;
-            return glm::dot(d, d) <= p.reach2;
-          });
-          if (!disturbed && !others) continue;
-          const uint32_t owner = p.owner;
-          const float density = p.density;
-          const std::array<uint32_t, SurfaceSample::kNear> before = p.near;
-          neighbours.enter(p, slot, neighbours.around(p.position));
-          neighbours.giveToNearest(p, connected, [&](uint32_t other) {
-            return !disturbed && !anew[other] && std::find(before.begin(), before.end(), other) != before.end();
-          });
-          if (p.owner == owner && p.density == density) continue;
-          for (const uint32_t o : {owner, p.owner})
-            if (o != kNone) owners.push_back(o);
-        }
+        continue;
       }
+      if (anew[slot] || near[slot]) {
+        if (anew[slot] || cell.viewers.empty()) findViewers(vpl, set, vpls, tree, rays, cell, count);
+        owners.push_back(slot);
+        stay = sampler.draw(slot, cell, anew[slot] ? nullptr : &disturbance, owners, count);
+      }
+      around.clear();
+      for (const vec3& place : places)
+        if (glm::distance(place, vpl.position) < cell.reach) around.push_back(place);
+      const std::span<SurfaceSample> samples = cell.samples;
+      for (SurfaceSample& p : samples.first(stay)) {
+        const float tried = kTried * std::sqrt(p.owner == kNone ? p.reach2 : p.owner2);
+        const bool disturbed = disturbance.touches(p.position, tried);
+        const bool others = std::any_of(around.begin(), around.end(), [&](const vec3& place) {
+          const vec3 d = place - p.position;
+          return glm::dot(d, d) <= p.reach2;
+        });
+        if (!disturbed && !others) continue;
+        const uint32_t owner = p.owner;
+        const float density = p.density;
+        const std::array<uint32_t, SurfaceSample::kNear> before = p.near;
+        if (others) neighbours.enter(p, slot, neighbours.around(p.position));
+        neighbours.giveToNearest(p, connected, [&](uint32_t other) {
+          return !disturbed && !anew[other] && std::find(before.begin(), before.end(), other) != before.end();
+        });
+        if (p.owner == owner && p.density == density) continue;
+        for (const uint32_t o : {owner, p.owner})
+          if (o != kNone) owners.push_back(o);
+      }
+      for (SurfaceSample& p : samples.subspan(stay)) {
+        neighbours.giveToNearest(p, connected, [](uint32_t) { return false; });
+        if (p.owner != kNone) owners.push_back(p.owner);
+      }
+      std::stable_sort(cell.samples.begin(), cell.samples.end(),
+                       [](const SurfaceSample& a, const SurfaceSample& b) { return a.chord < b.chord; });
       cell.reach = 0;
       for (const SurfaceSample& p : cell.samples)
         cell.reach = std::max(cell.reach, glm::distance(p.position, vpl.position) + std::sqrt(p.reach2));
@@ -427,7 +480,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   perBlock.resize(std::max(perBlock.size(), blocks(changed.size())));
   parallelFor(changed.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      assemble(set.slots[changed[i]], set.cells[changed[i]], shared[i], rays, perBlock[begin / kGrain]);
+      assemble(set.slots[changed[i]], set.cells[changed[i]], shared[i], disturbance, rays, perBlock[begin / kGrain]);
     }
   });
   for (const RayCounts& c : perBlock) counts += c;

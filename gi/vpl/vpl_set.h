@@ -63,6 +63,7 @@ struct SurfaceSample {
   float owner2 = 0;       // squared distance to that, m²
   uint32_t weighed = 0;   // VplCell::drawing of the owner that `seen` is for
   float seen = 0;         // how well it is seen, by the place of its owner
+  uint8_t chord = 0;      // number of the one that met it
 };
 
 /// A share of a cell.

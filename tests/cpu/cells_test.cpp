@@ -169,6 +169,30 @@ TEST(Cells, AWallBetweenASampleAndItsOwnerPartsThem) {
   EXPECT_EQ(after, 0);
 }
 
+/// Where an object moves, only chords and segments that meet where it was or is are looked at again, and in the end all
+/// is as if it had stood there from the start.
+TEST(Cells, AMovedThingLeavesWhatAnewDrawingFinds) {
+  const vec3 half(2, 1, 3);
+  const Aabb was{{-0.6f, -1, -0.4f}, {-0.1f, 0.2f, 0.3f}}, is{{0.3f, -1, 0.5f}, {0.8f, 0.2f, 1.2f}};
+  AnalyticQuery before, after;
+  for (AnalyticQuery* rays : {&before, &after}) rays->addBox(-half, half, {vec3(0.5f)});
+  before.addBox(was.lo, was.hi, {vec3(0.5f)});
+  after.addBox(is.lo, is.hi, {vec3(0.5f)});
+  VplSet moved = onBox(half, 400, 1);
+  for (Vpl& v : moved.slots) v.mailbox = v.position + 0.05f * v.normal; // who looks at them is near
+  VplSet anew = moved;
+  RayCounts first, again, all;
+  updateCells(moved, before, {}, allSlots(moved), 1, 1, first);
+  const Aabb boxes[] = {was, is};
+  const std::vector<uint32_t> changed = updateCells(moved, after, Disturbance(boxes), {}, 1, 1, again);
+  updateCells(anew, after, {}, allSlots(anew), 1, 1, all);
+  for (uint32_t i = 0; i < 400; ++i) EXPECT_EQ(moved.slots[i].area, anew.slots[i].area) << i;
+  EXPECT_GT(changed.size(), 20u);
+  EXPECT_LT(changed.size(), 200u);
+  EXPECT_LT(again.closest, all.closest / 5);
+  EXPECT_LT(again.occlusion, all.occlusion / 3);
+}
+
 /// The limit on radii follows an average. Little by little it changes nothing; far from what samples were drawn with,
 /// all are drawn anew, for chords end where it was.
 TEST(Cells, ALimitThatDriftsDrawsThemAnew) {

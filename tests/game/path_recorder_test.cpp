@@ -28,20 +28,20 @@ CameraView at(double t) {
 TEST_F(PathRecorderTest, EveryFrameIsWhereItWasWhateverTheFrameRate) {
   PathRecorder recorder;
   const dvec3 origin(1000, 0, -8);
-  recorder.begin("a.gltf", nullptr);
+  recorder.begin("a.gltf", nullptr, 30, {});
   ASSERT_TRUE(recorder.recording());
   std::vector<double> times;
   for (double t = 0; t < 4; t += 0.01 + 0.2 * std::abs(std::sin(7 * t))) times.push_back(t);
   for (const double t : times) {
-    recorder.add(t, at(t), origin);
-    recorder.add(t, at(t + 1), origin); // no time has passed
+    EXPECT_TRUE(recorder.add(at(t), origin, {.t = t}));
+    EXPECT_FALSE(recorder.add(at(t + 1), origin, {.t = t})); // no time has passed
   }
   const std::optional<Shot> walk = recorder.end(folder_);
   ASSERT_TRUE(walk.has_value());
   EXPECT_FALSE(recorder.recording());
   const Shot read = loadShot(walk->file);
   EXPECT_EQ(read.scene, fs::absolute("a.gltf"));
-  EXPECT_NEAR(read.seconds, times.back(), 1e-9);
+  EXPECT_NEAR(read.seconds, times.back() + 1.0 / 30, 1e-9);
   for (const double t : times) {
     const CameraView camera = shotCamera(read, t, origin);
     for (int column = 0; column < 4; ++column)
@@ -53,12 +53,11 @@ TEST_F(PathRecorderTest, EveryFrameIsWhereItWasWhateverTheFrameRate) {
 TEST_F(PathRecorderTest, KeepsWhatMovesAndOverwritesNothing) {
   Shot moving;
   moving.lights["sun"] = {{0, {}, {}, vec3(0, -1, 0), {}}};
-  moving.set["smc.vpls"] = "64";
   moving.pixels = {vec2(0.5f)};
   PathRecorder recorder;
   for (int i = 1; i <= 2; ++i) {
-    recorder.begin("a.gltf", &moving);
-    recorder.add(0, at(0), dvec3(0));
+    recorder.begin("a.gltf", &moving, 30, {{"smc.vpls", "64"}});
+    recorder.add(at(0), dvec3(0), {});
     const std::optional<Shot> walk = recorder.end(folder_);
     ASSERT_TRUE(walk.has_value());
     EXPECT_EQ(walk->file.filename(), "walk-" + std::to_string(i) + ".json");
@@ -71,12 +70,12 @@ TEST_F(PathRecorderTest, KeepsWhatMovesAndOverwritesNothing) {
 
 TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   PathRecorder recorder;
-  recorder.begin("a.gltf", nullptr);
+  recorder.begin("a.gltf", nullptr, 30, {});
   EXPECT_FALSE(recorder.end(folder_).has_value());
   EXPECT_FALSE(fs::exists(folder_));
   std::ofstream(folder_.string()) << "a file by the folder's name";
-  recorder.begin("a.gltf", nullptr);
-  recorder.add(0, at(0), dvec3(0));
+  recorder.begin("a.gltf", nullptr, 30, {});
+  recorder.add(at(0), dvec3(0), {});
   EXPECT_THROW(recorder.end(folder_), RunError);
   EXPECT_FALSE(recorder.recording());
 }

@@ -5,10 +5,10 @@
 #include "gi/plan/governor.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/conditions.h"
-#include "tools/lambent/frame_log.h"
 #include "tools/lambent/montage.h"
 #include "tools/lambent/text.h"
 #include "tools/lambent/video.h"
+#include "tools/launch/frame_log.h"
 
 #include <sys/resource.h>
 

@@ -7,6 +7,7 @@
 #include "engine/core/sampling.h"
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
+#include "game/rules/props.h"
 #include "gi/plan/presets.h"
 #include "tools/launch/memory.h"
 
@@ -266,10 +267,14 @@ void refuseNotANumber(CLI::App& command) {
           "");
 }
 
+Stage::Stage() = default;
+Stage::~Stage() = default;
+
 SceneView Stage::at(double t) {
   CameraView view = camera;
   if (shot) {
     poseShot(scene, *shot, t);
+    if (!shot->played.empty()) props->show(playedAt(*shot, t), shot->file.string());
     if (!shot->camera.empty() && !cameraGiven) {
       view = shotCamera(*shot, t, scene.origin);
       view.width = camera.width;
@@ -317,6 +322,7 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
   tellWhatIsLeftOut(*stage, stage->settings);
+  if (stage->shot && !stage->shot->played.empty()) stage->props = std::make_unique<Props>(stage->scene);
   return stage;
 }
 

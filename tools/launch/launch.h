@@ -16,6 +16,8 @@ class App;
 
 namespace lambent {
 
+class Props;
+
 /// As parsed; texts are checked by openStage.
 struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
@@ -41,8 +43,12 @@ Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>&
 /// Everything that a frame is made from.
 class Stage {
  public:
+  Stage();
+  ~Stage();
+
   Scene scene;
   std::optional<Shot> shot;
+  std::unique_ptr<Props> props; // what somebody plays or, as the shot has it, played with; null: nobody
   CameraView camera; // of the command line, the file or a default; the shot's camera comes first where it has one
   bool cameraGiven = false; // from the command line: overrides the shot's
   Settings settings;

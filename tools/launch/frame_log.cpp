@@ -1,10 +1,10 @@
-#include "tools/lambent/frame_log.h"
+#include "tools/launch/frame_log.h"
 
 #include "engine/core/error.h"
 #include "engine/core/image.h"
-#include "tools/lambent/text.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 
 namespace lambent {
@@ -27,8 +27,11 @@ void FrameLog::write(const std::filesystem::path& file) const {
         out << '\n';
         if (rows_.empty()) break;
       }
-      out << format("%.6f,%.3f", row.time, row.writeMs);
-      if (governed_) out << format(",%.4f,", double(row.scale)) << row.preset;
+      char text[64];
+      std::snprintf(text, sizeof text, "%.6f,%.3f", row.time, row.writeMs);
+      out << text;
+      std::snprintf(text, sizeof text, ",%.4f,", double(row.scale));
+      if (governed_) out << text << row.preset;
       for (const FigureColumn& c : columns) out << ',' << c.text;
       out << '\n';
     }
