@@ -35,6 +35,7 @@ App::App(const GameOptions& options)
         return GlContext::window("Lambent", width, height);
       }()),
       hud_(context_.handle()), input_(context_.handle()), scenes_(bundledScenes()) {
+  input_.script(options.press);
   glfwSetWindowUserPointer(context_.handle(), &dropped_);
   glfwSetDropCallback(context_.handle(), [](GLFWwindow* window, int count, const char** files) {
     auto& dropped = *static_cast<std::deque<std::string>*>(glfwGetWindowUserPointer(window));

@@ -1,13 +1,30 @@
 #include "game/input.h"
 
+#include "engine/core/error.h"
+
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <sstream>
 #include <utility>
 
 namespace lambent {
 
 namespace {
 constexpr float kRadiansPerPixel = 0.004f;
+
+/// -1: there is none of the name.
+int keyOf(const std::string& name) {
+  if (name.size() == 1)
+    return std::isupper(name[0]) || std::isdigit(name[0]) ? name[0] : -1; // GLFW's are those of ASCII
+  constexpr std::pair<const char*, int> kNames[] = {
+      {"Space", GLFW_KEY_SPACE}, {"Tab", GLFW_KEY_TAB}, {"F1", GLFW_KEY_F1}, {"F2", GLFW_KEY_F2}};
+  for (const auto& [known, key] : kNames)
+    if (name == known) return key;
+  return -1;
+}
 } // namespace
 
 std::vector<std::pair<const char*, const char*>> keyHelp() {
@@ -49,8 +66,28 @@ Input::Input(GLFWwindow* window) : window_(window) {
   glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
 }
 
+void Input::script(const std::string& presses) {
+  std::istringstream in(presses);
+  for (std::string word; in >> word;) {
+    const size_t at = word.find('@');
+    const std::string name = word.substr(0, at);
+    Press press{keyOf(name), 0, 0};
+    char end = 0;
+    const int numbers = at == word.npos ? 0 : std::sscanf(word.c_str() + at, "@%d-%d%c", &press.from, &press.to, &end);
+    if (press.key < 0 || numbers < 1 || numbers > 2) throw InputError("--press " + word, "KEY@FRAME or KEY@FROM-TO");
+    if (numbers == 1) press.to = press.from;
+    presses_.push_back(press);
+  }
+}
+
+bool Input::down(int key) const {
+  return glfwGetKey(window_, key) == GLFW_PRESS || std::ranges::any_of(presses_, [&](const Press& p) {
+           return p.key == key && p.from <= frame_ && frame_ <= p.to;
+         });
+}
+
 bool Input::tapped(int key) {
-  const bool now = glfwGetKey(window_, key) == GLFW_PRESS;
+  const bool now = down(key);
   const bool before = std::exchange(down_[key], now);
   return now && !before;
 }
@@ -76,6 +113,7 @@ void Input::release() {
 
 Wishes Input::read(bool keysTaken, bool mouseTaken, bool mayCapture, float seconds) {
   Wishes w;
+  ++frame_;
   w.help = tapped(GLFW_KEY_F1);
   w.restart = tapped(GLFW_KEY_F2);
   w.reloadShaders = tapped(GLFW_KEY_F5);
@@ -108,7 +146,7 @@ void Input::readKeys(Wishes& w) {
   w.exposure = int(tapped(GLFW_KEY_RIGHT_BRACKET)) - int(tapped(GLFW_KEY_LEFT_BRACKET));
   for (int digit = 0; digit < 10; ++digit)
     if (tapped(GLFW_KEY_0 + digit)) w.buffer = (digit + 9) % 10;
-  const auto held = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0f : 0.0f; };
+  const auto held = [&](int key) { return down(key) ? 1.0f : 0.0f; };
   const float up = held(GLFW_KEY_SPACE), down = glm::max(held(GLFW_KEY_C), held(GLFW_KEY_LEFT_CONTROL));
   w.move.direction = {held(GLFW_KEY_D) - held(GLFW_KEY_A), up - down, held(GLFW_KEY_S) - held(GLFW_KEY_W)};
   w.move.jump = up > 0;

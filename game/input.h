@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 struct GLFWwindow;
@@ -41,10 +42,17 @@ class Input {
   /// Only whether Escape went down: while nothing can be played.
   bool escape();
 
+  /// For tests, keys that go down and up by themselves: "R@1 W@2-40", by calls of read, the first being 1.
+  void script(const std::string& presses);
+
   bool captured() const { return captured_; }
   void release();
 
  private:
+  struct Press {
+    int key, from, to;
+  };
+  bool down(int key) const;
   bool tapped(int key); // went down since the last call
   bool clicked(int button);
   void readKeys(Wishes& w);
@@ -53,6 +61,8 @@ class Input {
   void capture();
 
   GLFWwindow* window_;
+  std::vector<Press> presses_;
+  int frame_ = 0;
   std::map<int, bool> down_, buttons_;
   PadButtons padBefore_{};
   bool looking_ = false, captured_ = false;

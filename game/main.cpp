@@ -32,6 +32,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("--frames", options.frames)->check(CLI::Range(0, 1000000))->group("");
   app.add_option("--screenshot", options.screenshot)->group("");
   app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");
+  app.add_option("--press", options.press)->group("");
   app.add_option("--state", options.state)->group("");
   refuseNotANumber(app);
   try {

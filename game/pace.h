@@ -19,8 +19,8 @@ class Pacer {
   /// For the next frame. Where nothing has moved for a while as large as half a second draws, so that whoever moves
   /// again need not wait; in the end 1.
   float scale() const { return moving() ? governed_.scale : stillFrames_ < 2 * kStillFrames ? halfway_ : 1.0f; }
-  /// After a frame: what it took, at least `wholeMs` from its beginning to the next one's, and whether anything had moved
-  /// for it. `settings` may get another preset.
+  /// After a frame: what it took, at least `wholeMs` from its beginning to the next one's, and whether anything had
+  /// moved for it. `settings` may get another preset.
   void took(const FrameStats& stats, double wholeMs, bool moved, Settings& settings);
 
   /// A person sets the scale, and nothing else does until `govern`.

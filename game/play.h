@@ -26,6 +26,7 @@ struct GameOptions {
   std::optional<int> frames;      // for tests: quit after so many
   std::string screenshot;         // for tests: what the window shows at the end
   std::string truth;              // for tests: split or heat from the start
+  std::string press;              // for tests: keys, as Input::script
   std::string state;              // for tests: a file that says what is going on
 };
 

@@ -33,7 +33,7 @@ PlayedMoment Props::moment(double t) const {
   return {.t = t,
           .movers = movers.used(),
           .things = things.list(),
-          .lampIntensity = things.lampIntensity,
+          .lampIntensity = things.count() > 0 ? things.lampIntensity : vec3(0),
           .hour = day.hour(),
           .torch = torch_};
 }

@@ -136,7 +136,7 @@ struct LightShadowState {
   void fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps, const LightShadowInputs& in);
   void drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
   void drawMoved(KeptBlock& block, int layer, const mat4& clipFromWorld, const GpuScene& scene);
-  void drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene, Drawn which);
+  void drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene, Instances which);
 };
 
 /// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
@@ -184,7 +184,7 @@ void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& map
       const Frustum frustum = Frustum::ofClip(map.clipFromWorld[face]);
       const auto shows = [&](const Aabb& box) { return frustum.mayShow(box); };
       if (whole)
-        drawInto(block.maps, layer * faces + face, map.clipFromWorld[face], in.scene, Drawn::All);
+        drawInto(block.maps, layer * faces + face, map.clipFromWorld[face], in.scene, Instances::All);
       else if (std::any_of(in.moved.begin(), in.moved.end(), shows))
         drawMoved(block, layer * faces + face, map.clipFromWorld[face], in.scene);
       else
@@ -205,23 +205,23 @@ void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFr
   }
   const KeptBlock::StillMap wanted{clipFromWorld, scene.stillVersion()};
   if (KeptBlock::StillMap& has = block.stillDrawn[size_t(layer)]; !(has == wanted)) {
-    drawInto(block.still, layer, clipFromWorld, scene, Drawn::Still);
+    drawInto(block.still, layer, clipFromWorld, scene, Instances::Still);
     has = wanted;
   }
   const GLenum target = block.kind == MapKind::Cube ? GL_TEXTURE_CUBE_MAP_ARRAY : GL_TEXTURE_2D_ARRAY;
   glCopyImageSubData(block.still.name(), target, 0, 0, 0, layer, block.maps.name(), target, 0, 0, 0, layer, size, size,
                      1);
-  drawInto(block.maps, layer, clipFromWorld, scene, Drawn::Restless);
+  drawInto(block.maps, layer, clipFromWorld, scene, Instances::Restless);
 }
 
 /// Over what the map shows already, where only the restless are drawn.
 void LightShadowState::drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene,
-                                Drawn which) {
+                                Instances which) {
   framebuffer.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = maps.width(), .height = maps.width()}.apply();
   framebuffer.attachDepthLayer(maps, layer);
   const float nothing = 0;
-  if (which != Drawn::Restless) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
+  if (which != Instances::Restless) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
   scene.draw(DrawKind::Depth, clipFromWorld, vec3(0), which);
 }
 

@@ -112,12 +112,12 @@ void GpuScene::bindMaterial(uint32_t index) const {
   glBindSampler(4, material.finishSampler);
 }
 
-uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Drawn which) const {
+uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
   std::vector<const Item*> shown;
   for (const Item& item : items_) {
-    const Drawn is = rest_[item.instance] == kRested ? Drawn::Still : Drawn::Restless;
-    if ((which == Drawn::All || which == is) && frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
+    const Instances is = rest_[item.instance] == kRested ? Instances::Still : Instances::Restless;
+    if ((which == Instances::All || which == is) && frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
   }
   if (shown.empty()) return 0;
   // Depth and distance look the same in any order, and without alpha test whatever the material: those go first, as one

@@ -30,7 +30,7 @@ struct Frustum {
 enum class DrawKind { GBuffer, GlossyGBuffer, DistanceNormal, Depth };
 
 /// Which instances are drawn: those that have not moved for a while, those that have, or both.
-enum class Drawn { All, Still, Restless };
+enum class Instances { All, Still, Restless };
 
 class GpuScene {
  public:
@@ -45,11 +45,12 @@ class GpuScene {
   /// array and textures; the caller sets the pipeline state, gives the eye but for depth, and for a G-buffer binds the
   /// camera block.
   /// Returns the number of calls.
-  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0), Drawn which = Drawn::All) const;
+  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0),
+                Instances which = Instances::All) const;
 
   /// Masked at the start.
   void setAlphaTest(AlphaTest test) { stillVersion_ += std::exchange(alphaTest_, test) != test; }
-  /// What is drawn of Drawn::Still is the same as long as this is.
+  /// What is drawn of Instances::Still is the same as long as this is.
   uint64_t stillVersion() const { return stillVersion_; }
 
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
