@@ -1,7 +1,7 @@
 // Recipes' output in temporary folders that go away again.
 #pragma once
 
-#include "tests/support/sanitized.h"
+#include "tests/support/effort.h"
 #include "tools/content/content.h"
 
 #include <gtest/gtest.h>

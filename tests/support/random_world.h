@@ -5,8 +5,8 @@
 #include "engine/core/rng.h"
 #include "engine/scene/scene.h"
 #include "engine/trace/embree_query.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
-#include "tests/support/sanitized.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
