@@ -37,7 +37,7 @@ TEST_P(Walks, KeepClearOfWalls) {
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + name + ".json");
   EXPECT_EQ(shot.pixels.size(), 8u);
 
-  const WrittenScene w(recipe);
+  const WrittenScene& w = written(recipe);
   Scene scene = loadScene(w.scene.file);
   const PlacedScene placed(scene);
   constexpr double kStep = 0.25, kClearance = 0.25; // seconds, metres

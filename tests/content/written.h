@@ -1,13 +1,19 @@
-// A recipe's output in a temporary folder that goes away again.
+// Recipes' output in temporary folders that go away again.
 #pragma once
 
+#include "tests/support/effort.h"
 #include "tools/content/content.h"
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <fstream>
+#include <map>
+#include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace lambent {
 
@@ -36,10 +42,8 @@ struct WrittenScene {
 
   explicit WrittenScene(const ContentRecipe& recipe, const std::string& tag = "") {
     // Tests may run at the same time, each in a process of its own.
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = "lambent-" + std::string(test->name()) + "-" + recipe.name + tag;
-    for (char& c : name) c = c == '/' ? '-' : c;
-    folder = std::filesystem::path(testing::TempDir()) / name;
+    folder =
+        std::filesystem::path(testing::TempDir()) / ("lambent-" + std::to_string(::getpid()) + "-" + recipe.name + tag);
     scene = recipe.write(folder);
   }
   ~WrittenScene() {
@@ -49,5 +53,21 @@ struct WrittenScene {
   WrittenScene(const WrittenScene&) = delete;
   WrittenScene& operator=(const WrittenScene&) = delete;
 };
+
+/// All recipes; where sanitizers look at them, without the two that take most of the time: they have smaller sisters.
+inline std::vector<ContentRecipe> testedRecipes() {
+  std::vector<ContentRecipe> all = contentRecipes();
+  if (test::kSanitized)
+    std::erase_if(all, [](const ContentRecipe& r) { return r.name == "gallery" || r.name == "museum-97k"; });
+  return all;
+}
+
+/// What tests only read is written once for all of them: making a scene takes longer than most of what is asked of it.
+inline const WrittenScene& written(const ContentRecipe& recipe) {
+  static std::map<std::string, std::unique_ptr<WrittenScene>> all;
+  std::unique_ptr<WrittenScene>& found = all[recipe.name];
+  if (!found) found = std::make_unique<WrittenScene>(recipe);
+  return *found;
+}
 
 } // namespace lambent

@@ -2,6 +2,7 @@
 // and what the frame relies on (slots, moved slots, determinism, empty scenes).
 #include "engine/core/parallel.h"
 #include "tests/support/comparator_world.h"
+#include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -83,6 +84,7 @@ test::Mean meanOverSeeds(World& world, uint32_t seeds) {
 }
 
 TEST_P(Comparator, MeanIrradianceIsThatOfPathTracing) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   World world(GetParam());
   lookAtTheFloor(world);
   const int bounces = GetParam() == VplSource::Tcas ? 1 : 3;
@@ -265,7 +267,8 @@ TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
       const float r2 = glm::dot(d, d), inverse = 1 / std::sqrt(r2);
       const float cosX = glm::dot(d, x.normal) * inverse, cosY = -glm::dot(d, v.normal) * inverse;
       if (cosX <= 0 || cosY <= 0) continue;
-      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal, world.rays.grain())))) continue;
+      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal, world.rays.grain()))))
+        continue;
       sum += double(cosX * cosY / r2);
     }
     brought.push_back(sum * double(v.intensity()));
@@ -279,6 +282,7 @@ TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
 }
 
 TEST(AdaptiveSampling, AnyNumberOfStepsBringsTheSameLight) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // Chains that started anywhere would bring too little or too much light until they forget it. Most of the lamps'
   // light is out of sight here.
   World world(VplSource::Tcas);

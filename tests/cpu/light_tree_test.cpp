@@ -2,6 +2,7 @@
 // far it is from weighing all lights.
 #include "engine/core/rng.h"
 #include "gi/vpl/light_set.h"
+#include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -149,6 +150,7 @@ TEST(LightTree, ProbabilitiesAddUpToOneWithThatOfNone) {
 }
 
 TEST(LightTree, ChoicesFollowProbabilities) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   double worst = 0;
   for (Lamps lamps : kAllLamps)
     for (int count : {3, 40, 1000}) {
@@ -223,6 +225,7 @@ OneForAll oneForAll(const Lit& world, uint32_t places, uint32_t seed) {
 }
 
 TEST(LightTree, OneChoiceStandsForAllLights) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   for (Lamps lamps : kAllLamps)
     for (int count : {20, 33, 300})
       for (uint32_t seed = 1; seed <= 3; ++seed) {
@@ -234,6 +237,7 @@ TEST(LightTree, OneChoiceStandsForAllLights) {
 
 /// Bounds are a third above what was measured, the worst of three seeds. Weighing all 1000 gives 0 but for panels.
 TEST(LightTree, OneChoiceOutOfAThousandIsNearlyAsGoodAsWeighingAll) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   const std::map<Lamps, double> bounds{
       {Lamps::Corridor, 0.02}, {Lamps::Floor, 0.06}, {Lamps::Filling, 0.3}, {Lamps::PanelsDown, 0.1}};
   for (const auto& [lamps, bound] : bounds)

@@ -56,7 +56,10 @@ template <class ViewOf> double tracedShare(const test::RandomWorld& world, int f
 
 TEST(PathCache, EqualsTracingAllPathsThroughRandomEdits) {
   test::RandomWorld world(1e-3f);
-  const double share = tracedShare(world, test::kSanitized ? 500 : 3000,
+  const double share = tracedShare(world,
+                                   test::kSanitized ? 200
+                                   : test::isLong() ? 3000
+                                                    : 1000,
                                    [&](int frame) -> const SceneView& { return world.step(frame % 4); });
   RecordProperty("traced_share", std::to_string(share));
   EXPECT_LT(share, 0.5);
@@ -73,17 +76,21 @@ TEST(PathCache, EqualsTracingAllPathsUnderManyLamps) {
   }
   std::vector<LightView> lights; // of the frame
   SceneView view;
-  const double share = tracedShare(world, test::kSanitized ? 60 : 300, [&](int frame) -> const SceneView& {
-    view = world.step(frame % 3);
-    if (frame % 2 == 0) {
-      lamps[rng.below(uint32_t(lamps.size()))].position += 0.1f * (rng.next3() - 0.5f);
-      view.changes.lights = true;
-    }
-    lights.assign(view.lights.begin(), view.lights.end());
-    lights.insert(lights.end(), lamps.begin(), lamps.end());
-    view.lights = lights;
-    return view;
-  });
+  const double share = tracedShare(world,
+                                   test::kSanitized ? 60
+                                   : test::isLong() ? 300
+                                                    : 150,
+                                   [&](int frame) -> const SceneView& {
+                                     view = world.step(frame % 3);
+                                     if (frame % 2 == 0) {
+                                       lamps[rng.below(uint32_t(lamps.size()))].position += 0.1f * (rng.next3() - 0.5f);
+                                       view.changes.lights = true;
+                                     }
+                                     lights.assign(view.lights.begin(), view.lights.end());
+                                     lights.insert(lights.end(), lamps.begin(), lamps.end());
+                                     view.lights = lights;
+                                     return view;
+                                   });
   EXPECT_LT(share, 0.5);
 }
 

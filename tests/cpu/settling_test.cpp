@@ -1,6 +1,7 @@
 // When a set of VPLs in a still world is taken to have settled: not too early, and at all.
 #include "engine/trace/embree_query.h"
 #include "gi/vpl/smc.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
 
@@ -105,6 +106,7 @@ TEST(Settling, NotWhileAVplIsUnverified) {
 /// Most sets stay as they are once they have settled; of some a better or a worse one comes about, mostly within two
 /// hundred frames.
 TEST(Settling, SettledSetsAreNoWorseThanLater) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   LitRoom room;
   SmcSettings many;
   many.vpls = 2048;

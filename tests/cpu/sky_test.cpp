@@ -9,6 +9,7 @@
 #include "gi/vpl/photons.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/daylight.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
 
@@ -154,6 +155,7 @@ void expectDensity(const std::function<SkySample(vec2)>& sample, const std::func
 }
 
 TEST(SkySampling, FollowsItsDensity) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   for (const float elevation : {3.0f, 40.0f}) {
     const Sky sky = Sky::daylight(directionAt(elevation, 60), 3);
     expectDensity([&](vec2 u) { return sky.sample(u); }, [&](const vec3& d) { return sky.pdf(d); }, sky, "all");
@@ -222,6 +224,7 @@ double throughWindow(const Sky& sky, const vec3& at, const vec3& normal) {
 }
 
 TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   WindowRoom room;
   const SceneView view = room.scene.view();
   EmbreeQuery rays(room.scene.assets);
@@ -410,6 +413,7 @@ TEST(SkyPaths, KeptThroughChangesOfSkyAndGeometry) {
 }
 
 TEST(SkyPaths, PhotonsBringWhatTheSkySends) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // A plate with both sides, under the sky: what arrives from above and from below.
   LightSet lights;
   lights.sky = Sky::daylight(directionAt(15, 40), 3);

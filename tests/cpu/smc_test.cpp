@@ -4,6 +4,7 @@
 #include "engine/trace/analytic_query.h"
 #include "gi/vpl/smc.h"
 #include "gi/vpl/sources.h"
+#include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
@@ -387,6 +388,7 @@ TEST(Smc, NoVplReflectsMoreThanTheLampsSend) {
 }
 
 TEST(Smc, TheSetCarriesTheRoomsLight) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // The set spreads VPLs apart, where the nearest neighbour alone would find 35 % too much light.
   LightView lamp;
   lamp.position = {0.3f, 1.5f, -0.2f};
@@ -397,6 +399,7 @@ TEST(Smc, TheSetCarriesTheRoomsLight) {
 }
 
 TEST(Smc, ChoosingBrightVplsDoesNotMakeTheRoomBrighter) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // A narrow spot: most of the room is lit by rare paths through a small patch, so estimates are noisy, and a set that
   // kept what looks bright by the estimate it renders with would carry 45 % too much.
   LightView spot;
@@ -414,6 +417,7 @@ TEST(Smc, ChoosingBrightVplsDoesNotMakeTheRoomBrighter) {
 /// A lamp in the middle of a sphere lights all of it alike, E = I/R², and so does every bounce: L = (ρ + ρ² + … + ρ^B)
 /// I/(π R²) everywhere, and πL falls on any plane anywhere inside.
 TEST(Smc, WhiteFurnaceOfASphere) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   constexpr float kRadius = 2, kAlbedo = 0.6f, kIntensity = 5;
   std::vector<SurfaceHit> planes;
   for (const vec3& at : {vec3(0), vec3(0.6f, -0.5f, 0.4f)})

@@ -78,7 +78,7 @@ TEST_F(ScaleTest, PowersOfTwoGiveTheSameBytes) {
     double light = 0;
     for (const vec3& p : usual[1].pixels) light += double(p.y);
     EXPECT_GT(light / double(usual[1].pixels.size()), 0.01) << technique;
-    for (const int k : {-13, -3, 5, 13}) {
+    for (const int k : {-13, 12}) { // what has a length of its own shows the more the farther from it
       const std::vector<Image> scaled = pictures(std::ldexp(1.0f, k), technique);
       for (size_t i = 0; i < usual.size(); ++i) {
         size_t different = 0;

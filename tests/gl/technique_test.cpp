@@ -18,6 +18,7 @@ class TechniqueTest : public GlTest {
     settings.shadow.maker = ShadowMaker::Rays;
     settings.vpl.mirCandidates = 4;
     settings.rsm.resolution = 64;
+    settings.cube.resolution = 32;
     settings.image.exposure = 1;
   }
   SceneView still() const {

@@ -6,6 +6,7 @@
 #include "gi/plan/presets.h"
 #include "hard_case.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/effort.h"
 
 #include <fstream>
 #include <iomanip>
@@ -101,8 +102,7 @@ TEST_P(HardTest, StaysWhole) {
 class LongHardTest : public GlTest {
  protected:
   void SetUp() override {
-    const char* wanted = std::getenv("LAMBENT_LONG");
-    if (!wanted || !*wanted) GTEST_SKIP() << "takes minutes: LAMBENT_LONG=1 runs it (tools/test --long)";
+    if (!isLong()) GTEST_SKIP() << "takes minutes: LAMBENT_LONG=1 runs it (tools/test --long)";
     GlTest::SetUp();
   }
 };

@@ -24,6 +24,7 @@ HardWorld::HardWorld(const char* preset) {
   settings.shadow.maker = ShadowMaker::Rays;
   settings.vpl.mirCandidates = 4;
   settings.rsm.resolution = 32;
+  settings.cube.resolution = 32;
 }
 
 void HardWorld::room(const vec3& lo, const vec3& hi, const vec3& albedo) {

@@ -5,6 +5,7 @@
 #include "engine/core/rng.h"
 #include "engine/scene/scene.h"
 #include "engine/trace/embree_query.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,12 +14,6 @@
 #include <memory>
 
 namespace lambent::test {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true; // everything takes ten times as long: fewer frames do
-#else
-constexpr bool kSanitized = false;
-#endif
 
 /// A closed room of 6×3×6 m. In it boxes (the first a lamp, the last one morphed), sheets (the second one morphed, the
 /// third skinned), a lamp, a spot and a sun that is out at first. Objects overlap, touch and pass through each other

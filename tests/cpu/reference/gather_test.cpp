@@ -3,6 +3,7 @@
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
 #include "gi/vpl/near_light.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/spread_lights.h"
 #include "tests/support/statistics.h"
@@ -87,6 +88,7 @@ TEST(ReferenceAgainstVpls, ClampedGatherOfEvenlySpreadLights) {
 
 /// Few lights and wide bounds: a tenth of the light or more is near light, and all of it comes back.
 TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   Room room;
   const test::Mean truth = room.truth(0, 4000);
   for (const bool subsets : {false, true}) {

@@ -2,6 +2,7 @@
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
+#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
 
@@ -81,6 +82,7 @@ TEST(Reference, WhiteFurnaceOfAMeshRoom) {
 }
 
 TEST(Reference, PointLightInASphere) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // Between points of a sphere G is the same everywhere, so wherever the light is, each bounce brings ρ times the mean
   // irradiance of the one before: E = I/R² · (ρ + … + ρ^B).
   const float radius = 2, albedo = 0.5f;
@@ -171,6 +173,7 @@ TEST_F(ParallelPlates, OneBounce) {
 }
 
 TEST_F(ParallelPlates, TwoBounces) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   // What the first bounce brings, tabulated over the radius; beyond the table it is nothing (1e-4 of the total).
   constexpr int kEntries = 200;
   constexpr double kStep = 0.1;
