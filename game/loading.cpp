@@ -24,6 +24,7 @@ void Loading::load() {
     loaded.movers = std::make_unique<Movers>(scene);
     loaded.things = std::make_unique<Things>(scene, height);
     loaded.solids = std::make_unique<Solids>(scene);
+    loaded.goal = Goal::find(scene);
     tell("done", 1);
     loaded_ = std::move(loaded);
   } catch (...) {

@@ -1,6 +1,7 @@
 // A scene on its way from disk, on a thread of its own, while the window goes on.
 #pragma once
 
+#include "game/rules/goal.h"
 #include "game/rules/movers.h"
 #include "game/rules/things.h"
 #include "tools/launch/launch.h"
@@ -19,6 +20,7 @@ struct LoadedScene {
   std::unique_ptr<Movers> movers;
   std::unique_ptr<Things> things;
   std::unique_ptr<Solids> solids;
+  std::unique_ptr<Goal> goal; // null: the scene has none
 };
 
 /// How far something long is.

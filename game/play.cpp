@@ -34,9 +34,9 @@ const char* gaitText(Gait gait) {
 Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
     : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)),
       movers_(std::move(loaded.movers)), things_(std::move(loaded.things)), solids_(std::move(loaded.solids)),
-      shot_(stage_->shot), scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()),
-      player_(stage_->camera, worldBounds(scene_)), gi_(stage_->settings, stage_->seed), day_(scene_),
-      truth_(stage_->seed) {
+      goal_(std::move(loaded.goal)), shot_(stage_->shot), scene_(stage_->scene),
+      diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
+      gi_(stage_->settings, stage_->seed), day_(scene_), truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
@@ -67,6 +67,10 @@ void Play::restart() {
   pose(0);
   home();
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
+  if (!goal_) return;
+  goal_->reset();
+  hud_.say("bring daylight to the " + goal_->what() +
+           ": doors (E) and white boards (B) lead it there, lamps do not count");
 }
 
 void Play::home() {
@@ -132,6 +136,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
   things_->lampIntensity = model_.lampIntensity;
   things_->update(*solids_, player_, std::min(float(seconds), kLongestStep));
   carryTorch();
+  if (goal_) measureGoal();
 
   const auto [width, height] = context_.framebufferSize();
   const SceneView view =
@@ -288,6 +293,14 @@ void Play::carryTorch() {
   scene_.registry.get<PunctualLight>(*torch_).intensity = light.intensity;
 }
 
+void Play::measureGoal() {
+  const bool before = goal_->reached();
+  goal_->update();
+  if (goal_->reached() && !before)
+    hud_.say("it is done: the " + goal_->what() + " has the daylight that it waited for (F2 begins anew)");
+  model_.goal = GoalShown{goal_->what(), goal_->irradiance(), goal_->wanted(), goal_->reached()};
+}
+
 /// What the window shows now, the panel included.
 void Play::writeScreenshot(const fs::path& png) const {
   const auto [width, height] = context_.framebufferSize();
@@ -333,6 +346,11 @@ std::string Play::state() const {
                 model_.torch ? "true" : "false", movers_->place("door leaf"), movers_->place("cabin"),
                 model_.hour.value_or(-1), times_.meanMs());
   std::string all = text;
+  if (goal_) {
+    std::snprintf(text, sizeof text, ", \"goal\": %.6f, \"goal_at\": %.6f, \"reached\": %s",
+                  double(goal_->irradiance()), double(goal_->wanted()), goal_->reached() ? "true" : "false");
+    all += text;
+  }
   std::array<bool, kStages> stages{};
   stages.fill(true);
   for (const FigureColumn& column : columnsOf(gi_.stats(), stages))

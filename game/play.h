@@ -64,6 +64,7 @@ class Play {
   void toggleFollowing();
   void showTruth(TruthMode mode);
   void carryTorch();
+  void measureGoal();
   std::string saveScreenshot() const;
   template <class Action> void report(Action&& action);
 
@@ -74,6 +75,7 @@ class Play {
   const std::unique_ptr<Movers> movers_;
   const std::unique_ptr<Things> things_;
   const std::unique_ptr<Solids> solids_;
+  const std::unique_ptr<Goal> goal_; // null: the scene has none
   const std::optional<Shot>& shot_;
   Scene& scene_;
   const float diameter_; // of the scene as it starts, metres
