@@ -102,6 +102,7 @@ void Hud::draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, con
     drawViewLegend(model);
   else
     drawTruthLegend(truth, model.buffer);
+  if (model.goal) drawGoal(*model.goal);
   drawOffer(model);
   if (model.help) drawHelp();
 }
@@ -207,6 +208,22 @@ void Hud::drawViewLegend(const HudModel& model) {
   ImGui::SetNextWindowBgAlpha(0.6f);
   ImGui::Begin("view", nullptr, kOverlay);
   ImGui::Text("%s: %s (1: the picture)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
+  ImGui::End();
+}
+
+/// What the goal has of what it wants.
+void Hud::drawGoal(const GoalShown& goal) const {
+  const bool small = goal.wanted < 0.1f;
+  const double unit = small ? 1e3 : 1;
+  ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 8}, ImGuiCond_Always, {0.5f, 0});
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin("goal", nullptr, kOverlay);
+  ImGui::Text("%s %.2f of %.2f %sW/m\u00b2: %s", goal.what.c_str(), unit * double(goal.irradiance),
+              unit * double(goal.wanted), small ? "m" : "", goal.reached ? "done" : "bring daylight here");
+  const ImVec4 color = goal.reached ? ImVec4(0.35f, 0.8f, 0.4f, 1) : ImVec4(0.95f, 0.75f, 0.3f, 1);
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, color);
+  ImGui::ProgressBar(goal.irradiance / goal.wanted, {ImGui::GetContentRegionAvail().x, 6 * scale_}, "");
+  ImGui::PopStyleColor();
   ImGui::End();
 }
 

@@ -22,6 +22,13 @@ namespace gl {
 class Texture;
 }
 
+/// How far the scene's goal is.
+struct GoalShown {
+  std::string what;
+  float irradiance = 0, wanted = 1; // W/m²
+  bool reached = false;
+};
+
 /// What panel and keys change and the play obeys.
 struct HudModel {
   Buffer buffer = Buffer::Beauty;
@@ -41,6 +48,7 @@ struct HudModel {
   Gait gait = Gait::Walk; // shown
   float speed = 1;        // of the player, times the usual
   Pacer pacer{{}, false}; // of frames, by the picture's scale
+  std::optional<GoalShown> goal = {};
 };
 
 /// What was pressed in the menu.
@@ -94,6 +102,7 @@ class Hud {
   void change(Settings& settings, const std::function<void(Settings&)>& edit);
   void drawSpeed(const HudModel& model, const FrameTimes& times);
   void drawViewLegend(const HudModel& model);
+  void drawGoal(const GoalShown& goal) const;
   void drawOffer(const HudModel& model) const;
   void drawHelp() const;
   void drawMessages();

@@ -22,6 +22,7 @@ void Loading::load() {
     Scene& scene = loaded.stage->scene;
     if (!loaded.stage->props) loaded.stage->props = std::make_unique<Props>(scene);
     loaded.solids = std::make_unique<Solids>(scene);
+    loaded.goal = Goal::find(scene);
     tell("done", 1);
     loaded_ = std::move(loaded);
   } catch (...) {

@@ -1,6 +1,7 @@
 // A scene on its way from disk, on a thread of its own, while the window goes on.
 #pragma once
 
+#include "game/rules/goal.h"
 #include "game/rules/props.h"
 #include "game/rules/solids.h"
 #include "tools/launch/launch.h"
@@ -17,6 +18,7 @@ namespace lambent {
 struct LoadedScene {
   std::unique_ptr<Stage> stage;
   std::unique_ptr<Solids> solids;
+  std::unique_ptr<Goal> goal; // null: the scene has none
 };
 
 /// How far something long is.

@@ -34,7 +34,7 @@ const char* gaitText(Gait gait) {
 
 Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
     : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)), props_(*stage_->props),
-      solids_(std::move(loaded.solids)), shot_(stage_->shot), scene_(stage_->scene),
+      solids_(std::move(loaded.solids)), goal_(std::move(loaded.goal)), shot_(stage_->shot), scene_(stage_->scene),
       diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
       gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
@@ -67,6 +67,10 @@ void Play::restart() {
   pose(0);
   home();
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
+  if (!goal_) return;
+  goal_->reset();
+  hud_.say("bring daylight to the " + goal_->what() +
+           ": doors (E) and white boards (B) lead it there, lamps do not count");
 }
 
 void Play::home() {
@@ -141,6 +145,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
     props_.things.update(*solids_, player_, std::min(float(seconds), kLongestStep));
     carryTorch();
   }
+  if (goal_) measureGoal();
   const bool recorded =
       recorder_.recording() && recorder_.add(player_.view(1, 1), scene_.origin, props_.moment(model_.time));
 
@@ -312,6 +317,14 @@ void Play::carryTorch() {
                                       kTorch * vec3(luminance(model_.lampIntensity))});
 }
 
+void Play::measureGoal() {
+  const bool before = goal_->reached();
+  goal_->update();
+  if (goal_->reached() && !before)
+    hud_.say("it is done: the " + goal_->what() + " has the daylight that it waited for (F2 begins anew)");
+  model_.goal = GoalShown{goal_->what(), goal_->irradiance(), goal_->wanted(), goal_->reached()};
+}
+
 /// What the window shows now, the panel included.
 void Play::writeScreenshot(const fs::path& png) const {
   const auto [width, height] = context_.framebufferSize();
@@ -358,6 +371,11 @@ std::string Play::state() const {
                 model_.offer.c_str(), model_.torch ? "true" : "false", props_.movers.place("door leaf"),
                 props_.movers.place("cabin"), model_.hour.value_or(-1), times_.meanMs());
   std::string all = text;
+  if (goal_) {
+    std::snprintf(text, sizeof text, ", \"goal\": %.6f, \"goal_at\": %.6f, \"reached\": %s",
+                  double(goal_->irradiance()), double(goal_->wanted()), goal_->reached() ? "true" : "false");
+    all += text;
+  }
   std::array<bool, kStages> stages{};
   stages.fill(true);
   for (const FigureColumn& column : columnsOf(gi_.stats(), stages))

@@ -67,6 +67,7 @@ class Play {
   void showTruth(TruthMode mode);
   void carryTorch();
   void followMoment();
+  void measureGoal();
   std::string saveScreenshot() const;
   template <class Action> void report(Action&& action);
 
@@ -76,6 +77,7 @@ class Play {
   const std::unique_ptr<Stage> stage_;
   Props& props_;
   const std::unique_ptr<Solids> solids_;
+  const std::unique_ptr<Goal> goal_; // null: the scene has none
   const std::optional<Shot>& shot_;
   Scene& scene_;
   const float diameter_; // of the scene as it starts, metres

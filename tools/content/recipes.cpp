@@ -31,6 +31,8 @@ const std::vector<ContentRecipe>& contentRecipes() {
         {"lift", "hall of three storeys with a lift in front of lit rooms", true, content::writeLift},
         {"lamps", "gallery with fifty lamps of unlike size, thin poles, a fence, small trees", true,
          content::writeLamps},
+        {"shrine", "sunlit court, dark passage around a corner, and an altar that waits for light", true,
+         content::writeShrine},
     };
     addSizes(all, "office", "office building: corridors, rooms with open doors, 14 lights", content::writeOffice);
     addSizes(all, "citadel", "town street under one sun: houses, arches, clothes lines, stairs", content::writeCitadel);

@@ -23,6 +23,7 @@ enum class MuseumSize { Of15k, Of26k, Of97k };
 GeneratedScene writeMuseum(const std::filesystem::path& folder, MuseumSize size);
 GeneratedScene writeOffice(const std::filesystem::path& folder, SceneSize size);
 GeneratedScene writeRedBox(const std::filesystem::path& folder);
+GeneratedScene writeShrine(const std::filesystem::path& folder);
 GeneratedScene writeStreet(const std::filesystem::path& folder, SceneSize size);
 
 } // namespace lambent::content
