@@ -4,9 +4,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/core/sampling.h"
 #include "engine/core/text.h"
 #include "engine/trace/embree_query.h"
+#include "engine/trace/open_sky.h"
 #include "game/rules/props.h"
 #include "gi/plan/presets.h"
 #include "tools/launch/memory.h"
@@ -75,21 +75,45 @@ LightView pointLight(const std::string& text, const Scene& scene) {
   return light;
 }
 
-/// A sky, and while it is up a sun that goes with it, in place of the scene's own.
-void addDaylight(Stage& stage, const LaunchOptions& options) {
+/// --daylight: degrees.
+struct Daylight {
+  double elevation = 60, azimuth = 50, turbidity = 3;
+
+  vec3 towardsSun() const {
+    const double up = glm::radians(elevation), around = glm::radians(azimuth);
+    return glm::normalize(vec3(std::cos(up) * std::sin(around), std::sin(up), std::cos(up) * std::cos(around)));
+  }
+};
+
+void addSun(Scene& scene, const Daylight& daylight) {
+  LightView sun;
+  sun.type = LightType::Directional;
+  sun.direction = -daylight.towardsSun();
+  sun.intensity = daylightSun(daylight.towardsSun(), float(daylight.turbidity));
+  if (maxComponent(sun.intensity) > 0) addLight(scene, sun, "sun");
+}
+
+/// A sky, and while it is up a sun that goes with it.
+void addSkyAndSun(Scene& scene, const Daylight& daylight) {
+  scene.sky = Sky::daylight(daylight.towardsSun(), float(daylight.turbidity));
+  addSun(scene, daylight);
+}
+
+/// In place of the scene's own.
+void replaceDaylight(Stage& stage, const LaunchOptions& options) {
   const std::string given = "--daylight " + options.daylight;
   if (!options.sky.empty() || !options.suns.empty())
     throw InputError(given, std::string("is a sky and a sun of its own (leave out ") +
                                 (options.sky.empty() ? "--sun)" : "--sky)"));
   const std::vector<double> n = numbers("--daylight", options.daylight, 1, 3);
-  const double elevation = n[0], azimuth = n.size() > 1 ? n[1] : 50, turbidity = n.size() > 2 ? n[2] : 3;
-  if (!(std::abs(elevation) <= 90)) throw InputError(given, "elevation is out of range (-90 to 90 degrees)");
-  if (!(std::abs(azimuth) <= 360)) throw InputError(given, "azimuth is out of range (-360 to 360 degrees)");
-  if (!(turbidity >= 2 && turbidity <= 10)) throw InputError(given, "turbidity is out of range (2 to 10)");
+  Daylight daylight{.elevation = n[0]};
+  if (n.size() > 1) daylight.azimuth = n[1];
+  if (n.size() > 2) daylight.turbidity = n[2];
+  if (!(std::abs(daylight.elevation) <= 90)) throw InputError(given, "elevation is out of range (-90 to 90 degrees)");
+  if (!(std::abs(daylight.azimuth) <= 360)) throw InputError(given, "azimuth is out of range (-360 to 360 degrees)");
+  if (!(daylight.turbidity >= 2 && daylight.turbidity <= 10))
+    throw InputError(given, "turbidity is out of range (2 to 10)");
   int suns = 0;
-  const double up = glm::radians(elevation), around = glm::radians(azimuth);
-  const vec3 towardsSun =
-      glm::normalize(vec3(std::cos(up) * std::sin(around), std::sin(up), std::cos(up) * std::cos(around)));
   stage.scene.registry.each<PunctualLight>([&](Entity e, PunctualLight& light) {
     if (light.type != LightType::Directional) return;
     const Name* name = stage.scene.registry.tryGet<Name>(e);
@@ -100,12 +124,7 @@ void addDaylight(Stage& stage, const LaunchOptions& options) {
   });
   if (suns > 0)
     stage.notes.push_back("the scene's own sun, and what the shot does with it, gives way to that of --daylight");
-  stage.scene.sky = Sky::daylight(towardsSun, float(turbidity));
-  LightView sun;
-  sun.type = LightType::Directional;
-  sun.direction = -towardsSun;
-  sun.intensity = daylightSun(towardsSun, float(turbidity));
-  if (maxComponent(sun.intensity) > 0) addLight(stage.scene, sun, "sun");
+  addSkyAndSun(stage.scene, daylight);
 }
 
 } // namespace
@@ -174,31 +193,19 @@ bool hasEmitters(const Scene& scene) {
   return false;
 }
 
-/// A sun, or in a closed room a lamp by the camera. `lack`: what the scene is without.
-void addDefaultLight(Stage& stage, const SceneView& view, const std::string& lack) {
-  // Open to the sky? A sun in a closed room would leave it black.
+/// Whether the sky is to be seen from the camera, or lights what is; else adds a lamp by the camera, for a sun would
+/// leave a closed room black. `lack`: what the scene is without.
+bool isOpenOrHasLamp(Stage& stage, const SceneView& view, const std::string& lack) {
   EmbreeQuery rays(stage.scene.assets);
   rays.update(view);
-  int open = 0;
-  constexpr int kRays = 512;
-  for (uint32_t i = 0; i < kRays; ++i) {
-    vec3 d = sampleSphere({(float(i) + 0.5f) / kRays, additiveRecurrence3(i, vec3(0)).x});
-    d.y = std::abs(d.y);
-    open += !rays.occluded(Ray{view.camera.position(), d});
-  }
+  if (skyReaches(rays, view.camera.position())) return true;
+  const float size = view.boundsWorld.diameter();
   LightView light;
-  if (open * 50 > kRays) {
-    light.type = LightType::Directional;
-    light.direction = glm::normalize(vec3(-0.4f, -1, -0.3f));
-    light.intensity = vec3(kPi);
-    stage.notes.push_back("the scene has no " + lack + ": added a sun (--sun -0.4,-1,-0.3,3.14,3.14,3.14)");
-  } else {
-    const float size = view.boundsWorld.diameter();
-    light.position = view.camera.position() + vec3(view.camera.worldFromView[1]) * 0.01f * size;
-    light.intensity = vec3(0.02f * size * size);
-    stage.notes.push_back("the scene has no " + lack + " and is closed: added a lamp by the camera (--point)");
-  }
+  light.position = view.camera.position() + vec3(view.camera.worldFromView[1]) * 0.01f * size;
+  light.intensity = vec3(0.02f * size * size);
   addLight(stage.scene, light, "default light");
+  stage.notes.push_back("the scene has no " + lack + ", and no sky reaches it: added a lamp by the camera (--point)");
+  return false;
 }
 
 } // namespace
@@ -314,13 +321,16 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())
     stage->scene.sky = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
-  if (!options.daylight.empty()) addDaylight(*stage, options);
+  if (!options.daylight.empty()) replaceDaylight(*stage, options);
   animate(stage->scene, 0);
   chooseCamera(*stage, options);
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);
-  if (!lit && !view.instances.empty()) addDefaultLight(*stage, view, "light");
+  if (!lit && !view.instances.empty() && isOpenOrHasLamp(*stage, view, "light")) {
+    addSkyAndSun(stage->scene, {});
+    stage->notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60)");
+  }
   tellWhatIsLeftOut(*stage, stage->settings);
   if (stage->shot && !stage->shot->played.empty()) stage->props = std::make_unique<Props>(stage->scene);
   return stage;
@@ -343,7 +353,10 @@ void needPunctualLight(Stage& stage) {
   const SceneView view = probe.extract(stage.scene, stage.camera, 0);
   const bool lit = std::any_of(view.lights.begin(), view.lights.end(),
                                [](const LightView& light) { return maxComponent(light.intensity) > 0; });
-  if (!lit && !view.instances.empty()) addDefaultLight(stage, view, "punctual light");
+  if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "punctual light")) {
+    addSun(stage.scene, {});
+    stage.notes.push_back("the scene has no punctual light: added a sun (--sun)");
+  }
 }
 
 fs::path findContentFolder() {

@@ -62,9 +62,9 @@ class Stage {
   SceneExtractor extractor_;
 };
 
-/// Loads and checks everything. A scene without light gets a stated default: a sun, or in a closed room a lamp by the
-/// camera. Also applies `threads`, to OpenGL on software Mesa too, so call it before a context is made.
-/// Throws InputError.
+/// Loads and checks everything. A scene without light gets a stated default: a clear sky and its sun, or where none of
+/// the sky reaches a lamp by the camera. Also applies `threads`, to OpenGL on software Mesa too, so call it before a
+/// context is made. Throws InputError.
 std::unique_ptr<Stage> openStage(const LaunchOptions& options);
 
 /// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openStage
@@ -77,7 +77,8 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
 /// Width and height of --size. Throws InputError.
 std::pair<int, int> sizeOf(const std::string& text);
 
-/// The same default for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual lights.
+/// Such a sun or lamp for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual
+/// lights.
 void needPunctualLight(Stage& stage);
 
 /// Folder of the bundled scenes: LAMBENT_CONTENT, else ../share/lambent/content beside the executable, else the source

@@ -1,0 +1,32 @@
+#include "engine/trace/open_sky.h"
+
+#include "engine/core/rng.h"
+#include "engine/core/sampling.h"
+
+namespace lambent {
+
+namespace {
+constexpr uint32_t kPaths = 512;
+constexpr int kSegments = 4;
+constexpr int kLeast = 50; // one path of so many: less light than this looks like none, and solids leak at their seams
+} // namespace
+
+bool skyReaches(const RayQuery& rays, const vec3& eye) {
+  uint32_t out = 0;
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    Rng rng(1, Stream::SkyLight, i);
+    Ray ray{eye, sampleSphere(rng.next2())};
+    for (int segment = 0; segment < kSegments; ++segment) {
+      const SurfaceHit hit = rays.closest(ray);
+      if (!hit.valid()) {
+        out += ray.direction.y > 0;
+        break;
+      }
+      ray = {offsetPoint(hit.position, hit.geometricNormal, rays.grain()),
+             sampleCosineHemisphere(hit.geometricNormal, rng.next2())};
+    }
+  }
+  return out * kLeast > kPaths;
+}
+
+} // namespace lambent

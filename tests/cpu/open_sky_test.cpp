@@ -1,0 +1,53 @@
+#include "engine/trace/embree_query.h"
+#include "engine/trace/open_sky.h"
+#include "tests/support/hand_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace lambent {
+namespace {
+
+bool reaches(const test::HandScene& scene, const vec3& eye) {
+  EmbreeQuery rays(scene.assets);
+  rays.update(scene.view());
+  return skyReaches(rays, eye);
+}
+
+TEST(OpenSky, ReachesNothingInARoomAndWhoStandsOutside) {
+  test::HandScene scene;
+  scene.box({-2, 0, -3}, {2, 2.5f, 3}, scene.material(vec3(0.5f)), true);
+  EXPECT_FALSE(reaches(scene, {0, 1.6f, 0}));
+  EXPECT_FALSE(reaches(scene, {1.9f, 0.1f, -2.9f}));
+  EXPECT_TRUE(reaches(scene, {5, 1.6f, 0}));
+}
+
+TEST(OpenSky, ReachesARoomWithAWindowAndNotThatBehindAKeyhole) {
+  for (const float side : {1.0f, 0.01f}) {
+    test::HandScene scene;
+    const uint32_t wall = scene.material(vec3(0.5f));
+    scene.box({-2, 0, -3}, {2, 2.5f, 3}, wall, true);
+    scene.instances.pop_back(); // the wall at z = 3 gets a hole in its middle
+    const float left = -0.5f * side, low = 1.2f;
+    scene.quad({-2, 0, 3}, {0, 2.5f, 0}, {2 + left, 0, 0}, wall);
+    scene.quad({left + side, 0, 3}, {0, 2.5f, 0}, {2 - left - side, 0, 0}, wall);
+    scene.quad({left, 0, 3}, {0, low, 0}, {side, 0, 0}, wall);
+    scene.quad({left, low + side, 3}, {0, 2.5f - low - side, 0}, {side, 0, 0}, wall);
+    EXPECT_EQ(reaches(scene, {0, 1.6f, 2}), side == 1.0f);
+  }
+}
+
+TEST(OpenSky, ReachesUnderABalconyByTheFloorBeforeIt) {
+  // A court with high walls; the eye is in a niche with a roof, and no straight line from it leads upwards and out.
+  test::HandScene scene;
+  const uint32_t wall = scene.material(vec3(0.5f));
+  scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, wall);
+  scene.quad({-4, 0, -4}, {0, 12, 0}, {8, 0, 0}, wall);
+  scene.quad({-4, 0, 4}, {0, 12, 0}, {8, 0, 0}, wall);
+  scene.quad({-4, 0, -4}, {0, 12, 0}, {0, 0, 8}, wall);
+  scene.quad({4, 0, -4}, {0, 12, 0}, {0, 0, 8}, wall);
+  scene.quad({-4, 2, -4}, {0, 0, 8}, {3, 0, 0}, wall);
+  EXPECT_TRUE(reaches(scene, {-3.5f, 0.3f, 0}));
+}
+
+} // namespace
+} // namespace lambent
