@@ -195,8 +195,7 @@ void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& map
   }
 }
 
-/// A map, or a cube's face, whose view is as before: what stands still is not drawn again. Walking through the hall,
-/// where one ball moves: 20 ms of light maps become TODO.
+/// A map, or a cube's face, whose view is as before: what stands still is not drawn again.
 void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFromWorld, const GpuScene& scene) {
   const int size = block.maps.width();
   if (!block.still) {

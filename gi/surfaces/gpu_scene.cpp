@@ -25,8 +25,8 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   placed.reserve(instances.size());
   for (const InstanceView& i : instances)
     placed.push_back({i.mesh, i.worldFromObject, i.deformed ? i.deformed->revision : 0});
-  if (placed == placed_) return;
   noteMoves(placed);
+  if (placed == placed_) return;
   layOutDeformed(instances);
   uploadDeformed(instances);
   placed_ = std::move(placed);

@@ -403,6 +403,74 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
   EXPECT_EQ(draws(false), 0u) << "the camera sees nothing: keep what there is";
 }
 
+/// What stands still is kept without what moves, which is drawn over it: maps are as if all were drawn, whoever moves,
+/// comes to rest, moves again, or is drawn otherwise; and an object that moves is not drawn together with the room.
+TEST_F(DirectTest, WhatMovesIsDrawnOverWhatStandsStill) {
+  Room room;
+  std::vector<LightView>& lights = room.scene.lights;
+  lights.push_back({.type = LightType::Directional, .direction = {0.1f, -1, 0.2f}});
+  lights.push_back({.type = LightType::Point, .position = {0, 0.5f, 0.5f}});
+  lights.push_back({.type = LightType::Spot, .position = {0.5f, 0.9f, 0.5f}, .direction = {-0.3f, -1, -0.2f}});
+  lights.back().outerConeCos = 0.5f;
+  room.scene.box({-0.1f, -0.1f, 0.2f}, {0.1f, 0.1f, 0.4f}, room.scene.material(vec3(0.5f)), false);
+  const size_t block = room.scene.instances.size() - 2, ball = room.scene.instances.size() - 1;
+  GpuScene gpu(programs, room.scene.assets);
+  settings.sunResolution = settings.pointResolution = settings.spotResolution = 64;
+  LightShadowPass kept(passes);
+  const auto texels = [](std::span<const LightBlock> blocks) {
+    std::vector<float> all;
+    for (const LightBlock& b : blocks) {
+      const gl::TextureDesc& d = b.maps->desc();
+      std::vector<float> own(size_t(d.width) * d.height * d.layers * (b.kind == MapKind::Cube ? 6 : 1));
+      glGetTextureImage(b.maps->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(own.size() * sizeof(float)),
+                        own.data());
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
+  };
+  std::vector<float> before;
+  int changes = 0;
+  for (int frame = 0; frame < 80; ++frame) {
+    std::vector<Aabb> moved;
+    const auto move = [&](size_t which, const vec3& by) {
+      InstanceView& i = room.scene.instances[which];
+      moved.push_back(i.boundsWorld);
+      i.worldFromObject = glm::translate(mat4(1), by) * i.worldFromObject;
+      i.boundsWorld = transformed(room.scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
+      moved.push_back(i.boundsWorld);
+    };
+    if (frame % 40 > 0 && frame % 40 < 5) move(ball, {0.03f, 0.02f * float(frame % 3 - 1), -0.02f});
+    if (frame > 37 && frame < 45) move(block, {0, 0.01f, 0.02f}); // once the ball has come to rest
+    if (frame == 50) gpu.setAlphaTest(AlphaTest::All);
+    if (frame == 60) lights[1].position.x += 0.1f;
+    const SceneView view = room.scene.view();
+    gpu.place(view.instances);
+    const Aabb receivers{vec3(-0.9f), vec3(0.9f)};
+    const LightShadowInputs in{gpu,       lights,           false,      vec3(0), receivers,
+                               receivers, view.boundsWorld, frame == 0, moved,   settings};
+    const std::vector<float> now = texels(kept.run(in));
+    LightShadowInputs all = in;
+    all.allChanged = true;
+    LightShadowPass anew(passes);
+    ASSERT_EQ(now, texels(anew.run(all))) << "frame " << frame;
+    changes += now != std::exchange(before, now);
+  }
+  EXPECT_GT(changes, 12);
+
+  // One that moves is drawn alone.
+  gpu.setAlphaTest(AlphaTest::Masked); // one call for all
+  const gl::Texture depth("depth", {.kind = gl::TextureKind::Array, .format = GL_DEPTH_COMPONENT32F});
+  gl::Framebuffer target("target");
+  target.bind();
+  target.attachDepthLayer(depth, 0);
+  const auto drawn = [&](Instances which) { return gpu.draw(DrawKind::Depth, mat4(1), vec3(0), which); };
+  EXPECT_EQ(drawn(Instances::Restless), 0u) << "all came to rest";
+  room.scene.instances[ball].worldFromObject[3].x += 0.1f;
+  gpu.place(room.scene.view().instances);
+  EXPECT_EQ(drawn(Instances::Restless), 1u);
+  EXPECT_EQ(drawn(Instances::Still), 1u);
+}
+
 TEST(SkyDirections, CoverTheSphereEvenly) {
   const std::vector<SkyDirection> directions = skyDirections(vec3(1), 32);
   vec3 sum(0);
