@@ -102,7 +102,6 @@ void Hud::draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, con
     drawViewLegend(model);
   else
     drawTruthLegend(truth, model.buffer);
-  if (model.goal) drawGoal(*model.goal);
   drawOffer(model);
   if (model.help) drawHelp();
 }
@@ -197,7 +196,22 @@ void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
     ImGui::TextDisabled("of %.0f ms", most);
   }
   if (model.pacer.scale() < 1) ImGui::TextDisabled("picture at %.0f %%", 100 * double(model.pacer.scale()));
+  if (model.goal) drawGoal(*model.goal);
   ImGui::End();
+}
+
+/// What the goal has of what it wants.
+void Hud::drawGoal(const GoalShown& goal) const {
+  const bool small = goal.wanted < 0.1f;
+  const double unit = small ? 1e3 : 1;
+  const ImVec4 color = goal.reached ? ImVec4(0.35f, 0.8f, 0.4f, 1) : ImVec4(0.95f, 0.75f, 0.3f, 1);
+  ImGui::Separator();
+  ImGui::Text("%s %.2f of %.2f %sW/m\u00b2", goal.what.c_str(), unit * double(goal.irradiance),
+              unit * double(goal.wanted), small ? "m" : "");
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, color);
+  ImGui::ProgressBar(goal.irradiance / goal.wanted, {ImGui::GetContentRegionAvail().x, 8 * scale_}, "");
+  ImGui::PopStyleColor();
+  ImGui::TextColored(color, goal.reached ? "done" : "bring daylight here");
 }
 
 /// What the picture shows, where it is not the picture.
@@ -208,22 +222,6 @@ void Hud::drawViewLegend(const HudModel& model) {
   ImGui::SetNextWindowBgAlpha(0.6f);
   ImGui::Begin("view", nullptr, kOverlay);
   ImGui::Text("%s: %s (1: the picture)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
-  ImGui::End();
-}
-
-/// What the goal has of what it wants.
-void Hud::drawGoal(const GoalShown& goal) const {
-  const bool small = goal.wanted < 0.1f;
-  const double unit = small ? 1e3 : 1;
-  ImGui::SetNextWindowPos({0.5f * ImGui::GetIO().DisplaySize.x, 8}, ImGuiCond_Always, {0.5f, 0});
-  ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("goal", nullptr, kOverlay);
-  ImGui::Text("%s %.2f of %.2f %sW/m\u00b2: %s", goal.what.c_str(), unit * double(goal.irradiance),
-              unit * double(goal.wanted), small ? "m" : "", goal.reached ? "done" : "bring daylight here");
-  const ImVec4 color = goal.reached ? ImVec4(0.35f, 0.8f, 0.4f, 1) : ImVec4(0.95f, 0.75f, 0.3f, 1);
-  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, color);
-  ImGui::ProgressBar(goal.irradiance / goal.wanted, {ImGui::GetContentRegionAvail().x, 6 * scale_}, "");
-  ImGui::PopStyleColor();
   ImGui::End();
 }
 

@@ -69,8 +69,7 @@ void Play::restart() {
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
   if (!goal_) return;
   goal_->reset();
-  hud_.say("bring daylight to the " + goal_->what() +
-           ": doors (E) and white boards (B) lead it there, lamps do not count");
+  hud_.say("bring daylight to the " + goal_->what() + " with doors (E) and white boards (B); lamps do not count");
 }
 
 void Play::home() {
