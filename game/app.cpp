@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/image.h"
+#include "engine/gl/state_guard.h"
 #include "game/scene_list.h"
 
 #include <epoxy/gl.h>
@@ -9,6 +10,7 @@
 #include <GLFW/glfw3.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
@@ -20,22 +22,29 @@ namespace {
 
 constexpr double kTestFrameSeconds = 1.0 / 30; // scene time per frame under --frames
 constexpr double kTurnSeconds = 1.0 / 60;      // of the window while nothing is played
+constexpr double kProgressSeconds = 0.1;       // between pictures of the progress: the CPU draws them, too
 using Clock = std::chrono::steady_clock;
 
-std::pair<int, int> windowSize(const LaunchOptions& launch) {
+constexpr std::pair kWindow = {1280, 720};
+
+GlContext openWindow(const LaunchOptions& launch, const Preferences& preferences) {
   useThreads(launch.threads); // before there is a context
-  return sizeOf(launch.size);
+  const auto [width, height] = !launch.size.empty() ? sizeOf(launch.size) : preferences.window.value_or(kWindow);
+  return GlContext::window("Lambent", width, height);
+}
+
+fs::path preferencesFile(const GameOptions& options) {
+  if (options.fresh || options.frames) return {};
+  return lambent::preferencesFile(std::getenv("XDG_CONFIG_HOME"), std::getenv("HOME"));
 }
 
 } // namespace
 
 App::App(const GameOptions& options)
-    : options_(options), context_([&] {
-        const auto [width, height] = windowSize(options.launch);
-        return GlContext::window("Lambent", width, height);
-      }()),
+    : options_(options), preferences_(preferencesFile(options)), context_(openWindow(options.launch, preferences_.now)),
       hud_(context_.handle()), input_(context_.handle()), scenes_(bundledScenes()) {
   input_.script(options.press);
+  keepPreferences(0); // says what is wrong with them
   glfwSetWindowUserPointer(context_.handle(), &dropped_);
   glfwSetDropCallback(context_.handle(), [](GLFWwindow* window, int count, const char** files) {
     auto& dropped = *static_cast<std::deque<std::string>*>(glfwGetWindowUserPointer(window));
@@ -63,6 +72,7 @@ void App::run() {
                            : options_.frames ? kTestFrameSeconds
                                              : std::chrono::duration<double>(now - before).count();
     before = now;
+    keepPreferences(seconds);
     if (loading_) {
       load();
       before = Clock::now(); // the first frame is not as long as that took
@@ -72,6 +82,24 @@ void App::run() {
       choose();
   }
   if (play_ && !options_.screenshot.empty()) play_->writeScreenshot(options_.screenshot);
+  preferences_.save();
+  if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty())
+    std::cerr << "warning: " << printable(complaint) << "\n";
+}
+
+/// What the person changes, the window's size too, is there again the next time.
+void App::keepPreferences(double seconds) {
+  int width = 0, height = 0;
+  glfwGetWindowSize(context_.handle(), &width, &height);
+  const std::pair size(width, height);
+  const bool small = width < 160 || height < 90; // not one that somebody wants to begin with
+  if (size != windowSize_.value_or(size) && !small) preferences_.now.window = size;
+  windowSize_ = size;
+  preferences_.passed(seconds);
+  if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty()) {
+    std::cerr << "warning: " << printable(complaint) << "\n";
+    hud_.say(complaint);
+  }
 }
 
 /// Gives up what is there for another scene.
@@ -79,9 +107,10 @@ void App::open(const std::string& file) {
   cancelLoading();
   play_.reset();
   input_.release();
-  menu_ = given_ = false;
+  menu_ = given_ = preparing_ = false;
   LaunchOptions launch = options_.launch;
   launch.scene = file;
+  gap_ = {};
   loading_ = std::make_unique<Loading>(launch);
 }
 
@@ -103,6 +132,7 @@ void App::load() {
     return;
   }
   const std::unique_ptr<Loading> loading = std::move(loading_);
+  gap_.add(loading->gap());
   try {
     prepare(loading->take());
   } catch (const InputError& e) {
@@ -116,22 +146,34 @@ void App::load() {
 
 /// The first pictures, the window going on between their parts.
 void App::prepare(LoadedScene loaded) {
-  play_ = std::make_unique<Play>(options_, context_, hud_, std::move(loaded));
+  gap_.at("player");
+  preparing_ = true;
+  play_ = std::make_unique<Play>(options_, context_, hud_, preferences_.now, std::move(loaded));
   glfwSetWindowTitle(context_.handle(), ("Lambent: " + play_->name()).c_str());
-  auto shown = Clock::now() - std::chrono::seconds(1);
+  auto polled = Clock::now(), shown = polled - std::chrono::seconds(1);
   play_->prepare(
       [&](const Progressed& progress) {
-        if (Clock::now() - shown < std::chrono::duration<double>(kTurnSeconds)) return;
+        const bool quietly = progress.at.empty();
+        gap_.at(quietly ? "second picture" : progress.at);
+        const auto passed = [](Clock::time_point since, double seconds) {
+          return Clock::now() - since >= std::chrono::duration<double>(seconds);
+        };
+        if (!passed(polled, kTurnSeconds)) return;
         context_.poll();
         if (input_.escape() || context_.shouldClose() || !dropped_.empty()) throw Cancelled();
+        polled = Clock::now();
+        if (quietly || !passed(shown, kProgressSeconds)) return;
         showProgress(progress);
         shown = Clock::now();
       },
       [&] { hud_.keepPicture(); });
+  preparing_ = false;
+  gap_.end();
   hud_.forgetPicture();
 }
 
 void App::showProgress(const Progressed& progress) {
+  const gl::StateGuard guard; // it may be called in the midst of a pass
   hud_.begin();
   hud_.drawProgress(loading_ ? fs::path(loading_->file()).filename().string() : play_->name(), progress.at,
                     progress.share);
@@ -195,14 +237,24 @@ void App::play(double seconds) {
 /// For tests that press keys: what became of them.
 void App::writeState() const {
   if (options_.state.empty()) return;
-  const char* phase = loading_ ? "loading" : !play_ ? "choosing" : menu_ ? "menu" : frames_ ? "playing" : "preparing";
+  const char* phase = loading_     ? "loading"
+                      : !play_     ? "choosing"
+                      : preparing_ ? "preparing"
+                      : menu_      ? "menu"
+                                   : "playing";
   std::string said;
   for (const char c : hud_.lastSaid())
     if (c != '"' && c != '\\') said += c;
   writeAtomically(options_.state, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
-    out << "{\"phase\": \"" << phase << "\", \"frames\": " << frames_ << ", \"said\": \"" << said << "\"";
-    if (play_ && frames_) out << ", " << play_->state();
+    out << "{\"phase\": \"" << phase << "\", \"frames\": " << frames_ << ", \"said\": \"" << said
+        << "\", \"longest_gap_ms\": " << gap_.ms() << ", \"longest_gap_in\": \"" << gap_.where() << "\", \"at\": \""
+        << gap_.now() << "\"";
+    const auto [width, height] = context_.framebufferSize();
+    out << ", \"window\": [" << width << ", " << height << "], \"display_scale\": " << hud_.scale()
+        << ", \"focused\": " << (glfwGetWindowAttrib(context_.handle(), GLFW_FOCUSED) ? "true" : "false");
+    if (play_) out << ", \"scene\": \"" << play_->name() << "\"";
+    if (play_ && !preparing_ && frames_) out << ", " << play_->state();
     out << "}\n";
   });
 }

@@ -31,19 +31,24 @@ class App {
   void showProgress(const Progressed& progress);
   void cancelLoading();
   void writeState() const;
+  void keepPreferences(double seconds);
   void show(); // what was drawn
 
   GameOptions options_;
+  KeptPreferences preferences_;
   GlContext context_;
   Hud hud_;
   Input input_;
   std::unique_ptr<Loading> loading_;
   std::deque<std::unique_ptr<Loading>> cancelled_; // not ended yet
   std::unique_ptr<Play> play_;
-  std::vector<std::string> scenes_;   // to choose from
-  std::deque<std::string> dropped_;   // files, onto the window
-  bool menu_ = false, given_ = false; // the scene being loaded is the command line's
+  std::vector<std::string> scenes_; // to choose from
+  std::deque<std::string> dropped_; // files, onto the window
+  bool menu_ = false, preparing_ = false;
+  bool given_ = false; // the scene being loaded is the command line's
   int frames_ = 0;
+  LongestGap gap_; // of loading and preparing, of the last scene
+  std::optional<std::pair<int, int>> windowSize_;
 };
 
 } // namespace lambent

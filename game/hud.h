@@ -34,6 +34,8 @@ struct HudModel {
   Buffer buffer = Buffer::Beauty;
   std::string preset = {}; // the last one chosen, empty: none; single settings may differ from it
   bool panel = true, help = false;
+  std::optional<bool> folded = {}; // the panel, once a person folded or unfolded it
+  bool backToDefaults = false;     // pressed
 
   double time = 0, duration = 1; // seconds of the scene; the slider's length
   bool paused = false;
@@ -70,6 +72,7 @@ class Hud {
   /// One line at the bottom, for some seconds.
   void say(std::string message);
   const std::string& lastSaid() const { return lastSaid_; }
+  float scale() const { return scale_; } // of letters, by the display's pixels per inch
 
   // Between these two, what is to be drawn into the framebuffer that is bound at the end.
   void begin();
@@ -112,6 +115,7 @@ class Hud {
     double until = 0; // seconds of the ImGui clock
   };
   std::deque<Message> messages_;
+  std::optional<bool> wasFolded_; // the panel
   std::string lastSaid_;
   std::unique_ptr<gl::Texture> picture_;
   float scale_ = 1;                                          // of the display's pixels

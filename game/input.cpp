@@ -175,7 +175,12 @@ void Input::readMouse(Wishes& w, bool mouseTaken, bool mayCapture) {
 
 void Input::readPad(Wishes& w, float seconds) {
   GLFWgamepadstate state;
-  if (!glfwJoystickIsGamepad(GLFW_JOYSTICK_1) || !glfwGetGamepadState(GLFW_JOYSTICK_1, &state)) return;
+  int joystick = GLFW_JOYSTICK_1; // one that was unplugged may come back as another
+  while (joystick <= GLFW_JOYSTICK_LAST && !glfwGetGamepadState(joystick, &state)) ++joystick;
+  if (joystick > GLFW_JOYSTICK_LAST) {
+    padBefore_ = {}; // its buttons are up
+    return;
+  }
   const auto axis = [&](int i) { return state.axes[i]; };
   const PadState pad{{axis(GLFW_GAMEPAD_AXIS_LEFT_X), axis(GLFW_GAMEPAD_AXIS_LEFT_Y)},
                      {axis(GLFW_GAMEPAD_AXIS_RIGHT_X), axis(GLFW_GAMEPAD_AXIS_RIGHT_Y)},

@@ -6,6 +6,28 @@ namespace {
 constexpr float kFile = 0.9f; // share of the time that reading takes; the rest builds what rays need
 }
 
+void LongestGap::at(const std::string& what) {
+  const auto now = std::chrono::steady_clock::now();
+  const double ms = last_ ? std::chrono::duration<double, std::milli>(now - *last_).count() : 0;
+  if (ms > ms_) {
+    ms_ = ms;
+    where_ = now_;
+  }
+  last_ = now;
+  now_ = what;
+}
+
+void LongestGap::end() {
+  at("");
+  last_.reset();
+}
+
+void LongestGap::add(const LongestGap& other) {
+  if (other.ms_ <= ms_) return;
+  ms_ = other.ms_;
+  where_ = other.where_;
+}
+
 Loading::Loading(const LaunchOptions& options) : options_(options), thread_([this] { load(); }) {}
 
 Loading::~Loading() {
@@ -35,11 +57,17 @@ void Loading::tell(const char* at, float share) {
   if (cancelled_) throw Cancelled();
   const std::lock_guard lock(mutex_);
   progress_ = {at, std::max(share, progress_.share)};
+  gap_.at(at);
 }
 
 Progressed Loading::progress() const {
   const std::lock_guard lock(mutex_);
   return progress_;
+}
+
+LongestGap Loading::gap() const {
+  const std::lock_guard lock(mutex_);
+  return gap_;
 }
 
 LoadedScene Loading::take() {

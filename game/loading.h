@@ -7,8 +7,10 @@
 #include "tools/launch/launch.h"
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -30,6 +32,23 @@ struct Progressed {
 /// Thrown out of long work where the person no longer wants it.
 struct Cancelled {};
 
+/// The longest time between two signs of life, and what was done meanwhile.
+class LongestGap {
+ public:
+  /// The work is at `what` now; and is over.
+  void at(const std::string& what);
+  void end();
+  void add(const LongestGap& other);
+  double ms() const { return ms_; }
+  const std::string& where() const { return where_; }
+  const std::string& now() const { return now_; }
+
+ private:
+  std::optional<std::chrono::steady_clock::time_point> last_;
+  std::string now_, where_;
+  double ms_ = 0;
+};
+
 class Loading {
  public:
   explicit Loading(const LaunchOptions& options);
@@ -39,6 +58,7 @@ class Loading {
 
   bool done() const { return done_; }
   Progressed progress() const;
+  LongestGap gap() const;
   /// Once done. Throws what ended the loading: InputError, RunError.
   LoadedScene take();
   /// The thread ends at its next step: a mesh or a texture.
@@ -53,6 +73,7 @@ class Loading {
   std::atomic<bool> cancelled_ = false, done_ = false;
   mutable std::mutex mutex_;
   Progressed progress_;
+  LongestGap gap_;
   LoadedScene loaded_;
   std::exception_ptr failure_;
   std::thread thread_; // last: it uses the rest

@@ -14,7 +14,6 @@ namespace {
 /// Returns nothing when --help was all that was asked for.
 std::optional<GameOptions> readOptions(int argc, char** argv) {
   GameOptions options;
-  options.launch.size = "1280x720";
   CLI::App app{"Walk through a scene under global illumination that follows its moving lights and objects.\n"
                "W A S D walk, a click into the picture lets the mouse look around; F1 shows all keys.",
                "walkthrough"};
@@ -29,6 +28,8 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
                  "let scene time go by in steps of 1/FPS, however long frames take: what R records is then drawn by "
                  "lambent record with the same frame log, at the size of the window")
       ->check(CLI::Range(1.0, 1000.0));
+  app.add_flag("--fresh", options.fresh,
+               "without the settings that were changed in the window before, which stay kept");
   app.add_option("--frames", options.frames)->check(CLI::Range(0, 1000000))->group("");
   app.add_option("--screenshot", options.screenshot)->group("");
   app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");

@@ -36,10 +36,15 @@ void Hud::drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth
   const float width = std::min(std::clamp(0.3f * size.x, 300 * scale_, 400 * scale_), size.x - 16);
   ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({width, std::min(560 * scale_, size.y - 16)}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowCollapsed(size.x < 800 * scale_, ImGuiCond_FirstUseEver); // of a small window it would hide half
+  const bool small = size.x < 800 * scale_; // the panel would hide half of it
+  ImGui::SetNextWindowCollapsed(model.folded.value_or(small), ImGuiCond_FirstUseEver);
   // Whatever becomes of the window, the panel stays inside it.
   ImGui::SetNextWindowSizeConstraints({std::min(220 * scale_, size.x - 16), 40}, {size.x - 16, size.y - 16});
-  if (!ImGui::Begin("Lambent (Tab hides this, F1: keys)")) {
+  const bool shown = ImGui::Begin("Lambent (Tab hides this, F1: keys)");
+  const bool folded = ImGui::IsWindowCollapsed();
+  if (wasFolded_.value_or(folded) != folded) model.folded = folded;
+  wasFolded_ = folded;
+  if (!shown) {
     ImGui::End();
     return;
   }
@@ -104,6 +109,8 @@ void Hud::drawQuality(HudModel& model, GiFrame& gi) {
     ImGui::SetTooltip("measured: %.2f of the default's time, %.2f of its error", preset->time, preset->error);
   if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
   drawPace(model.pacer);
+  model.backToDefaults = ImGui::Button("back to defaults");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("all settings, exposure and speed; those of the command line stay");
 }
 
 /// The governor with its target, or the picture's scale by hand.

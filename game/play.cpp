@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/gl/objects.h"
+#include "engine/gl/pulse.h"
 
 #include <epoxy/gl.h>
 
@@ -17,8 +18,7 @@ namespace {
 
 // A slow frame must not turn one key press into a jump through a door.
 constexpr float kLongestStep = 0.25f; // seconds
-constexpr int kRoughLights = 256;     // of the first picture
-constexpr int kRoughWarmup = 12;      // iterations before it
+constexpr int kRoughWarmup = 12;      // iterations before the first picture
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
 constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
@@ -32,20 +32,24 @@ const char* gaitText(Gait gait) {
 
 } // namespace
 
-Play::Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded)
-    : options_(options), context_(context), hud_(hud), stage_(std::move(loaded.stage)), props_(*stage_->props),
-      solids_(std::move(loaded.solids)), goal_(std::move(loaded.goal)), shot_(stage_->shot), scene_(stage_->scene),
-      diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
-      gi_(stage_->settings, stage_->seed), truth_(stage_->seed) {
+Play::Play(const GameOptions& options, GlContext& context, Hud& hud, Preferences& preferences, LoadedScene loaded)
+    : options_(options), context_(context), hud_(hud), preferences_(preferences), stage_(std::move(loaded.stage)),
+      props_(*stage_->props), solids_(std::move(loaded.solids)), goal_(std::move(loaded.goal)), shot_(stage_->shot),
+      scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
+      gi_(preferred(), stage_->seed), truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.
   model_.lampIntensity = vec3(1, 0.75f, 0.5f) * glm::max(0.004f * diameter_ * diameter_, 1e-6f);
   // What a person chose is not chosen again.
   const LaunchOptions& launch = options.launch;
-  model_.pacer = Pacer(options.targetMs, launch.preset.empty() && launch.set.empty() && launch.technique.empty());
+  const bool asked = !launch.preset.empty() || !launch.set.empty() || !launch.technique.empty();
+  model_.pacer = Pacer(options.targetMs, !asked && !preferences.chooseQuality());
   model_.buffer = bufferByName(options.buffer);
-  model_.preset = options.launch.preset;
+  model_.preset = !launch.preset.empty() || !launch.technique.empty() ? launch.preset : preferences.preset;
+  model_.panel = preferences.panel;
+  model_.folded = preferences.folded;
+  model_.speed = float(preferences.speed);
   if (shot_ && !shot_->camera.empty()) path_ = *shot_;
   double longest = 0;
   for (const AnimationClip& clip : scene_.animations) longest = std::max(longest, clip.duration);
@@ -79,28 +83,103 @@ void Play::home() {
 
 void Play::prepare(const std::function<void(const Progressed&)>& progress, const std::function<void()>& shown) {
   const Settings wanted = gi_.settings();
+  Progressed last{"shaders and textures", 0};
   const auto report = [&](const char* at, float from, float to) {
-    return [&progress, at, from, to](int done, int total) {
-      progress({at, from + (to - from) * float(done) / float(std::max(total, 1))});
+    return [&last, &progress, at, from, to](int done, int total) {
+      last = {at, from + (to - from) * float(done) / float(std::max(total, 1))};
+      progress(last);
     };
   };
-  progress({"shaders and textures", 0});
+  progress(last);
+  std::optional<gl::Pulse> pulse;
+  pulse.emplace([&] { progress(last); });
   const auto [width, height] = context_.framebufferSize();
-  const bool roughFirst = !options_.frames && wanted.smc.vpls > 2 * kRoughLights && wanted.smc.warmup > kRoughWarmup;
+  Settings rough = wanted; // what a slow machine will keep, as far as it can
+  applyPreset(rough, presetTable().front().name);
+  rough.gather.mode = wanted.gather.mode;
+  rough.smc.warmup = kRoughWarmup;
+  const bool roughFirst = !options_.frames && wanted.smc.vpls > 2 * rough.smc.vpls && wanted.smc.warmup > kRoughWarmup;
   if (roughFirst) {
-    gi_.settings().smc.vpls = kRoughLights;
-    gi_.settings().smc.warmup = kRoughWarmup;
+    gi_.settings() = rough;
+    gi_.settings().gather.near = 0;
     gi_.run(viewAt(kRoughScale), report("first lights", 0.1f, 0.3f));
+    pulse.emplace([&] { progress({}); }); // what follows is timed
     gi_.present(model_.buffer, 0, width, height);
     shown();
     // The second of a kind says what pictures cost: shaders are compiled, maps are drawn.
+    gi_.settings() = rough;
     const FrameStats& stats = gi_.run(viewAt(0.99f * kRoughScale));
-    const double gather = stats.ms(StageId::Gather), lights = double(wanted.smc.vpls) / kRoughLights;
+    const double gather = stats.ms(StageId::Gather), lights = double(wanted.smc.vpls) / rough.smc.vpls;
     gi_.settings() = wanted;
     model_.pacer.expect((stats.costMs() + gather * (lights - 1)) / double(kRoughScale * kRoughScale), gi_.settings());
     if (!model_.pacer.preset().empty()) model_.preset = model_.pacer.preset();
+    rough.smc.warmup = wanted.smc.warmup;
+    if (gi_.settings() == rough) return showPreferredExposure();
+    pulse.emplace([&] { progress(last); });
   }
   gi_.run(viewAt(model_.pacer.scale()), report("all lights", roughFirst ? 0.3f : 0.1f, 1));
+  showPreferredExposure();
+}
+
+namespace {
+AskedFor askedFor(const LaunchOptions& launch) {
+  AskedFor asked{!launch.preset.empty() || !launch.technique.empty(), {}};
+  for (const std::string& text : launch.set) asked.settings.push_back(text.substr(0, text.find('=')));
+  if (launch.bounces) asked.settings.push_back("smc.bounces");
+  return asked;
+}
+} // namespace
+
+/// The stage's settings as the person left them the last time.
+Settings Play::preferred() {
+  std::string complaint;
+  const auto technique = [](Settings& s, const std::string& name) { applyTechnique(s, name); };
+  const Settings settings = preferences_.over(stage_->settings, askedFor(options_.launch), technique, complaint);
+  if (!complaint.empty()) stage_->notes.push_back(complaint);
+  if (settings == stage_->settings) return settings;
+  stage_->notes.push_back("settings are as you left them (panel: back to defaults)");
+  if (settings.vpl.source != stage_->settings.vpl.source) tellWhatIsLeftOut(*stage_, settings);
+  return settings;
+}
+
+/// Brighter or darker than the scene is by itself, once that is known.
+void Play::showPreferredExposure() {
+  ownExposure_ = gi_.exposure();
+  const std::vector<std::string> asked = askedFor(options_.launch).settings;
+  if (preferences_.exposure != 0 && std::ranges::find(asked, "image.exposure") == asked.end())
+    gi_.settings().image.exposure = ownExposure_ * float(std::exp2(preferences_.exposure));
+}
+
+/// What differs from before is the person's doing.
+void Play::keepChanges(const Settings& before, const std::string& presetBefore) {
+  const Settings& now = gi_.settings();
+  preferences_.panel = model_.panel;
+  preferences_.folded = model_.folded;
+  preferences_.speed = double(model_.speed);
+  if (now == before && model_.preset == presetBefore) return;
+  if (now.image.exposure != before.image.exposure && now.image.exposure > 0)
+    preferences_.exposure = std::clamp(std::log2(double(now.image.exposure) / double(ownExposure_)), -24.0, 24.0);
+  Settings other = before;
+  applyTechnique(other, techniqueOf(now));
+  if (model_.preset != presetBefore)
+    preferences_.chosePreset(model_.preset, before, now);
+  else if (techniqueOf(now).name != techniqueOf(before).name && other == now)
+    preferences_.choseTechnique(techniqueOf(now).name, before, now);
+  else
+    preferences_.changed(before, now);
+}
+
+/// All as it would be if the person had never changed anything.
+void Play::forgetChanges() {
+  preferences_ = Preferences{.window = preferences_.window};
+  gi_.settings() = stage_->settings;
+  if (stage_->settings.image.exposure <= 0) gi_.settings().image.exposure = ownExposure_;
+  const LaunchOptions& launch = options_.launch;
+  model_.pacer = Pacer(options_.targetMs, launch.preset.empty() && launch.set.empty() && launch.technique.empty());
+  model_.preset = launch.preset;
+  model_.speed = 1;
+  model_.folded.reset();
+  hud_.say("all settings are the defaults again");
 }
 
 void Play::pose(double seconds) {
@@ -129,7 +208,13 @@ SceneView Play::viewAt(float scale) {
 
 void Play::frame(const Wishes& wishes, double seconds) {
   if ((!options_.frames && !options_.fps) || options_.targetMs) pace(seconds);
-  obey(wishes, float(seconds));
+  const auto keeping = [&](const auto& action) {
+    const Settings before = gi_.settings();
+    const std::string preset = model_.preset;
+    action();
+    keepChanges(before, preset);
+  };
+  keeping([&] { obey(wishes, float(seconds)); });
   const bool begins = recorder_.recording() && recorder_.frames() == 0;
   if (!model_.paused && !begins) {
     model_.time = recorder_.recording() && options_.fps ? double(recorder_.frames()) / *options_.fps // not a sum
@@ -173,7 +258,8 @@ void Play::frame(const Wishes& wishes, double seconds) {
   model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
   model_.gait = player_.gait();
   model_.offer = offer();
-  hud_.draw(model_, scene_, gi_, truth_, stats, times_);
+  keeping([&] { hud_.draw(model_, scene_, gi_, truth_, stats, times_); });
+  if (std::exchange(model_.backToDefaults, false)) forgetChanges();
   player_.pace = model_.speed;
   if (wishes.screenshot) report([&] { return saveScreenshot(); });
 }
@@ -379,7 +465,9 @@ std::string Play::state() const {
   stages.fill(true);
   for (const FigureColumn& column : columnsOf(gi_.stats(), stages))
     if (column.name.ends_with("_ms")) all += ", \"" + column.name + "\": " + column.text;
-  return all;
+  return all + ", \"preset\": \"" + model_.preset + "\", \"own_settings\": " + std::to_string(preferences_.set.size()) +
+         ", \"panel\": " + (model_.panel ? "true" : "false") +
+         ", \"exposure_ev\": " + std::to_string(preferences_.exposure);
 }
 
 } // namespace lambent

@@ -8,6 +8,7 @@
 #include "game/loading.h"
 #include "game/rules/path_recorder.h"
 #include "game/rules/player.h"
+#include "game/rules/preferences.h"
 #include "game/truth_view.h"
 #include "gi/frame/gi_frame.h"
 #include "tools/launch/frame_log.h"
@@ -23,6 +24,7 @@ struct GameOptions {
   std::string buffer = "beauty";
   std::optional<double> targetMs; // of a frame
   std::optional<double> fps;      // scene time goes by in steps of 1/fps, however long frames take
+  bool fresh = false;             // neither takes nor keeps preferences
   std::optional<int> frames;      // for tests: quit after so many
   std::string screenshot;         // for tests: what the window shows at the end
   std::string truth;              // for tests: split or heat from the start
@@ -32,12 +34,13 @@ struct GameOptions {
 
 class Play {
  public:
-  Play(const GameOptions& options, GlContext& context, Hud& hud, LoadedScene loaded);
+  /// `preferences`: what is begun with; what a person changes goes there.
+  Play(const GameOptions& options, GlContext& context, Hud& hud, Preferences& preferences, LoadedScene loaded);
   ~Play();
   Play(const Play&) = delete;
 
   /// Draws the first pictures: a rough one, which `shown` is told of, then that of all lights. `progress` hears of
-  /// both, and may throw to end it; the play is then of no more use.
+  /// both, and may throw to end it; the play is then of no more use. Where it is told of nothing, nothing may be drawn.
   void prepare(const std::function<void(const Progressed&)>& progress, const std::function<void()>& shown);
   /// One frame of so many seconds, in the window and not yet swapped.
   void frame(const Wishes& wishes, double seconds);
@@ -53,6 +56,10 @@ class Play {
   std::string state() const;
 
  private:
+  Settings preferred();
+  void showPreferredExposure();
+  void keepChanges(const Settings& before, const std::string& presetBefore);
+  void forgetChanges();
   void obey(const Wishes& wishes, float seconds);
   void handle(const Wishes& wishes);
   void use();
@@ -74,6 +81,7 @@ class Play {
   const GameOptions options_;
   GlContext& context_;
   Hud& hud_;
+  Preferences& preferences_;
   const std::unique_ptr<Stage> stage_;
   Props& props_;
   const std::unique_ptr<Solids> solids_;
@@ -86,6 +94,7 @@ class Play {
   SceneExtractor extractor_;
   HudModel model_;
   FrameTimes times_;
+  float ownExposure_ = 1; // of the scene, without the person's
   PathRecorder recorder_;
   FrameLog log_;             // of what is recorded
   std::optional<Shot> path_; // that F follows: of the shot, or recorded

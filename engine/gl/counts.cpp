@@ -1,5 +1,6 @@
 #include "engine/gl/counts.h"
 
+#include "engine/gl/pulse.h"
 #include "engine/gl/ring.h"
 
 namespace lambent::gl {
@@ -12,16 +13,19 @@ Counts& detail::countsSoFar() {
 const Counts& counts() { return detail::countsSoFar(); }
 
 void drawArrays(GLenum mode, int count) {
+  pulse();
   glDrawArrays(mode, 0, count);
   ++detail::countsSoFar().draws;
 }
 
 void drawFeedback(GLenum mode, const TransformFeedback& feedback, int instances) {
+  pulse();
   glDrawTransformFeedbackInstanced(mode, feedback.name(), instances);
   ++detail::countsSoFar().draws;
 }
 
 void drawIndexed(const BufferSlice& draws, size_t first, size_t count) {
+  pulse();
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.buffer->name());
   glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
                               reinterpret_cast<const void*>(uintptr_t(draws.offset + first * sizeof(IndexedDraw))),
@@ -46,6 +50,7 @@ void drawWithoutAttributes(GLenum mode, int count) {
 void drawFullscreen() { drawWithoutAttributes(GL_TRIANGLES, 3); }
 void drawPoints(int count) { drawWithoutAttributes(GL_POINTS, count); }
 void dispatch(int groupsX, int groupsY, int groupsZ) {
+  pulse();
   glDispatchCompute(GLuint(groupsX), GLuint(groupsY), GLuint(groupsZ));
   ++detail::countsSoFar().draws;
 }

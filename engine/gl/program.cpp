@@ -1,6 +1,7 @@
 #include "engine/gl/program.h"
 
 #include "engine/core/error.h"
+#include "engine/gl/pulse.h"
 
 #include <spdlog/spdlog.h>
 
@@ -70,6 +71,7 @@ void Program::set(const char* uniform, const mat4& m) const {
 const Program& ProgramCache::get(const ProgramDesc& desc) {
   std::unique_ptr<Program>& slot = programs_[desc.key()];
   if (!slot || slot->name_ == 0) {
+    pulse();
     slot.reset(new Program);
     slot->desc_ = desc;
     build(*slot);

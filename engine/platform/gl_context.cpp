@@ -171,7 +171,8 @@ GlContext GlContext::window(const std::string& title, int width, int height, Deb
   state->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (!state->window) {
     glfwTerminate();
-    throw RunError("no window with OpenGL 4.5 (" + lastError + ")");
+    throw RunError("no window with OpenGL 4.5 (" + lastError +
+                   "); install the GPU's OpenGL driver, or Mesa's, libgl1-mesa-dri, which draws on any machine");
   }
   glfwMakeContextCurrent(state->window);
   setUpContext(debug);

@@ -10,8 +10,8 @@
 // 4. Else stand at the inside place that sees farthest in the (geometric) mean, take the longer of its two lines
 //    along the plan's axes, step back almost to the wall behind, and look level along that line.
 //
-// Rays are tried against all triangles: a second's work is not worth a tree that nothing else here needs, and the
-// tracer belongs to a later layer.
+// Rays are tried against all triangles in boxes that they meet, of a few that follow each other in the file: there is
+// no tree that nothing else here needs, and the tracer belongs to a later layer.
 
 #include "engine/core/parallel.h"
 #include "engine/scene/scene.h"
@@ -50,6 +50,26 @@ std::vector<Triangle> worldTriangles(const Scene& scene) {
   return triangles;
 }
 
+/// Triangles that follow one another.
+struct Box {
+  vec3 lo, hi;
+  size_t begin, end;
+};
+
+std::vector<Box> boxesOf(const std::vector<Triangle>& triangles, float diameter) {
+  constexpr size_t kTriangles = 32;
+  std::vector<Box> boxes;
+  for (size_t begin = 0; begin < triangles.size(); begin += kTriangles) {
+    const size_t end = std::min(begin + kTriangles, triangles.size());
+    Aabb bounds;
+    for (size_t i = begin; i < end; ++i)
+      for (const vec3& corner : {vec3(0), triangles[i].edge1, triangles[i].edge2}) bounds.add(triangles[i].a + corner);
+    const vec3 more(1e-5f * diameter); // more than what rounds off
+    boxes.push_back({bounds.lo - more, bounds.hi + more, begin, end});
+  }
+  return boxes;
+}
+
 struct Look {
   vec3 origin, direction;
   float distance = kInfinity; // to what it meets
@@ -73,10 +93,26 @@ void meet(Look& look, const Triangle& t) {
   look.front = det > 0;
 }
 
-void meetAll(std::vector<Look>& looks, const std::vector<Triangle>& triangles) {
+/// Whether it may meet something in there that is nearer than what it met.
+bool mayMeet(const Look& look, const Box& box) {
+  float from = 0, to = look.distance;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float o = look.origin[axis], d = look.direction[axis];
+    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return false;
+    if (d == 0) continue;
+    const float a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  return from <= to;
+}
+
+void meetAll(std::vector<Look>& looks, const std::vector<Triangle>& triangles, const std::vector<Box>& boxes) {
   parallelFor(looks.size(), 4, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      for (const Triangle& t : triangles) meet(looks[i], t);
+      for (const Box& box : boxes)
+        if (mayMeet(looks[i], box))
+          for (size_t t = box.begin; t < box.end; ++t) meet(looks[i], triangles[t]);
   });
 }
 
@@ -107,7 +143,8 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     vertical.push_back({middle, vec3(0, -1, 0)});
     vertical.push_back({middle, vec3(0, 1, 0)});
   }
-  meetAll(vertical, triangles);
+  const std::vector<Box> boxes = boxesOf(triangles, bounds.diameter());
+  meetAll(vertical, triangles, boxes);
 
   const auto directions = lookDirections();
   std::vector<Place> places;
@@ -122,7 +159,7 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     places.push_back(place);
     for (const vec3& d : directions) looks.push_back({place.eye, d});
   }
-  meetAll(looks, triangles);
+  meetAll(looks, triangles, boxes);
   for (size_t i = 0; i < places.size(); ++i) {
     const Look* own = &looks[i * directions.size()];
     size_t fronts = 0;

@@ -1,5 +1,6 @@
 // Assets into GPU memory: one vertex and one index buffer for all meshes, one uniform buffer for all materials.
 #include "engine/core/error.h"
+#include "engine/gl/pulse.h"
 #include "gi/surfaces/gpu_scene.h"
 
 #include <glm/gtc/packing.hpp>
@@ -42,6 +43,7 @@ MaterialBlock blockOf(const Material& m) {
 }
 
 gl::Texture uploadImage(const TextureImage& image) {
+  gl::pulse();
   const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
   gl::Texture texture("scene/" + image.name.substr(0, 100), {.format = GLenum(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
                                                              .width = image.width,

@@ -1,6 +1,7 @@
 // The two makers of paraboloid maps. They agree up to the rounding of a texel, which tests/gl/maps_test.cpp checks.
 #include "gi/visibility/paraboloid_makers.h"
 #include "engine/core/parallel.h"
+#include "engine/gl/pulse.h"
 #include "engine/trace/ray_query.h"
 #include "shaders/shared/shadow_lookup.h"
 
@@ -145,6 +146,7 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
   constexpr size_t kBatch = 64;
   std::vector<std::vector<uint16_t>> maps(std::min(kBatch, jobs.size()));
   for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
+    gl::pulse();
     const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i)

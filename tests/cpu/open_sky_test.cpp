@@ -21,6 +21,13 @@ TEST(OpenSky, ReachesNothingInARoomAndWhoStandsOutside) {
   EXPECT_TRUE(reaches(scene, {5, 1.6f, 0}));
 }
 
+TEST(OpenSky, IsAbove) {
+  test::HandScene scene;
+  scene.box({-2, 0, -3}, {2, 2.5f, 3}, scene.material(vec3(0.5f)), true);
+  scene.instances.erase(scene.instances.begin() + 2); // the floor
+  EXPECT_FALSE(reaches(scene, {0, 1.6f, 0}));
+}
+
 TEST(OpenSky, ReachesARoomWithAWindowAndNotThatBehindAKeyhole) {
   for (const float side : {1.0f, 0.01f}) {
     test::HandScene scene;

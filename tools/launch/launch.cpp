@@ -323,7 +323,12 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
     stage->scene.sky = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
   if (!options.daylight.empty()) replaceDaylight(*stage, options);
   animate(stage->scene, 0);
+  const auto tell = [&](const char* at) {
+    if (step) step(at, 1);
+  };
+  tell("view");
   chooseCamera(*stage, options);
+  tell("light");
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);

@@ -1,0 +1,23 @@
+#include "engine/gl/pulse.h"
+
+#include <utility>
+
+namespace lambent::gl {
+
+namespace {
+std::function<void()> beating; // contexts are used from one thread
+} // namespace
+
+Pulse::Pulse(std::function<void()> beat) : before_(std::exchange(beating, std::move(beat))) {}
+Pulse::~Pulse() { beating = std::move(before_); }
+
+void pulse() {
+  if (!beating) return;
+  struct Silence { // its own draws are no work
+    std::function<void()> beat = std::exchange(beating, nullptr);
+    ~Silence() { beating = std::move(beat); }
+  } silence;
+  silence.beat();
+}
+
+} // namespace lambent::gl

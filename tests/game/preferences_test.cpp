@@ -1,0 +1,182 @@
+// What the window keeps from one run to the next: a round trip, files that are something else, and who wins.
+#include "game/rules/preferences.h"
+
+#include "engine/core/error.h"
+#include "gi/plan/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace lambent {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PreferencesTest : public testing::Test {
+ protected:
+  PreferencesTest() : folder_(fs::path(testing::TempDir()) / "lambent-preferences"), file_(folder_ / "a/b.json") {
+    fs::remove_all(folder_);
+  }
+  ~PreferencesTest() override { fs::remove_all(folder_); }
+
+  void write(const std::string& text) const {
+    fs::create_directories(file_.parent_path());
+    std::ofstream(file_) << text;
+  }
+  std::string text() const {
+    std::ifstream in(file_);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  const fs::path folder_, file_;
+};
+
+Preferences some() {
+  Preferences p;
+  p.preset = "low";
+  p.technique = "ir";
+  p.set = {{"image.toneMapper", "filmic"}, {"smc.vpls", "64"}};
+  p.exposure = -1.25;
+  p.panel = false;
+  p.folded = true;
+  p.speed = 2.5;
+  p.window = {800, 600};
+  return p;
+}
+
+void noTechnique(Settings&, const std::string&) {}
+
+TEST_F(PreferencesTest, ComeBackAsTheyWereSaved) {
+  savePreferences(some(), file_);
+  EXPECT_EQ(loadPreferences(file_), some());
+  savePreferences({}, file_);
+  EXPECT_EQ(loadPreferences(file_), Preferences());
+}
+
+TEST_F(PreferencesTest, NoFileGivesTheDefaultsAndNothingToSay) {
+  KeptPreferences kept(file_);
+  EXPECT_EQ(kept.now, Preferences());
+  EXPECT_EQ(kept.takeComplaint(), "");
+  kept.save();
+  EXPECT_FALSE(fs::exists(folder_)) << "nothing was changed";
+}
+
+TEST_F(PreferencesTest, AFileThatIsSomethingElseStaysUntilSomethingChanges) {
+  const std::string valid = R"({"kind": "lambent walkthrough", )";
+  for (const std::string& bad :
+       {std::string(), std::string("{"), std::string("[]"), std::string("null"), std::string("\xff\xfe\0", 3),
+        std::string(R"({"kind": "another", "speed": 2})"), valid + R"("speed": "fast"})", valid + R"("speed": 1e9})",
+        valid + R"("window": [1]})", valid + R"("set": {"smc.vpls": 3}})", valid + R"("speed": 2, "speed": 3})",
+        std::string(2 << 20, ' '), std::string(100000, '[')}) {
+    write(bad);
+    KeptPreferences kept(file_);
+    EXPECT_EQ(kept.now, Preferences()) << bad.substr(0, 80);
+    const std::string complaint = kept.takeComplaint();
+    EXPECT_NE(complaint.find(file_.string()), std::string::npos) << complaint;
+    EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
+    kept.save();
+    EXPECT_EQ(text(), bad) << "left alone";
+    kept.now.speed = 3;
+    kept.save();
+    EXPECT_EQ(loadPreferences(file_).speed, 3);
+  }
+  fs::remove(file_);
+  fs::create_directories(file_);
+  KeptPreferences kept(file_);
+  EXPECT_NE(kept.takeComplaint(), "") << "a folder";
+  kept.now.speed = 3;
+  kept.save();
+  EXPECT_NE(kept.takeComplaint(), "") << "cannot be replaced";
+  kept.save();
+  EXPECT_EQ(kept.takeComplaint(), "") << "said once";
+}
+
+TEST_F(PreferencesTest, AreSavedOnceTheyHaveSettled) {
+  KeptPreferences kept(file_);
+  for (int i = 0; i < 30; ++i) {
+    kept.now.speed = 1 + 0.1 * i; // a slider being moved
+    kept.passed(0.1);
+  }
+  EXPECT_FALSE(fs::exists(file_));
+  for (int i = 0; i < 25; ++i) kept.passed(0.1);
+  EXPECT_NEAR(loadPreferences(file_).speed, 3.9, 1e-9);
+}
+
+TEST_F(PreferencesTest, WithoutAPlaceNothingIsKept) {
+  KeptPreferences kept({});
+  kept.now.speed = 3;
+  kept.save();
+  EXPECT_EQ(kept.takeComplaint(), "");
+  EXPECT_EQ(preferencesFile("/x", "/home/i"), "/x/lambent/walkthrough.json");
+  EXPECT_EQ(preferencesFile("relative", "/home/i"), "/home/i/.config/lambent/walkthrough.json");
+  EXPECT_EQ(preferencesFile(nullptr, "/home/i"), "/home/i/.config/lambent/walkthrough.json");
+  EXPECT_EQ(preferencesFile("", nullptr), "");
+}
+
+TEST_F(PreferencesTest, SingleSettingsThatAPersonChangedAndNoOthers) {
+  Preferences p;
+  Settings before, after;
+  before.smc.vpls = 100; // the shot's
+  after = before;
+  after.smc.bounces = 1;
+  after.image.exposure = 4; // Preferences::exposure
+  p.changed(before, after);
+  EXPECT_EQ(p.set, (std::map<std::string, std::string>{{"smc.bounces", "1"}}));
+  std::string complaint;
+  Settings own;
+  own.smc.vpls = 300;
+  const Settings over = p.over(own, {}, noTechnique, complaint);
+  EXPECT_EQ(over.smc.vpls, 300);
+  EXPECT_EQ(over.smc.bounces, 1);
+  EXPECT_EQ(complaint, "");
+}
+
+TEST_F(PreferencesTest, APresetTakesThePlaceOfWhatItSets) {
+  Preferences p;
+  p.set = {{"smc.vpls", "7"}, {"shadow.resolution", "128"}, {"smc.bounces", "1"}};
+  EXPECT_TRUE(p.chooseQuality());
+  Settings before, after;
+  applyPreset(after, "medium");
+  p.chosePreset("medium", before, after);
+  EXPECT_EQ(p.set, (std::map<std::string, std::string>{{"smc.bounces", "1"}})) << "also where it was so already";
+  EXPECT_EQ(p.preset, "medium");
+  p.set = {{"image.toneMapper", "filmic"}};
+  EXPECT_TRUE(p.chooseQuality());
+  p.preset.clear();
+  EXPECT_FALSE(p.chooseQuality()) << "how it is shown is another thing";
+}
+
+TEST_F(PreferencesTest, GiveWayToTheCommandLine) {
+  const Preferences p = some();
+  std::string complaint;
+  int techniques = 0;
+  const auto technique = [&](Settings&, const std::string& name) { techniques += name == "ir"; };
+  Settings own;
+  EXPECT_EQ(p.over(own, {}, technique, complaint).smc.vpls, 64) << "after the preset";
+  EXPECT_EQ(p.over(own, {}, technique, complaint).smc.points, 1024) << "the preset";
+  EXPECT_EQ(techniques, 2);
+  own.smc.points = 5;
+  own.smc.vpls = 6;
+  EXPECT_EQ(p.over(own, {false, {"smc.points", "smc.vpls"}}, technique, complaint).smc.points, 5);
+  EXPECT_EQ(p.over(own, {false, {"smc.points", "smc.vpls"}}, technique, complaint).smc.vpls, 6);
+  const Settings asked = p.over(own, {true, {}}, technique, complaint);
+  EXPECT_EQ(asked.smc.vpls, 6);
+  EXPECT_EQ(asked.image.toneMapper, ToneMapper::Filmic);
+  EXPECT_EQ(techniques, 4);
+  EXPECT_EQ(complaint, "");
+}
+
+TEST_F(PreferencesTest, AreLeftOutWithAReasonWhereTheyNoLongerFit) {
+  Preferences p;
+  p.set = {{"smc.bounces", "1"}, {"smc.gone", "3"}};
+  std::string complaint;
+  EXPECT_EQ(p.over({}, {}, noTechnique, complaint), Settings());
+  EXPECT_NE(complaint.find("smc.gone"), std::string::npos);
+  p.set = {{"smc.vpls", "-3"}};
+  complaint.clear();
+  EXPECT_EQ(p.over({}, {}, noTechnique, complaint), Settings());
+  EXPECT_NE(complaint, "");
+}
+
+} // namespace
+} // namespace lambent
