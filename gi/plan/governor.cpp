@@ -19,6 +19,15 @@ double medianOf(std::vector<double> values) {
 /// Scale at which a frame that takes `ms` at this one would take `targetMs`, if all its cost were the pixels'.
 double scaleFor(double scale, double ms, double targetMs) { return scale * std::sqrt(targetMs / ms); }
 
+/// The same far over the target, where part of the cost is not the pixels': what is left of it at no scale at all, by
+/// the scale before. (Of a small change noise would tell more than that.)
+double scaleFromFar(const Governed& g, double ms, double targetMs) {
+  const double now = double(g.scale) * g.scale, other = double(g.otherScale) * g.otherScale;
+  const double perPixel = other > 0 && std::abs(now - other) > 0.2 * now ? (g.otherMs - ms) / (other - now) : 0;
+  const double fixed = perPixel > 0 ? std::clamp(ms - perPixel * now, 0.0, 0.8 * std::min(ms, targetMs)) : 0;
+  return scaleFor(g.scale, ms - fixed, targetMs - fixed);
+}
+
 /// Time of a frame, of the default's, where the settings are a preset's or the default's; none where somebody has set
 /// them otherwise.
 std::optional<double> timeOf(const Settings& settings) {
@@ -81,8 +90,13 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
     const double cost = full ? medianOf(g.ms) : twice;
     const bool tooLong = twice > (1 + gains.urgent) * targetMs || (full && cost > (1 + gains.above) * targetMs);
     const bool tooShort = full && cost < (1 - gains.below) * targetMs;
-    if (tooLong) g.scale = float(scaleFor(g.scale, std::max(cost, twice), target));
-    if (tooShort) g.scale = float(scaleFor(g.scale, cost, target));
+    const double ms = tooLong ? std::max(cost, twice) : cost;
+    if (tooLong || tooShort) {
+      const bool far = ms > (1 + gains.urgent) * targetMs;
+      g.scale = float(far ? scaleFromFar(g, ms, target) : scaleFor(g.scale, ms, target));
+      g.otherScale = before;
+      g.otherMs = ms;
+    }
     if (full || tooLong)
       g.pace = tooLong && before <= gains.least ? Pace::TooSlow : tooShort && before >= 1 ? Pace::Idle : Pace::Holding;
   }
@@ -90,6 +104,7 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
   const bool end = g.scale == 1 || g.scale == gains.least; // is worth a small step
   if (std::abs(g.scale - before) < gains.step * before && !(end && g.scale != before)) g.scale = before;
   const bool anew = !(g.settings == settingsBefore); // as at the start, shaders and maps are prepared first
+  if (anew) g.otherScale = 0;
   if (g.scale != before || anew) g.ms.clear(), g.frames = anew ? gains.after - gains.warmup : 0;
   return g;
 }
