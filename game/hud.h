@@ -116,6 +116,7 @@ class Hud {
   };
   std::deque<Message> messages_;
   std::optional<bool> wasFolded_; // the panel
+  std::optional<int> moves_;      // virtual lights per frame, while they are to stay
   std::string lastSaid_;
   std::unique_ptr<gl::Texture> picture_;
   float scale_ = 1;                                          // of the display's pixels

@@ -80,6 +80,16 @@ void Hud::drawPicture(HudModel& model, GiFrame& gi) {
   if (ImGui::SliderFloat("exposure, EV", &ev, -12, 12, "%+.1f")) gi.settings().image.exposure = std::exp2(ev);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first picture measures it.");
+  if (model.buffer != Buffer::Vpls && !moves_) return;
+  bool stay = moves_.has_value();
+  int& moves = gi.settings().smc.moves;
+  if (ImGui::Checkbox("virtual lights stay where they are", &stay)) {
+    if (stay)
+      moves_ = std::exchange(moves, 0);
+    else
+      moves = *std::exchange(moves_, std::nullopt);
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("fly off and look at them from elsewhere");
 }
 
 void Hud::drawPlayer(HudModel& model) {
