@@ -95,9 +95,9 @@ TEST(Goal, ForgetsWhatWasBeforeAnythingMoved) {
 
 TEST(Goal, IsReachedForCertainOnceAndUntilTheStart) {
   Plate plate;
-  measured(*plate.goal, 1);
+  measured(*plate.goal, 7);
   EXPECT_FALSE(plate.goal->reached()) << "too soon to be sure";
-  measured(*plate.goal);
+  measured(*plate.goal, 1);
   EXPECT_TRUE(plate.goal->reached());
   plate.moveRoof({-0.75, 1, 0});
   measured(*plate.goal);
