@@ -259,6 +259,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
   model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
   model_.gait = player_.gait();
   model_.offer = offer();
+  if (model_.buffer == Buffer::Vpls && truth_.mode() == TruthMode::Off) drawVplAtCrosshair(gi_, camera, hud_.scale());
   keeping([&] { hud_.draw(model_, scene_, gi_, truth_, stats, times_); });
   if (std::exchange(model_.backToDefaults, false)) forgetChanges();
   player_.pace = model_.speed;

@@ -124,7 +124,8 @@ void drawVplAtCrosshair(const GiFrame& gi, const CameraView& camera, float scale
     ImGui::GetBackgroundDrawList()->AddCircle(*at, 9 * scale, kChosen, 24, 2 * scale);
 
   const float texel = std::max(1.0f, std::floor(0.3f * size.y / float(kMapSide))), side = texel * float(kMapSide);
-  const ImVec2 corner{size.x - side - 8, size.y - side - 8};
+  const float legend = 44 * scale; // stays free for it
+  const ImVec2 corner{size.x - side - 8, size.y - side - legend};
   drawMap(vpl, rays, glm::distance(camera.position(), vpl.position) * 2, corner, texel);
   char text[200];
   std::snprintf(text, sizeof text,
@@ -132,7 +133,7 @@ void drawVplAtCrosshair(const GiFrame& gi, const CameraView& camera, float scale
                 "orange: its paths  right: its map",
                 slot, set.frame - vpl.bornFrame, double(vpl.intensity()), double(vpl.area));
   const ImVec2 extent = ImGui::CalcTextSize(text);
-  const ImVec2 at{corner.x - extent.x - 12, size.y - extent.y - 12};
+  const ImVec2 at{corner.x - extent.x - 12, size.y - extent.y - legend - 4};
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   list->AddRectFilled({at.x - 4, at.y - 4}, {at.x + extent.x + 4, at.y + extent.y + 4}, IM_COL32(0, 0, 0, 160));
   list->AddText(at, IM_COL32(255, 255, 255, 255), text);

@@ -374,7 +374,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
-    anew[slot] |= drifted || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius);
+    // (A light may have been carried along with its object before this update.)
+    anew[slot] |= drifted || cell.centre != vpl.position || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius);
     if (!anew[slot]) {
       near[slot] = disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
       const bool nobodySaw = cell.viewers.size() == 1;
