@@ -137,6 +137,40 @@ TEST(DefaultView, RoomsAreSeenFromInsideAtEyeHeightAlongTheLongerAxis) {
   expectNear(-vec3(view.worldFromView[2]), {1, 0, 0});
 }
 
+/// Two shells about the same middle, one around the other, of many small triangles.
+GltfBuilder shells(bool outerFirst) {
+  GltfBuilder b;
+  std::vector<vec3> corners;
+  std::vector<uint16_t> indices;
+  constexpr int kCells = 8;
+  for (const bool outer : {outerFirst, !outerFirst})
+    for (int side = 0; side < 6; ++side)
+      for (int i = 0; i < kCells * kCells; ++i) {
+        const auto corner = [&](int u, int v) {
+          vec3 p(0);
+          p[side / 2] = side % 2 ? 1 : -1;
+          p[(side / 2 + 1) % 3] = 2 * float(i % kCells + u) / kCells - 1;
+          p[(side / 2 + 2) % 3] = 2 * float(i / kCells + v) / kCells - 1;
+          return p * vec3(5, 2, 3) * (outer ? 1.25f : 1.0f);
+        };
+        const auto first = uint16_t(corners.size());
+        for (const vec3& p : {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}) corners.push_back(p);
+        const std::vector<int> inwards = side % 2 ? std::vector{0, 2, 1, 0, 3, 2} : std::vector{0, 1, 2, 0, 2, 3};
+        for (const int k : inwards) indices.push_back(uint16_t(first + k));
+      }
+  const int positions = b.positions(corners);
+  b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", b.indices(indices)}});
+  return b;
+}
+
+TEST(DefaultView, MeetsWhatIsNearestWhereverItStandsInTheFile) {
+  TemporaryFolder folder;
+  const CameraView near = defaultView(shells(false).load(folder)), far = defaultView(shells(true).load(folder));
+  EXPECT_EQ(near.worldFromView, far.worldFromView);
+  EXPECT_LT(std::abs(near.position().x), 5) << "inside the inner one";
+  EXPECT_GT(std::abs(near.position().x), 3);
+}
+
 TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {
   TemporaryFolder folder;
   const CameraView view = defaultView(box(true, true).load(folder));
