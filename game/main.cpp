@@ -22,7 +22,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("--buffer", options.buffer, "what to show first: beauty, indirect, vpls, ...");
   app.add_option("--target-ms", options.targetMs,
                  "choose the preset (where none is given) that fits this time of a frame, and hold it by the picture's "
-                 "scale; without, only where frames take longer than 100 ms")
+                 "scale; without, only where frames take longer than 90 ms")
       ->check(CLI::Range(1.0, 10000.0));
   app.add_option("--fps", options.fps,
                  "let scene time go by in steps of 1/FPS, however long frames take: what R records is then drawn by "

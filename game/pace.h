@@ -33,7 +33,7 @@ class Pacer {
   std::string text() const;                                      // what it does, one line
 
  private:
-  static constexpr double kUsable = 100; // ms
+  static constexpr double kUsable = 90; // ms: ten frames in a second, with something to spare
   static constexpr double kHalfwayMs = 500;
   static constexpr int kStillFrames = 10;
   bool moving() const { return !governs_ || stillFrames_ < kStillFrames; }
