@@ -45,11 +45,12 @@ struct HudModel {
   std::optional<double> hour = {}; // of the day, 0 to 24; none: the scene's own light
   bool dayRuns = false;
   bool torch = false;
-  vec3 lampIntensity{1};  // W/sr, of all lamps
-  std::string offer = {}; // what using would do now
-  Gait gait = Gait::Walk; // shown
-  float speed = 1;        // of the player, times the usual
-  Pacer pacer{{}, false}; // of frames, by the picture's scale
+  bool lightsStay = false; // virtual ones, where they are
+  vec3 lampIntensity{1};   // W/sr, of all lamps
+  std::string offer = {};  // what using would do now
+  Gait gait = Gait::Walk;  // shown
+  float speed = 1;         // of the player, times the usual
+  Pacer pacer{{}, false};  // of frames, by the picture's scale
   std::optional<GoalShown> goal = {};
 };
 
@@ -116,7 +117,6 @@ class Hud {
   };
   std::deque<Message> messages_;
   std::optional<bool> wasFolded_; // the panel
-  std::optional<int> moves_;      // virtual lights per frame, while they are to stay
   std::string lastSaid_;
   std::unique_ptr<gl::Texture> picture_;
   float scale_ = 1;                                          // of the display's pixels

@@ -33,6 +33,7 @@ void Pacer::took(const FrameStats& stats, double wholeMs, bool moved, Settings& 
 void Pacer::hold(float scale) {
   governs_ = false;
   governed_.scale = scale;
+  governed_.otherScale = 0;
 }
 
 void Pacer::govern(double targetMs) {

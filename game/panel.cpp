@@ -80,15 +80,8 @@ void Hud::drawPicture(HudModel& model, GiFrame& gi) {
   if (ImGui::SliderFloat("exposure, EV", &ev, -12, 12, "%+.1f")) gi.settings().image.exposure = std::exp2(ev);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first picture measures it.");
-  if (model.buffer != Buffer::Vpls && !moves_) return;
-  bool stay = moves_.has_value();
-  int& moves = gi.settings().smc.moves;
-  if (ImGui::Checkbox("virtual lights stay where they are", &stay)) {
-    if (stay)
-      moves_ = std::exchange(moves, 0);
-    else
-      moves = *std::exchange(moves_, std::nullopt);
-  }
+  if (model.buffer != Buffer::Vpls && !model.lightsStay) return;
+  ImGui::Checkbox("virtual lights stay where they are", &model.lightsStay);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("fly off and look at them from elsewhere");
 }
 
@@ -104,7 +97,8 @@ void Hud::drawPlayer(HudModel& model) {
 void Hud::drawTime(HudModel& model) {
   ImGui::Checkbox("time stands still (P)", &model.paused);
   float time = float(model.time);
-  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f")) model.time = time;
+  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f") && !model.recordedSeconds)
+    model.time = time; // a recording's time only goes on
   if (model.hasPath) ImGui::Checkbox("follow the camera path (F)", &model.followPath);
 }
 

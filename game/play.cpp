@@ -46,6 +46,7 @@ Play::Play(const GameOptions& options, GlContext& context, Hud& hud, Preferences
   const LaunchOptions& launch = options.launch;
   const bool asked = !launch.preset.empty() || !launch.set.empty() || !launch.technique.empty();
   model_.pacer = Pacer(options.targetMs, !asked && !preferences.chooseQuality());
+  if (options.fps && !options.targetMs) model_.pacer.hold(1); // a replay is drawn in full
   model_.buffer = bufferByName(options.buffer);
   model_.preset = !launch.preset.empty() || !launch.technique.empty() ? launch.preset : preferences.preset;
   model_.panel = preferences.panel;
@@ -65,6 +66,7 @@ Play::~Play() {
 }
 
 void Play::restart() {
+  if (recorder_.recording()) toggleRecording();
   model_.time = 0;
   model_.paused = model_.torch = false;
   props_.movers.reset();
@@ -72,6 +74,7 @@ void Play::restart() {
   pose(0);
   home();
   model_.followPath = path_.has_value() && !stage_->cameraGiven;
+  if (model_.followPath) pose(0); // as it was played
   if (!goal_) return;
   goal_->reset();
   hud_.say("bring daylight to the " + goal_->what() + " with doors (E) and white boards (B); lamps do not count");
@@ -99,7 +102,8 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
   applyPreset(rough, presetTable().front().name);
   rough.gather.mode = wanted.gather.mode;
   rough.smc.warmup = kRoughWarmup;
-  const bool roughFirst = !options_.frames && wanted.smc.vpls > 2 * rough.smc.vpls && wanted.smc.warmup > kRoughWarmup;
+  const bool roughFirst =
+      !options_.frames && !options_.fps && wanted.smc.vpls > 2 * rough.smc.vpls && wanted.smc.warmup > kRoughWarmup;
   if (roughFirst) {
     gi_.settings() = rough;
     gi_.settings().gather.near = 0;
@@ -236,14 +240,14 @@ void Play::frame(const Wishes& wishes, double seconds) {
 
   const auto [width, height] = context_.framebufferSize();
   CameraView camera = player_.view(width, height);
-  if (recorder_.recording()) {
+  if (recorded || (recorder_.recording() && options_.fps)) {
     camera = recorder_.camera(scene_.origin);
     camera.width = width;
     camera.height = height;
   }
   const SceneView view = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
   // What is recorded at fixed steps is drawn as often as its replay is: not again where no time went by.
-  if (recorded || !recorder_.recording() || !options_.fps) gi_.run(view);
+  if (recorded || !recorder_.recording() || !options_.fps) run(view);
   const FrameStats& stats = gi_.stats();
   if (recorded) log_.add(model_.time, stats, 0, nullptr);
   times_.add(seconds, stats);
@@ -264,6 +268,14 @@ void Play::frame(const Wishes& wishes, double seconds) {
   if (std::exchange(model_.backToDefaults, false)) forgetChanges();
   player_.pace = model_.speed;
   if (wishes.screenshot) report([&] { return saveScreenshot(); });
+}
+
+/// Lights that are to stay do so for this frame: it is no setting that is kept or recorded.
+void Play::run(const SceneView& view) {
+  int& moves = gi_.settings().smc.moves;
+  const int wanted = std::exchange(moves, model_.lightsStay ? 0 : moves);
+  gi_.run(view);
+  moves = wanted;
 }
 
 /// Tells the person what `action` did, or why it failed; a full disk must not end the walk.

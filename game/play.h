@@ -60,6 +60,7 @@ class Play {
   void showPreferredExposure();
   void keepChanges(const Settings& before, const std::string& presetBefore);
   void forgetChanges();
+  void run(const SceneView& view);
   void obey(const Wishes& wishes, float seconds);
   void handle(const Wishes& wishes);
   void use();

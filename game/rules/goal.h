@@ -25,7 +25,7 @@ class Goal {
   /// Mean over the thing's surface, W/m²: the latest frames' while anything moves, else of all since then.
   float irradiance() const { return float(shown_); }
   float error() const; // standard error of what was measured since anything moved
-  /// For certain, by two standard errors; once it was, it stays so.
+  /// By three standard errors, asked whenever the number of passes has doubled; once it was, it stays so.
   bool reached() const { return reached_; }
 
  private:
@@ -42,6 +42,8 @@ class Goal {
   const float wanted_;
   Solids solids_; // the player's lack what is carried
   std::vector<Place> places_;
+  std::vector<vec3> suns_; // directions and irradiances that the sums are of
+  Sky sky_;
   uint32_t frame_ = 0, passes_ = 0;
   double sum_ = 0, squares_ = 0, shown_ = 0; // of passes
   bool reached_ = false;

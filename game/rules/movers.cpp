@@ -169,22 +169,26 @@ std::map<std::string, double> Movers::used() const {
   return places;
 }
 
+void Movers::check(const std::map<std::string, double>& places, const std::string& file) const {
+  for (const auto& [name, at] : places)
+    if (std::ranges::none_of(movers_, [&](const Mover& m) { return name == m.kind->node; }))
+      throw InputError(file, "played.movers: the scene has no door or lift called '" + name + "'");
+}
+
 void Movers::show(const std::map<std::string, double>& places, const std::string& file) {
-  size_t known = 0;
+  check(places, file);
   for (Mover& mover : movers_) {
     const auto found = places.find(mover.kind->node);
     if (found == places.end()) {
       reset(mover);
       continue;
     }
-    ++known;
     mover.used = true;
     mover.at = found->second;
     mover.speed = 0;
     mover.target = mover.from = std::clamp(int(std::lround(mover.at)), 0, mover.kind->stops() - 1);
     apply(mover);
   }
-  if (known < places.size()) throw InputError(file, "played.movers names what is no door or lift of the scene");
   if (!movers_.empty()) updateWorldTransforms(scene_);
 }
 

@@ -30,8 +30,9 @@ class Movers {
 
   /// Where those are that somebody used, in stops, by their nodes' names.
   std::map<std::string, double> used() const;
-  /// Puts these there at once, and all others as at the start: after the scene was animated. Throws InputError, with
-  /// `file`, where there is no mover of a name.
+  /// Throws InputError, with `file`, where there is no mover of a name.
+  void check(const std::map<std::string, double>& places, const std::string& file) const;
+  /// Puts these there at once, and all others as at the start: after the scene was animated. Throws as check.
   void show(const std::map<std::string, double>& places, const std::string& file);
   size_t count() const { return movers_.size(); }
   /// Where the mover with that name is: 0 at its first stop, 1 at its second, and so on. -1: there is none.

@@ -8,12 +8,6 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-bool nothingPlayed(const PlayedMoment& m) { return m.movers.empty() && m.things.empty() && !m.hour && !m.torch; }
-
-} // namespace
-
 void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, std::map<std::string, std::string> set) {
   walk_ = shot ? *shot : Shot{};
   walk_->scene = fs::absolute(scene);
@@ -52,7 +46,6 @@ bool PathRecorder::add(const CameraView& camera, const dvec3& origin, PlayedMome
 std::optional<Shot> PathRecorder::end(const fs::path& folder) {
   std::optional<Shot> walk = std::exchange(walk_, std::nullopt);
   if (!walk || walk->camera.empty()) return {};
-  if (walk->played.size() == 1 && nothingPlayed(walk->played[0])) walk->played.clear();
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");

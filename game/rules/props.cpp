@@ -38,6 +38,13 @@ PlayedMoment Props::moment(double t) const {
           .torch = torch_};
 }
 
+void Props::check(const Shot& shot) const {
+  for (const PlayedMoment& moment : shot.played) {
+    movers.check(moment.movers, shot.file.string());
+    things.check(moment.things, shot.file.string());
+  }
+}
+
 void Props::show(const PlayedMoment& moment, const std::string& file) {
   if (day.hour() != moment.hour) day.set(moment.hour);
   day.apply();

@@ -24,6 +24,8 @@ class Props {
 
   /// As it is now.
   PlayedMoment moment(double t) const;
+  /// Throws InputError where the shot has what this scene or this program has not, or too much: before it is shown.
+  void check(const Shot& shot) const;
   /// Makes it so, after the scene was animated. Throws InputError where the scene or this program has nothing of a
   /// name, with `file` as where it stands.
   void show(const PlayedMoment& moment, const std::string& file);

@@ -97,8 +97,18 @@ std::vector<PlayedMoment::Thing> Things::list() const {
   return list;
 }
 
-void Things::show(const std::vector<PlayedMoment::Thing>& list, const std::string& file) {
+void Things::check(const std::vector<PlayedMoment::Thing>& list, const std::string& file) {
   if (list.size() > kMost) throw InputError(file, "played.things has more than " + std::to_string(kMost) + " at once");
+  for (const PlayedMoment::Thing& thing : list) {
+    if (std::ranges::find(kLooks, thing.kind, &Look::name) == kLooks.end())
+      throw InputError(file, "played.things has no kind '" + thing.kind + "' (white board, red box, lamp, ...)");
+    if (std::ranges::count(list, thing.number, &PlayedMoment::Thing::number) > 1)
+      throw InputError(file, "played.things has two of number " + std::to_string(thing.number) + " at once");
+  }
+}
+
+void Things::show(const std::vector<PlayedMoment::Thing>& list, const std::string& file) {
+  check(list, file);
   hand_.reset();
   for (size_t i = things_.size(); i-- > 0;)
     if (std::ranges::find(list, things_[i].number, &PlayedMoment::Thing::number) == list.end()) destroy(i);
@@ -106,7 +116,6 @@ void Things::show(const std::vector<PlayedMoment::Thing>& list, const std::strin
     auto found = std::ranges::find(things_, wanted.number, &Thing::number);
     if (found == things_.end()) {
       const auto look = std::ranges::find(kLooks, wanted.kind, &Look::name);
-      if (look == kLooks.end()) throw InputError(file, "played.things has no kind '" + wanted.kind + "'");
       make(ThingKind(look - kLooks.begin()), wanted.number, wanted.centre);
       found = things_.end() - 1;
     }

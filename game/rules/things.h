@@ -40,8 +40,9 @@ class Things {
 
   /// All of them, as a shot has them.
   std::vector<PlayedMoment::Thing> list() const;
-  /// Makes it so: those that are not in the list go, new ones come, none is carried. Throws InputError, with `file`,
-  /// for an unknown kind and for too many.
+  /// Throws InputError, with `file`, for an unknown kind, for too many, and for two of a number.
+  static void check(const std::vector<PlayedMoment::Thing>& list, const std::string& file);
+  /// Makes it so: those that are not in the list go, new ones come, none is carried. Throws as check.
   void show(const std::vector<PlayedMoment::Thing>& list, const std::string& file);
 
   size_t count() const { return things_.size(); }

@@ -97,6 +97,7 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
       g.otherScale = before;
       g.otherMs = ms;
     }
+    if (full && !tooLong && !tooShort) g.otherScale = 0; // what it told may be another room's
     if (full || tooLong)
       g.pace = tooLong && before <= gains.least ? Pace::TooSlow : tooShort && before >= 1 ? Pace::Idle : Pace::Holding;
   }

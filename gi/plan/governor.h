@@ -42,7 +42,7 @@ struct Governed {
   // What it remembers.
   std::vector<double> ms = {}; // frames since the last change that count, milliseconds
   int frames = 0;              // since the last change
-  float otherScale = 0;        // the one before, with these settings, and its cost; 0: there is none
+  float otherScale = 0;        // the one before, with its cost, until frames hold the target; 0: there is none
   double otherMs = 0;
   bool calibrated = false;
   Pace pace = Pace::Calibrating;
@@ -51,7 +51,7 @@ struct Governed {
 /// After a frame that took `ms`. Frames in which nothing was drawn (a still view) must not be told: they say nothing of
 /// what the next one costs. Cost is taken to be in proportion to the number of pixels; as a part of it is not, a change
 /// falls short of the target and never overshoots, and the next one closes in: nothing oscillates. Where it fell far
-/// short, the two scales tell how large that part is.
+/// short, the two scales tell how large that part is (a load that doubles just then is taken for it: one change more).
 Governed governed(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
 
 /// Before the first frame, where one at full scale and with these settings is expected to take `ms`: preset and scale

@@ -324,24 +324,32 @@ struct Share {
   SurfaceSample* sample;
 };
 
-/// Makes the cell of `vpl` of the samples that it has.
-void assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const Disturbance& disturbance, const RayQuery& rays,
-              RayCounts& counts) {
+/// Makes the cell of `vpl` of the samples that it has. Where these may be the same as before (`perhaps`) only if one of
+/// them is seen otherwise than before; returns whether it was made.
+bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const Disturbance& disturbance, bool perhaps,
+              const RayQuery& rays, RayCounts& counts) {
   std::stable_sort(shares.begin(), shares.end(),
                    [](const Share& a, const Share& b) { return a.sample->owner2 < b.sample->owner2; });
+  bool same = perhaps;
+  for (const Share& share : shares) {
+    SurfaceSample& p = *share.sample;
+    if (p.weighed == cell.drawing && !viewChanged(cell, p.position, p.geometricNormal, disturbance, rays)) continue;
+    const float seen = seenBy(cell, p, rays, counts);
+    same &= p.weighed == cell.drawing && seen == p.seen;
+    p.seen = seen;
+    p.weighed = cell.drawing;
+  }
+  if (same) return false;
   std::vector<CellPoint> points;
   vpl.area = 0;
   for (const Share& share : shares) {
-    SurfaceSample& p = *share.sample;
-    if (p.weighed != cell.drawing || viewChanged(cell, p.position, p.geometricNormal, disturbance, rays)) {
-      p.seen = seenBy(cell, p, rays, counts);
-      p.weighed = cell.drawing;
-    }
+    const SurfaceSample& p = *share.sample;
     if (!(p.seen > 0)) continue;
     points.push_back({p.position, p.normal, p.geometricNormal, p.albedo, p.seen / p.density});
     vpl.area += points.back().area;
   }
   cell.points = std::vector<CellPoint>(points.begin(), points.end());
+  return true;
 }
 
 } // namespace
@@ -379,8 +387,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
     if (!anew[slot]) {
       near[slot] = disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
       const bool nobodySaw = cell.viewers.size() == 1;
-      if (near[slot] && (nobodySaw || viewChanged(cell, vpl.position, vpl.geometricNormal, disturbance, rays))) {
-        cell.viewers.clear();
+      if ((near[slot] && nobodySaw) || viewChanged(cell, vpl.position, vpl.geometricNormal, disturbance, rays)) {
+        cell.viewers.clear(); // to be found anew
         cell.drawing = ++set.drawings;
       }
       continue;
@@ -420,8 +428,11 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         owners.push_back(slot);
         continue;
       }
+      if (anew[slot] || cell.viewers.empty()) {
+        findViewers(vpl, set, vpls, tree, rays, cell, count);
+        owners.push_back(slot);
+      }
       if (anew[slot] || near[slot]) {
-        if (anew[slot] || cell.viewers.empty()) findViewers(vpl, set, vpls, tree, rays, cell, count);
         owners.push_back(slot);
         stay = sampler.draw(slot, cell, anew[slot] ? nullptr : &disturbance, owners, count);
       }
@@ -445,6 +456,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
           return !disturbed && !anew[other] && std::find(before.begin(), before.end(), other) != before.end();
         });
         if (p.owner == owner && p.density == density) continue;
+        if (p.owner != owner) p.weighed = 0; // also where it comes back to the one that it had before
         for (const uint32_t o : {owner, p.owner})
           if (o != kNone) owners.push_back(o);
       }
@@ -452,8 +464,9 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
         neighbours.giveToNearest(p, connected, [](uint32_t) { return false; });
         if (p.owner != kNone) owners.push_back(p.owner);
       }
-      std::stable_sort(cell.samples.begin(), cell.samples.end(),
-                       [](const SurfaceSample& a, const SurfaceSample& b) { return a.chord < b.chord; });
+      if (stay < cell.samples.size())
+        std::stable_sort(cell.samples.begin(), cell.samples.end(),
+                         [](const SurfaceSample& a, const SurfaceSample& b) { return a.chord < b.chord; });
       cell.reach = 0;
       for (const SurfaceSample& p : cell.samples)
         cell.reach = std::max(cell.reach, glm::distance(p.position, vpl.position) + std::sqrt(p.reach2));
@@ -464,26 +477,45 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   for (const auto& owners : concerned)
     for (const uint32_t slot : owners) touched[slot] = 1;
 
+  // Something may also have moved between a cell's samples and who looks at it.
+  std::vector<float> extent2(slots, 0); // m², of what each has
+  std::vector<uint8_t> perhaps(slots, 0);
+  for (const VplCell& cell : set.cells)
+    for (const SurfaceSample& p : cell.samples)
+      if (p.owner != kNone) extent2[p.owner] = std::max(extent2[p.owner], p.owner2);
+  for (uint32_t slot = 0; slot < slots && !disturbance.empty(); ++slot) {
+    if (touched[slot] || !set.slots[slot].alive) continue;
+    const vec3 middle = set.slots[slot].position, extent(std::sqrt(extent2[slot]));
+    for (const vec3& from : set.cells[slot].viewers)
+      perhaps[slot] |= disturbance.touches(Aabb{glm::min(from, middle - extent), glm::max(from, middle + extent)});
+  }
+
   std::vector<Share> all;
   for (VplCell& cell : set.cells)
     for (SurfaceSample& p : cell.samples)
-      if (p.owner != kNone && touched[p.owner]) all.push_back({p.owner, &p});
+      if (p.owner != kNone && (touched[p.owner] || perhaps[p.owner])) all.push_back({p.owner, &p});
   const auto byOwner = [](const Share& a, const Share& b) { return a.owner < b.owner; };
   std::stable_sort(all.begin(), all.end(), byOwner);
-  std::vector<uint32_t> changed;
-  std::vector<std::span<Share>> shared; // of `all`, by place in `changed`; found before any of them is sorted
+  std::vector<uint32_t> candidates;
+  std::vector<std::span<Share>> shared; // of `all`, by place in `candidates`; found before any of them is sorted
   for (uint32_t slot = 0; slot < slots; ++slot) {
-    if (!touched[slot]) continue;
+    if (!touched[slot] && !perhaps[slot]) continue;
     const auto [first, last] = std::equal_range(all.begin(), all.end(), Share{slot, nullptr}, byOwner);
-    changed.push_back(slot);
+    candidates.push_back(slot);
     shared.emplace_back(first, last);
   }
-  perBlock.resize(std::max(perBlock.size(), blocks(changed.size())));
-  parallelFor(changed.size(), kGrain, [&](size_t begin, size_t end) {
+  std::vector<uint8_t> made(candidates.size());
+  perBlock.resize(std::max(perBlock.size(), blocks(candidates.size())));
+  parallelFor(candidates.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      assemble(set.slots[changed[i]], set.cells[changed[i]], shared[i], disturbance, rays, perBlock[begin / kGrain]);
+      const uint32_t slot = candidates[i];
+      made[i] = assemble(set.slots[slot], set.cells[slot], shared[i], disturbance, perhaps[slot], rays,
+                         perBlock[begin / kGrain]);
     }
   });
+  std::vector<uint32_t> changed;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (made[i]) changed.push_back(candidates[i]);
   for (const RayCounts& c : perBlock) counts += c;
   return changed;
 }

@@ -20,6 +20,12 @@ class PathRecorderTest : public testing::Test {
   const fs::path folder_;
 };
 
+PlayedMoment momentAt(double t) {
+  PlayedMoment moment;
+  moment.t = t;
+  return moment;
+}
+
 CameraView at(double t) {
   const vec3 eye(std::cos(t), 1.6 + 0.1 * t, std::sin(t));
   return lookAt(eye, eye + vec3(std::sin(t), 0.2f, 1), 0.9f);
@@ -33,14 +39,15 @@ TEST_F(PathRecorderTest, EveryFrameIsWhereItWasWhateverTheFrameRate) {
   std::vector<double> times;
   for (double t = 0; t < 4; t += 0.01 + 0.2 * std::abs(std::sin(7 * t))) times.push_back(t);
   for (const double t : times) {
-    EXPECT_TRUE(recorder.add(at(t), origin, {.t = t}));
-    EXPECT_FALSE(recorder.add(at(t + 1), origin, {.t = t})); // no time has passed
+    EXPECT_TRUE(recorder.add(at(t), origin, momentAt(t)));
+    EXPECT_FALSE(recorder.add(at(t + 1), origin, momentAt(t))); // no time has passed
   }
   const std::optional<Shot> walk = recorder.end(folder_);
   ASSERT_TRUE(walk.has_value());
   EXPECT_FALSE(recorder.recording());
   const Shot read = loadShot(walk->file);
   EXPECT_EQ(read.scene, fs::absolute("a.gltf"));
+  EXPECT_EQ(read.played.size(), 1u) << "nothing was touched: buttons are there all the same";
   EXPECT_NEAR(read.seconds, times.back() + 1.0 / 30, 1e-9);
   for (const double t : times) {
     const CameraView camera = shotCamera(read, t, origin);

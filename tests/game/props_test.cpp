@@ -99,6 +99,13 @@ TEST(PropsTest, RefuseWhatTheyDoNotKnow) {
   PlayedMoment moment;
   moment.things = {{0, "grand piano", {0, 1, 0}, 0}};
   EXPECT_THROW(room.props.show(moment, "shot"), InputError);
+  moment.things = {{2, "lamp", {0, 1, 0}, 0}, {2, "lamp", {0, 2, 0}, 0}};
+  EXPECT_THROW(room.props.show(moment, "shot"), InputError);
+  Shot late; // told before the first moment is shown
+  late.played.resize(2);
+  EXPECT_NO_THROW(room.props.check(late));
+  late.played[1].movers["drawbridge"] = 1;
+  EXPECT_THROW(room.props.check(late), InputError);
   moment = {};
   moment.movers["drawbridge"] = 1;
   EXPECT_THROW(room.props.show(moment, "shot"), InputError);

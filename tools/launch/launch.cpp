@@ -337,7 +337,10 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
     stage->notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60)");
   }
   tellWhatIsLeftOut(*stage, stage->settings);
-  if (stage->shot && !stage->shot->played.empty()) stage->props = std::make_unique<Props>(stage->scene);
+  if (stage->shot && !stage->shot->played.empty()) {
+    stage->props = std::make_unique<Props>(stage->scene);
+    stage->props->check(*stage->shot);
+  }
   return stage;
 }
 
