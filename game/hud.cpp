@@ -241,9 +241,11 @@ void Hud::drawOffer(const HudModel& model) const {
 }
 
 void Hud::drawHelp() const {
-  centre(0);
+  centre(520 * scale_);
   ImGui::Begin("Keys", nullptr, kDialog);
   if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+    ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
     for (const auto& [key, meaning] : keyHelp()) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
@@ -252,7 +254,7 @@ void Hud::drawHelp() const {
       else
         ImGui::TextDisabled("%s", key);
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(meaning);
+      ImGui::TextWrapped("%s", meaning);
     }
     ImGui::EndTable();
   }

@@ -55,7 +55,7 @@ std::vector<std::pair<const char*, const char*>> keyHelp() {
           {"R", "record your walk as a shot; again: stop, and see it"},
           {"F2", "begin anew"},
           {"F5", "reload shaders"},
-          {"F12", "screenshot (PNG of the window, EXR of the light)"},
+          {"F12", "screenshot (PNG of the picture, EXR of the light)"},
           {"F1", "these keys"},
           {"Esc", "menu: go on, other scenes, quit"}};
 }

@@ -4,6 +4,7 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambent {
 
@@ -18,6 +19,23 @@ void editIntensity(PunctualLight& light) {
   const bool brighter = ImGui::SliderFloat(unit, &wanted, 1e-3f, 1e4f, "%.4g", ImGuiSliderFlags_Logarithmic);
   const bool other = ImGui::ColorEdit3("colour", &color.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs);
   if (brighter || other) light.intensity = std::max(wanted, 0.0f) * glm::max(color, vec3(0));
+}
+
+/// The way the light travels, as where it comes from: around from south to east, and above the horizon. Of a light that
+/// hangs on something else, that moves it.
+void editDirection(Scene& scene, Entity e) {
+  WorldTransform& world = scene.registry.get<WorldTransform>(e);
+  Transform& place = scene.registry.get<Transform>(e);
+  if (scene.registry.has<Parent>(e) || place.matrix) return;
+  const vec3 from = glm::normalize(vec3(world.worldFromNode[2])); // lights shine along -Z
+  float around = glm::degrees(std::atan2(from.x, from.z));
+  float above = glm::degrees(std::asin(glm::clamp(from.y, -1.0f, 1.0f)));
+  bool turned = ImGui::SliderFloat("from, degrees (0 is +Z, 90 is +X)", &around, -180, 180, "%.0f");
+  turned |= ImGui::SliderFloat("above, degrees", &above, -89, 89, "%.0f");
+  if (!turned) return;
+  const float a = glm::radians(around), h = glm::radians(above);
+  place.rotation = rotationTowards(-vec3(std::sin(a) * std::cos(h), std::sin(h), std::cos(a) * std::cos(h)));
+  world.worldFromNode = place.local();
 }
 
 } // namespace
@@ -45,6 +63,7 @@ void Hud::drawLights(Scene& scene) {
     ImGui::PushID(int(e.id()));
     if (ImGui::TreeNode("light", "%s (%s)", name ? name->value.c_str() : "unnamed", kind)) {
       editIntensity(light);
+      if (light.type != LightType::Point) editDirection(scene, e);
       ImGui::TreePop();
     }
     ImGui::PopID();

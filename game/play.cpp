@@ -23,7 +23,6 @@ constexpr int kRoughWarmup = 12;      // iterations before the first picture
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
 constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
-constexpr double kRecordedFps = 30;      // of a walk, when lambent record plays it
 constexpr double kMorning = 9;           // that it begins at
 constexpr float kTorch = 5;              // intensity in its middle, of a lamp's
 
@@ -62,7 +61,9 @@ Play::Play(const GameOptions& options, GlContext& context, Hud& hud, Preferences
 }
 
 Play::~Play() {
-  if (recorder_.recording()) toggleRecording(); // what was walked is not lost
+  if (!recorder_.recording()) return;
+  toggleRecording(); // what was walked is not lost
+  std::cerr << hud_.lastSaid() << "\n";
 }
 
 void Play::restart() {
@@ -119,11 +120,25 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
     model_.pacer.expect((stats.costMs() + gather * (lights - 1)) / double(kRoughScale * kRoughScale), gi_.settings());
     if (!model_.pacer.preset().empty()) model_.preset = model_.pacer.preset();
     rough.smc.warmup = wanted.smc.warmup;
-    if (gi_.settings() == rough) return showPreferredExposure();
+    if (gi_.settings() == rough) {
+      showPreferredExposure();
+      return tellWhereItIsDark();
+    }
     pulse.emplace([&] { progress(last); });
   }
   gi_.run(viewAt(model_.pacer.scale()), report("all lights", roughFirst ? 0.3f : 0.1f, 1));
   showPreferredExposure();
+  tellWhereItIsDark();
+}
+
+/// Somebody who sees nothing must not think that nothing works.
+void Play::tellWhereItIsDark() {
+  const Image picture = gi_.read(Buffer::Beauty);
+  double sum = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) sum += double(luminance(vec3(picture.at(x, y))));
+  if (sum * double(gi_.exposure()) < 2e-3 * picture.width * picture.height)
+    hud_.say("it is dark here: Q is a flashlight, L a lamp, E opens doors, ] brightens the picture");
 }
 
 namespace {
@@ -220,6 +235,33 @@ void Play::frame(const Wishes& wishes, double seconds) {
     keepChanges(before, preset);
   };
   keeping([&] { obey(wishes, float(seconds)); });
+  // What is recorded at fixed steps stands still as a whole where no time goes by: its replay knows nothing of that.
+  const bool frozen =
+      recorder_.recording() && options_.fps && recorder_.frames() > 0 && (model_.paused || seconds == 0);
+  if (!frozen) step(wishes, seconds);
+  const FrameStats& stats = gi_.stats();
+  const auto now = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> real = now - std::exchange(frameBegan_, now);
+  times_.add(std::min(real.count(), 1.0), stats); // also where scene time goes by in steps
+  const auto [width, height] = context_.framebufferSize();
+  truth_.update(view_, gi_, stats, model_.buffer, options_.frames.has_value());
+  truth_.present(gi_, model_.buffer, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, width, height);
+  model_.hasPath = path_.has_value();
+  model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
+  model_.gait = player_.gait();
+  model_.offer = offer();
+  if (model_.buffer == Buffer::Vpls && truth_.mode() == TruthMode::Off)
+    drawVplAtCrosshair(gi_, view_.camera, hud_.scale());
+  keeping([&] { hud_.draw(model_, scene_, gi_, truth_, stats, times_); });
+  if (std::exchange(model_.backToDefaults, false)) forgetChanges();
+  player_.pace = model_.speed;
+  if (wishes.screenshot) saveScreenshot();
+}
+
+/// The scene and the person in it go on by so many seconds, and GI draws them.
+void Play::step(const Wishes& wishes, double seconds) {
   const bool begins = recorder_.recording() && recorder_.frames() == 0;
   if (!model_.paused && !begins) {
     model_.time = recorder_.recording() && options_.fps ? double(recorder_.frames()) / *options_.fps // not a sum
@@ -240,34 +282,18 @@ void Play::frame(const Wishes& wishes, double seconds) {
 
   const auto [width, height] = context_.framebufferSize();
   CameraView camera = player_.view(width, height);
-  if (recorded || (recorder_.recording() && options_.fps)) {
+  if (recorded) {
     camera = recorder_.camera(scene_.origin);
     camera.width = width;
     camera.height = height;
   }
-  const SceneView view = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
-  // What is recorded at fixed steps is drawn as often as its replay is: not again where no time went by.
-  if (recorded || !recorder_.recording() || !options_.fps) run(view);
-  const FrameStats& stats = gi_.stats();
-  if (recorded) log_.add(model_.time, stats, 0, nullptr);
-  times_.add(seconds, stats);
+  view_ = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
+  run(view_);
+  if (recorded) log_.add(model_.time, gi_.stats(), 0, nullptr);
 
-  const SceneChanges& c = view.changes;
-  const mat4 pose = view.camera.worldFromView; // the camera changes also where the scale does
+  const SceneChanges& c = view_.changes;
+  const mat4 pose = view_.camera.worldFromView; // the camera changes also where the scale does
   moved_ = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
-  truth_.update(view, gi_, stats, model_.buffer, options_.frames.has_value());
-  truth_.present(gi_, model_.buffer, width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, width, height);
-  model_.hasPath = path_.has_value();
-  model_.recordedSeconds = recorder_.recording() ? std::optional(recorder_.seconds()) : std::nullopt;
-  model_.gait = player_.gait();
-  model_.offer = offer();
-  if (model_.buffer == Buffer::Vpls && truth_.mode() == TruthMode::Off) drawVplAtCrosshair(gi_, camera, hud_.scale());
-  keeping([&] { hud_.draw(model_, scene_, gi_, truth_, stats, times_); });
-  if (std::exchange(model_.backToDefaults, false)) forgetChanges();
-  player_.pace = model_.speed;
-  if (wishes.screenshot) report([&] { return saveScreenshot(); });
 }
 
 /// Lights that are to stay do so for this frame: it is no setting that is kept or recorded.
@@ -276,15 +302,6 @@ void Play::run(const SceneView& view) {
   const int wanted = std::exchange(moves, model_.lightsStay ? 0 : moves);
   gi_.run(view);
   moves = wanted;
-}
-
-/// Tells the person what `action` did, or why it failed; a full disk must not end the walk.
-template <class Action> void Play::report(Action&& action) {
-  try {
-    hud_.say(action());
-  } catch (const RunError& e) {
-    hud_.say(e.what());
-  }
 }
 
 void Play::obey(const Wishes& wishes, float seconds) {
@@ -336,57 +353,6 @@ void Play::movePlayer(const Wishes& wishes, float seconds) {
   if (cramped_ && !before) props_.movers.turnBack(); // nobody is crushed
 }
 
-void Play::toggleFollowing() {
-  if (!path_) {
-    hud_.say("there is no camera path to follow: R records one, or open a shot (.json)");
-    return;
-  }
-  model_.followPath = !model_.followPath;
-  if (!model_.followPath) player_.takeOver(solids_->rays());
-  hud_.say(model_.followPath ? "following " + path_->file.filename().string() + " (any step ends it)"
-                             : "you have the camera");
-}
-
-/// As it was played at this time of the path; who takes over goes on from there.
-void Play::followMoment() {
-  const PlayedMoment now = playedAt(*path_, model_.time);
-  props_.show(now, path_->file.string());
-  model_.hour = now.hour;
-  model_.torch = now.torch.has_value();
-  if (!now.things.empty()) model_.lampIntensity = now.lampIntensity;
-}
-
-/// Scene time begins with the recording, so that everything in it moves as it did; at fixed steps the lights do too, so
-/// that its replay is the same to the last ray.
-void Play::toggleRecording() {
-  if (!recorder_.recording()) {
-    model_.time = 0;
-    model_.paused = false;
-    std::map<std::string, std::string> set;
-    for (const SettingRow& row : settingsTable())
-      if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
-    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set));
-    log_ = {};
-    if (options_.fps) {
-      gi_.restart();
-      extractor_ = {};
-    }
-    hud_.say("recording: every frame is a camera key (R ends it)");
-    return;
-  }
-  report([&]() -> std::string {
-    const std::optional<Shot> walk = recorder_.end("out");
-    if (!walk) return "nothing was recorded";
-    log_.write(fs::path(walk->file).replace_extension(".csv"));
-    path_ = *walk;
-    model_.duration = std::max(model_.duration, walk->seconds);
-    model_.followPath = true;
-    model_.time = 0;
-    return std::to_string(walk->camera.size()) + " frames in " + fs::absolute(walk->file).string() +
-           ": shown now (any step ends it), lambent record makes pictures of it";
-  });
-}
-
 /// By what the frame before took: all of it, panel and window too, but where seconds are not the clock's.
 void Play::pace(double seconds) {
   const std::string before = model_.pacer.preset();
@@ -422,32 +388,6 @@ void Play::measureGoal() {
   if (goal_->reached() && !before)
     hud_.say("it is done: the " + goal_->what() + " has the daylight that it waited for (F2 begins anew)");
   model_.goal = GoalShown{goal_->what(), goal_->irradiance(), goal_->wanted(), goal_->reached()};
-}
-
-/// What the window shows now, the panel included.
-void Play::writeScreenshot(const fs::path& png) const {
-  const auto [width, height] = context_.framebufferSize();
-  Image8 picture;
-  picture.width = width;
-  picture.height = height;
-  picture.rgb = gl::readWindow(width, height);
-  const size_t row = size_t(3) * width;
-  for (int y = 0; y < height / 2; ++y) // GL's first row is the lowest
-    std::swap_ranges(picture.rgb.begin() + y * row, picture.rgb.begin() + (y + 1) * row,
-                     picture.rgb.begin() + (height - 1 - y) * row);
-  writePng(png, picture);
-}
-
-std::string Play::saveScreenshot() const {
-  std::error_code ignored; // writePng says it when the folder is missing
-  fs::create_directories("out", ignored);
-  int number = 1;
-  const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
-  while (fs::exists(name(), ignored)) ++number;
-  const fs::path png = name();
-  writeScreenshot(png);
-  writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
-  return "screenshot in " + png.string() + ", its light beside it as .exr";
 }
 
 std::string Play::state() const {

@@ -13,6 +13,7 @@
 #include "gi/frame/gi_frame.h"
 #include "tools/launch/frame_log.h"
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -60,7 +61,9 @@ class Play {
   void showPreferredExposure();
   void keepChanges(const Settings& before, const std::string& presetBefore);
   void forgetChanges();
+  void step(const Wishes& wishes, double seconds);
   void run(const SceneView& view);
+  void tellWhereItIsDark();
   void obey(const Wishes& wishes, float seconds);
   void handle(const Wishes& wishes);
   void use();
@@ -76,7 +79,8 @@ class Play {
   void carryTorch();
   void followMoment();
   void measureGoal();
-  std::string saveScreenshot() const;
+  void saveScreenshot();
+  std::string screenshotFile() const;
   template <class Action> void report(Action&& action);
 
   const GameOptions options_;
@@ -102,6 +106,8 @@ class Play {
   bool cramped_ = false;     // something was where the player is
   mat4 pose_{0};             // of the camera in the last frame
   bool moved_ = false;       // anything, for the last frame
+  SceneView view_;           // of the last frame
+  std::chrono::steady_clock::time_point frameBegan_ = std::chrono::steady_clock::now();
   TruthView truth_;
   bool pausedBefore_ = false; // when the truth was asked for
 };

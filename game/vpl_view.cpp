@@ -133,7 +133,7 @@ void drawVplAtCrosshair(const GiFrame& gi, const CameraView& camera, float scale
                 "orange: its paths  right: its map",
                 slot, set.frame - vpl.bornFrame, double(vpl.intensity()), double(vpl.area));
   const ImVec2 extent = ImGui::CalcTextSize(text);
-  const ImVec2 at{corner.x - extent.x - 12, size.y - extent.y - legend - 4};
+  const ImVec2 at{std::max(corner.x - extent.x - 12, 8.0f), size.y - extent.y - legend - 4};
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   list->AddRectFilled({at.x - 4, at.y - 4}, {at.x + extent.x + 4, at.y + extent.y + 4}, IM_COL32(0, 0, 0, 160));
   list->AddText(at, IM_COL32(255, 255, 255, 255), text);

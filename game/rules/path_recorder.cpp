@@ -44,17 +44,19 @@ bool PathRecorder::add(const CameraView& camera, const dvec3& origin, PlayedMome
 }
 
 std::optional<Shot> PathRecorder::end(const fs::path& folder) {
-  std::optional<Shot> walk = std::exchange(walk_, std::nullopt);
-  if (!walk || walk->camera.empty()) return {};
+  if (!walk_ || walk_->camera.empty()) {
+    walk_.reset();
+    return {};
+  }
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
   int number = 1;
   const auto name = [&] { return folder / ("walk-" + std::to_string(number) + ".json"); };
   while (fs::exists(name(), failure)) ++number;
-  walk->file = name();
-  saveShot(*walk, walk->file);
-  return walk;
+  walk_->file = name();
+  saveShot(*walk_, walk_->file);
+  return std::exchange(walk_, std::nullopt);
 }
 
 } // namespace lambent

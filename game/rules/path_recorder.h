@@ -22,8 +22,8 @@ class PathRecorder {
   bool add(const CameraView& camera, const dvec3& origin, PlayedMoment moment);
   /// The camera of the last frame added, to the bit as the written walk will have it.
   CameraView camera(const dvec3& origin) const { return shotCamera(*walk_, walk_->camera.back().t, origin); }
-  /// Writes the walk to a new file walk-N.json in `folder` and returns it. Throws RunError. Nothing where no frame was
-  /// added.
+  /// Writes the walk to a new file walk-N.json in `folder` and returns it. Throws RunError, and
+  /// then has it still. Nothing where no frame was added.
   std::optional<Shot> end(const std::filesystem::path& folder);
 
  private:

@@ -84,6 +84,9 @@ TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   recorder.begin("a.gltf", nullptr, 30, {});
   recorder.add(at(0), dvec3(0), {});
   EXPECT_THROW(recorder.end(folder_), RunError);
+  EXPECT_TRUE(recorder.recording()) << "it can be tried again";
+  fs::remove(folder_);
+  EXPECT_TRUE(recorder.end(folder_).has_value());
   EXPECT_FALSE(recorder.recording());
 }
 

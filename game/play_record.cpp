@@ -1,0 +1,111 @@
+// What is kept of a walk: recordings, which can be followed again, and screenshots.
+#include "engine/core/error.h"
+#include "engine/gl/objects.h"
+#include "game/play.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+namespace {
+constexpr double kRecordedFps = 30; // of a walk, when lambent record plays it
+} // namespace
+
+/// Tells the person what `action` did, or why it failed; a full disk must not end the walk.
+template <class Action> void Play::report(Action&& action) {
+  try {
+    hud_.say(action());
+  } catch (const RunError& e) {
+    hud_.say(e.what());
+  }
+}
+
+void Play::toggleFollowing() {
+  if (!path_) {
+    hud_.say("there is no camera path to follow: R records one, or open a shot (.json)");
+    return;
+  }
+  model_.followPath = !model_.followPath;
+  if (!model_.followPath) player_.takeOver(solids_->rays());
+  hud_.say(model_.followPath ? "following " + path_->file.filename().string() + " (any step ends it)"
+                             : "you have the camera");
+}
+
+/// As it was played at this time of the path; who takes over goes on from there.
+void Play::followMoment() {
+  const PlayedMoment now = playedAt(*path_, model_.time);
+  props_.show(now, path_->file.string());
+  model_.hour = now.hour;
+  model_.torch = now.torch.has_value();
+  if (!now.things.empty()) model_.lampIntensity = now.lampIntensity;
+}
+
+/// Scene time begins with the recording, so that everything in it moves as it did; at fixed steps the lights do too, so
+/// that its replay is the same to the last ray.
+void Play::toggleRecording() {
+  if (!recorder_.recording()) {
+    model_.time = 0;
+    model_.paused = false;
+    std::map<std::string, std::string> set;
+    for (const SettingRow& row : settingsTable())
+      if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
+    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set));
+    log_ = {};
+    if (options_.fps) {
+      gi_.restart();
+      extractor_ = {};
+    }
+    hud_.say("recording: every frame is a camera key (R ends it)");
+    return;
+  }
+  report([&]() -> std::string {
+    std::optional<Shot> walk;
+    try {
+      walk = recorder_.end(fs::absolute("out"));
+    } catch (const RunError& e) {
+      throw RunError(std::string(e.what()) + ": still recording, R tries again");
+    }
+    if (!walk) return "nothing was recorded";
+    log_.write(fs::path(walk->file).replace_extension(".csv"));
+    path_ = *walk;
+    model_.duration = std::max(model_.duration, walk->seconds);
+    model_.followPath = true;
+    model_.time = 0;
+    return std::to_string(walk->camera.size()) + " frames in " + fs::absolute(walk->file).string() +
+           ": shown now (any step ends it), lambent record makes pictures of it";
+  });
+}
+
+/// What the window shows now, the panel included.
+void Play::writeScreenshot(const fs::path& png) const {
+  const auto [width, height] = context_.framebufferSize();
+  Image8 picture;
+  picture.width = width;
+  picture.height = height;
+  picture.rgb = gl::readWindow(width, height);
+  const size_t row = size_t(3) * width;
+  for (int y = 0; y < height / 2; ++y) // GL's first row is the lowest
+    std::swap_ranges(picture.rgb.begin() + y * row, picture.rgb.begin() + (y + 1) * row,
+                     picture.rgb.begin() + (height - 1 - y) * row);
+  writePng(png, picture);
+}
+
+void Play::saveScreenshot() {
+  report([&] { return screenshotFile(); });
+}
+
+std::string Play::screenshotFile() const {
+  std::error_code ignored; // writePng says it when the folder is missing
+  fs::create_directories("out", ignored);
+  int number = 1;
+  const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
+  while (fs::exists(name(), ignored)) ++number;
+  const fs::path png = name();
+  writeScreenshot(png);
+  writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
+  return "screenshot in " + png.string() + ", its light beside it as .exr";
+}
+
+} // namespace lambent
