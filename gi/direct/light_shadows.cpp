@@ -173,7 +173,6 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
 
 void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first,
                                 const LightShadowInputs& in) {
-  if (in.allChanged) block.stillDrawn.assign(block.stillDrawn.size(), {});
   for (int layer = 0; layer < int(block.lights.held().size()); ++layer) {
     const LitMap& map = maps[first + layer];
     const bool whole = in.allChanged || block.drawn[layer] != map.clipFromWorld[0];

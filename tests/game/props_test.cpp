@@ -50,10 +50,11 @@ TEST(PropsTest, AreShownAgainToTheBit) {
   played.props.day.set(10.5);
   played.props.day.apply();
   played.props.movers.update(0.5);
-  played.props.things.take(ThingKind::WhiteBoard, player);
-  played.props.things.update(played.solids, player, 0.03f);
-  played.props.things.take(ThingKind::Lamp, player); // the board falls
-  played.props.things.update(played.solids, player, 0.07f);
+  const Player turned(lookAt({0.5f, 1.6f, 1.2f}, {-1, 1.2f, 0.9f}, 1), played.solids.view().boundsWorld);
+  played.props.things.take(ThingKind::WhiteBoard, turned);
+  played.props.things.update(played.solids, turned, 0.03f);
+  played.props.things.take(ThingKind::Lamp, turned); // the board falls
+  played.props.things.update(played.solids, turned, 0.07f);
   played.props.setTorch(PlayedMoment::Torch{{0.1f, 1.5f, 1}, glm::normalize(vec3(0.1f, -0.3f, -1)), vec3(3, 2, 1)});
 
   Shot shot;
