@@ -209,7 +209,7 @@ void Play::pose(double seconds) {
     animate(scene_, model_.time);
   if (model_.hour && model_.dayRuns && !model_.paused)
     model_.hour = std::fmod(*model_.hour + kHoursPerSecond * seconds, 24.0);
-  if (model_.followPath && !path_->played.empty()) {
+  if (followsMoments()) {
     followMoment();
   } else {
     if (props_.day.hour() != model_.hour) props_.day.set(model_.hour);
@@ -270,7 +270,7 @@ void Play::step(const Wishes& wishes, double seconds) {
   }
   pose(seconds);
   movePlayer(wishes, float(seconds));
-  if (!model_.followPath) {
+  if (!followsMoments()) {
     handle(wishes);
     props_.things.lampIntensity = model_.lampIntensity;
     props_.things.update(*solids_, player_, std::min(float(seconds), kLongestStep));
@@ -305,6 +305,8 @@ void Play::run(const SceneView& view) {
 }
 
 void Play::obey(const Wishes& wishes, float seconds) {
+  const bool hands = wishes.use || wishes.hurl || wishes.lamp || wishes.box || wishes.torch || wishes.dayRuns;
+  if (hands && followsMoments()) takeOver();
   model_.paused ^= wishes.pause;
   model_.help ^= wishes.help;
   model_.panel ^= wishes.panel;
@@ -341,10 +343,7 @@ void Play::obey(const Wishes& wishes, float seconds) {
 
 /// Along the path, until the person takes over.
 void Play::movePlayer(const Wishes& wishes, float seconds) {
-  if (model_.followPath && wishes.move.any()) {
-    model_.followPath = false;
-    player_.takeOver(solids_->rays());
-  }
+  if (model_.followPath && wishes.move.any()) takeOver();
   if (model_.followPath)
     player_.place(shotCamera(*path_, model_.time, scene_.origin));
   else if (player_.move(solids_->rays(), solids_->view(), wishes.move, std::min(seconds, kLongestStep)))

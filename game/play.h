@@ -75,6 +75,8 @@ class Play {
   void pace(double seconds);
   void toggleRecording();
   void toggleFollowing();
+  void takeOver();
+  bool followsMoments() const { return model_.followPath && !path_->played.empty(); }
   void showTruth(TruthMode mode);
   void carryTorch();
   void followMoment();

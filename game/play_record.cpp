@@ -33,6 +33,12 @@ void Play::toggleFollowing() {
                              : "you have the camera");
 }
 
+/// The person's hands and feet go on from where the path has led.
+void Play::takeOver() {
+  model_.followPath = false;
+  player_.takeOver(solids_->rays());
+}
+
 /// As it was played at this time of the path; who takes over goes on from there.
 void Play::followMoment() {
   const PlayedMoment now = playedAt(*path_, model_.time);
