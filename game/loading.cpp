@@ -39,7 +39,7 @@ void Loading::load() {
   try {
     tell("file", 0);
     LoadedScene loaded;
-    loaded.stage = loadStage(options_, [this](const char* at, float share) { tell(at, kFile * share); });
+    loaded.stage = loadLaunch(options_, [this](const char* at, float share) { tell(at, kFile * share); });
     tell("walls and floors", kFile);
     Scene& scene = loaded.stage->scene;
     if (!loaded.stage->props) loaded.stage->props = std::make_unique<Props>(scene);

@@ -18,7 +18,7 @@ namespace lambent {
 
 /// A scene with all that needs no OpenGL.
 struct LoadedScene {
-  std::unique_ptr<Stage> stage;
+  std::unique_ptr<LaunchContext> stage;
   std::unique_ptr<Solids> solids;
   std::unique_ptr<Goal> goal; // null: the scene has none
 };

@@ -89,7 +89,7 @@ class Play {
   GlContext& context_;
   Hud& hud_;
   Preferences& preferences_;
-  const std::unique_ptr<Stage> stage_;
+  const std::unique_ptr<LaunchContext> stage_;
   Props& props_;
   const std::unique_ptr<Solids> solids_;
   const std::unique_ptr<Goal> goal_; // null: the scene has none

@@ -68,7 +68,7 @@ uint32_t atCrosshair(const VplSet& set, const RayQuery& rays, const CameraView& 
   std::ranges::sort(near);
   for (const auto& [distance, slot] : near) {
     const Vpl& v = set.slots[slot];
-    if (!rays.occluded(segment(camera.position(), offsetPoint(v.position, v.geometricNormal, rays.grain()))))
+    if (!rays.occluded(segment(camera.position(), offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon()))))
       return slot;
   }
   return kNone;
@@ -92,7 +92,7 @@ void drawPaths(const KeptPaths& kept, const Vpl& vpl, const WorldPen& pen, float
 void drawMap(const Vpl& vpl, const RayQuery& rays, float most, ImVec2 corner, float texel) {
   vec3 tangent, bitangent;
   basisAround(vpl.geometricNormal, tangent, bitangent);
-  const vec3 origin = offsetPoint(vpl.position, vpl.geometricNormal, rays.grain());
+  const vec3 origin = offsetPoint(vpl.position, vpl.geometricNormal, rays.rayEpsilon());
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   for (int y = 0; y < kMapSide; ++y)
     for (int x = 0; x < kMapSide; ++x) {

@@ -135,8 +135,8 @@ void main() {
 #ifdef GLOSSY
   // As if light from around the mirrored direction were even.
   Receiver receiver = receiverAt(pixel, position, normal);
-  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
-  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(finish.x, kLeastRoughness), receiver.cosViewer)));
+  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
+  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(roughnessMetalness.x, kLeastRoughness), receiver.cosViewer)));
   outGlossy = vec4(irradiance * 0.318309886 * receiver.strength * reflected / glossyTint(receiver), 1.0);
 #endif
 }

@@ -8,7 +8,7 @@
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
-layout(binding = 7) uniform sampler2D gbufferFinish;
+layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 layout(location = 1) out vec4 outGlossy;
 #endif
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
@@ -57,7 +57,7 @@ void main() {
   vec3 sum = vec3(0.0);
   float weights = 0.0;
 #ifdef GLOSSY
-  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
+  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
   vec3 glossySum = vec3(0.0);
   float glossyWeights = 0.0;
 #endif
@@ -79,7 +79,7 @@ void main() {
       weights += counts;
 #ifdef GLOSSY
       // Lobes of other shape hold other light: exp(-Δ²/2σ²), σ = 0.1 of roughness or metalness.
-      vec2 difference = texelFetch(gbufferFinish, neighbour, 0).rg - finish;
+      vec2 difference = texelFetch(gbufferRoughnessMetalness, neighbour, 0).rg - roughnessMetalness;
       counts = weight * (other ? glossyShare : 1.0) * exp2(-72.13475 * dot(difference, difference));
       glossySum += counts * texelFetch(glossy, placeOf(neighbour), 0).rgb;
       glossyWeights += counts;

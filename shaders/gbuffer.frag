@@ -14,7 +14,7 @@ layout(location = 1) out vec4 outAlbedo;
 layout(location = 2) out vec4 outEmission;
 #ifdef GLOSSY
 #include "shared/ggx.h"
-layout(location = 3) out vec2 outFinish;
+layout(location = 3) out vec2 outRoughnessMetalness;
 #endif
 
 void main() {
@@ -39,8 +39,8 @@ void main() {
   outNormal = vec4(normal, 1.0);
   outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 #ifdef GLOSSY
-  vec2 finish = finishAt(uv);
-  outFinish = vec2(max(finish.x, kLeastRoughness), finish.y);
+  vec2 roughnessMetalness = roughnessMetalnessAt(uv);
+  outRoughnessMetalness = vec2(max(roughnessMetalness.x, kLeastRoughness), roughnessMetalness.y);
 #endif
   outEmission = vec4(emits ? emissionAt(uv) : vec3(0.0), 1.0);
 }

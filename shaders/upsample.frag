@@ -22,17 +22,17 @@ layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(binding = 4) uniform sampler2D atlasGlossy; // as irradiance, in the same places
 layout(binding = 5) uniform sampler2D coarseGlossy;
-layout(binding = 7) uniform sampler2D gbufferFinish;
+layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 layout(location = 1) out vec4 outGlossy;
 
-vec2 finish;
+vec2 roughnessMetalness;
 
 /// Lobes of other shape hold other light: as in filter.frag.
 float likeLobe(ivec2 pixel) {
 #ifdef BILINEAR
   return 1.0;
 #endif
-  vec2 difference = texelFetch(gbufferFinish, pixel, 0).rg - finish;
+  vec2 difference = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg - roughnessMetalness;
   return exp2(-72.13475 * dot(difference, difference));
 }
 #endif
@@ -90,7 +90,7 @@ void main() {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
 #ifdef GLOSSY
-    finish = texelFetch(gbufferFinish, pixel, 0).rg;
+    roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
     vec3 glossySum = vec3(0.0);
     float glossyWeights = 0.0;
 #endif

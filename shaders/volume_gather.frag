@@ -77,8 +77,8 @@ void main() {
   // As if light from around the mirrored direction were even: its mean radiance, times what the lobe reflects of it.
   vec3 radiance = (any ? glossy : glossyHidden) * inverse * 0.318309886;
   vec3 tint = glossyTint(receiver);
-  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
-  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(finish.x, kLeastRoughness), receiver.cosViewer)));
+  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
+  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(roughnessMetalness.x, kLeastRoughness), receiver.cosViewer)));
   outGlossy = vec4(radiance * receiver.strength * reflected / tint, 1.0);
 #endif
 }

@@ -46,14 +46,14 @@ struct Material {
   vec3 emission{0}; // emissiveFactor × emissiveStrength
   TextureRef emissiveTexture;
   float roughness = 1, metalness = 0; // factors, [0,1]; roughness is perceptual: α = roughness²
-  TextureRef finishTexture;           // G: roughness, B: metalness
+  TextureRef roughnessMetalnessTexture;           // G: roughness, B: metalness
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
 
   bool emits() const { return maxComponent(emission) > 0; }
   /// Whether it is anything but Lambert; a texture may make it so.
-  bool glossy() const { return roughness < 1 || metalness > 0 || finishTexture.image != kNone; }
+  bool glossy() const { return roughness < 1 || metalness > 0 || roughnessMetalnessTexture.image != kNone; }
 };
 
 /// A run of triangles of one mesh that share a material.

@@ -191,7 +191,7 @@ void takeMaterials(Document& doc, const tinygltf::Model& model) {
     out.baseColorTexture = textureUse(pbr.baseColorTexture);
     out.roughness = float(pbr.roughnessFactor);
     out.metalness = float(pbr.metallicFactor);
-    out.finishTexture = textureUse(pbr.metallicRoughnessTexture);
+    out.roughnessMetalnessTexture = textureUse(pbr.metallicRoughnessTexture);
     out.emissiveTexture = textureUse(m.emissiveTexture);
     for (const auto& [name, value] : m.extensions) {
       if (name == "KHR_materials_emissive_strength") out.emissiveStrength = number(value, "emissiveStrength", 1);

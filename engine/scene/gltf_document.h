@@ -53,7 +53,7 @@ struct TextureUse {
 struct Material {
   std::string name, alphaMode;
   vec4 baseColor{1};
-  TextureUse baseColorTexture, finishTexture, emissiveTexture;
+  TextureUse baseColorTexture, roughnessMetalnessTexture, emissiveTexture;
   float roughness = 1, metalness = 1;
   vec3 emissive{0};
   float emissiveStrength = 1, alphaCutoff = 0.5f;

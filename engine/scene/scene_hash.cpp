@@ -35,7 +35,7 @@ void add(Hash& hash, const SceneAssets& assets, bool glossy) {
     if (!glossy) continue;
     hash.value(m.roughness);
     hash.value(m.metalness);
-    add(hash, m.finishTexture);
+    add(hash, m.roughnessMetalnessTexture);
   }
   for (const TextureImage& image : assets.images) {
     if (!image.srgb && !glossy) continue;

@@ -32,16 +32,16 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_
   return point;
 }
 
-SurfaceFinish surfaceFinish(const SceneView& view, uint32_t instance, uint32_t primitiveIndex, uint32_t triangle,
+RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex, uint32_t triangle,
                             vec2 barycentric) {
   CHECK_LT(instance, view.instances.size());
   const Mesh& mesh = view.assets->meshes[view.instances[instance].mesh];
   CHECK_LT(primitiveIndex, mesh.primitives.size());
   const Primitive& primitive = mesh.primitives[primitiveIndex];
   const Material& material = view.assets->materials[primitive.material];
-  SurfaceFinish finish{material.roughness, material.metalness};
-  if (material.finishTexture.image == kNone) return finish;
-  const std::vector<vec2>& uvs = material.finishTexture.uvSet == 0 ? mesh.uv0 : mesh.uv1;
+  RoughnessMetalness roughnessMetalness{material.roughness, material.metalness};
+  if (material.roughnessMetalnessTexture.image == kNone) return roughnessMetalness;
+  const std::vector<vec2>& uvs = material.roughnessMetalnessTexture.uvSet == 0 ? mesh.uv0 : mesh.uv1;
   vec2 uv(0);
   if (!uvs.empty()) {
     CHECK_LT(triangle, primitive.triangleCount);
@@ -49,10 +49,10 @@ SurfaceFinish surfaceFinish(const SceneView& view, uint32_t instance, uint32_t p
     uv = uvs[corners.x] * (1 - barycentric.x - barycentric.y) + uvs[corners.y] * barycentric.x +
          uvs[corners.z] * barycentric.y;
   }
-  const vec4 texel = sampleTexture(*view.assets, material.finishTexture, uv);
-  finish.roughness *= texel.y;
-  finish.metalness *= texel.z;
-  return finish;
+  const vec4 texel = sampleTexture(*view.assets, material.roughnessMetalnessTexture, uv);
+  roughnessMetalness.roughness *= texel.y;
+  roughnessMetalness.metalness *= texel.z;
+  return roughnessMetalness;
 }
 
 } // namespace lambent

@@ -19,10 +19,10 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t pri
                           vec2 barycentric);
 
 /// How a surface reflects besides its colour: factors times texture.
-struct SurfaceFinish {
+struct RoughnessMetalness {
   float roughness = 1, metalness = 0; // roughness is perceptual
 };
-SurfaceFinish surfaceFinish(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
+RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
                             vec2 barycentric);
 
 } // namespace lambent

@@ -264,7 +264,7 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
   const size_t before = s.instances.size(), now = view.instances.size();
   uint32_t placed = 0;
   if (s.fresh && !view.boundsWorld.empty()) {
-    grain_ = grainOf(view.boundsWorld);
+    rayEpsilon_ = rayEpsilonOf(view.boundsWorld);
     s.fresh = false;
   }
   for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));

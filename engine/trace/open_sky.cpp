@@ -22,7 +22,7 @@ bool skyReaches(const RayQuery& rays, const vec3& eye) {
         out += ray.direction.y > 0;
         break;
       }
-      ray = {offsetPoint(hit.position, hit.geometricNormal, rays.grain()),
+      ray = {offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon()),
              sampleCosineHemisphere(hit.geometricNormal, rng.next2())};
     }
   }

@@ -72,22 +72,22 @@ class RayQuery {
   }
   /// Metres by which hits may lie off their surfaces, whatever their own coordinates: those of the geometry's corners
   /// round off. Stays the same while the scene does.
-  float grain() const { return grain_; }
+  float rayEpsilon() const { return rayEpsilon_; }
 
  protected:
-  float grain_ = 1e-4f;
+  float rayEpsilon_ = 1e-4f;
 };
 
-/// RayQuery::grain of a scene of triangles with these bounds.
-inline float grainOf(const Aabb& b) {
+/// RayQuery::rayEpsilon of a scene of triangles with these bounds.
+inline float rayEpsilonOf(const Aabb& b) {
   return 0x1p-19f * glm::max(maxComponent(glm::abs(b.lo)), maxComponent(glm::abs(b.hi)));
 }
 
 /// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again:
-/// the query's grain, and 2^-16 of the position's own coordinates. (16 float steps would do for rays; virtual lights
+/// the query's rayEpsilon, and 2^-16 of the position's own coordinates. (16 float steps would do for rays; virtual lights
 /// then stand in gaps that their maps of 16 bits cannot see: relMSE of living-room-2 0.26 instead of 0.22.)
-inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal, float grain) {
-  return position + geometricNormal * (grain + 0x1p-16f * maxComponent(glm::abs(position)));
+inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal, float rayEpsilon) {
+  return position + geometricNormal * (rayEpsilon + 0x1p-16f * maxComponent(glm::abs(position)));
 }
 
 /// Shadow segment from a to b, both already off their surfaces: blocked where `occluded` says so.

@@ -1,7 +1,7 @@
 // What gives indirect light on surfaces: a gather of virtual lights, or a stage that has none.
 #pragma once
 
-#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/patches.h"
 #include "gi/contract/virtual_lights.h"
 #include "gi/contract/world.h"
@@ -17,7 +17,7 @@ struct IndirectInputs {
   const World& world;
   const GBuffer& surfaces;
   Patches& patches; // of the surfaces
-  SeenLights seen;  // without slots for a technique that has no virtual lights
+  ShadowedLights seen;  // without slots for a technique that has no virtual lights
   const Settings& settings;
   int bounces = 1; // that the virtual lights hold, themselves included
   uint32_t seed = 1;
@@ -34,7 +34,7 @@ class IndirectStage {
  public:
   virtual ~IndirectStage() = default;
   /// Irradiance at the surfaces, valid until the next run. Adds its rays and counts to the figures.
-  virtual LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) = 0;
+  virtual SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) = 0;
 };
 
 } // namespace lambent

@@ -18,7 +18,7 @@ struct GBuffer {
   const gl::Texture* normal = nullptr;     // RGBA16F world shading normal, turned to the viewer
   const gl::Texture* albedo = nullptr;     // RGBA16F
   const gl::Texture* emission = nullptr;   // RGBA16F radiance emitted towards the viewer, W/(m² sr)
-  const gl::Texture* finish = nullptr;     // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
+  const gl::Texture* roughnessMetalness = nullptr;     // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
   const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)
   CameraBlock block;                       // what `camera` holds
   int width = 0, height = 0;
@@ -30,7 +30,7 @@ struct GBuffer {
 struct HostSurfaces {
   uint32_t depth = 0, normal = 0, albedo = 0;
   uint32_t emission = 0; // 0: nothing glows
-  uint32_t finish = 0;   // 0: all is Lambert
+  uint32_t roughnessMetalness = 0;   // 0: all is Lambert
 };
 
 } // namespace lambent

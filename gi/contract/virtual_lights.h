@@ -14,7 +14,7 @@ namespace gl {
 class Buffer;
 class Texture;
 } // namespace gl
-struct LightTrees; // gi/lights/reflective_maps.h
+struct LightTrees; // gi/reflective/reflective_maps.h
 
 /// A small diffuse patch that stands for light reflected, or emitted, around it: all that rendering needs. World space.
 struct VirtualLight {
@@ -27,7 +27,7 @@ struct VirtualLight {
 
   /// Radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
-  MapPose pose(float grain) const { return {position, normal, geometricNormal, grain}; } // RayQuery::grain
+  MapPose pose(float rayEpsilon) const { return {position, normal, geometricNormal, rayEpsilon}; } // RayQuery::rayEpsilon
 };
 
 /// Lights on the GPU, in chunks of 2048, as many as a map array has layers. Within chunk k, class c (slot mod 16) is
@@ -62,7 +62,7 @@ struct ParaboloidMaps {
 };
 
 /// Lights with what tells where they reach.
-struct SeenLights {
+struct ShadowedLights {
   const VirtualLights& lights;
   const ParaboloidMaps* maps = nullptr; // null: everywhere
 };

@@ -5,7 +5,7 @@
 
 namespace lambent {
 
-class Disturbance;
+class DirtyRegion;
 class GpuScene;
 class RayQuery;
 struct LightSet;
@@ -14,7 +14,7 @@ struct World {
   const SceneView& view;
   const GpuScene& gpu;
   const RayQuery& rays;
-  const Disturbance& moved; // where geometry changed since the last frame
+  const DirtyRegion& moved; // where geometry changed since the last frame
   const LightSet& lights;   // those that the plan lets shine
   float reach = 1;          // distance that stands for 1 in maps, metres: the scene's size, with room to grow
 };

@@ -10,7 +10,7 @@ namespace lambent {
 /// Leaf by leaf in the order of octants, so that a tree that was kept has its entries where a new one has them.
 struct CubeSurfaces::Growth {
   const CubeSurfaces& before;
-  const Disturbance* moved; // null: nothing is kept
+  const DirtyRegion* moved; // null: nothing is kept
   const RayQuery& rays;
   RayCounts& counts;
   std::vector<CubeNode> nodes = {};
@@ -75,7 +75,7 @@ DepthCube CubeSurfaces::cubeOf(uint32_t index) const {
   return cube;
 }
 
-CubeSurfaces::Growth CubeSurfaces::grow(const Disturbance* moved, const RayQuery& rays, RayCounts& counts) const {
+CubeSurfaces::Growth CubeSurfaces::grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const {
   Growth growth{*this, moved, rays, counts};
   growth.nodes.resize(1);
   growth.grow(0, lo_, edge_, 0, moved ? 0 : kNone);
@@ -111,7 +111,7 @@ void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, 
   adopt(growth);
 }
 
-std::vector<uint32_t> CubeSurfaces::update(const Disturbance& moved, const RayQuery& rays, RayCounts& counts) {
+std::vector<uint32_t> CubeSurfaces::update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts) {
   Growth growth = grow(&moved, rays, counts);
   const std::vector<CubeEntry> before = std::move(entries_);
   const std::vector<uint32_t> firstsBefore = std::move(firsts_);

@@ -17,7 +17,7 @@ class CubeSurfaces {
   void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts);
   /// Casts what `moved` touches: then it is what build() would make. Gives by entry its number before, kNone where it
   /// is new.
-  std::vector<uint32_t> update(const Disturbance& moved, const RayQuery& rays, RayCounts& counts);
+  std::vector<uint32_t> update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
   /// Whether the box holds the scene, and not much more.
   bool holds(const Aabb& boundsWorld) const;
 
@@ -37,7 +37,7 @@ class CubeSurfaces {
   struct Growth;          // of a tree, beside the one before
 
   DepthCube cubeOf(uint32_t index) const;
-  Growth grow(const Disturbance* moved, const RayQuery& rays, RayCounts& counts) const;
+  Growth grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const;
   void adopt(Growth& growth);
 
   vec3 lo_{0};

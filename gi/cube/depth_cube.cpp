@@ -16,8 +16,8 @@ constexpr float kSamePlane = 0.3f, kNextPlane = 1; // texels
 constexpr vec2 kWithin[] = {{0.5f, 0.5f}, {0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}};
 
 /// Off the surface as far as its curvature may hide neighbours from one another.
-vec3 lifted(const CubeEntry& e, float texel, float grain) {
-  return offsetPoint(e.position, e.normal, grain) + e.normal * (0.1f * texel);
+vec3 lifted(const CubeEntry& e, float texel, float rayEpsilon) {
+  return offsetPoint(e.position, e.normal, rayEpsilon) + e.normal * (0.1f * texel);
 }
 
 /// A ray through the middle of a column, then four around it, which find what the first misses.
@@ -29,7 +29,7 @@ std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& a
     return std::any_of(found.begin(), found.end(), [&](const CubeEntry& f) {
       if (!matches(f, e.position, e.normal, kSamePlane * grid.texel)) return false;
       ++counts.occlusion;
-      return !rays.occluded(segment(lifted(f, grid.texel, rays.grain()), lifted(e, grid.texel, rays.grain())));
+      return !rays.occluded(segment(lifted(f, grid.texel, rays.rayEpsilon()), lifted(e, grid.texel, rays.rayEpsilon())));
     });
   };
   vec3 along(0);
@@ -46,7 +46,7 @@ std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& a
           const CubeEntry e{h.position, side * h.geometricNormal, side * h.normal};
           if (!known(e)) found.push_back(e);
         }
-      ray.origin = offsetPoint(h.position, -h.geometricNormal, rays.grain());
+      ray.origin = offsetPoint(h.position, -h.geometricNormal, rays.rayEpsilon());
       ray.origin[at.axis] = std::max(ray.origin[at.axis], h.position[at.axis]);
       for (const int other : {(at.axis + 1) % 3, (at.axis + 2) % 3}) ray.origin[other] = h.position[other];
       ray.tMax -= std::max(gone, 0.0f);
@@ -105,7 +105,7 @@ DepthCube DepthCube::cast(const CubeGrid& grid, const RayQuery& rays, RayCounts&
   return cube;
 }
 
-void DepthCube::refresh(const Disturbance& moved, const RayQuery& rays, RayCounts& counts) {
+void DepthCube::refresh(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts) {
   std::vector<uint32_t> stale, near;
   for (size_t c = 0; c < grid.columns(); c += kBlock) { // whole blocks: few are beside one that is touched
     const CubeGrid::Place at = grid.placeOf(c);
@@ -178,7 +178,7 @@ void DepthCube::linkAll(std::span<const uint32_t> columns, const RayQuery& rays,
           for (uint32_t o = firsts[c]; o < firsts[c + 1]; ++o) {
             const CubeEntry& other = entries[o];
             if (!matches(other, entry.position, entry.normal, kNextPlane * grid.texel)) continue;
-            asked.push_back(segment(lifted(entry, grid.texel, rays.grain()), lifted(other, grid.texel, rays.grain())));
+            asked.push_back(segment(lifted(entry, grid.texel, rays.rayEpsilon()), lifted(other, grid.texel, rays.rayEpsilon())));
             of.emplace_back(e, k);
           }
         }

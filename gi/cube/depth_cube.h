@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/trace/ray_query.h"
-#include "gi/vpl/disturbance.h"
+#include "gi/lighting/dirty_region.h"
 
 namespace lambent {
 
@@ -62,7 +62,7 @@ struct DepthCube {
   /// Casts all columns.
   static DepthCube cast(const CubeGrid& grid, const RayQuery& rays, RayCounts& counts);
   /// Casts columns that `moved` touches.
-  void refresh(const Disturbance& moved, const RayQuery& rays, RayCounts& counts);
+  void refresh(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
   /// Share of the entries whose surface does not go on in all four directions, 0..1: edges, and all that is about as
   /// small as a texel.
   float atEdges() const;

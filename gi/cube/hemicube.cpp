@@ -27,10 +27,10 @@ bool Hemicube::find(const vec3& direction, int& face, vec2& at) const {
   return true;
 }
 
-Hemicube hemicubeAt(const VirtualLight& light, int resolution, float grain) {
+Hemicube hemicubeAt(const VirtualLight& light, int resolution, float rayEpsilon) {
   Hemicube h;
   h.resolution = resolution;
-  h.origin = light.pose(grain).origin();
+  h.origin = light.pose(rayEpsilon).origin();
   h.frame[2] = light.normal;
   basisAround(light.normal, h.frame[0], h.frame[1]);
   h.texels.resize(h.size());

@@ -47,7 +47,7 @@ struct Hemicube {
 };
 
 /// `light` looks around, from just off its surface.
-Hemicube hemicubeAt(const VirtualLight& light, int resolution, float grain);
+Hemicube hemicubeAt(const VirtualLight& light, int resolution, float rayEpsilon);
 /// Fills one with rays. Thread-safe.
 void castHemicube(Hemicube& hemicube, const RayQuery& rays, RayCounts& counts);
 

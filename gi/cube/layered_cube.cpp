@@ -25,7 +25,7 @@ bool sameLight(const VirtualLight& a, const VirtualLight& b) {
 }
 
 /// Whether a segment that runs within `radius` of this one may touch what moved.
-bool touches(const Disturbance& moved, const Ray& ray, float radius) {
+bool touches(const DirtyRegion& moved, const Ray& ray, float radius) {
   return std::any_of(moved.boxes().begin(), moved.boxes().end(), [&](const Aabb& box) {
     return crosses(ray, {box.lo - radius, box.hi + radius});
   });
@@ -159,10 +159,10 @@ std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t 
     for (Word left = which; left; left &= left - 1) {
       const int b = std::countr_zero(left);
       const VirtualLight& light = in_[word * kBatch + size_t(b)];
-      const vec3 to = offsetPoint(light.position, light.geometricNormal, in.rays.grain());
+      const vec3 to = offsetPoint(light.position, light.geometricNormal, in.rays.rayEpsilon());
       const bool shaft = !isNew || touches(in.moved, segment(tile.centre(), to), 0.5f * tile.diameter());
       for (size_t e = begin; e < end; ++e) {
-        const Ray ray = segment(offsetPoint(entries[e].position, entries[e].normal, in.rays.grain()), to);
+        const Ray ray = segment(offsetPoint(entries[e].position, entries[e].normal, in.rays.rayEpsilon()), to);
         const bool ask = !isNew || (*isNew)[e] || (shaft && in.moved.touches(ray));
         if (!ask) {
           seen[e] |= seen_[e * words() + word] & Word(1) << b;
@@ -189,7 +189,7 @@ std::vector<LayeredCube::Word> LayeredCube::byHemicubes(const CubeInputs& in, si
   for (Word left = which; left; left &= left - 1) {
     const size_t slot = word * kBatch + size_t(bits.emplace_back(std::countr_zero(left)));
     const int resolution = slot < in.firstLights ? settings_.hemicube : settings_.hemicube / 2;
-    hemicubes.push_back(hemicubeAt(in_[slot], resolution, in.rays.grain()));
+    hemicubes.push_back(hemicubeAt(in_[slot], resolution, in.rays.rayEpsilon()));
   }
   if (in.hemicubes) in.hemicubes->make(hemicubes);
   std::vector<RayCounts> perLight(bits.size());

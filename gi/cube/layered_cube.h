@@ -13,7 +13,7 @@
 #include "gi/cube/cube_surfaces.h"
 #include "gi/cube/hemicube.h"
 #include "gi/plan/settings.h"
-#include "gi/vpl/disturbance.h"
+#include "gi/lighting/dirty_region.h"
 
 #include <array>
 
@@ -22,7 +22,7 @@ namespace lambent {
 struct CubeInputs {
   const Aabb& boundsWorld; // of the scene
   const RayQuery& rays;
-  const Disturbance& moved; // where geometry changed since the last call
+  const DirtyRegion& moved; // where geometry changed since the last call
   bool newScene = false;
   std::span<const VirtualLight> lights; // that do not depend on the view
   uint32_t firstLights = 0;             // slots of those that reflect direct light: their hemicubes are finer

@@ -2,7 +2,7 @@
 
 #include "engine/gl/profiler.h"
 #include "gi/gather/draw_gather.h"
-#include "gi/vpl/area_lobe.h"
+#include "gi/lighting/area_lobe.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -42,7 +42,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   if (lights_.lights.empty()) return;
   const PatchPyramid& pyramid = patches.pyramid();
   GBuffer plain = surfaces; // shares have no lobes
-  plain.finish = nullptr;
+  plain.roughnessMetalness = nullptr;
   atlas_.fit(plain, pyramid, false);
   readSurfaces(surfaces, pyramid);
   const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
@@ -189,7 +189,7 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
 void AreaLightPass::shade(const GBuffer& surfaces, std::vector<AreaPiece> pieces, const gl::Texture& share,
                           const LightTarget& target) {
   share.bind(2);
-  if (surfaces.finish) {
+  if (surfaces.roughnessMetalness) {
     if (!lobes_) lobes_ = lobeTexture();
     lobes_.bind(3);
   }
@@ -205,7 +205,7 @@ void AreaLightPass::shadePieces(const GBuffer& surfaces, std::span<const AreaPie
   if (disks) defines.push_back("DISKS");
   const gl::Program& program = context_.programs.get({.fragment = "area_light.frag", .defines = std::move(defines)});
   program.use();
-  if (surfaces.finish) program.set("spread", GatherSettings{}.spread); // as DirectLight
+  if (surfaces.roughnessMetalness) program.set("spread", GatherSettings{}.spread); // as DirectLight
   for (size_t first = 0; first < pieces.size(); first += kPiecesPerBlock) {
     const std::span some = pieces.subspan(first, std::min(pieces.size() - first, size_t(kPiecesPerBlock)));
     std::vector<AreaPiece> block(some.begin(), some.end());

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
 #include "gi/contract/world.h"
 #include "gi/direct/area_fragments.h"
 #include "gi/direct/area_groups.h"
 #include "gi/gather/patch_atlas.h"
-#include "gi/visibility/gpu_rays.h"
+#include "engine/gpu_trace/gpu_rays.h"
 
 #include <memory>
 #include <optional>

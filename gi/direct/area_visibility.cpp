@@ -92,8 +92,8 @@ void AreaVisibility::choose(Question& q) const {
 
 Ray AreaVisibility::rayTo(const AreaSample& sample, const Place& from) const {
   const bool behind = glm::dot(sample.normal, from.position - sample.position) < 0;
-  return segment(offsetPoint(from.position, from.normal, rays_.grain()),
-                 offsetPoint(sample.position, behind ? -sample.normal : sample.normal, rays_.grain()));
+  return segment(offsetPoint(from.position, from.normal, rays_.rayEpsilon()),
+                 offsetPoint(sample.position, behind ? -sample.normal : sample.normal, rays_.rayEpsilon()));
 }
 
 void AreaVisibility::aim(Question& q, int k, const Place& place) const {

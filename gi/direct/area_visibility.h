@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/trace/ray_query.h"
-#include "gi/vpl/area_lights.h"
+#include "gi/lighting/area_lights.h"
 #include "shaders/shared/camera_block.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "gi/direct/direct_light.h"
 
 #include "gi/gather/draw_gather.h"
-#include "gi/vpl/disturbance.h"
+#include "gi/lighting/dirty_region.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
       doubts_(std::min(mostDoubts, gl::mostBufferTexels())), depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
-LightOnSurfaces DirectLight::run(const DirectInputs& in, FrameStats& stats) {
+SurfaceLighting DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   if (in.keep) return target_.light();
   lightByMaps(in, stats);
   if (byPatches(in)) {
@@ -134,14 +134,14 @@ bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blo
                                           [](uint32_t light, const LightBlock& b) { return light < b.first; });
       const LightBlock& block = *(after - 1);
       const LightRecord& light = block.held[doubt.light - block.first];
-      const vec3 origin = offsetPoint(doubt.position, doubt.normal, rays.grain());
+      const vec3 origin = offsetPoint(doubt.position, doubt.normal, rays.rayEpsilon());
       const vec3 position(light.positionRange), direction(light.directionTexel);
       switch (block.kind) {
       case MapKind::Sun:
       case MapKind::Sky:
         return {origin, -direction};
       case MapKind::Emitter:
-        return segment(origin, offsetPoint(position, direction, rays.grain()));
+        return segment(origin, offsetPoint(position, direction, rays.rayEpsilon()));
       default: { // not to what is nearer to the lamp than its map shows
         Ray ray = segment(origin, position);
         ray.tMax = std::min(ray.tMax, 1 - light.coneNear.z / glm::length(ray.direction));

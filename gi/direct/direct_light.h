@@ -3,12 +3,12 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/world.h"
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/emitter_shadows.h"
 #include "gi/direct/light_shadows.h"
-#include "gi/direct/shadow_doubts.h"
+#include "gi/direct/shadow_ray_pass.h"
 
 namespace lambent {
 
@@ -23,8 +23,8 @@ struct DirectInputs {
 
 class DirectLight {
  public:
-  explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowDoubts::kMost);
-  LightOnSurfaces run(const DirectInputs& in, FrameStats& stats);
+  explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowRayPass::kMost);
+  SurfaceLighting run(const DirectInputs& in, FrameStats& stats);
 
   struct Area {
     int x = 0, y = 0, width = 0, height = 0; // pixels, from the lower left
@@ -48,7 +48,7 @@ class DirectLight {
   LightShadowPass shadows_;
   EmitterShadowPass emitters_;
   AreaLightPass areas_;
-  ShadowDoubts doubts_;
+  ShadowRayPass doubts_;
   Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'

@@ -1,8 +1,8 @@
 #include "gi/direct/emitter_shadows.h"
 
-#include "gi/visibility/map_keeper.h"
-#include "gi/vpl/disturbance.h"
-#include "gi/vpl/light_set.h"
+#include "gi/visibility/shadow_map_cache.h"
+#include "gi/lighting/dirty_region.h"
+#include "gi/lighting/light_set.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<LightBlock> EmitterShadowPass::run(const World& world, const ShadowS
   std::vector<MapPose> poses;
   for (const EmitterPatch& p : emitterPatches(world.lights, samples)) {
     lights.push_back(lightOf(p));
-    poses.push_back(lights.back().pose(world.rays.grain()));
+    poses.push_back(lights.back().pose(world.rays.rayEpsilon()));
   }
   const std::vector<MapJob> jobs =
       jobsAtOnce(poses, poses_, lights, world.moved.boxes(), world.view.changes.first, shadow.emitterResolution);

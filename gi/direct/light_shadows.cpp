@@ -209,7 +209,7 @@ void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFr
   const GLenum target = block.kind == MapKind::Cube ? GL_TEXTURE_CUBE_MAP_ARRAY : GL_TEXTURE_2D_ARRAY;
   glCopyImageSubData(block.still.name(), target, 0, 0, 0, layer, block.maps.name(), target, 0, 0, 0, layer, size, size,
                      1);
-  drawInto(block.maps, layer, clipFromWorld, scene, Instances::Restless);
+  drawInto(block.maps, layer, clipFromWorld, scene, Instances::Moving);
 }
 
 /// Over what the map shows already, where only the restless are drawn.
@@ -219,7 +219,7 @@ void LightShadowState::drawInto(const gl::Texture& maps, int layer, const mat4& 
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = maps.width(), .height = maps.width()}.apply();
   framebuffer.attachDepthLayer(maps, layer);
   const float nothing = 0;
-  if (which != Instances::Restless) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
+  if (which != Instances::Moving) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
   scene.draw(DrawKind::Depth, clipFromWorld, vec3(0), which);
 }
 

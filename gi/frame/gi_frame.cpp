@@ -4,13 +4,13 @@
 #include "engine/core/text.h"
 #include "engine/gl/state_guard.h"
 #include "gi/direct/direct_light.h"
-#include "gi/frame/picture.h"
-#include "gi/frame/world_keeper.h"
+#include "gi/viewer/picture.h"
+#include "gi/frame/world_state.h"
 #include "gi/gather/stages.h"
-#include "gi/gather/stand_in.h"
-#include "gi/lights/light_source.h"
+#include "gi/cube/draw/still_cache.h"
+#include "gi/sources/light_source.h"
 #include "gi/surfaces/surfaces.h"
-#include "gi/visibility/map_keeper.h"
+#include "gi/visibility/shadow_map_cache.h"
 
 #include <chrono>
 
@@ -31,7 +31,7 @@ class DrawCount {
 
 /// Before and after what mixes it over pixels and pictures.
 struct Indirect {
-  LightOnSurfaces gathered, light;
+  SurfaceLighting gathered, light;
 };
 
 } // namespace
@@ -44,13 +44,13 @@ struct GiFrame::Kept {
   gl::ProgramCache programs;
   gl::GpuProfiler profiler;
   PassContext context{programs, profiler};
-  WorldKeeper world{programs};
+  WorldState world{programs};
   SurfacePass surfaces{context};
   PatchPass patches{context, StageId::Patches};
   DirectLight direct{context};
-  MapKeeper keeper{context};
+  ShadowMapCache keeper{context};
   IndirectStages indirectStages{context};
-  StandIn standIn{context};
+  StillCache stillCache{context};
   HistoryPass history{context};
   FilterPass filter{context};
   CompositePass composite{context};
@@ -102,10 +102,10 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const Clock::time_point begin = Clock::now();
   const gl::Counts before = gl::counts();
   LightSource* source = k.sourceFor(settings.vpl.source);
-  if (source) source->finish();
+  if (source) source->wait();
   k.begin(given);
   FrameStats& stats = k.stats;
-  k.standIn.watch(given, settings);
+  k.stillCache.watch(given, settings);
   const EffectPlan plan = k.world.plan(given, settings,
                                        {.first = !k.results.picture.radiance,
                                         .host = host != nullptr,
@@ -113,8 +113,8 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                                         .mapsWaiting = k.keeper.waiting(),
                                         .averaged = k.averaged,
                                         .lightArrived = source && source->arrived(),
-                                        .storedAlone = k.standIn.alone(),
-                                        .storing = k.standIn.busy()});
+                                        .storedAlone = k.stillCache.alone(),
+                                        .storing = k.stillCache.busy()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   if (!k.averages(plan) || k.world.gatherChanged()) k.history.forget();
@@ -132,7 +132,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     const bool keep = !plan.seenChanges();
     const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host, keep});
     Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
-    const LightOnSurfaces direct = k.direct.run({world, surfaces, plan, settings, patches, keep}, stats);
+    const SurfaceLighting direct = k.direct.run({world, surfaces, plan, settings, patches, keep}, stats);
     const Indirect indirect = k.lightIndirectly(world, plan, lights, surfaces, patches, progress);
     const Picture picture = k.composite.run({surfaces, direct, indirect.light, world.view.sky});
     stats.of(EffectId::Redraw) = draws();
@@ -164,7 +164,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
   if (!world.open(*given.assets, stats)) return;
   if (source) source->forget();
   keeper.forget();
-  standIn.forget();
+  stillCache.forget();
   history.forget();
   results = {};
 }
@@ -175,7 +175,7 @@ Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& pl
                                         const std::function<void(int, int)>& progress) {
   Indirect out;
   if (!plan.on(EffectId::Indirect)) {
-    standIn.forget();
+    stillCache.forget();
     return out;
   }
   const DrawCount draws;
@@ -183,7 +183,7 @@ Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& pl
   const int bounces = more ? settings.smc.bounces : 1;
   if (plan.on(EffectId::Gather) || rowOf(settings.gather.mode).stored) {
     const DrawCount gatherDraws;
-    const SeenLights seen = keeper.see({given, lights, settings, seed}, plan, stats);
+    const ShadowedLights seen = keeper.see({given, lights, settings, seed}, plan, stats);
     const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
     if (averaging) history.fit(surfaces);
     out.gathered = indirectStages.of(settings).run(
@@ -193,7 +193,7 @@ Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& pl
         stats);
     if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = gatherDraws();
     const FilterSettings filtering = filterFor(plan);
-    LightOnSurfaces mean = out.gathered;
+    SurfaceLighting mean = out.gathered;
     if (averaging) {
       const DrawCount historyDraws;
       mean = history.run(
@@ -207,7 +207,7 @@ Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& pl
   } else {
     history.forget(); // it would be of another place
   }
-  out.light = standIn.run({given, surfaces, patches, plan, settings, seed, bounces}, out.light, stats);
+  out.light = stillCache.run({given, surfaces, patches, plan, settings, seed, bounces}, out.light, stats);
   stats.of(EffectId::Indirect) += draws();
   return out;
 }
@@ -272,14 +272,14 @@ Image GiFrame::read(Buffer buffer) const {
 
 Image8 GiFrame::readDisplay(Buffer buffer) const {
   const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
+  if (buffer == Buffer::Vpls && kept_->source) kept_->source->wait(); // an update takes the set away
   kept_->display.run(buffer, kept_->results, kept_->look());
   return kept_->display.read();
 }
 
 void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls && kept_->source) kept_->source->finish(); // an update takes the set away
+  if (buffer == Buffer::Vpls && kept_->source) kept_->source->wait(); // an update takes the set away
   kept_->display.run(buffer, kept_->results, kept_->look());
   kept_->display.present(framebuffer, width, height);
 }
@@ -319,7 +319,7 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   const ShadowSettings& shadow = k.settings.shadow;
   const World world = k.world.again();
   std::vector<MapPose> poses;
-  for (const VirtualLight& light : lights) poses.push_back(light.pose(world.rays.grain()));
+  for (const VirtualLight& light : lights) poses.push_back(light.pose(world.rays.rayEpsilon()));
   const ParaboloidMapInputs maps{world.gpu,         &world.rays, poses, {}, view.boundsWorld.diameter(),
                                  shadow.resolution, shadow.maker};
   return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,
@@ -336,7 +336,7 @@ Settings& GiFrame::settings() { return kept_->settings; }
 const FrameStats& GiFrame::stats() const { return kept_->stats; }
 const VplSet& GiFrame::vpls() const {
   static const VplSet none;
-  if (kept_->source) kept_->source->finish();
+  if (kept_->source) kept_->source->wait();
   const VplSet* set = kept_->source ? kept_->source->set() : nullptr;
   return set ? *set : none;
 }

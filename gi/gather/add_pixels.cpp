@@ -8,7 +8,7 @@ void PixelAdder::add(std::span<const vec3> irradiance, std::span<const vec3> glo
                      const LightTarget& target, int grid) {
   const gl::PassScope scope = context_.scope(stage_);
   pixels_.fit(surfaces, target.size());
-  const LightOnSurfaces light = pixels_.light();
+  const SurfaceLighting light = pixels_.light();
   uploadPixels(*light.irradiance, irradiance, surfaces, grid);
   light.irradiance->bind(2);
   std::vector<std::string> defines;

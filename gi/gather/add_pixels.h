@@ -1,7 +1,7 @@
 // Light that the CPU found at pixels, added to what was gathered.
 #pragma once
 
-#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
 
 #include <span>

@@ -41,9 +41,9 @@ std::vector<std::string> bindSurfaces(const GBuffer& gbuffer) {
   gbuffer.camera->bindUniform(0);
   gbuffer.depth->bind(0);
   gbuffer.normal->bind(1);
-  if (!gbuffer.finish) return {};
+  if (!gbuffer.roughnessMetalness) return {};
   gbuffer.albedo->bind(6);
-  gbuffer.finish->bind(7);
+  gbuffer.roughnessMetalness->bind(7);
   return {"GLOSSY"};
 }
 

@@ -1,7 +1,7 @@
 // The draw that all gathers of virtual lights share.
 #pragma once
 
-#include "gi/contract/light_on_surfaces.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
@@ -18,7 +18,7 @@ struct GatherArea {
 
 struct GatherDraw {
   const GBuffer& surfaces;
-  SeenLights seen;
+  ShadowedLights seen;
   std::span<const GatherArea> areas = {};
   int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
@@ -40,7 +40,7 @@ int lightClassOf(const glm::ivec2& subset, uint32_t picture);
 std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture = 0);
 
 /// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
-/// G-buffer has finishes, else none.
+/// G-buffer has roughness and metalness, else none.
 std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);
 
 /// What shaders/lib/vpl_shading.glsl reads besides lights and surfaces.
@@ -49,7 +49,7 @@ void setShading(const gl::Program& program, const GatherDraw& draw);
 /// One area by a program that gathers. `patches`: only those that the stencil marks.
 void drawArea(const gl::Program& program, const GatherArea& area, bool patches, bool add);
 
-/// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has finishes, gets the glossy
+/// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has roughness and metalness, gets the glossy
 /// light. From trees patches must be black before.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 

@@ -3,7 +3,7 @@
 #include "engine/core/parallel.h"
 #include "engine/trace/ray_query.h"
 #include "gi/gather/draw_gather.h"
-#include "gi/vpl/near_mix.h"
+#include "gi/near/near_mix.h"
 #include "shaders/shared/octahedral.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::span<const gl::Framebuffer> MapChecks::begin(const IndirectInputs& in, cons
     for (size_t i = 0; i < chunks; ++i)
       drawn_.emplace_back("map checks", gl::TextureDesc{.format = GL_RGBA32UI, .width = size.x, .height = size.y});
   }
-  const LightOnSurfaces light = target.light();
+  const SurfaceLighting light = target.light();
   for (const gl::Texture& drawn : drawn_)
     framebuffers_.push_back(light.glossy ? gl::Framebuffer("map checks", {light.irradiance, light.glossy, &drawn})
                                          : gl::Framebuffer("map checks", {light.irradiance, &drawn}));
@@ -56,16 +56,16 @@ void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameSt
   const RayQuery& rays = in.world.rays;
   const vec3 forward = -vec3(camera.worldFromView[2]);
   const glm::ivec2 tile = tileSize(in.surfaces), size = target.size();
-  const size_t pixels = size_t(camera.width) * camera.height, grain = 512;
+  const size_t pixels = size_t(camera.width) * camera.height, rayEpsilon = 512;
   std::vector<vec3> differences(pixels, vec3(0)), positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0));
   std::vector<std::vector<DrawnPair>> drawn(drawn_.size(), std::vector<DrawnPair>(size_t(size.x) * size.y));
   for (size_t chunk = 0; chunk < drawn.size(); ++chunk) // waits for the GPU
     drawn_[chunk].read(std::span(drawn[chunk]), GL_RGBA_INTEGER, GL_UNSIGNED_INT);
-  std::vector<uint64_t> countOf((pixels + grain - 1) / grain);
+  std::vector<uint64_t> countOf((pixels + rayEpsilon - 1) / rayEpsilon);
   {
     const CpuScope scope(stats.stages, key(StageId::MapChecks));
     for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
-      parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+      parallelFor(pixels, rayEpsilon, [&](size_t begin, size_t end) {
         struct Asked {
           size_t pixel;
           vec3 light; // irradiance; negative where the map says shadowed
@@ -85,13 +85,13 @@ void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameSt
           normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
           if (pair.gain == 0 || !std::isfinite(pair.gain)) continue;
           const VirtualLight& light = in.seen.lights.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
-          segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.grain()),
-                                     offsetPoint(light.position, light.geometricNormal, rays.grain())));
+          segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.rayEpsilon()),
+                                     offsetPoint(light.position, light.geometricNormal, rays.rayEpsilon())));
           asked.push_back({i, light.radiance * (light.area * pair.gain), pair.gain > 0});
         }
         std::vector<uint8_t> blocked(segments.size());
         rays.occluded(segments, blocked);
-        countOf[begin / grain] += segments.size();
+        countOf[begin / rayEpsilon] += segments.size();
         for (size_t j = 0; j < asked.size(); ++j)
           if (asked[j].lit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
       });

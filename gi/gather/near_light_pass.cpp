@@ -1,6 +1,6 @@
 #include "gi/gather/near_light_pass.h"
 
-#include "gi/vpl/near_light.h"
+#include "gi/near/near_light.h"
 
 namespace lambent {
 
@@ -19,7 +19,7 @@ void NearLightPass::add(const IndirectInputs& in, const LightTarget& target, int
                             .casts = gather.near * (in.changes ? 2 : 1),
                             .bounces = in.bounces,
                             .subsets = grid > 1,
-                            .glossy = in.surfaces.finish != nullptr,
+                            .glossy = in.surfaces.roughnessMetalness != nullptr,
                             .seed = in.seed,
                             .picture = in.picture,
                             .pictures = in.averaged ? in.settings.history.frames : 1},

@@ -38,14 +38,14 @@ class PatchAtlas {
   void clearLight() const { target_.clear(); }
   /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
   void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);
-  LightOnSurfaces light() const { return target_.light(shape_.grid > 1); }
+  SurfaceLighting light() const { return target_.light(shape_.grid > 1); }
   const LightTarget& target() const { return target_; } // of the pixels
 
  private:
   PassContext context_;
   AtlasShape shape_;
   gl::Texture atlas_, stencil_, levels_;   // levels_: level l ≥ 1 made whole is mip level l − 1
-  gl::Texture atlasGlossy_, levelsGlossy_; // beside them, when the G-buffer has finishes
+  gl::Texture atlasGlossy_, levelsGlossy_; // beside them, when the G-buffer has roughness and metalness
   gl::Framebuffer framebuffer_;
   std::vector<gl::Framebuffer> levelFramebuffers_;
   LightTarget target_{"multires"};

@@ -17,7 +17,7 @@ class PatchGather : public IndirectStage {
  public:
   explicit PatchGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, rowOf(in.settings.gather.mode).subsets);
     mark(in.surfaces, patches);

@@ -12,7 +12,7 @@ class PixelGather : public IndirectStage {
  public:
   explicit PixelGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
     const int grid = rowOf(in.settings.gather.mode).subsets ? 4 : 1;
     const std::span<const gl::Framebuffer> checks = gather(in, grid);
     if (!checks.empty()) checks_.add(in, target_, stats);

@@ -11,10 +11,10 @@ class RayGather : public IndirectStage {
  public:
   explicit RayGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
     const CameraView& camera = in.world.view.camera;
     GlossyGather glossy{in.world.view, {}};
-    const bool lobes = in.surfaces.finish != nullptr;
+    const bool lobes = in.surfaces.roughnessMetalness != nullptr;
     std::vector<vec3> irradiance;
     {
       CpuScope scope(stats.stages, key(StageId::GatherByRays));
@@ -24,7 +24,7 @@ class RayGather : public IndirectStage {
     {
       const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
       target_.fit(in.surfaces);
-      const LightOnSurfaces light = target_.light();
+      const SurfaceLighting light = target_.light();
       uploadPixels(*light.irradiance, irradiance, in.surfaces, 1);
       if (lobes) uploadPixels(*light.glossy, glossy.radiance, in.surfaces, 1);
     }

@@ -11,7 +11,7 @@ class SplatGather : public IndirectStage {
  public:
   explicit SplatGather(PassContext context) : context_(context) {}
 
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats& stats) override {
+  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
     const PatchPyramid& patches = in.patches.pyramid();
     atlas_.fit(in.surfaces, patches, false);
     const GatherDraw draw{.surfaces = in.surfaces,

@@ -45,7 +45,7 @@ class IndirectStages {
 
 struct FilterInputs {
   const GBuffer& surfaces;
-  const LightOnSurfaces& gathered;
+  const SurfaceLighting& gathered;
   const FilterSettings& filter;
   bool fresh = true; // of one picture; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
@@ -55,7 +55,7 @@ struct FilterInputs {
 class FilterPass {
  public:
   explicit FilterPass(PassContext context) : context_(context) {}
-  LightOnSurfaces run(const FilterInputs& in);
+  SurfaceLighting run(const FilterInputs& in);
 
  private:
   PassContext context_;
@@ -64,7 +64,7 @@ class FilterPass {
 
 struct HistoryInputs {
   const GBuffer& surfaces;
-  const LightOnSurfaces& gathered;
+  const SurfaceLighting& gathered;
   bool cameraMoved;  // glossy light is then this picture's own
   bool lightChanges; // what is kept then follows this picture
   const HistorySettings& settings;
@@ -78,7 +78,7 @@ class HistoryPass {
   /// Before the gather: makes room. Pictures of another size are looked up like any others; those of another kind are
   /// forgotten.
   void fit(const GBuffer& surfaces);
-  LightOnSurfaces run(const HistoryInputs& in);
+  SurfaceLighting run(const HistoryInputs& in);
   void forget() { pictures_ = 0, following_ = 0; }
   /// Whether the next picture of a still view follows light that changed before.
   bool follows() const { return following_ > 0; }

@@ -184,10 +184,10 @@ class Table {
     number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of these images; half of it for lights after the first bounce");
     number(
-        "cube.after", &Settings::standIn, &StandInSettings::after, {0, 1000000, "frames"}, Nothing,
+        "cube.after", &Settings::stillCache, &StillCacheSettings::after, {0, 1000000, "frames"}, Nothing,
         "frames in which neither lights nor objects change until a layered depth cube takes the place of the gather; "
         "0 = never");
-    number("cube.perFrame", &Settings::standIn, &StandInSettings::perFrame, {1, 65536, "lights", PowersOfTwo}, Nothing,
+    number("cube.perFrame", &Settings::stillCache, &StillCacheSettings::perFrame, {1, 65536, "lights", PowersOfTwo}, Nothing,
            "cube.after: lights put into that cube in a frame");
     choice("cube.maker", &Settings::hemicubes, &HemicubeSettings::maker, {"auto", "raster", "rays"}, Nothing,
            "who makes these images: the GPU, rays on the CPU, or whoever is faster on the first of them");

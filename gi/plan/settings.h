@@ -183,11 +183,11 @@ struct HemicubeSettings {
   bool operator==(const HemicubeSettings&) const = default;
 };
 
-/// A layered depth cube in place of another technique (gi/gather/stand_in.h).
-struct StandInSettings {
+/// A layered depth cube in place of another technique (gi/cube/draw/still_cache.h).
+struct StillCacheSettings {
   int after = 0;    // frames without change until it is built; 0: never
   int perFrame = 4; // lights put into it in a frame
-  bool operator==(const StandInSettings&) const = default;
+  bool operator==(const StillCacheSettings&) const = default;
 };
 
 struct FilterSettings {
@@ -235,7 +235,7 @@ struct Settings {
   RsmSettings rsm;
   VolumeSettings lpv;
   CubeSettings cube;
-  StandInSettings standIn;
+  StillCacheSettings stillCache;
   HemicubeSettings hemicubes;
   std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube-file)
   HistorySettings history;

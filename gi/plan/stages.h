@@ -48,7 +48,7 @@ enum class StageId : uint16_t {
   Refine,
   Splat,
   SplatPerVpl,
-  VolumeSights, // which cells of a volume see one another
+  VolumeVisibility, // which cells of a volume see one another
   Inject,
   Propagate,
   Cube,      // lights put into it and taken out

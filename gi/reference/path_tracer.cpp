@@ -4,8 +4,8 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
-#include "gi/vpl/light_paths.h"
-#include "gi/vpl/receivers.h"
+#include "gi/lighting/light_paths.h"
+#include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
@@ -81,13 +81,13 @@ class BlockTracer {
     connectBy(vertex, counts, [&](Path& p) {
       const float uLight = p.rng.next();
       const vec2 a = p.rng.next2();
-      return connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.grain());
+      return connectToLight(in_.lights, p.vertex, p.weight, uLight, {a, p.rng.next()}, in_.rays.rayEpsilon());
     });
   }
 
   void connectSky(int vertex, RayCounts& counts) {
     connectBy(vertex, counts,
-              [&](Path& p) { return connectToSky(in_.lights, p.vertex, p.weight, p.rng.next2(), in_.rays.grain()); });
+              [&](Path& p) { return connectToSky(in_.lights, p.vertex, p.weight, p.rng.next2(), in_.rays.rayEpsilon()); });
   }
 
   /// `connection(path)` gives what is to be tested.
@@ -118,7 +118,7 @@ class BlockTracer {
           glossyAt(vertex) ? drawReflection(p) : sampleCosineHemisphere(p.vertex.normal, p.rng.next2());
       // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
       const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
-      segments_.push_back({offsetPoint(p.vertex.position, p.vertex.geometricNormal, in_.rays.grain()), direction,
+      segments_.push_back({offsetPoint(p.vertex.position, p.vertex.geometricNormal, in_.rays.rayEpsilon()), direction,
                            above ? kInfinity : 0.0f});
     }
     hits_.resize(segments_.size());

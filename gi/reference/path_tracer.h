@@ -7,7 +7,7 @@
 #pragma once
 
 #include "engine/core/image.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 
 #include <atomic>
 

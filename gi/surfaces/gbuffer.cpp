@@ -45,7 +45,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     adopted.block = block;
     return adopted;
   }
-  if (!depth_ || depth_.width() != width || depth_.height() != height || in.glossy != bool(finish_)) {
+  if (!depth_ || depth_.width() != width || depth_.height() != height || in.glossy != bool(roughnessMetalness_)) {
     const auto make = [&](const char* label, GLenum format) {
       return gl::Texture(label, {.format = format, .width = width, .height = height});
     };
@@ -53,11 +53,11 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     normal_ = make("g-buffer/normal", GL_RGBA16F);
     albedo_ = make("g-buffer/albedo", GL_RGBA16F);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    finish_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
-    framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &finish_}, &depth_)
+    roughnessMetalness_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
+    framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
                              : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
   }
-  const GBuffer out{&depth_,  &normal_, &albedo_, &emission_, in.glossy ? &finish_ : nullptr,
+  const GBuffer out{&depth_,  &normal_, &albedo_, &emission_, in.glossy ? &roughnessMetalness_ : nullptr,
                     &camera_, block,    width,    height};
   if (in.keep) return out;
   framebuffer_.bind();
@@ -85,7 +85,7 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
   check("normal", host.normal, true);
   check("albedo", host.albedo, true);
   check("emission", host.emission, false);
-  check("finish", host.finish, false);
+  check("finish", host.roughnessMetalness, false);
 }
 
 GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
@@ -99,7 +99,7 @@ GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
               take(hosts_[1], host.normal),
               take(hosts_[2], host.albedo),
               take(hosts_[3], host.emission),
-              in.glossy ? take(hosts_[4], host.finish) : nullptr,
+              in.glossy ? take(hosts_[4], host.roughnessMetalness) : nullptr,
               &camera_,
               {},
               width,

@@ -97,7 +97,7 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
   if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
-  if (material.finishTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
+  if (material.roughnessMetalnessTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
   return programs_.get(desc);
 }
 
@@ -108,7 +108,7 @@ void GpuScene::bindMaterial(uint32_t index) const {
   glBindSampler(2, material.baseSampler);
   glBindTextureUnit(3, material.emissiveTexture);
   glBindSampler(3, material.emissiveSampler);
-  glBindTextureUnit(4, material.finishTexture);
+  glBindTextureUnit(4, material.roughnessMetalnessTexture);
   glBindSampler(4, material.finishSampler);
 }
 
@@ -116,7 +116,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
   std::vector<const Item*> shown;
   for (const Item& item : items_) {
-    const Instances is = rest_[item.instance] == kRested ? Instances::Still : Instances::Restless;
+    const Instances is = rest_[item.instance] == kRested ? Instances::Still : Instances::Moving;
     if ((which == Instances::All || which == is) && frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
   }
   if (shown.empty()) return 0;

@@ -30,7 +30,7 @@ struct Frustum {
 enum class DrawKind { GBuffer, GlossyGBuffer, DistanceNormal, Depth };
 
 /// Which instances are drawn: those that have not moved for a while, those that have, or both.
-enum class Instances { All, Still, Restless };
+enum class Instances { All, Still, Moving };
 
 class GpuScene {
  public:
@@ -68,7 +68,7 @@ class GpuScene {
     Aabb boundsObject;
   };
   struct MaterialDraw {
-    GLuint baseTexture, emissiveTexture, finishTexture; // 0 = none
+    GLuint baseTexture, emissiveTexture, roughnessMetalnessTexture; // 0 = none
     GLuint baseSampler, emissiveSampler, finishSampler;
     bool masked;
   };

@@ -36,9 +36,9 @@ MaterialBlock blockOf(const Material& m) {
       .baseUvV = uvRow(m.baseColorTexture, 1, m.doubleSided ? 1.0f : 0.0f),
       .emissiveUvU = uvRow(m.emissiveTexture, 0, float(m.emissiveTexture.uvSet)),
       .emissiveUvV = uvRow(m.emissiveTexture, 1, 0),
-      .finish = vec4(m.roughness, m.metalness, 0, 0),
-      .finishUvU = uvRow(m.finishTexture, 0, float(m.finishTexture.uvSet)),
-      .finishUvV = uvRow(m.finishTexture, 1, 0),
+      .roughnessMetalness = vec4(m.roughness, m.metalness, 0, 0),
+      .roughnessMetalnessUvU = uvRow(m.roughnessMetalnessTexture, 0, float(m.roughnessMetalnessTexture.uvSet)),
+      .roughnessMetalnessUvV = uvRow(m.roughnessMetalnessTexture, 1, 0),
   };
 }
 
@@ -158,8 +158,8 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
     const Material& m = assets.materials[i];
     const MaterialBlock block = blockOf(m);
     std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
-    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.finishTexture),
-                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture), samplerOf(m.finishTexture),
+    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.roughnessMetalnessTexture),
+                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture), samplerOf(m.roughnessMetalnessTexture),
                               m.alphaMode == AlphaMode::Mask});
   }
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);

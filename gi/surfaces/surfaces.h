@@ -16,7 +16,7 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar);
 struct SurfaceInputs {
   const GpuScene& scene;
   const CameraView& camera;
-  bool glossy = false;                // with `finish`: the passes that follow then add glossy reflection
+  bool glossy = false;                // with `roughnessMetalness`: the passes that follow then add glossy reflection
   const HostSurfaces* host = nullptr; // taken over instead of drawing
   bool keep = false;                  // they are those of the last run
 };
@@ -33,7 +33,7 @@ class SurfacePass {
   GBuffer adopt(const SurfaceInputs& in);
 
   PassContext context_;
-  gl::Texture depth_, normal_, albedo_, emission_, finish_;
+  gl::Texture depth_, normal_, albedo_, emission_, roughnessMetalness_;
   gl::Texture hosts_[5]; // a host's, as ours
   gl::Texture black_;    // emission of a host that has none
   gl::Framebuffer framebuffer_;

@@ -49,7 +49,7 @@ float fluxPerTexel(const TexelRect& texels, int resolution) {
 
 } // namespace
 
-void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
+void MapSchedule::invalidate(std::span<const MapPose> poses, std::span<const float> brightness, const DirtyRegion& moved,
                           const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame,
                           RayCounts& counts) {
   stale_.resize(poses.size());
@@ -89,17 +89,17 @@ void MapSchedule::disturb(std::span<const MapPose> poses, std::span<const float>
   for (const RayCounts& c : perBlock) counts += c;
 }
 
-void MapSchedule::disturbInTurn(size_t slots, size_t count, int resolution) {
+void MapSchedule::invalidateInTurn(size_t slots, size_t count, int resolution) {
   stale_.resize(slots);
   for (size_t i = 0; i < std::min(count, slots); ++i) stale_[turn_++ % slots].texels = TexelRect::whole(resolution);
 }
 
-void MapSchedule::disturbWhole(std::span<const uint32_t> which, size_t slots, int resolution) {
+void MapSchedule::invalidateWhole(std::span<const uint32_t> which, size_t slots, int resolution) {
   stale_.resize(slots);
   for (uint32_t slot : which) stale_[slot].texels = TexelRect::whole(resolution);
 }
 
-void MapSchedule::disturbAll(size_t slots, int resolution) {
+void MapSchedule::invalidateAll(size_t slots, int resolution) {
   stale_.resize(slots);
   for (Stale& s : stale_) s.texels = TexelRect::whole(resolution);
 }

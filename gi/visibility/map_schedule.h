@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gi/contract/map_job.h"
-#include "gi/vpl/disturbance.h"
+#include "gi/lighting/dirty_region.h"
 
 #include <vector>
 
@@ -13,14 +13,14 @@ class MapSchedule {
  public:
   /// Queues the texels of each map in which something that moved is seen or was. `poses` and `brightness` (what the
   /// light brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
-  void disturb(std::span<const MapPose> poses, std::span<const float> brightness, const Disturbance& moved,
+  void invalidate(std::span<const MapPose> poses, std::span<const float> brightness, const DirtyRegion& moved,
                const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
   /// Queues the maps of `count` slots, going on where the last call stopped.
-  void disturbInTurn(size_t slots, size_t count, int resolution);
+  void invalidateInTurn(size_t slots, size_t count, int resolution);
   /// Queues these maps as wholes.
-  void disturbWhole(std::span<const uint32_t> which, size_t slots, int resolution);
+  void invalidateWhole(std::span<const uint32_t> which, size_t slots, int resolution);
   /// Queues every map as a whole.
-  void disturbAll(size_t slots, int resolution);
+  void invalidateAll(size_t slots, int resolution);
 
   /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that are others than before) whole and for
   /// certain, others in order of light per texel times the square of frames waited until `texels` have been traced (the

@@ -69,8 +69,8 @@ ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const Paraboloid
       const vec3 direction = mapFromWorld * d / r, normal = mapFromWorld * h.normal;
       const bool byRaster = lit(comparison.raster, maps, direction, normal, r, cosReceiver, settings.shadow.bias);
       const bool byCast = lit(comparison.rays, maps, direction, normal, r, cosReceiver, settings.shadow.bias);
-      const bool byRay = !rays.occluded(segment(offsetPoint(h.position, h.geometricNormal, rays.grain()),
-                                                offsetPoint(v.position, v.geometricNormal, rays.grain())));
+      const bool byRay = !rays.occluded(segment(offsetPoint(h.position, h.geometricNormal, rays.rayEpsilon()),
+                                                offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon())));
       ++result.pairs;
       total += weight;
       makers += byRaster != byCast ? weight : 0;

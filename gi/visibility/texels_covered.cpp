@@ -65,7 +65,7 @@ std::optional<std::array<vec3, 2>> above(const vec3& a, const vec3& b, float flo
 TexelRect texelsCovered(const MapPose& pose, const Aabb& box, int resolution) {
   if (box.empty()) return {};
   const vec3 origin = pose.origin();
-  const float margin = pose.grain + 1e-5f * std::max(maxComponent(glm::abs(origin)), box.diameter());
+  const float margin = pose.rayEpsilon + 1e-5f * std::max(maxComponent(glm::abs(origin)), box.diameter());
   const Aabb grown{box.lo - margin, box.hi + margin};
   // Texels are drawn down to a cosine of -2 / resolution (castMap, map_resample.frag), and so see nothing below this.
   const vec3 toCentre = grown.centre() - origin, half = 0.5f * grown.size();

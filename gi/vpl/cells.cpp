@@ -68,15 +68,15 @@ struct Connection {
   /// Nothing where the segment would have to cross a surface: it stops short of its end, so it must come from the
   /// front.
   std::optional<Ray> close(const Vpl& v, const SurfaceSample& p) const {
-    const vec3 from = offsetPoint(v.position, v.geometricNormal, rays.grain()),
-               to = offsetPoint(p.position, p.geometricNormal, rays.grain());
+    const vec3 from = offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon()),
+               to = offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon());
     if (glm::dot(from - p.position, p.geometricNormal) <= 0 || glm::dot(to - v.position, v.geometricNormal) <= 0)
       return {};
     return segment(from, to);
   }
   Ray lifted(const Vpl& v, const SurfaceSample& p, float distance) const {
-    return segment(offsetPoint(v.position, v.geometricNormal, rays.grain()) + kLift * distance * v.geometricNormal,
-                   offsetPoint(p.position, p.geometricNormal, rays.grain()) + kLift * distance * p.geometricNormal);
+    return segment(offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon()) + kLift * distance * v.geometricNormal,
+                   offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon()) + kLift * distance * p.geometricNormal);
   }
   bool operator()(const Vpl& v, const SurfaceSample& p, float distance2) const {
     const std::optional<Ray> ray = close(v, p);
@@ -171,7 +171,7 @@ class CellSampler {
 
   /// Draws all chords of a VPL, or those that meet what `moved`, in place of the samples that the cell has of them,
   /// whose owners are noted. New ones stand behind those that stay; returns how many these are.
-  size_t draw(uint32_t slot, VplCell& cell, const Disturbance* moved, std::vector<uint32_t>& owners,
+  size_t draw(uint32_t slot, VplCell& cell, const DirtyRegion* moved, std::vector<uint32_t>& owners,
               RayCounts& counts) {
     found_.clear();
     chords(neighbours_.set.slots[slot], cell.radius);
@@ -281,7 +281,7 @@ void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const 
   const size_t found = tree.nearest(vpl.position, SurfaceSample::kNear, index, distance2);
   cell.viewers.clear();
   cell.seenVpl = 0;
-  const vec3 to = offsetPoint(vpl.position, vpl.geometricNormal, rays.grain());
+  const vec3 to = offsetPoint(vpl.position, vpl.geometricNormal, rays.rayEpsilon());
   for (size_t j = 0; j < found; ++j) {
     const Vpl& other = set.slots[vpls.slots[index[j]]];
     if (&other == &vpl) continue;
@@ -296,10 +296,10 @@ void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const 
 }
 
 /// Whether something moved between a place and those who look at it.
-bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, const Disturbance& disturbance,
+bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, const DirtyRegion& disturbance,
                  const RayQuery& rays) {
   if (disturbance.empty()) return false;
-  const vec3 to = offsetPoint(position, normal, rays.grain());
+  const vec3 to = offsetPoint(position, normal, rays.rayEpsilon());
   return std::any_of(cell.viewers.begin(), cell.viewers.end(),
                      [&](const vec3& from) { return disturbance.touches(segment(from, to)); });
 }
@@ -308,7 +308,7 @@ bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, 
 /// the number of viewers that see it over the number that see the VPL, two at most. What none sees counts nothing: the
 /// sunlit outside of a wall beside a window.
 float seenBy(const VplCell& cell, const SurfaceSample& p, const RayQuery& rays, RayCounts& counts) {
-  const vec3 to = offsetPoint(p.position, p.geometricNormal, rays.grain());
+  const vec3 to = offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon());
   float seen = 0;
   for (const vec3& from : cell.viewers) {
     if (glm::dot(from - p.position, p.geometricNormal) <= 0) continue;
@@ -326,7 +326,7 @@ struct Share {
 
 /// Makes the cell of `vpl` of the samples that it has. Where these may be the same as before (`perhaps`) only if one of
 /// them is seen otherwise than before; returns whether it was made.
-bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const Disturbance& disturbance, bool perhaps,
+bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const DirtyRegion& disturbance, bool perhaps,
               const RayQuery& rays, RayCounts& counts) {
   std::stable_sort(shares.begin(), shares.end(),
                    [](const Share& a, const Share& b) { return a.sample->owner2 < b.sample->owner2; });
@@ -354,7 +354,7 @@ bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const Disturbanc
 
 } // namespace
 
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Disturbance& disturbance,
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& disturbance,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
   const size_t slots = set.slots.size();
@@ -379,7 +379,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Distu
   for (size_t n = 0; n < vpls.slots.size(); ++n) {
     const uint32_t slot = vpls.slots[n];
     const float radius =
-        std::max(rays.grain(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
+        std::max(rays.rayEpsilon(), std::min(radiusLimit, 0.9f * std::sqrt(shares[n] * float(kScaleNeighbour) / kPi)));
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
     // (A light may have been carried along with its object before this update.)

@@ -34,7 +34,7 @@ Ray cameraSegment(const CameraView& camera, const mat4& viewFromWorld, const vec
 }
 
 vec3 offPosition(const Vpl& v, const RayQuery& rays) {
-  return offsetPoint(v.position, v.geometricNormal, rays.grain());
+  return offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon());
 }
 
 } // namespace

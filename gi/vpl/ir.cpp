@@ -7,7 +7,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "gi/vpl/photons.h"
+#include "gi/lighting/photons.h"
 #include "gi/vpl/sources.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
   const uint32_t slots = uint32_t(in.settings.vpls), bounces = uint32_t(in.settings.bounces);
   std::vector<PlacedVpl> placed(slots);
   set.direct = slots / std::max(bounces, 1u) + (slots % std::max(bounces, 1u) > 0 ? 1 : 0);
-  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.grain());
+  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.rayEpsilon());
   if (bounces > 0 && !source.empty()) {
     CpuScope scope(log.stages, key(StageId::Photons));
     // Photons that bounce b has slots for. Earlier bounces get the odd slots: they carry more light.
@@ -52,7 +52,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
           // Around the geometric normal: the flux that leaves in a direction goes with the cosine to the real surface.
           Rng rng(in.seed, Stream::Photons, number[i], b + 1);
           Photon next;
-          next.ray = {offsetPoint(h.position, h.geometricNormal, in.rays.grain()),
+          next.ray = {offsetPoint(h.position, h.geometricNormal, in.rays.rayEpsilon()),
                       sampleCosineHemisphere(h.geometricNormal, rng.next2())};
           next.flux = flux * h.albedo;
           if (maxComponent(next.flux) <= 0) continue;

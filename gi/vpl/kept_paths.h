@@ -3,7 +3,7 @@
 // to lights are made again and no vertex is (gi/vpl/radiosity.cpp).
 #pragma once
 
-#include "gi/vpl/light_paths.h"
+#include "gi/lighting/light_paths.h"
 
 #include <cstdint>
 #include <vector>

@@ -140,12 +140,12 @@ class VplEstimator {
   bool findStale(KeptPaths& kept, bool all) {
     stale_.clear();
     bool doubtful = false;
-    const Disturbance& moved = *update_.moved;
+    const DirtyRegion& moved = *update_.moved;
     for (int i = 0; i < paths_; ++i) {
       bool stale = all || !sameStart(kept.vertices[i], starts_[i]);
       for (int depth = 0; !stale && !moved.empty() && depth < kept.lengths[i]; ++depth) {
         KeptVertex& v = kept.vertices[depth * paths_ + i];
-        const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal, rays_.grain());
+        const vec3 origin = offsetPoint(v.at.position, v.at.geometricNormal, rays_.rayEpsilon());
         stale = v.distance > 0 && moved.touches(Ray{origin, v.direction, v.distance});
         for (KeptConnection* c : {&v.light, &v.sky})
           if (!stale && c->reach > 0 && moved.touches(Ray{origin, c->direction, c->reach})) {
@@ -192,7 +192,7 @@ class VplEstimator {
         const vec3 direction = sampleCosineHemisphere(v.at.normal, u);
         if (glm::dot(direction, v.at.geometricNormal) <= 0) continue; // under the real surface of a smooth-shaded one
         v.direction = direction;
-        segments_.push_back({offsetPoint(v.at.position, v.at.geometricNormal, rays_.grain()), direction});
+        segments_.push_back({offsetPoint(v.at.position, v.at.geometricNormal, rays_.rayEpsilon()), direction});
         owners_.push_back(path);
       }
       hits_.resize(segments_.size());
@@ -252,7 +252,7 @@ class VplEstimator {
         uLight = std::min((float(slice) + lightShift_) / float(paths_), kBelowOne);
         u = additiveRecurrence3(uint32_t(path), shift_);
       }
-      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.grain());
+      const LightConnection c = connectToLight(lights_, v.at, v.weight, uLight, u, rays_.rayEpsilon());
       add(v.light, c);
     }
     return addedLight(counts);
@@ -269,7 +269,7 @@ class VplEstimator {
       vec2 u = rng.next2();
       const int stratum = int(orders_.sky[(uint32_t(path) + skyTurn_) % uint32_t(paths_)]);
       if (depth == 0 && stratum < side * side) u = (vec2(stratum % side, stratum / side) + u) / float(side);
-      add(v.sky, connectToSky(lights_, v.at, v.weight, u, rays_.grain()));
+      add(v.sky, connectToSky(lights_, v.at, v.weight, u, rays_.rayEpsilon()));
     }
     return addedLight(counts);
   }

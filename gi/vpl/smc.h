@@ -8,9 +8,9 @@
 #include "engine/core/profile.h"
 #include "gi/plan/settings.h"
 #include "gi/plan/stages.h"
-#include "gi/vpl/disturbance.h"
+#include "gi/lighting/dirty_region.h"
 #include "gi/vpl/kept_paths.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "gi/vpl/vpl_set.h"
 
 #include <functional>
@@ -31,7 +31,7 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
 /// What is known since the last update.
 struct VisibilityUpdate {
   bool camera = true;                        // the camera changed
-  const Disturbance* moved = &kNothingMoved; // where geometry did
+  const DirtyRegion* moved = &kNothingMoved; // where geometry did
   std::span<const uint8_t> carried = {};     // by slot: this VPL moved with its object; empty: none did
 };
 
@@ -88,7 +88,7 @@ struct RadianceUpdate {
   uint32_t seed = 1;
   RadianceUse use = RadianceUse::Rendering;
   // Since the kept paths were brought up to date:
-  const Disturbance* moved = &kNothingMoved; // where geometry changed
+  const DirtyRegion* moved = &kNothingMoved; // where geometry changed
   bool lightsChanged = true;                 // emitters on moving objects count
   bool instancesChanged = false;             // added or removed: indices of instances are others
   bool lastRays = false;                     // send the last vertices' rays even when neither emitter nor sky is there
@@ -162,7 +162,7 @@ class NeighbourTree {
 /// Stage 6, other than the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
 /// whose VPL is new or stands elsewhere; cells that `disturbance` touches are drawn anew. Returns the slots whose cell
 /// changed, ascending: their radiance is another.
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Disturbance& disturbance,
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& disturbance,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed, RayCounts& counts);
 
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates

@@ -1,7 +1,7 @@
 #include "gi/vpl/sources.h"
 
 #include "engine/core/error.h"
-#include "gi/vpl/photons.h"
+#include "gi/lighting/photons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
   case VplSource::Isr:
   case VplSource::Hisr:
   case VplSource::None:
-    CHECK(!"not sampled: gi/lights/light_source.h");
+    CHECK(!"not sampled: gi/sources/light_source.h");
   }
   return updateVpls(set, in, log, progress);
 }
@@ -96,7 +96,7 @@ VplChanges adoptVpls(VplSet& set, std::span<const PlacedVpl> placed, const VplUp
     v.geometricNormal = p.geometricNormal;
     v.albedo = p.albedo;
     v.instance = in.view.instances[p.instance].id;
-    v.mailbox = offsetPoint(p.position, p.geometricNormal, in.rays.grain());
+    v.mailbox = offsetPoint(p.position, p.geometricNormal, in.rays.rayEpsilon());
     v.alive = v.valid = true;
     v.area = v.candidateArea = areas[next++];
     v.radiance = v.samplerRadiance = p.power / v.area;

@@ -55,7 +55,7 @@ std::vector<CandidateHit> drawPoints(const VplUpdate& in, std::span<const Piece>
     const vec2 u = rng.next2();
     const SurfacePoint at = surfacePoint(in.view, p.instance, p.primitive, p.triangle, sampleTriangle(u));
     const vec3 side = rng.next() < 0.5f ? -at.geometricNormal : at.geometricNormal;
-    const float off = glm::distance(offsetPoint(at.position, side, in.rays.grain()), at.position);
+    const float off = glm::distance(offsetPoint(at.position, side, in.rays.rayEpsilon()), at.position);
     rays.push_back({at.position + side * off, -side, 2 * off});
   }
   std::vector<SurfaceHit> hits(rays.size());
@@ -124,7 +124,7 @@ std::vector<uint32_t> ownersOf(std::span<const CandidateHit> points, std::span<c
   std::vector<DensityPoint> places;
   for (uint32_t k : kept) places.push_back({points[k].position, points[k].geometricNormal});
   const NeighbourTree tree(places);
-  const auto off = [&](const DensityPoint& p) { return offsetPoint(p.position, p.normal, rays.grain()); };
+  const auto off = [&](const DensityPoint& p) { return offsetPoint(p.position, p.normal, rays.rayEpsilon()); };
   std::vector<uint32_t> owners(points.size());
   parallelFor(points.size(), 256, [&](size_t begin, size_t end) {
     uint32_t near[kAsked];
@@ -233,7 +233,7 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
   set.litPaths = in.settings.paths;
   set.litBounces = in.settings.bounces;
   CpuScope scope(log.stages, key(StageId::Radiosity));
-  const Disturbance moved(in.view);
+  const DirtyRegion moved(in.view);
   std::vector<RadianceJob> jobs;
   for (uint32_t i = 0; i < set.slots.size(); ++i) {
     if (!in.settings.cache || (!in.effects.relight && changed.geometry)) set.lightPaths[i].clear();

@@ -17,7 +17,7 @@
 //   number of steps: the mean target b over N times its own. Slots keep their own first texel where it was drawn.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
-#include "gi/vpl/photons.h"
+#include "gi/lighting/photons.h"
 #include "gi/vpl/sources.h"
 
 namespace lambent {
@@ -115,7 +115,7 @@ VplChanges placeByShadowMapChains(VplSet& set, const VplUpdate& in, VplUpdateLog
   ++set.frame;
   const uint32_t slots = uint32_t(in.settings.vpls), steps = uint32_t(in.vpl.tcasIterations);
   std::vector<PlacedVpl> placed(slots);
-  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.grain());
+  const PhotonSource source(in.lights, in.view.boundsWorld, in.rays.rayEpsilon());
   if (in.settings.bounces > 0 && !source.empty()) {
     CpuScope scope(log.stages, key(StageId::Chains));
     const std::vector<PlacedVpl> texels = readShadowMaps(source, in, log.candidates);

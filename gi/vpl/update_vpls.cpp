@@ -17,7 +17,7 @@ namespace {
 /// What happened since the last update, in the terms of the stages.
 struct Since {
   bool camera = false, lights = false, instances = false;
-  Disturbance moved;
+  DirtyRegion moved;
   std::vector<uint8_t> carried; // by slot: moved with its object; empty: none did
 
   bool geometry() const { return !moved.empty() || instances; }
@@ -331,7 +331,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   since.lights = effects.relightAll ||
                  (effects.relight && (changed.lights || changed.first || in.settingsChanged || emittersChanged(in)));
   since.instances = changed.instances;
-  since.moved = Disturbance(in.view);
+  since.moved = DirtyRegion(in.view);
   const bool still = !changed.first && !changed.camera && !changed.lights && !since.geometry() && !in.settingsChanged;
   if (changed.first || !settings.cache || (!effects.relight && since.geometry()))
     for (auto* all : {&set.samplerPaths, &set.lightPaths, &set.poolPaths})

@@ -31,7 +31,7 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
   points.reserve(cells);
   for (const SurfaceHit& h : hits)
     if (h.valid() && isFinite(h.position))
-      points.push_back({offsetPoint(h.position, h.geometricNormal, rays.grain()), h.geometricNormal});
+      points.push_back({offsetPoint(h.position, h.geometricNormal, rays.rayEpsilon()), h.geometricNormal});
   return points;
 }
 

@@ -4,7 +4,7 @@
 layout(std140, binding = 1) uniform MaterialUniforms { MaterialBlock material; };
 layout(binding = 2) uniform sampler2D baseTexture;
 layout(binding = 3) uniform sampler2D emissiveTexture;
-layout(binding = 4) uniform sampler2D finishTexture;
+layout(binding = 4) uniform sampler2D roughnessMetalnessTexture;
 
 vec2 transformUv(vec4 rowU, vec4 rowV, vec4 uv01) {
   vec3 uv = vec3(rowU.w > 0.5 ? uv01.zw : uv01.xy, 1.0);
@@ -35,10 +35,10 @@ vec3 emissionAt(vec4 uv01) {
 }
 
 /// Roughness and metalness.
-vec2 finishAt(vec4 uv01) {
-  vec2 finish = material.finish.xy;
+vec2 roughnessMetalnessAt(vec4 uv01) {
+  vec2 roughnessMetalness = material.roughnessMetalness.xy;
 #ifdef FINISH_TEXTURE
-  finish *= texture(finishTexture, transformUv(material.finishUvU, material.finishUvV, uv01)).gb;
+  roughnessMetalness *= texture(roughnessMetalnessTexture, transformUv(material.roughnessMetalnessUvU, material.roughnessMetalnessUvV, uv01)).gb;
 #endif
-  return finish;
+  return roughnessMetalness;
 }

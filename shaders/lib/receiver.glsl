@@ -4,14 +4,14 @@
 #include "shared/ggx.h"
 
 layout(binding = 6) uniform sampler2D gbufferAlbedo;
-layout(binding = 7) uniform sampler2D gbufferFinish;
+layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 
 /// `position` and `normal` are the G-buffer's of that pixel.
 Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
   vec3 towardsViewer =
       camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
-  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
-  return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb, finish.x, finish.y);
+  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
+  return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb, roughnessMetalness.x, roughnessMetalness.y);
 }
 
 /// Radiance towards the camera of irradiance and of glossy light as the passes store it, divided by glossyTint.

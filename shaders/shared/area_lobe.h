@@ -1,7 +1,7 @@
 // The lobe of ggx.h over a piece of an area light, by linearly transformed cosines (Heitz, Dupuy, Hill and Neubelt
 // 2016, "Real-time polygonal-light shading with linearly transformed cosines"): lobe times cosine is close to a clamped
 // cosine under a linear map of directions, and the integral of a clamped cosine over a polygon is areaFormFactor. The
-// maps are fitted by gi/vpl/area_lobe.cpp.
+// maps are fitted by gi/lighting/area_lobe.cpp.
 #ifndef LAMBENT_SHARED_AREA_LOBE_H
 #define LAMBENT_SHARED_AREA_LOBE_H
 #include "area_piece.h"

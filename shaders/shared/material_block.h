@@ -11,9 +11,9 @@ struct MaterialBlock {
   vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
-  vec4 finish;    // x: roughness factor, y: metalness factor
-  vec4 finishUvU; // as baseUvU
-  vec4 finishUvV; // xyz: second row
+  vec4 roughnessMetalness;    // x: roughness factor, y: metalness factor
+  vec4 roughnessMetalnessUvU; // as baseUvU
+  vec4 roughnessMetalnessUvV; // xyz: second row
 };
 
 SHARED_END

@@ -1,6 +1,6 @@
 // Area lights: their pieces' unshadowed light against closed forms and sums, and the points that rays are sent to.
 #include "engine/core/rng.h"
-#include "gi/vpl/area_lights.h"
+#include "gi/lighting/area_lights.h"
 #include "tests/support/area_pieces.h"
 #include "tests/support/hand_scene.h"
 

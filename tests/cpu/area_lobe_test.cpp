@@ -1,5 +1,5 @@
 // Lobes of area lights by linearly transformed cosines against numerical integrals of the lobe itself.
-#include "gi/vpl/area_lobe.h"
+#include "gi/lighting/area_lobe.h"
 #include "tests/support/area_pieces.h"
 #include "tests/support/effort.h"
 

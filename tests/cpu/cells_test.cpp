@@ -162,7 +162,7 @@ TEST(Cells, AWallBetweenASampleAndItsOwnerPartsThem) {
       ASSERT_LT(4 * set.cells[slot].radius, std::abs(set.slots[slot].position.x - 1.29f) - 0.02f)
           << "or it is drawn anew";
     before += ownedBehind();
-    updateCells(set, parted, Disturbance(std::span(&wall, 1), 0.001f), {}, 10, 1, counts);
+    updateCells(set, parted, DirtyRegion(std::span(&wall, 1), 0.001f), {}, 10, 1, counts);
     after += ownedBehind();
   }
   EXPECT_GT(before, 10);
@@ -190,7 +190,7 @@ TEST(Cells, AMovedThingLeavesWhatAnewDrawingFinds) {
       RayCounts again, all;
       const std::vector<Aabb> boxes = was.empty() ? std::vector<Aabb>{} : std::vector<Aabb>{was, is};
       const std::vector<uint32_t> changed = updateCells(
-          moved, rays, Disturbance(boxes), was.empty() ? allSlots(moved) : std::vector<uint32_t>{}, 1, 1, again);
+          moved, rays, DirtyRegion(boxes), was.empty() ? allSlots(moved) : std::vector<uint32_t>{}, 1, 1, again);
       updateCells(anew, rays, {}, allSlots(anew), 1, 1, all);
       for (uint32_t i = 0; i < 400; ++i)
         EXPECT_EQ(moved.slots[i].area, anew.slots[i].area) << i << (far ? " far" : " near") << " at " << lo.x;

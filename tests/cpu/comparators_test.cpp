@@ -267,7 +267,7 @@ TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
       const float r2 = glm::dot(d, d), inverse = 1 / std::sqrt(r2);
       const float cosX = glm::dot(d, x.normal) * inverse, cosY = -glm::dot(d, v.normal) * inverse;
       if (cosX <= 0 || cosY <= 0) continue;
-      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal, world.rays.grain()))))
+      if (world.rays.occluded(segment(x.position, offsetPoint(v.position, v.geometricNormal, world.rays.rayEpsilon()))))
         continue;
       sum += double(cosX * cosY / r2);
     }

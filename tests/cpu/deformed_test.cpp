@@ -3,7 +3,7 @@
 #include "engine/core/sampling.h"
 #include "engine/scene/surface_point.h"
 #include "engine/trace/embree_query.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

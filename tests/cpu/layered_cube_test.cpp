@@ -3,7 +3,7 @@
 #include "engine/core/rng.h"
 #include "engine/scene/scene_hash.h"
 #include "gi/cube/cube_file.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "gi/vpl/sources.h"
 #include "tests/support/effort.h"
 #include "tests/support/random_world.h"
@@ -206,7 +206,7 @@ TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   size_t reused = 0, compared = 0;
   for (int frame = 0; frame < (test::kSanitized ? 3 : GetParam().levels == 0 ? 9 : 6); ++frame) {
     const SceneView& view = world.step(frame % 3 == 2 ? 0 : 2);
-    const Disturbance moved(view);
+    const DirtyRegion moved(view);
     const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
     const CubeInputs in{room, world.rays(), frame == 0 ? kNothingMoved : moved, false, lights, 48, settings, gather};
     const CubeWork work = kept.update(in);

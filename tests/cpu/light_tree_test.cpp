@@ -1,7 +1,7 @@
 // The choice of one light out of many (gi/vpl/light_tree): what it says of itself, that nothing is left out, and how
 // far it is from weighing all lights.
 #include "engine/core/rng.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 

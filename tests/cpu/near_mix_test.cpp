@@ -1,6 +1,6 @@
 // Near light mixed over neighbours: nothing made, nothing lost, patterns evened out, edges kept.
 #include "engine/core/rng.h"
-#include "gi/vpl/near_mix.h"
+#include "gi/near/near_mix.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // and the resampling that the comparators share.
 #include "engine/core/rng.h"
 #include "engine/trace/embree_query.h"
-#include "gi/vpl/photons.h"
+#include "gi/lighting/photons.h"
 #include "tests/support/comparator_world.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"

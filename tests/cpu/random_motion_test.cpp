@@ -152,8 +152,8 @@ void expectOnSurfaces(const VplSet& set, const SceneView& view, EmbreeQuery& alo
 // In the open ---------------------------------------------------------------------------------------------------------
 
 /// Whether the point that rays to and from `v` end at lies in the solid, by more than rounding.
-bool isWithin(const Vpl& v, const test::RandomWorld::Solid& solid, float grain) {
-  const vec3 p = vec3(solid.objectFromWorld * vec4(offsetPoint(v.position, v.geometricNormal, grain), 1));
+bool isWithin(const Vpl& v, const test::RandomWorld::Solid& solid, float rayEpsilon) {
+  const vec3 p = vec3(solid.objectFromWorld * vec4(offsetPoint(v.position, v.geometricNormal, rayEpsilon), 1));
   for (int axis = 0; axis < 3; ++axis) {
     const float depth =
         (solid.halfSize[axis] - std::abs(p[axis])) * glm::length(vec3(solid.worldFromObject[axis])); // m
@@ -181,7 +181,7 @@ class Enclosed {
     });
     std::unordered_map<uint64_t, int> waited;
     for (const Vpl& v : m.set.slots) {
-      const auto holds = [&](const auto& s) { return isWithin(v, s, m.world.rays().grain()); };
+      const auto holds = [&](const auto& s) { return isWithin(v, s, m.world.rays().rayEpsilon()); };
       if (!v.alive || std::none_of(solids.begin(), solids.end(), holds)) continue;
       ASSERT_FALSE(v.valid) << "frame " << frame << ": light " << v.id << " of frame " << v.bornFrame << " on object "
                             << v.instance << " is said to be seen, inside a solid";

@@ -1,6 +1,6 @@
 // Glossy receivers: the shared BRDF against textbook formulas integrated another way, energy, and its sampler.
 #include "engine/core/rng.h"
-#include "gi/vpl/receivers.h"
+#include "gi/lighting/receivers.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
 
@@ -172,8 +172,8 @@ TEST(Receivers, FinishComesFromFactorsAndTexture) {
   image.srgb = false;
   image.texels = {{255, 255, 0, 255}, {0, 128, 255, 255}}; // left: rough dielectric, right: half as rough, metal
   scene.assets.images.push_back(image);
-  material.finishTexture.image = 0;
-  material.finishTexture.nearest = true;
+  material.roughnessMetalnessTexture.image = 0;
+  material.roughnessMetalnessTexture.nearest = true;
   EXPECT_TRUE(material.glossy());
   scene.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, m);
   scene.camera.worldFromView[3] = vec4(0, 0, 2, 1);

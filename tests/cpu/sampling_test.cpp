@@ -1,6 +1,6 @@
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 #include "engine/scene/scene.h"
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
-#include "gi/vpl/disturbance.h"
-#include "gi/vpl/light_paths.h"
-#include "gi/vpl/photons.h"
+#include "gi/lighting/dirty_region.h"
+#include "gi/lighting/light_paths.h"
+#include "gi/lighting/photons.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/daylight.h"
 #include "tests/support/effort.h"
@@ -250,7 +250,7 @@ TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
       });
       for (const Place& place : places) {
         const PathVertex vertex{place.at, place.normal, place.normal};
-        const vec3 origin = offsetPoint(place.at, place.normal, rays.grain());
+        const vec3 origin = offsetPoint(place.at, place.normal, rays.rayEpsilon());
         constexpr int kSamples = 40000;
         std::vector<double> byCosine, together;
         double largest = 0;
@@ -259,7 +259,7 @@ TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
         std::vector<vec3> values;
         for (int i = 0; i < kSamples; ++i) {
           first.push_back({origin, sampleCosineHemisphere(place.normal, rng.next2())});
-          const LightConnection c = connectToSky(lights, vertex, vec3(1), rng.next2(), rays.grain());
+          const LightConnection c = connectToSky(lights, vertex, vec3(1), rng.next2(), rays.rayEpsilon());
           second.push_back(maxComponent(c.value) > 0 ? c.segment : first.back());
           values.push_back(c.value);
         }
@@ -390,7 +390,7 @@ TEST(SkyPaths, KeptThroughChangesOfSkyAndGeometry) {
     moving.boundsWorld = transformed(room.scene.assets.meshes[moving.mesh].boundsObject, moving.worldFromObject);
     const SceneView view = room.scene.view();
     rays.update(view);
-    const Disturbance moved(view);
+    const DirtyRegion moved(view);
     RadianceUpdate update;
     update.paths = 32;
     update.moved = &moved;

@@ -7,7 +7,7 @@
 #include "engine/trace/analytic_query.h"
 #include "gi/plan/presets.h"
 #include "gi/reference/state_file.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 
 #include <fstream>
 #include <sstream>

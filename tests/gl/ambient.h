@@ -9,7 +9,7 @@ namespace lambent::test {
 
 class Ambient : public IndirectStage {
  public:
-  LightOnSurfaces run(const IndirectInputs& in, FrameStats&) override {
+  SurfaceLighting run(const IndirectInputs& in, FrameStats&) override {
     target_.fit(in.surfaces);
     const float one[4] = {1, 1, 1, 1};
     glClearTexImage(target_.light().irradiance->name(), 0, GL_RGBA, GL_FLOAT, one);

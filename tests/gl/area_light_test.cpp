@@ -3,7 +3,7 @@
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/direct_light.h"
 #include "gi/plan/effects.h"
-#include "gi/vpl/area_lobe.h"
+#include "gi/lighting/area_lobe.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -44,7 +44,7 @@ class AreaLightTest : public GlTest {
             cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
         const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
         if (!hit.valid()) continue;
-        const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.grain());
+        const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
         vec3 sum(0);
         for (const EmitterTriangle& t : lights.triangles)
           for (int i = 0; i < side * side; ++i) {
@@ -53,7 +53,7 @@ class AreaLightTest : public GlTest {
             const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
             const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
             if (cosine <= 0 || cosineLight <= 0) continue;
-            if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.grain())))) continue;
+            if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.rayEpsilon())))) continue;
             const float r2 = glm::dot(way, way);
             sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
           }

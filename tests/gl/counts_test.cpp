@@ -1,7 +1,7 @@
 // Draws, waits and read-backs are counted wherever they happen, and a frame makes no more of the last two than it
 // needs.
 #include "engine/gl/query_ring.h"
-#include "gi/lights/reflective_maps.h"
+#include "gi/reflective/reflective_maps.h"
 #include "gl_fixture.h"
 
 #include <chrono>

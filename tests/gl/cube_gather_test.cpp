@@ -147,8 +147,8 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   settings.smc.bounces = 2;
   settings.image.exposure = 1;
   settings.cube.resolution = 64;
-  settings.standIn.after = 20;
-  settings.standIn.perFrame = 64;
+  settings.stillCache.after = 20;
+  settings.stillCache.perFrame = 64;
   GiFrame gi(settings);
   gi.run(room.scene.view());
   double mean = 0, most = 0;
@@ -161,12 +161,12 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   int alone = 0, frames = 0;
   for (; frames < 200 && alone < 3; ++frames) {
     const FrameStats& stats = gi.run(still());
-    EXPECT_TRUE(frames + 1 >= settings.standIn.after || stats.raysCube.closest == 0) << frames;
+    EXPECT_TRUE(frames + 1 >= settings.stillCache.after || stats.raysCube.closest == 0) << frames;
     alone += !stats.plan.on(EffectId::Gather);
     step(frames > 5); // before, the history is short
   }
   ASSERT_EQ(alone, 3);
-  EXPECT_GT(frames, settings.standIn.after + 16 + 4);
+  EXPECT_GT(frames, settings.stillCache.after + 16 + 4);
   const Image cube = gi.read(Buffer::Irradiance);
   Settings own = settings;
   applyTechnique(own, "ibrr");
@@ -210,8 +210,8 @@ TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
   settings.smc.bounces = 2;
   settings.image.exposure = 1;
   settings.cube.resolution = 32;
-  settings.standIn.after = 4;
-  settings.standIn.perFrame = 256;
+  settings.stillCache.after = 4;
+  settings.stillCache.perFrame = 256;
   GiFrame gi(settings);
   gi.run(room.scene.view());
   const auto untilAlone = [&] {
@@ -237,9 +237,9 @@ TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
   EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
   untilAlone();
   isThatOfNow("after a setting changed");
-  gi.settings().standIn.after = 0;
+  gi.settings().stillCache.after = 0;
   for (int f = 0; f < 20; ++f) EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
-  gi.settings().standIn.after = 4;
+  gi.settings().stillCache.after = 4;
   gi.settings().effects[EffectId::Gather] = EffectMode::Off;
   for (int f = 0; f < 12; ++f) gi.run(still());
 }

@@ -47,7 +47,7 @@ class DirectTest : public GlTest {
 
   ShadowSettings settings = fixedResolutions();
   AreaSettings area;
-  uint32_t mostDoubts = ShadowDoubts::kMost;
+  uint32_t mostDoubts = ShadowRayPass::kMost;
   FrameStats stats; // of the last picture
 };
 
@@ -251,7 +251,7 @@ TEST_F(DoubtTest, MoreDoubtsThanTheListHolds) {
   Case c = cases()[0];
   settings.pointResolution = 16;
   c.lights.resize(150, c.lights[0]);
-  for (const uint32_t most : {ShadowDoubts::kMost, 3000u}) { // it may grow; the picture is taken in parts
+  for (const uint32_t most : {ShadowRayPass::kMost, 3000u}) { // it may grow; the picture is taken in parts
     mostDoubts = most;
     const Image image = picture(c);
     EXPECT_GT(stats.raysShadows.occlusion, 1u << 14);
@@ -464,10 +464,10 @@ TEST_F(DirectTest, WhatMovesIsDrawnOverWhatStandsStill) {
   target.bind();
   target.attachDepthLayer(depth, 0);
   const auto drawn = [&](Instances which) { return gpu.draw(DrawKind::Depth, mat4(1), vec3(0), which); };
-  EXPECT_EQ(drawn(Instances::Restless), 0u) << "all came to rest";
+  EXPECT_EQ(drawn(Instances::Moving), 0u) << "all came to rest";
   room.scene.instances[ball].worldFromObject[3].x += 0.1f;
   gpu.place(room.scene.view().instances);
-  EXPECT_EQ(drawn(Instances::Restless), 1u);
+  EXPECT_EQ(drawn(Instances::Moving), 1u);
   EXPECT_EQ(drawn(Instances::Still), 1u);
 }
 

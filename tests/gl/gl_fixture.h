@@ -8,12 +8,12 @@
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
 #include "gi/frame/gi_frame.h"
-#include "gi/frame/picture.h"
+#include "gi/viewer/picture.h"
 #include "gi/gather/stages.h"
-#include "gi/lights/packed_lights.h"
+#include "gi/sources/packed_lights.h"
 #include "gi/surfaces/surfaces.h"
-#include "gi/vpl/disturbance.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/dirty_region.h"
+#include "gi/lighting/light_set.h"
 #include "shaders/shared/paraboloid.h"
 #include "tests/support/hand_scene.h"
 
@@ -129,15 +129,15 @@ class GatherTest : public GlTest {
     placed = std::make_unique<PlacedScene>(programs, scene);
     return surfacePass.run({placed->gpu(), scene.camera, glossy});
   }
-  LightOnSurfaces gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
+  SurfaceLighting gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
                            const ParaboloidMaps* maps = nullptr) {
     Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-    const LightOnSurfaces light =
+    const SurfaceLighting light =
         stages.of(settings).run({placed->world(), gbuffer, pyramid, {lights, maps}, settings}, stats);
     patches = pyramid.made();
     return light;
   }
-  LightOnSurfaces gathered(const GBuffer& gbuffer, std::span<const VirtualLight> lights, const Settings& settings,
+  SurfaceLighting gathered(const GBuffer& gbuffer, std::span<const VirtualLight> lights, const Settings& settings,
                            const ParaboloidMaps* maps = nullptr) {
     return gathered(gbuffer, VirtualLights{.packed = lightBuffer.run(lights), .slots = lights}, settings, maps);
   }
@@ -146,8 +146,8 @@ class GatherTest : public GlTest {
     settings.gather.mode = mode;
     return settings;
   }
-  static Image read(Buffer buffer, const GBuffer& gbuffer, const LightOnSurfaces& gathered,
-                    const LightOnSurfaces& indirect = {}) {
+  static Image read(Buffer buffer, const GBuffer& gbuffer, const SurfaceLighting& gathered,
+                    const SurfaceLighting& indirect = {}) {
     FrameResults results;
     results.surfaces = gbuffer;
     results.gathered = gathered;

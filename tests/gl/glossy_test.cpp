@@ -32,7 +32,7 @@ class GlossyTest : public GatherTest {
   };
 
   GBuffer surfaces(const HandScene& scene, bool glossy = true) { return GatherTest::surfaces(scene, glossy); }
-  Image indirectRadiance(const GBuffer& gbuffer, const LightOnSurfaces& indirect) {
+  Image indirectRadiance(const GBuffer& gbuffer, const SurfaceLighting& indirect) {
     return read(Buffer::Indirect, gbuffer, {}, indirect);
   }
 
@@ -56,8 +56,8 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
     const GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
     const GBuffer gbuffer = surfaces(floor.scene);
     const std::vector lights{lightAt(position, normal, radiance, kArea)};
-    const LightOnSurfaces raw = gathered(gbuffer, lights, with(GatherMode::Full));
-    const LightOnSurfaces indirect = filterPass.run({gbuffer, raw, {}});
+    const SurfaceLighting raw = gathered(gbuffer, lights, with(GatherMode::Full));
+    const SurfaceLighting indirect = filterPass.run({gbuffer, raw, {}});
     const Image image = indirectRadiance(gbuffer, indirect);
     const Picture picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
     FrameResults results;
@@ -92,7 +92,7 @@ TEST_F(GlossyTest, InterleavedMeansTheSameAsFull) {
   // The same light in every slot: each subset of 16 sees as much as all of them together.
   const std::vector<VirtualLight> lights(2048, lightAt({-0.6f, 0.9f, -1.2f}, {0, -1, 0}, vec3(1, 2, 3), 0.01f));
   const auto radianceOf = [&](GatherMode mode) {
-    const LightOnSurfaces raw = gathered(gbuffer, lights, with(mode));
+    const SurfaceLighting raw = gathered(gbuffer, lights, with(mode));
     return indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = false}}));
   };
   const Image full = radianceOf(GatherMode::Full), interleaved = radianceOf(GatherMode::Interleaved);
@@ -120,7 +120,7 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
   glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
   for (const bool on : {true, false})
     for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
-      const LightOnSurfaces raw{&black, &constant, true};
+      const SurfaceLighting raw{&black, &constant, true};
       const Image image = indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = on, .kernel = kernel}}));
       for (int y = 0; y < 48; ++y)
         for (int x = 0; x < 64; ++x)
@@ -177,13 +177,13 @@ TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
   image.srgb = false;
   image.texels = {{255, 191, 102, 255}};
   floor.scene.assets.images.push_back(image);
-  floor.scene.assets.materials[0].finishTexture.image = 0;
+  floor.scene.assets.materials[0].roughnessMetalnessTexture.image = 0;
   const GBuffer gbuffer = surfaces(floor.scene);
-  for (const vec4& t : readTexture(*gbuffer.finish)) {
+  for (const vec4& t : readTexture(*gbuffer.roughnessMetalness)) {
     ASSERT_NEAR(t.x, 0.8f * 191 / 255, 1e-4f);
     ASSERT_NEAR(t.y, 0.5f * 102 / 255, 1e-4f);
   }
-  EXPECT_EQ(surfaces(floor.scene, false).finish, nullptr);
+  EXPECT_EQ(surfaces(floor.scene, false).roughnessMetalness, nullptr);
 }
 
 TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
@@ -216,7 +216,7 @@ TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
         v.radiance = albedo / kPi * punctualIrradiance(point, v.position, v.normal).irradiance;
         shown.push_back(lightOf(v));
       }
-      const LightOnSurfaces raw = gathered(gbuffer, shown, all);
+      const SurfaceLighting raw = gathered(gbuffer, shown, all);
       means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
     }
     const ReferenceInputs in{rays, lights, view.camera, 1, settings.clamp, 1, &view};

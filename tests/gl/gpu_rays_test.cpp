@@ -1,4 +1,4 @@
-#include "gi/visibility/gpu_rays.h"
+#include "engine/gpu_trace/gpu_rays.h"
 
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
@@ -38,7 +38,7 @@ int differences(const RayQuery& a, const RayQuery& b, std::span<const Ray> rays)
     EXPECT_EQ(t[i], y.t);
     EXPECT_EQ(blocked[i] != 0, y.valid());
     const auto apart = [&](float t) { return std::abs((x.t - t) * glm::dot(x.geometricNormal, rays[i].direction)); };
-    if (x.valid() != y.valid() || (x.valid() && apart(y.t) > 2 * a.grain())) {
+    if (x.valid() != y.valid() || (x.valid() && apart(y.t) > 2 * a.rayEpsilon())) {
       ++count;
       continue;
     }
@@ -62,7 +62,7 @@ TEST_F(GpuRaysTest, AgreeWithEmbreeWhileAnythingHappens) {
     wrong += differences(world.rays(), gpu, rays);
     all += int(rays.size());
   }
-  EXPECT_EQ(gpu.grain(), world.rays().grain());
+  EXPECT_EQ(gpu.rayEpsilon(), world.rays().rayEpsilon());
   EXPECT_LE(wrong, 2) << "of " << all; // at edges
 }
 

@@ -1,5 +1,5 @@
 // Hemicubes: what the GPU draws is what rays meet.
-#include "gi/gather/hemicube_pass.h"
+#include "gi/cube/draw/hemicube_pass.h"
 
 #include "gi/cube/layered_cube.h"
 #include "gi/vpl/sources.h"
@@ -21,7 +21,7 @@ class HemicubeTest : public GlTest {
   void compare(const World& world, std::span<const VirtualLight> lights, int resolution, Agreement& sum) {
     HemicubePass pass(passes);
     std::vector<Hemicube> drawn, cast;
-    for (const VirtualLight& light : lights) drawn.push_back(hemicubeAt(light, resolution, world.rays.grain()));
+    for (const VirtualLight& light : lights) drawn.push_back(hemicubeAt(light, resolution, world.rays.rayEpsilon()));
     cast = drawn;
     pass.prepare(world, CubeMaker::Raster);
     pass.make(drawn);
@@ -47,7 +47,7 @@ class HemicubeTest : public GlTest {
           const HemicubeTexel& is = drawn.at(face, x, y);
           const vec2 middle = vec2(x, y) + 0.5f;
           const vec3 direction = drawn.direction(face, middle);
-          if (same(is, direction, cast.at(face, x, y), direction, rays.grain())) continue;
+          if (same(is, direction, cast.at(face, x, y), direction, rays.rayEpsilon())) continue;
           ++sum.apart;
           sum.astray += !metBeside(rays, drawn, face, middle, is);
         }
@@ -55,10 +55,10 @@ class HemicubeTest : public GlTest {
 
   /// Whether two texels show one surface; each with the direction that it looks in.
   static bool same(const HemicubeTexel& a, const vec3& directionA, const HemicubeTexel& b, const vec3& directionB,
-                   float grain) {
+                   float rayEpsilon) {
     if (!(a.distance < kInfinity) || !(b.distance < kInfinity)) return a.distance == b.distance;
     const float off = std::abs(glm::dot(b.normal, a.distance * directionA - b.distance * directionB));
-    return off < 2 * grain + 1e-5f * b.distance && glm::dot(a.normal, b.normal) > 1 - 1e-4f &&
+    return off < 2 * rayEpsilon + 1e-5f * b.distance && glm::dot(a.normal, b.normal) > 1 - 1e-4f &&
            glm::dot(a.normal, directionA) < 1e-3f;
   }
 
@@ -71,7 +71,7 @@ class HemicubeTest : public GlTest {
         const vec3 direction = hemicube.direction(face, middle + 0.5f * kAside * vec2(u, v));
         const SurfaceHit hit = rays.closest(Ray{hemicube.origin, direction});
         const HemicubeTexel met = hit.valid() ? HemicubeTexel{hit.t, hit.geometricNormal} : HemicubeTexel{};
-        if (same(texel, hemicube.direction(face, middle), met, direction, rays.grain())) return true;
+        if (same(texel, hemicube.direction(face, middle), met, direction, rays.rayEpsilon())) return true;
       }
     return false;
   }

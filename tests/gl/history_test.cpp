@@ -185,7 +185,7 @@ class HistoryPassTest : public GatherTest {
     const gl::Texture given("given", {.format = GL_RGBA32F, .width = gbuffer.width, .height = gbuffer.height});
     glTextureSubImage2D(given.name(), 0, 0, 0, gbuffer.width, gbuffer.height, GL_RGBA, GL_FLOAT, light.data());
     history.fit(gbuffer);
-    const LightOnSurfaces raw{&given, nullptr, false};
+    const SurfaceLighting raw{&given, nullptr, false};
     return read(Buffer::Irradiance, gbuffer, raw, history.run({gbuffer, raw, cameraMoved, false, {.frames = 64}, {}}));
   }
   HistoryPass history{passes};

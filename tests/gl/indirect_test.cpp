@@ -21,7 +21,7 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
       settings.gather.disk = disk;
       settings.gather.clamp = clamp;
       const std::vector lights{lamp(position, normal, 4, 0.2f)};
-      const LightOnSurfaces raw = gathered(gbuffer, lights, settings);
+      const SurfaceLighting raw = gathered(gbuffer, lights, settings);
       const Image image = read(Buffer::Unfiltered, gbuffer, raw);
       for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
@@ -120,7 +120,7 @@ TEST_F(IndirectTest, FilterKeepsConstants) {
   const gl::Texture constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 44});
   const float value[4] = {0.3f, 1.7f, 4000, 1};
   glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
-  const LightOnSurfaces raw{&constant, nullptr, true};
+  const SurfaceLighting raw{&constant, nullptr, true};
   for (const bool on : {true, false}) {
     const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {.on = on}}));
     for (const vec3& e : image.pixels) {
@@ -139,7 +139,7 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(vec3(float(1 << (x / 16 + 4 * (y / 12)))), 1);
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
-  const LightOnSurfaces raw{&tiles, nullptr, true};
+  const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 3; y < 45; ++y)
     for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
@@ -158,7 +158,7 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
       texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
-  const LightOnSurfaces raw{&tiles, nullptr, true};
+  const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x)
@@ -180,7 +180,7 @@ TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same 
     for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);
   const gl::Texture light("light", {.format = GL_RGBA32F, .width = 64, .height = 48});
   glTextureSubImage2D(light.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
-  const LightOnSurfaces raw{&light, nullptr, false, true};
+  const SurfaceLighting raw{&light, nullptr, false, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   int nearer = 0;
   for (int y = 0; y < 48; ++y)
@@ -203,7 +203,7 @@ TEST_F(IndirectTest, CompositeAddsUp) {
     for (int x = 0; x < 64; ++x) texels[size_t(47 - y) * 64 + x] = vec3(float(y + 1)); // rows from the bottom
   glTextureSubImage2D(irradiance.name(), 0, 0, 0, 64, 48, GL_RGB, GL_FLOAT, texels.data());
   CompositePass composite(passes);
-  const LightOnSurfaces indirect{&irradiance}, direct{&irradiance};
+  const SurfaceLighting indirect{&irradiance}, direct{&irradiance};
   FrameResults results;
   results.surfaces = gbuffer;
   results.direct = direct;

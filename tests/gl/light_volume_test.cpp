@@ -1,6 +1,6 @@
 // Light propagation volumes: what is conserved, what walls stop, and what stays when the grid moves on.
 #include "engine/core/rng.h"
-#include "gi/gather/light_volume.h"
+#include "gi/volume/light_volume.h"
 #include "gi/plan/techniques.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
@@ -99,7 +99,7 @@ TEST_F(LightVolumeTest, AFurnaceIsEven) {
   settings.lpv.steps = 256;
   for (const int cells : {8, 16, 32}) {
     settings.lpv.cells = cells;
-    const LightOnSurfaces light = gathered(gbuffer, shiningWalls(vec3(-1), vec3(1), 64), settings);
+    const SurfaceLighting light = gathered(gbuffer, shiningWalls(vec3(-1), vec3(1), 64), settings);
     double sum = 0;
     float least = kInfinity, most = 0;
     const std::vector<vec4> texels = readTexture(*light.irradiance);
@@ -164,7 +164,7 @@ TEST_F(LightVolumeTest, PolesAreNoWalls) {
     scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
     add(scene);
     PlacedScene world(programs, scene);
-    VolumeSights sights;
+    VolumeVisibility sights;
     RayCounts counts;
     sights.update(volumeGrid({.cells = 8}, scene.view(), {}), world.world(), true, counts);
     float least = 1; // of the openings across the middle
@@ -186,7 +186,7 @@ TEST_F(LightVolumeTest, SightsThatAreKeptAreThoseThatWouldBeFound) {
   EmbreeQuery rays(scene.assets);
   GpuScene gpu(programs, scene.assets);
   LightSet none;
-  VolumeSights kept;
+  VolumeVisibility kept;
   SceneView view = scene.view();
   rays.update(view, true);
   VolumeGrid grid;
@@ -205,11 +205,11 @@ TEST_F(LightVolumeTest, SightsThatAreKeptAreThoseThatWouldBeFound) {
     }
     view.instances = scene.instances;
     rays.update(view, true);
-    const Disturbance moved(view);
+    const DirtyRegion moved(view);
     grid = volumeGrid({.cells = 16, .size = 2.4f}, view, grid);
     RayCounts asked, all;
     kept.update(grid, {view, gpu, rays, moved, none, 1}, true, asked);
-    VolumeSights fresh;
+    VolumeVisibility fresh;
     fresh.update(grid, {view, gpu, rays, moved, none, 1}, true, all);
     for (size_t i = 0; i < grid.size(); ++i) {
       const ivec3 at(int(i % 16), int(i / 16 % 16), int(i / 256));

@@ -191,7 +191,7 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
     rays.update(view);
     gpu.place(view.instances);
     RayCounts counts;
-    schedule.disturb(poses, brightness, Disturbance(view), rays, 64, 0, 1, frame, counts);
+    schedule.invalidate(poses, brightness, DirtyRegion(view), rays, 64, 0, 1, frame, counts);
     const std::vector<MapJob> jobs = schedule.take({}, brightness, 64, 1 << 30);
     int64_t texels = 0;
     for (const MapJob& job : jobs) {
@@ -235,7 +235,7 @@ TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
   const double stale = wrong();
   MapSchedule schedule;
   RayCounts counts;
-  schedule.disturb(poses, brightness, Disturbance(view), rays, 64, 0, 1, 0, counts);
+  schedule.invalidate(poses, brightness, DirtyRegion(view), rays, 64, 0, 1, 0, counts);
   int64_t cost = 0;
   for (const MapJob& job : MapSchedule(schedule).take({}, brightness, 64, 1 << 30)) cost += job.texels.area();
   std::vector<MapJob> jobs = schedule.take({}, brightness, 64, cost / 3);
@@ -271,7 +271,7 @@ TEST(MapSchedule, OnlyMapsThatSeeTheMoverWait) {
   AnalyticQuery rays;
   rays.addBox({-0.1f, -50, -50}, {0.1f, 50, 50}, {});
   const Aabb box = boxAround({2, 0, 0}, vec3(0.5f));
-  const Disturbance moved(std::span(&box, 1));
+  const DirtyRegion moved(std::span(&box, 1));
   const MapPose poses[] = {
       {{-2, 0, 0}, {1, 0, 0}, {1, 0, 0}},   // behind the wall, turned towards the mover
       {{5, 0, 0}, {-1, 0, 0}, {-1, 0, 0}},  // in sight
@@ -283,7 +283,7 @@ TEST(MapSchedule, OnlyMapsThatSeeTheMoverWait) {
   for (const int raysPerBox : {16, 0}) {
     MapSchedule schedule;
     RayCounts counts;
-    schedule.disturb(poses, brightness, moved, rays, kResolution, raysPerBox, 1, 0, counts);
+    schedule.invalidate(poses, brightness, moved, rays, kResolution, raysPerBox, 1, 0, counts);
     EXPECT_EQ(schedule.waiting(), raysPerBox ? 2u : 3u);
     const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, 100 * kMap);
     EXPECT_EQ(slotsOf(jobs), raysPerBox ? (std::vector<uint32_t>{1, 4}) : (std::vector<uint32_t>{0, 1, 4}));
@@ -300,14 +300,14 @@ TEST(MapSchedule, APlaceSeenThroughASmallHoleIsFound) {
   AnalyticQuery rays;
   rays.addBox({1, -50, -50}, {1.1f, 50, 0.18f}, {}); // hides z < 0.189 of [-0.25, 0.25]
   const Aabb box = boxAround({2.25f, 0, 0}, vec3(0.5f));
-  const Disturbance moved(std::span(&box, 1));
+  const DirtyRegion moved(std::span(&box, 1));
   const MapPose pose{{-20, 0, 0}, {1, 0, 0}, {1, 0, 0}};
   const float brightness[] = {1};
   int found = 0;
   for (uint32_t frame = 0; frame < 200; ++frame) {
     MapSchedule schedule;
     RayCounts counts;
-    schedule.disturb({&pose, 1}, brightness, moved, rays, 2048, 16, 1, frame, counts);
+    schedule.invalidate({&pose, 1}, brightness, moved, rays, 2048, 16, 1, frame, counts);
     found += schedule.waiting() == 1;
   }
   EXPECT_GT(found, 196); // 0.875^16 = 12 % would be missed by independent points
@@ -316,7 +316,7 @@ TEST(MapSchedule, APlaceSeenThroughASmallHoleIsFound) {
 TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
   MapSchedule schedule;
   const std::vector<float> brightness{0.1f, 5, 0, 3, 4, 0.2f, 2, 1};
-  schedule.disturbAll(brightness.size(), kResolution);
+  schedule.invalidateAll(brightness.size(), kResolution);
   EXPECT_EQ(schedule.waiting(), 8u);
   const uint32_t first[] = {0, 5};
   // Two moved lights whatever the budget, then the brightest, coarsely, as long as something is left of it.
@@ -342,7 +342,7 @@ TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
   EXPECT_EQ(slotsOf(last), (std::vector<uint32_t>{3, 4, 7}));
   for (const MapJob& job : last) EXPECT_FALSE(job.coarse);
   EXPECT_EQ(schedule.waiting(), 0u);
-  schedule.disturbAll(brightness.size(), kResolution);
+  schedule.invalidateAll(brightness.size(), kResolution);
   schedule.clear();
   EXPECT_EQ(schedule.waiting(), 0u);
   EXPECT_TRUE(schedule.take({}, brightness, kResolution, 100 * kMap).empty());
@@ -355,9 +355,9 @@ TEST(MapSchedule, PartsAddUpUntilTheyAreDrawn) {
   const Aabb left = boxAround({-3, 4, 0}, vec3(0.5f)), right = boxAround({3, 4, 0}, vec3(0.5f));
   MapSchedule schedule;
   RayCounts counts;
-  schedule.disturb({&pose, 1}, brightness, Disturbance(std::span(&left, 1)), nothing, kResolution, 4, 1, 0, counts);
+  schedule.invalidate({&pose, 1}, brightness, DirtyRegion(std::span(&left, 1)), nothing, kResolution, 4, 1, 0, counts);
   EXPECT_TRUE(schedule.take({}, brightness, kResolution, 0).empty());
-  schedule.disturb({&pose, 1}, brightness, Disturbance(std::span(&right, 1)), nothing, kResolution, 4, 1, 1, counts);
+  schedule.invalidate({&pose, 1}, brightness, DirtyRegion(std::span(&right, 1)), nothing, kResolution, 4, 1, 1, counts);
   EXPECT_EQ(schedule.waiting(), 1u);
   const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, 1);
   ASSERT_EQ(jobs.size(), 1u);
@@ -375,7 +375,7 @@ TEST(MapSchedule, TexelsThatCarryMoreLightComeFirst) {
   for (const auto& brightness : {equal, muchBrighter}) {
     MapSchedule schedule;
     RayCounts counts;
-    schedule.disturb(poses, {brightness, 2}, Disturbance(std::span(&box, 1)), nothing, kResolution, 0, 1, 0, counts);
+    schedule.invalidate(poses, {brightness, 2}, DirtyRegion(std::span(&box, 1)), nothing, kResolution, 0, 1, 0, counts);
     ASSERT_EQ(schedule.waiting(), 2u);
     EXPECT_EQ(slotsOf(schedule.take({}, {brightness, 2}, kResolution, 1)),
               std::vector<uint32_t>{brightness == equal ? 1u : 0u});
@@ -391,7 +391,7 @@ TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
   std::vector<int> drawn(kSlots, 0), since(kSlots, 0);
   int longest = 0;
   for (int frame = 0; frame < 200; ++frame) {
-    schedule.disturbAll(kSlots, kResolution);
+    schedule.invalidateAll(kSlots, kResolution);
     const std::vector<MapJob> jobs = schedule.take({}, brightness, kResolution, kBudget);
     int64_t texels = 0;
     for (int& s : since) ++s;
@@ -430,7 +430,7 @@ TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
   const auto run = [&] {
     MapSchedule schedule;
     RayCounts counts;
-    schedule.disturb(poses, brightness, Disturbance(boxes), nothing, kResolution, 8, 1, 0, counts);
+    schedule.invalidate(poses, brightness, DirtyRegion(boxes), nothing, kResolution, 8, 1, 0, counts);
     return schedule.take({}, brightness, kResolution, 100 * kMap);
   };
   const std::vector<MapJob> many = run();

@@ -315,7 +315,7 @@ TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
     m.metalness = 0.5f;
   }
   const GBuffer gbuffer = surfaces(room.scene, true);
-  ASSERT_NE(gbuffer.finish, nullptr);
+  ASSERT_NE(gbuffer.roughnessMetalness, nullptr);
   const std::vector<VirtualLight> lights = roomLights();
   const auto glossy = [&](GatherMode mode, const MultiresSettings& settings) {
     Settings all = with(mode);

@@ -1,5 +1,5 @@
 // Reflective shadow maps, their VPLs, clusters and trees: flux against closed forms and against one another.
-#include "gi/lights/reflective_maps.h"
+#include "gi/reflective/reflective_maps.h"
 #include "gl_fixture.h"
 #include "shader_copy.h"
 #include "shaders/shared/solid_angle.h"
@@ -68,7 +68,7 @@ class TurnCounter {
     settings.gather.mode = GatherMode::Full;
     Patches none;
     FrameStats stats;
-    const LightOnSurfaces light =
+    const SurfaceLighting light =
         stages_.of(settings).run({world, gbuffer, none, {{.trees = &trees}}, settings}, stats);
     std::vector<Turns> turns;
     for (const vec4& texel : readTexture(*light.irradiance)) turns.push_back({int(texel.y), texel.x > 0});

@@ -1,5 +1,5 @@
 // What texelFetch gives outside a texture is undefined. Here it gives a number, and pictures must not depend on which.
-#include "gi/lights/reflective_maps.h"
+#include "gi/reflective/reflective_maps.h"
 #include "gl_fixture.h"
 #include "shader_copy.h"
 
@@ -69,7 +69,7 @@ class StrictFetchTest : public GlTest {
           FilterPass filterPass{context};
           FrameStats stats;
           Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-          const LightOnSurfaces raw = stages.of(settings).run({world, gbuffer, pyramid, {vpls}, settings}, stats);
+          const SurfaceLighting raw = stages.of(settings).run({world, gbuffer, pyramid, {vpls}, settings}, stats);
           images.push_back(readTexture(*filterPass.run({gbuffer, raw, FilterSettings{}}).irradiance));
         }
       }

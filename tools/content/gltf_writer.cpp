@@ -128,7 +128,7 @@ Index GltfWriter::addMaterial(const MaterialSpec& m) {
   factor.push_back(1);
   surface["baseColorFactor"] = std::move(factor);
   if (m.texture != kAbsent) surface["baseColorTexture"] = {{"index", m.texture}};
-  if (m.finishTexture != kAbsent) surface["metallicRoughnessTexture"] = {{"index", m.finishTexture}};
+  if (m.roughnessMetalnessTexture != kAbsent) surface["metallicRoughnessTexture"] = {{"index", m.roughnessMetalnessTexture}};
   json material{{"name", m.name}, {"pbrMetallicRoughness", std::move(surface)}};
   if (m.alphaMask) material["alphaMode"] = "MASK";
   if (m.doubleSided) material["doubleSided"] = true;

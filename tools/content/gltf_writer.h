@@ -27,7 +27,7 @@ struct MaterialSpec {
   dvec3 albedo{0.7};
   Index texture = kAbsent;
   double roughness = 1, metalness = 0;
-  Index finishTexture = kAbsent; // roughness in green, metalness in blue, times the two above
+  Index roughnessMetalnessTexture = kAbsent; // roughness in green, metalness in blue, times the two above
   bool alphaMask = false;
   bool doubleSided = false;
   dvec3 emissionColor{0};      // each channel in [0, 1]

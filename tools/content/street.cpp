@@ -63,7 +63,7 @@ class StreetBuilder {
     const Index road = s_.gltf.addMaterial({.name = "wet asphalt",
                                             .albedo = {1, 1, 1},
                                             .texture = s_.gltf.addTexture(asphalt("asphalt")),
-                                            .finishTexture = s_.gltf.addTexture(asphaltFinish("asphalt-finish"))});
+                                            .roughnessMetalnessTexture = s_.gltf.addTexture(asphaltFinish("asphalt-finish"))});
     s_.place("road", mapped(box({x0 - 8, -0.4, -14}, {x1 + 8, 0, 14}), 3.0), road);
     Geometry base, kerb;
     for (const double side : {-1.0, 1.0}) {

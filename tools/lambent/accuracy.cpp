@@ -16,7 +16,7 @@ namespace lambent {
 namespace {
 
 void accuracy(const AccuracyOptions& options) {
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);
@@ -48,7 +48,7 @@ void needClamp(const AccuracyOptions& options) {
     throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
 }
 
-RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer) {
+RunPlan stillPlan(LaunchContext& stage, Progress& progress, Buffer buffer) {
   RunPlan plan = planOf(stage, progress, 1);
   plan.view = [&stage](int) { return stage.at(0); };
   plan.inTurn = false;

@@ -47,6 +47,6 @@ void accuracyFigure(const AccuracyOptions& options);
 void needClamp(const AccuracyOptions& options);
 
 /// Still pictures of the stage's first view; what is measured of them is the buffer after the last frame.
-RunPlan stillPlan(Stage& stage, Progress& progress, Buffer buffer);
+RunPlan stillPlan(LaunchContext& stage, Progress& progress, Buffer buffer);
 
 } // namespace lambent

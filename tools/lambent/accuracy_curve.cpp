@@ -98,7 +98,7 @@ void accuracyCurve(const AccuracyOptions& options) {
   LaunchOptions launch = options.launch;
   // Many VPLs, as the paper, to tell the error of patches from that of VPLs; --set comes after.
   if (kind.name == "patches") launch.set.insert(launch.set.begin(), "rsm.vpls=16384");
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   needPunctualLight(*stage);
   say(*stage, options.output.quiet);
   const fs::path folder = reportFolder(options.output.out, "out/accuracy");

@@ -92,7 +92,7 @@ void print(const std::vector<Line>& lines, const std::vector<Measured>& sides, i
   }
 }
 
-std::vector<Variant> sidesOf(const BenchOptions& options, const Stage& stage) {
+std::vector<Variant> sidesOf(const BenchOptions& options, const LaunchContext& stage) {
   std::vector<Variant> sides;
   for (const std::string& technique : options.techniques) {
     LaunchOptions launch = options.launch;
@@ -129,7 +129,7 @@ void bench(const BenchOptions& options) {
   if (options.rays) return benchRays(options);
   if (!options.techniques.empty() && !options.launch.technique.empty())
     throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   const std::vector<Variant> variants = sidesOf(options, *stage);
   if (std::ranges::any_of(variants, [](const Variant& v) { return rowOf(v.settings.vpl.source).reflective; }))
     needPunctualLight(*stage);
@@ -187,7 +187,7 @@ std::string spreadText(const Spread& s) {
   return format("%.*f (%.*f to %.*f)", digits, s.median, digits, s.quarter, digits, s.threeQuarters);
 }
 
-RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress, int frames) {
+RunPlan benchPlan(const BenchOptions& options, LaunchContext& stage, Progress& progress, int frames) {
   RunPlan plan = planOf(stage, progress, options.frames > 0 || stage.shot ? options.frames : frames);
   plan.skip = options.skip;
   if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));

@@ -26,7 +26,7 @@ struct BenchOptions {
 };
 
 /// As the options say, of a scene `frames` where they say nothing. Throws InputError when no frame would be left.
-RunPlan benchPlan(const BenchOptions& options, Stage& stage, Progress& progress, int frames = 0);
+RunPlan benchPlan(const BenchOptions& options, LaunchContext& stage, Progress& progress, int frames = 0);
 
 /// A line of a table: of time, or of what is counted.
 struct Line {

@@ -56,7 +56,7 @@ class ScaledLamps {
   std::vector<InstanceView> instances_;
 };
 
-std::vector<Variant> variantsOf(const Stage& stage) {
+std::vector<Variant> variantsOf(const LaunchContext& stage) {
   Settings base = stage.settings;
   base.effects[EffectId::Indirect] = EffectMode::Off;
   base.effects[EffectId::Redraw] = EffectMode::On;
@@ -84,7 +84,7 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
   LaunchOptions launch = options.launch;
   launch.scene = file;
   if (launch.size.empty()) launch.size = "640x360";
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   GlContext context = GlContext::headless();
   for (const float scale : {1.0f, 0.25f}) {
     Progress progress("drawing", options.output.quiet);

@@ -22,7 +22,7 @@ struct CubeVariant {
   Settings settings;
 };
 
-std::vector<CubeVariant> variantsOf(const Stage& stage, bool quick) {
+std::vector<CubeVariant> variantsOf(const LaunchContext& stage, bool quick) {
   std::vector<CubeVariant> all;
   Settings other = stage.settings;
   other.effects[EffectId::Redraw] = EffectMode::On;
@@ -73,7 +73,7 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
   LaunchOptions launch = options.launch;
   launch.scene = file;
   if (launch.size.empty()) launch.size = options.quick ? "64x36" : "640x360";
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   GlContext context = GlContext::headless();
   Progress progress("measuring", options.output.quiet);
   const SceneView still = stage->at(0);

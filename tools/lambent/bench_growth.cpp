@@ -45,7 +45,7 @@ struct Sweep {
 };
 
 /// Of what `count` counts in the views that `make` gives.
-Sweep sweepOf(const char* name, const char* title, const std::vector<float>& factors, const Stage& stage,
+Sweep sweepOf(const char* name, const char* title, const std::vector<float>& factors, const LaunchContext& stage,
               const SceneView& view, const std::function<std::shared_ptr<ScaledView>(float)>& make,
               const std::function<double(const SceneView&)>& count) {
   Sweep sweep{name, title, {}, {}};
@@ -58,7 +58,7 @@ Sweep sweepOf(const char* name, const char* title, const std::vector<float>& fac
   return sweep;
 }
 
-Sweep sweepOf(const std::string& name, const Stage& stage, const SceneView& view) {
+Sweep sweepOf(const std::string& name, const LaunchContext& stage, const SceneView& view) {
   if (name == "vpls") {
     Sweep sweep{"vpls", "virtual lights, N", {}, {}};
     for (int quarters : {1, 2, 4, 8}) {
@@ -183,7 +183,7 @@ std::string csvOf(const nlohmann::json& sweeps) {
 } // namespace
 
 void benchGrowth(const BenchOptions& options) {
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   if (!rowOf(stage->settings.vpl.source).sampled)
     throw InputError("--technique " + options.launch.technique, "has no sampled lights (smc, ir, mir and tcas have)");
   say(*stage, options.output.quiet);

@@ -61,7 +61,7 @@ double medianMs(const Measured& m, size_t row) {
 nlohmann::json columnOf(const BenchOptions& options, const std::string& file) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   needPunctualLight(*stage);
   say(*stage, options.output.quiet);
   std::vector<Variant> variants;

@@ -5,7 +5,7 @@
 #include "engine/core/sampling.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/embree_query.h"
-#include "gi/visibility/gpu_rays.h"
+#include "engine/gpu_trace/gpu_rays.h"
 #include "tools/lambent/bench.h"
 #include "tools/lambent/text.h"
 
@@ -26,7 +26,7 @@ std::vector<Ray> randomRays(const RayQuery& rays, const Aabb& bounds, size_t cou
   std::vector<SurfaceHit> hits(out.size());
   rays.closest(out, hits);
   std::erase_if(hits, [](const SurfaceHit& h) { return !h.valid(); });
-  const auto off = [&](const SurfaceHit& h) { return offsetPoint(h.position, h.geometricNormal, rays.grain()); };
+  const auto off = [&](const SurfaceHit& h) { return offsetPoint(h.position, h.geometricNormal, rays.rayEpsilon()); };
   for (size_t i = 0; out.size() < count; ++i)
     out.push_back(hits.empty() ? out[i] : segment(off(hits[i % hits.size()]), off(hits[(i * 7919 + 1) % hits.size()])));
   return out;
@@ -35,24 +35,24 @@ std::vector<Ray> randomRays(const RayQuery& rays, const Aabb& bounds, size_t cou
 /// Why two answers may differ, or that nothing excuses it.
 enum class Difference { None, SamePlace, End, Edge, Grazing, Alpha, Other, Count };
 constexpr const char* kDifferences[] = {"the same",
-                                        "two surfaces at the same place (each to the query's grain)",
+                                        "two surfaces at the same place (each to the query's rayEpsilon)",
                                         "at an end of the segment (as near)",
                                         "at an edge (a thousandth of the triangle)",
                                         "grazing (a thousandth of a right angle)",
                                         "at the border of a mask",
                                         "other"};
 
-Difference differenceOf(const SceneView& view, float grain, const Ray& ray, const SurfaceHit& a, const SurfaceHit& b) {
+Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a, const SurfaceHit& b) {
   // Metres between two places on the ray, across the surface that lies there.
   const auto apart = [&](const SurfaceHit& h, float t) {
     return std::abs((h.t - t) * glm::dot(h.geometricNormal, ray.direction));
   };
   const bool one = a.instance == b.instance && a.primitive == b.primitive && a.triangle == b.triangle;
   if (!a.valid() && !b.valid()) return Difference::None;
-  if (a.valid() && b.valid() && apart(a, b.t) <= 2 * grain) return one ? Difference::None : Difference::SamePlace;
+  if (a.valid() && b.valid() && apart(a, b.t) <= 2 * rayEpsilon) return one ? Difference::None : Difference::SamePlace;
   for (const SurfaceHit* h : {&a, &b}) {
     if (!h->valid()) continue;
-    if (apart(*h, 0) <= 2 * grain || apart(*h, ray.tMax) <= 2 * grain) return Difference::End;
+    if (apart(*h, 0) <= 2 * rayEpsilon || apart(*h, ray.tMax) <= 2 * rayEpsilon) return Difference::End;
     const float least = std::min({h->barycentric.x, h->barycentric.y, 1 - h->barycentric.x - h->barycentric.y});
     if (least < 1e-3f) return Difference::Edge;
     if (std::abs(glm::dot(h->geometricNormal, glm::normalize(ray.direction))) < 1.6e-3f) return Difference::Grazing;
@@ -72,7 +72,7 @@ double secondsOf(const std::function<void()>& work) {
 } // namespace
 
 void benchRays(const BenchOptions& options) {
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   const GlContext context = GlContext::headless();
   const std::string machine = machineText(context);
@@ -112,7 +112,7 @@ void benchRays(const BenchOptions& options) {
   std::array<size_t, size_t(Difference::Count)> counts{};
   size_t blockedOnly[2] = {};
   for (size_t i = 0; i < rays.size(); ++i) {
-    ++counts[size_t(differenceOf(view, embree.grain(), rays[i], a[i], b[i]))];
+    ++counts[size_t(differenceOf(view, embree.rayEpsilon(), rays[i], a[i], b[i]))];
     if (blockedA[i] != blockedB[i]) ++blockedOnly[blockedB[i]];
   }
   nlohmann::json j{{"scene", options.launch.scene}, {"rays", rays.size()}, {"machine", machine}};

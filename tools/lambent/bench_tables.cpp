@@ -111,7 +111,7 @@ nlohmann::json rowOf(const Published& p) {
 nlohmann::json rowOf(const BenchOptions& options, const std::string& file) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   if (!rowOf(stage->settings.vpl.source).sampled)
     throw InputError("--technique " + launch.technique, "has no sampled lights (smc, ir, mir and tcas have)");

@@ -38,7 +38,7 @@ void addOutputOptions(CLI::App& command, OutputOptions& options, const std::stri
 /// --buffer with the names of all that can be looked at. `doing`: "draw", "record".
 void addBufferOption(CLI::App& command, std::string& buffer, const std::string& doing);
 /// Notes and warnings of a stage on stderr, unless quiet.
-void say(const Stage& stage, bool quiet);
+void say(const LaunchContext& stage, bool quiet);
 /// What a frame warns of, if anything: also where quiet.
 void sayWarning(const FrameStats& stats);
 /// Writes figures for programs; nothing when `file` is empty.
@@ -51,7 +51,7 @@ void checkPictureName(const std::string& file);
 nlohmann::json figuresOf(const FrameStats& stats);
 
 /// A run over the first frames of the stage's shot (0: all; of a scene 60), until Ctrl-C.
-RunPlan planOf(Stage& stage, Progress& progress, int frames);
+RunPlan planOf(LaunchContext& stage, Progress& progress, int frames);
 
 /// Set by Ctrl-C: long work ends after the present frame.
 extern std::atomic<bool> interrupted;

@@ -51,7 +51,7 @@ uint64_t hashOfProgram() {
 
 } // namespace
 
-std::string conditionsOf(const Stage& stage, const LaunchOptions& o, const std::string& more) {
+std::string conditionsOf(const LaunchContext& stage, const LaunchOptions& o, const std::string& more) {
   std::string text = more + '\n' + o.scene + '\n' + textOf(o.scene) + textOf(stage.scene.file);
   for (const std::string& option : {o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
                                     std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.seed)})

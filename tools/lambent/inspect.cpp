@@ -3,7 +3,7 @@
 #include "engine/core/error.h"
 #include "gi/plan/effects.h"
 #include "gi/plan/presets.h"
-#include "gi/vpl/light_set.h"
+#include "gi/lighting/light_set.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/text.h"
 
@@ -18,7 +18,7 @@ const char* typeName(LightType t) {
 }
 
 void inspect(const LaunchOptions& launch, const OutputOptions& output) {
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   const SceneView view = stage->at(0); // its spans hold until the next one
   const SceneAssets& assets = stage->scene.assets;
   uint64_t meshTriangles = 0, placedTriangles = 0;

@@ -29,7 +29,7 @@ void addBufferOption(CLI::App& command, std::string& buffer, const std::string& 
   command.add_option("--buffer", buffer, "what to " + doing + ": " + names + "; to look inside: " + views);
 }
 
-void say(const Stage& stage, bool quiet) {
+void say(const LaunchContext& stage, bool quiet) {
   if (quiet) return;
   for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());
   for (const std::string& n : stage.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
@@ -87,7 +87,7 @@ nlohmann::json figuresOf(const FrameStats& s) {
   return figures;
 }
 
-RunPlan planOf(Stage& stage, Progress& progress, int frames) {
+RunPlan planOf(LaunchContext& stage, Progress& progress, int frames) {
   const int all = stage.shot ? stage.shot->frameCount() : 60;
   const double fps = stage.shot ? stage.shot->fps : 30;
   return {.view = [&stage, fps](int frame) { return stage.at(frame / fps); },

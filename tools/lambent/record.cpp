@@ -83,7 +83,7 @@ struct Side {
 };
 
 /// Of each side, from left to right.
-std::vector<Settings> settingsOf(const RecordOptions& options, Stage& stage) {
+std::vector<Settings> settingsOf(const RecordOptions& options, LaunchContext& stage) {
   std::vector<Settings> all = {stage.settings};
   if (options.beside.empty()) return all;
   LaunchOptions right = options.launch;
@@ -162,7 +162,7 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
 
 void record(const RecordOptions& options) {
   checkOptions(options);
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   const std::vector<Settings> settings = settingsOf(options, *stage);
   say(*stage, options.output.quiet);

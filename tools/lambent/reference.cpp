@@ -50,7 +50,7 @@ void checkClamp(const ReferenceOptions& options, const Settings& settings) {
 void trackPixels(const ReferenceOptions& options) {
   if (fs::path(options.pixels).extension() != ".csv") throw InputError(options.pixels, "not a table (.csv)");
   checkWritable(options.pixels);
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
   const Settings& settings = stage->settings;
@@ -102,7 +102,7 @@ void reference(const ReferenceOptions& options) {
     checkWritable(options.state);
     removeLeftovers(options.state);
   }
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   const Settings& settings = stage->settings;
   checkClamp(options, settings);

@@ -154,7 +154,7 @@ struct Row {
   Assignments assignments;
 };
 
-Variant variantOf(const Stage& stage, const std::string& technique, const Assignments& assignments) {
+Variant variantOf(const LaunchContext& stage, const std::string& technique, const Assignments& assignments) {
   Variant v{technique, stage.settings, stage.seed};
   applyTechnique(v.settings, technique);
   for (const auto& [name, value] : assignments) applySetting(v.settings, name, value);
@@ -264,7 +264,7 @@ struct Baseline {
   float exposure;
 };
 
-std::optional<Baseline> baselineOf(const PaperFigure& figure, const Stage& stage, const RunPlan& plan) {
+std::optional<Baseline> baselineOf(const PaperFigure& figure, const LaunchContext& stage, const RunPlan& plan) {
   if (figure.truth == Truth::None) return {};
   Variant every = variantOf(stage, "rsm", {{"gather.mode", "full"}});
   if (figure.truth == Truth::Texels) lightByEveryTexel(every.settings);
@@ -285,7 +285,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
   LaunchOptions launch = options.launch;
   if (launch.size.empty()) launch.size = options.quick ? "48x27" : "512x512";
   if (options.quick) launch.set.insert(launch.set.begin(), {"rsm.resolution=32", "rsm.coarsest=8"});
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   needPunctualLight(*stage);
   if (figure.overTime && !stage->shot) throw InputError(launch.scene, "not a shot (a .json file, with moving lights)");
   say(*stage, options.output.quiet);

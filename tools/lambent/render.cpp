@@ -33,7 +33,7 @@ void render(const RenderOptions& options) {
   const Buffer buffer = bufferByName(options.buffer);
   const std::string out = options.output.out.empty() ? "lambent.png" : options.output.out;
   checkPictureName(out);
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
   GiFrame gi(stage->settings, stage->seed);

@@ -26,7 +26,7 @@ struct SoakOptions {
 /// Random changes of a stage, the same for the same seed.
 class Edits {
  public:
-  Edits(Stage& stage, uint32_t seed) : stage_(stage), random_(seed, Stream::Test, 0) {
+  Edits(LaunchContext& stage, uint32_t seed) : stage_(stage), random_(seed, Stream::Test, 0) {
     Registry& registry = stage.scene.registry;
     bounds_ = worldBounds(stage.scene);
     registry.each<MeshInstance, Transform>([&](Entity e, const MeshInstance&, const Transform& t) {
@@ -94,7 +94,7 @@ class Edits {
     }
   }
 
-  Stage& stage_;
+  LaunchContext& stage_;
   Rng random_;
   Aabb bounds_;
   std::vector<std::pair<Entity, Transform>> objects_;
@@ -132,7 +132,7 @@ struct Growth {
 };
 
 void soak(const SoakOptions& options) {
-  const auto stage = openStage(options.launch);
+  const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   needPunctualLight(*stage);
   GlContext context = GlContext::headless();

@@ -73,7 +73,7 @@ bool drawsWholeFrames(const Settings& settings) {
 }
 
 /// The truth first, path traced in two halves, then each technique with each seed.
-std::vector<Variant> variantsOf(const StabilityOptions& options, const Stage& stage, const WatchedScene& watched) {
+std::vector<Variant> variantsOf(const StabilityOptions& options, const LaunchContext& stage, const WatchedScene& watched) {
   std::vector<Variant> variants{{"truth", stage.settings, stage.seed}};
   if (options.pathTraced()) {
     variants.push_back({"truth, second half", stage.settings, ~stage.seed});
@@ -105,7 +105,7 @@ ValueSeries joined(ValueSeries a, const ValueSeries& b, int samples) {
 }
 
 /// The first frame, path traced, with the marked pixels numbered.
-Image markedPicture(Stage& stage, std::span<const vec2> marked, int samples) {
+Image markedPicture(LaunchContext& stage, std::span<const vec2> marked, int samples) {
   constexpr int kWidth = 480;
   SceneView view = stage.at(0);
   view.camera.height = std::max(1, view.camera.height * kWidth / view.camera.width);
@@ -128,7 +128,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   launch.scene = file;
   // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
   launch.set.insert(launch.set.begin(), "vpl.visibility=rays");
-  const auto stage = openStage(launch);
+  const auto stage = openLaunch(launch);
   refuseGlossy(stage->settings);
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
   say(*stage, options.output.quiet);

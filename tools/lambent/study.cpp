@@ -14,7 +14,7 @@ Study::Study(const AccuracyOptions& options, const std::string& size, Assignment
   if (options.quick) defaults.insert(defaults.end(), {{"smc.vpls", "128"}, {"smc.warmup", "4"}});
   if (options.clamp) defaults.emplace_back("gather.clamp", format("%.9g", *options.clamp));
   for (const auto& [name, value] : defaults) launch.set.insert(launch.set.begin(), name + "=" + value);
-  stage = openStage(launch);
+  stage = openLaunch(launch);
   say(*stage, options.output.quiet);
   context_.emplace(GlContext::headless());
 }

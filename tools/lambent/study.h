@@ -39,7 +39,7 @@ class Study {
               nlohmann::json figures = nlohmann::json::object()) const;
 
   LaunchOptions launch;
-  std::unique_ptr<Stage> stage;
+  std::unique_ptr<LaunchContext> stage;
   std::optional<TracedPicture> truth; // the last one traced
 
  private:

@@ -73,7 +73,7 @@ class SceneSweep {
     LaunchOptions launch = options.launch;
     launch.scene = file;
     if (launch.size.empty()) launch.size = options.quick ? "48x27" : "128x72";
-    stage_ = openStage(launch);
+    stage_ = openLaunch(launch);
     refuseGlossy(stage_->settings);
     say(*stage_, options.output.quiet);
     name_ = fs::path(file).stem().string();
@@ -265,7 +265,7 @@ class SceneSweep {
   const AccuracyOptions& options_;
   const SweepFrames frames_;
   const fs::path folder_;
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<LaunchContext> stage_;
   std::optional<GlContext> context_;
   std::string name_, conditions_;
   int samples_ = 0;

@@ -100,7 +100,7 @@ void addSkyAndSun(Scene& scene, const Daylight& daylight) {
 }
 
 /// In place of the scene's own.
-void replaceDaylight(Stage& stage, const LaunchOptions& options) {
+void replaceDaylight(LaunchContext& stage, const LaunchOptions& options) {
   const std::string given = "--daylight " + options.daylight;
   if (!options.sky.empty() || !options.suns.empty())
     throw InputError(given, std::string("is a sky and a sun of its own (leave out ") +
@@ -155,7 +155,7 @@ CameraView namedCamera(const Scene& scene, const std::string& name) {
                                             ")");
 }
 
-void chooseCamera(Stage& stage, const LaunchOptions& options) {
+void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
   const bool eye = !options.eye.empty();
   if (eye != !options.target.empty())
     throw InputError(eye ? "--eye " + options.eye : "--target " + options.target, "--eye and --target go together");
@@ -195,7 +195,7 @@ bool hasEmitters(const Scene& scene) {
 
 /// Whether the sky is to be seen from the camera, or lights what is; else adds a lamp by the camera, for a sun would
 /// leave a closed room black. `lack`: what the scene is without.
-bool isOpenOrHasLamp(Stage& stage, const SceneView& view, const std::string& lack) {
+bool isOpenOrHasLamp(LaunchContext& stage, const SceneView& view, const std::string& lack) {
   EmbreeQuery rays(stage.scene.assets);
   rays.update(view);
   if (skyReaches(rays, view.camera.position())) return true;
@@ -274,10 +274,10 @@ void refuseNotANumber(CLI::App& command) {
           "");
 }
 
-Stage::Stage() = default;
-Stage::~Stage() = default;
+LaunchContext::LaunchContext() = default;
+LaunchContext::~LaunchContext() = default;
 
-SceneView Stage::at(double t) {
+SceneView LaunchContext::at(double t) {
   CameraView view = camera;
   if (shot) {
     poseShot(scene, *shot, t);
@@ -298,13 +298,13 @@ void useThreads(int threads) {
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
 }
 
-std::unique_ptr<Stage> openStage(const LaunchOptions& options) {
+std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
   useThreads(options.threads);
-  return loadStage(options, {});
+  return loadLaunch(options, {});
 }
 
-std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& step) {
-  auto stage = std::make_unique<Stage>();
+std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const LoadStep& step) {
+  auto stage = std::make_unique<LaunchContext>();
   fs::path file = options.scene;
   if (file.extension() == ".json") {
     stage->shot = loadShot(file);
@@ -344,7 +344,7 @@ std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& s
   return stage;
 }
 
-void tellWhatIsLeftOut(Stage& stage, const Settings& settings) {
+void tellWhatIsLeftOut(LaunchContext& stage, const Settings& settings) {
   if (!rowOf(settings.vpl.source).reflective) return;
   SceneExtractor probe;
   const SceneView view = probe.extract(stage.scene, stage.camera, 0);
@@ -356,7 +356,7 @@ void tellWhatIsLeftOut(Stage& stage, const Settings& settings) {
     stage.notes.push_back(technique + " reflects punctual lights only: none of what glows or of the sky");
 }
 
-void needPunctualLight(Stage& stage) {
+void needPunctualLight(LaunchContext& stage) {
   SceneExtractor probe;
   const SceneView view = probe.extract(stage.scene, stage.camera, 0);
   const bool lit = std::any_of(view.lights.begin(), view.lights.end(),

@@ -18,7 +18,7 @@ namespace lambent {
 
 class Props;
 
-/// As parsed; texts are checked by openStage.
+/// As parsed; texts are checked by openLaunch.
 struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
   std::string sceneName; // of several in the file
@@ -41,10 +41,10 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options);
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot);
 
 /// Everything that a frame is made from.
-class Stage {
+class LaunchContext {
  public:
-  Stage();
-  ~Stage();
+  LaunchContext();
+  ~LaunchContext();
 
   Scene scene;
   std::optional<Shot> shot;
@@ -65,21 +65,21 @@ class Stage {
 /// Loads and checks everything. A scene without light gets a stated default: a clear sky and its sun, or where none of
 /// the sky reaches a lamp by the camera. Also applies `threads`, to OpenGL on software Mesa too, so call it before a
 /// context is made. Throws InputError.
-std::unique_ptr<Stage> openStage(const LaunchOptions& options);
+std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options);
 
-/// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openStage
+/// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openLaunch
 /// does it for the stage's own.
-void tellWhatIsLeftOut(Stage& stage, const Settings& settings);
+void tellWhatIsLeftOut(LaunchContext& stage, const Settings& settings);
 /// Its two halves, for who loads beside a window: the first before there is a context, the second on any thread.
 void useThreads(int threads);
-std::unique_ptr<Stage> loadStage(const LaunchOptions& options, const LoadStep& step);
+std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const LoadStep& step);
 
 /// Width and height of --size. Throws InputError.
 std::pair<int, int> sizeOf(const std::string& text);
 
 /// Such a sun or lamp for a scene that only lamps that glow or a sky light: reflective shadow maps need punctual
 /// lights.
-void needPunctualLight(Stage& stage);
+void needPunctualLight(LaunchContext& stage);
 
 /// Folder of the bundled scenes: LAMBENT_CONTENT, else ../share/lambent/content beside the executable, else the source
 /// tree's. Throws InputError naming the places when none is there.

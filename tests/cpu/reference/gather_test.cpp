@@ -2,7 +2,7 @@
 // gather must agree with it, clamped alike, or with what bounds take given back.
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
-#include "gi/vpl/near_light.h"
+#include "gi/near/near_light.h"
 #include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/spread_lights.h"

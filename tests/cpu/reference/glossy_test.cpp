@@ -2,7 +2,7 @@
 // number.
 #include "engine/trace/embree_query.h"
 #include "gi/reference/state_file.h"
-#include "gi/vpl/receivers.h"
+#include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
@@ -26,10 +26,10 @@ struct Plate {
   test::HandScene scene;
   vec3 albedo{0.8f, 0.6f, 0.3f};
 
-  explicit Plate(const Finish& finish) {
+  explicit Plate(const Finish& roughnessMetalness) {
     const uint32_t m = scene.material(albedo);
-    scene.assets.materials[m].roughness = finish.roughness;
-    scene.assets.materials[m].metalness = finish.metalness;
+    scene.assets.materials[m].roughness = roughnessMetalness.roughness;
+    scene.assets.materials[m].metalness = roughnessMetalness.metalness;
     scene.quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, m);
     const vec3 back = glm::normalize(vec3(0.9f, 0, 1));
     scene.camera.worldFromView = mat4(mat3(vec3(0, 1, 0), glm::cross(back, vec3(0, 1, 0)), back));
@@ -59,8 +59,8 @@ struct Plate {
 };
 
 TEST(GlossyReference, PlateUnderAPointLight) {
-  for (const Finish& finish : kFinishes) {
-    Plate plate(finish);
+  for (const Finish& roughnessMetalness : kFinishes) {
+    Plate plate(roughnessMetalness);
     LightView lamp;
     lamp.position = {-0.8f, 0.2f, 1.1f};
     lamp.intensity = vec3(3);
@@ -70,7 +70,7 @@ TEST(GlossyReference, PlateUnderAPointLight) {
     const Receiver receiver = plate.receiver();
     const float wanted = 3 / r2 * towards.z * (receiver.diffuse.y / kPi + glossyReflectance(receiver, towards, 0).y);
     const test::Mean m = plate.direct(1); // one light is always the one chosen
-    EXPECT_NEAR(m.mean, wanted, 1e-3 * wanted) << finish.roughness;
+    EXPECT_NEAR(m.mean, wanted, 1e-3 * wanted) << roughnessMetalness.roughness;
     EXPECT_GT(m.mean, 1.2 * 3 / r2 * towards.z * receiver.diffuse.y / kPi) << "the lobe matters";
   }
 }
@@ -80,8 +80,8 @@ TEST(GlossyReference, PlateUnderTheSkyAndALamp) {
   // all directions.
   const vec3 corner(-2, -0.6f, 1), e1(1.2f, 0, 0.4f), e2(0, 1.2f, 0);
   const vec3 lampNormal = glm::normalize(glm::cross(e2, e1));
-  for (const Finish& finish : kFinishes) {
-    Plate plate(finish);
+  for (const Finish& roughnessMetalness : kFinishes) {
+    Plate plate(roughnessMetalness);
     plate.scene.sky = vec3(0.5f);
     plate.scene.quad(corner, e2, e1, plate.scene.material(vec3(0), vec3(4)));
     ASSERT_LT(glm::dot(lampNormal, corner), 0) << "faces the plate";
@@ -109,10 +109,10 @@ struct GlossyRoom {
   test::HandScene scene;
   vec3 size{2, 1, 3}, albedo{0.6f, 0.5f, 0.4f};
 
-  explicit GlossyRoom(const Finish& finish) {
+  explicit GlossyRoom(const Finish& roughnessMetalness) {
     const uint32_t m = scene.material(albedo);
-    scene.assets.materials[m].roughness = finish.roughness;
-    scene.assets.materials[m].metalness = finish.metalness;
+    scene.assets.materials[m].roughness = roughnessMetalness.roughness;
+    scene.assets.materials[m].metalness = roughnessMetalness.metalness;
     scene.box({0, 0, 0}, size, m, true);
     LightView lamp;
     lamp.position = {1.6f, 0.4f, 2.5f};
@@ -128,8 +128,8 @@ struct GlossyRoom {
 TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
   constexpr int kPerSet = 2000, kSets = test::kSanitized ? 1 : 24;
   constexpr float kClamp = 3; // 1/m²
-  for (const Finish& finish : kFinishes) {
-    const GlossyRoom room(finish);
+  for (const Finish& roughnessMetalness : kFinishes) {
+    const GlossyRoom room(roughnessMetalness);
     const SceneView view = room.scene.view();
     EmbreeQuery rays(room.scene.assets);
     rays.update(view);
@@ -168,7 +168,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     if (test::kSanitized) continue; // too few to tell
     const test::Mean m = test::meanOf(means);
     EXPECT_LT(std::abs(m.mean - truth), test::kDeviateLimit * std::hypot(m.error, truth * picture.relativeErrorOfMean))
-        << m.mean << " against " << truth << ", roughness " << finish.roughness;
+        << m.mean << " against " << truth << ", roughness " << roughnessMetalness.roughness;
     EXPECT_LT(m.error, 0.015 * truth) << "too noisy to tell";
   }
 }

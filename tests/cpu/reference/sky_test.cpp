@@ -3,7 +3,7 @@
 #include "engine/trace/embree_query.h"
 #include "gi/reference/path_tracer.h"
 #include "gi/reference/state_file.h"
-#include "gi/vpl/receivers.h"
+#include "gi/lighting/receivers.h"
 #include "tests/support/daylight.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"

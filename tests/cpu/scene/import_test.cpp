@@ -237,12 +237,12 @@ TEST_F(Import, RoughnessAndMetalnessFromFactorsAndALinearTexture) {
   EXPECT_FLOAT_EQ(m[0].roughness, 0.5f);
   EXPECT_FLOAT_EQ(m[0].metalness, 0.25f);
   // The same picture twice: as a colour it is sRGB, as roughness and metalness it is linear.
-  ASSERT_NE(m[0].finishTexture.image, m[0].baseColorTexture.image);
+  ASSERT_NE(m[0].roughnessMetalnessTexture.image, m[0].baseColorTexture.image);
   const TextureImage &color = scene.assets.images.at(m[0].baseColorTexture.image),
-                     &finish = scene.assets.images.at(m[0].finishTexture.image);
+                     &roughnessMetalness = scene.assets.images.at(m[0].roughnessMetalnessTexture.image);
   EXPECT_NEAR(color.averageLinear.y, 0.5029f, 1e-3f);
-  EXPECT_NEAR(finish.averageLinear.y, 188 / 255.0f, 1e-6f);
-  EXPECT_NEAR(finish.averageLinear.z, 0.2f, 1e-6f);
+  EXPECT_NEAR(roughnessMetalness.averageLinear.y, 188 / 255.0f, 1e-6f);
+  EXPECT_NEAR(roughnessMetalness.averageLinear.z, 0.2f, 1e-6f);
   EXPECT_EQ(m[1].roughness, 1);
   EXPECT_EQ(m[1].metalness, 0);
   EXPECT_TRUE(hasWarning(scene, "the roughness is out of range"));

@@ -1,0 +1,229 @@
+// Light of pixels from the layered depth cube.
+#include "engine/core/error.h"
+#include "engine/core/image.h"
+#include "engine/gl/ring.h"
+#include "gi/cube/cube_file.h"
+#include "gi/gather/draw_gather.h"
+#include "gi/cube/draw/hemicube_pass.h"
+#include "gi/gather/stages.h"
+#include "gi/near/near_light.h"
+#include "shaders/shared/layered_cube.h"
+#include "shaders/shared/octahedral.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <chrono>
+#include <utility>
+
+namespace lambent {
+
+namespace {
+
+class CubeGather : public IndirectStage {
+  using Clock = std::chrono::steady_clock;
+
+ public:
+  explicit CubeGather(PassContext context) : context_(context) {}
+
+  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
+    if (in.stores && update(in, stats)) nearDone_ = 0;
+    if (in.stores && cube_.pending() == 0 && nearDone_ < kAllNear && traceNear(in, stats)) upload();
+    if (nearDone_ != kAllNear) return {};
+    stats.cubeEntries = entries_.buffer.bytes() / sizeof(CubeTexel);
+    stats.cubes = cube_.surfaces().cubes().size();
+    stats.cubeBytes = entries_.buffer.bytes() + firsts_.buffer.bytes() + nodes_.buffer.bytes();
+    stats.cubeKeptBytes = cube_.bytesKept() + near_.size() * sizeof(vec3);
+    const gl::PassScope scope = context_.scope(StageId::Gather);
+    target_.fit(in.surfaces);
+    const gl::Program& program =
+        context_.programs.get({.fragment = "cube_gather.frag", .defines = bindSurfaces(in.surfaces)});
+    program.use();
+    program.set("resolution", cube_.surfaces().cubes().front().resolution);
+    program.set("brightest", brightest_);
+    firsts_.texels.bind(10);
+    entries_.texels.bind(11);
+    nodes_.texels.bind(12);
+    target_.bind();
+    gl::PipelineState{.width = target_.size().x, .height = target_.size().y}.apply();
+    gl::drawFullscreen();
+    return target_.light();
+  }
+
+ private:
+  bool update(const IndirectInputs& in, FrameStats& stats) {
+    constexpr uint32_t kAtOnce = 64; // lights, between two reports
+    const CpuScope scope(stats.stages, key(StageId::Cube));
+    const VirtualLights& lights = in.seen.lights;
+    bool changed = false, first = true;
+    // This build goes to the file, now and then while it lasts.
+    const bool stored = in.world.view.changes.first && !in.settings.cubeFile.empty() && open(in, stats);
+    Clock::time_point saved = Clock::now();
+    Clock::duration saveAfter = std::chrono::seconds(5);
+    hemicubes_.prepare(in.world, in.settings.hemicubes.maker);
+    for (uint32_t total = 0, put = 0;; first = false) {
+      const CubeWork work =
+          cube_.update({in.world.view.boundsWorld, in.world.rays, first && !opened_ ? in.world.moved : kNothingMoved,
+                        first && in.world.view.changes.first && !opened_, lights.slots, lights.direct, in.settings.cube,
+                        in.settings.gather, &hemicubes_},
+                       std::min(kAtOnce, in.most));
+      stats.raysCube += work.rays;
+      hemicubes_.tell(stats);
+      changed |= work.changed;
+      if (first) total = work.lightsIn + cube_.pending();
+      try {
+        if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
+      } catch (...) { // somebody stops it: another run goes on from here
+        if (stored) saveCube(in.settings.cubeFile, cube_, keyOf(in));
+        throw;
+      }
+      const bool done = cube_.pending() == 0;
+      if (stored && changed && (done || Clock::now() - saved > saveAfter)) {
+        const Clock::time_point begin = Clock::now();
+        saveCube(in.settings.cubeFile, cube_, keyOf(in));
+        saved = Clock::now();
+        saveAfter = std::max(saveAfter, 20 * (saved - begin));
+      }
+      if (done || (put += work.lightsIn) >= in.most) return std::exchange(opened_, false) || changed;
+    }
+  }
+
+  /// Masks that are not cut out make other surfaces.
+  static uint64_t keyOf(const IndirectInputs& in) {
+    return cubeKey(in.world.view) + (in.settings.effects[EffectId::Alpha] == EffectMode::Off ? 1 : 0);
+  }
+
+  /// Takes over what is in the file of the settings. A cube that does not fit is built anew; what is no cube at all
+  /// stays as it is. Whether the file is to be written.
+  bool open(const IndirectInputs& in, FrameStats& stats) {
+    const std::filesystem::path file = in.settings.cubeFile;
+    removeLeftovers(file);
+    if (!std::filesystem::exists(file)) {
+      checkWritable(file);
+      return true;
+    }
+    try {
+      cube_ = loadCube(file, keyOf(in));
+      opened_ = true;
+      return true;
+    } catch (const InputError& e) {
+      const bool replaced = isCube(file);
+      stats.warning = std::string(e.what()) +
+                      (replaced ? "; it is built anew and replaced" : "; it stays as it is, and this one is not kept");
+      return replaced;
+    }
+  }
+
+  /// What bounds take from near lights, at entries that light reaches: all, or in pictures that put few lights at once
+  /// the next few. Whether it is done.
+  bool traceNear(const IndirectInputs& in, FrameStats& stats) {
+    constexpr size_t kPerLight = 2048; // entries
+    const size_t entries = cube_.surfaces().entries().size();
+    const GatherSettings& gather = in.settings.gather;
+    if (nearDone_ == 0) near_.assign(entries, vec3(0));
+    if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) {
+      nearDone_ = kAllNear;
+      return true;
+    }
+    const CpuScope scope(stats.stages, key(StageId::NearLight));
+    const size_t begin = nearDone_, end = std::min(entries, begin + kPerLight * std::min<size_t>(in.most, entries));
+    std::vector<SurfaceHit> places;
+    std::vector<uint32_t> of;
+    for (size_t e = begin; e < end; ++e) {
+      if (cube_.irradiance(e) == vec3(0)) continue;
+      const CubeEntry& entry = cube_.surfaces().entries()[e];
+      SurfaceHit& place = places.emplace_back();
+      place.position = entry.position;
+      place.geometricNormal = entry.normal;
+      place.normal = entry.shading;
+      of.push_back(uint32_t(e));
+    }
+    constexpr int kRays = 4; // times gather.near: nothing is mixed between entries
+    const std::vector<vec3> light = traceNearLightAt(places,
+                                                     {.view = in.world.view,
+                                                      .rays = in.world.rays,
+                                                      .lights = in.world.lights,
+                                                      .virtuals = in.seen.lights.slots,
+                                                      .gather = gather,
+                                                      .casts = kRays * gather.near,
+                                                      .bounces = in.bounces,
+                                                      .seed = in.seed},
+                                                     stats.raysNear);
+    for (size_t i = 0; i < of.size(); ++i) near_[of[i]] = light[i];
+    nearDone_ = end < entries ? end : kAllNear;
+    return nearDone_ == kAllNear;
+  }
+
+  vec3 irradiance(size_t entry) const { return cube_.irradiance(entry) + near_[entry]; }
+
+  /// Without entries that no light sees, which lie in solids and behind walls: pixels beside one would take it for
+  /// theirs. (Left in: black specks where boxes stand on a floor, and twice the memory.)
+  void upload() {
+    const CubeSurfaces& surfaces = cube_.surfaces();
+    constexpr float kDark = 1e-12f; // what rounding leaves of lights that were taken out
+    brightest_ = 1e-30f;
+    for (size_t i = 0; i < surfaces.entries().size(); ++i)
+      brightest_ = std::max(brightest_, maxComponent(irradiance(i)));
+    std::vector<CubeTexel> texels;
+    std::vector<uint32_t> firsts{0};
+    firsts.reserve(2 * surfaces.firsts().size());
+    for (size_t c = 0; c + 1 < surfaces.firsts().size(); ++c) {
+      const CubeGrid& grid = surfaces.cubes()[c / surfaces.columns()];
+      const CubeGrid::Place at = grid.placeOf(c % surfaces.columns());
+      for (const bool side : {false, true}) {
+        for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+          const CubeEntry& entry = surfaces.entries()[e];
+          if (entry.normal[at.axis] > 0 != side) continue;
+          if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
+          const vec3 x = entry.position - grid.corner;
+          const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
+          const uvec2 place = uvec2(glm::clamp(within, 0.0f, 0.999f) * 256.0f);
+          const vec3 light = glm::max(irradiance(e), vec3(0)) / (brightest_ * kCubeRange);
+          texels.push_back({glm::packSnorm2x16(octahedralFromUnit(entry.normal)), glm::dot(x, entry.normal),
+                            glm::packF3x9_E1x5(light), entry.neighbours | place.x << 8 | place.y << 16});
+        }
+        firsts.push_back(uint32_t(texels.size()));
+      }
+    }
+    copy(entries_, "cube/entries", GL_RGBA32UI, std::span<const CubeTexel>(texels));
+    copy(firsts_, "cube/firsts", GL_R32UI, std::span<const uint32_t>(firsts));
+    copy(nodes_, "cube/nodes", GL_RGBA32UI, surfaces.nodes());
+  }
+
+  /// What a shader fetches by number.
+  struct Texels {
+    gl::Buffer buffer;
+    gl::Texture texels;
+  };
+
+  template <class T> void copy(Texels& to, const char* label, GLenum format, std::span<const T> data) {
+    const uint64_t bytes = std::max<uint64_t>(data.size_bytes(), sizeof(T));
+    if (bytes / (format == GL_R32UI ? 4 : 16) > gl::mostBufferTexels())
+      throw RunError("the layered depth cube is larger than this GPU's buffers (lower cube.resolution or cube.levels)");
+    if (!to.buffer || to.buffer.bytes() != bytes) {
+      to.texels = {};
+      to.buffer = gl::Buffer(label, bytes, nullptr);
+      to.texels = gl::Texture::ofBuffer(label, format, to.buffer);
+    }
+    if (data.empty()) return;
+    changes_.reserve(bytes);
+    changes_.upload(to.buffer, 0, data.size_bytes(), data.data());
+  }
+
+  PassContext context_;
+  HemicubePass hemicubes_{context_};
+  LayeredCube cube_;
+  static constexpr size_t kAllNear = ~size_t(0);
+  std::vector<vec3> near_; // by entry
+  size_t nearDone_ = 0;    // entries below it have theirs
+  bool opened_ = false;    // from a file, and not uploaded yet
+  float brightest_ = 1;    // W/m²
+  Texels firsts_, entries_, nodes_;
+  gl::Ring changes_{"cube/changes"};
+  LightTarget target_{"cube gather"};
+};
+
+} // namespace
+
+std::unique_ptr<IndirectStage> makeCubeGather(PassContext context) { return std::make_unique<CubeGather>(context); }
+
+} // namespace lambent

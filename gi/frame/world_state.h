@@ -1,0 +1,66 @@
+// The scene from frame to frame: taken over, placed for rays and for drawing as far as the plan goes; and the plan.
+#pragma once
+
+#include "engine/gl/program.h"
+#include "engine/scene/view_copy.h"
+#include "engine/trace/embree_query.h"
+#include "gi/contract/figures.h"
+#include "gi/contract/world.h"
+#include "gi/plan/settings.h"
+#include "gi/surfaces/gpu_scene.h"
+#include "gi/lighting/dirty_region.h"
+#include "gi/lighting/light_set.h"
+
+namespace lambent {
+
+/// What a plan depends on besides the view and the settings.
+struct PlanInputs {
+  bool first = true;         // there is no picture yet
+  bool host = false;         // the surfaces are a host's, who may have drawn them anew
+  bool settled = false;      // the virtual lights have
+  uint32_t mapsWaiting = 0;  // of virtual lights
+  int averaged = 0;          // as FrameFacts
+  bool lightArrived = false; // that no picture shows yet
+  bool storedAlone = false;  // as FrameFacts
+  bool storing = false;
+};
+
+class WorldState {
+ public:
+  explicit WorldState(gl::ProgramCache& programs) : programs_(programs) {}
+
+  /// Makes ready for another scene. Says whether it is one.
+  bool open(const SceneAssets& assets, FrameStats& stats);
+  /// Takes the view over and decides what is done in this frame. What no stage was told of stays a change until all
+  /// hear of it.
+  EffectPlan plan(const SceneView& given, const Settings& settings, const PlanInputs& in);
+  /// The view as the plan lets it be; valid until the next plan.
+  World place(const EffectPlan& plan, FrameStats& stats);
+  /// Figures of what rays and draws met since the last call.
+  void countWork(FrameStats& stats);
+
+  bool settingsChanged() const { return settingsChanged_; } // of VPLs or effects
+  bool gatherChanged() const { return gatherChanged_; }     // settings or shaders: pixels gather other light
+  void shadersChanged() { shadersChanged_ = true; }
+  /// As last placed.
+  World again() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, reach_}; }
+
+ private:
+  gl::ProgramCache& programs_;
+  const SceneAssets* assets_ = nullptr;
+  std::unique_ptr<GpuScene> gpu_;
+  std::unique_ptr<EmbreeQuery> rays_;
+  ViewCopy view_;
+  DirtyRegion moved_;
+  LightSet lights_;
+  Settings before_;
+  float reach_ = 0;
+  uint64_t testedDraws_ = 0; // the scene's count when last asked
+  bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
+  bool hosted_ = false; // the last surfaces were a host's
+  bool frozen_ = false; // objects stand where they stood
+  bool lightingStale_ = false; // something changed that not all stages were told of
+  bool surfacesStale_ = false; // nor those of surfaces and direct light
+};
+
+} // namespace lambent

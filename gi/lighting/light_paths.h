@@ -1,0 +1,36 @@
+// What a light path does at a vertex, shared by the VPLs' radiosity and the reference: one connection to a chosen
+// light, one to the sky where it is not constant, and the share of an emitter or of the sky that a cosine-distributed
+// ray met. The two split their light between them by multiple importance sampling (power heuristic, Veach 1997).
+#pragma once
+
+#include "gi/lighting/light_set.h"
+
+namespace lambent {
+
+/// A place on a surface where light is collected.
+struct PathVertex {
+  vec3 position, normal, geometricNormal; // unit normals, on the side that is lit
+};
+
+/// Light that reaches a vertex if the segment is clear. `value` is zero where there is nothing to test.
+struct LightConnection {
+  Ray segment;
+  vec3 value{0};
+};
+
+/// Chooses one light and a point on it. `weight` turns irradiance/π at the vertex into what the caller wants; numbers
+/// in [0, 1) for the choice and for the point; `rayEpsilon` is the ray query's.
+LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
+                               const vec3& uPoint, float rayEpsilon);
+
+/// Light of a sky that is not constant, from a direction drawn by what the sky brings to the vertex; numbers in [0, 1).
+LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u, float rayEpsilon);
+
+/// Radiance that a cosine-distributed ray from `vertex` brings when it meets the sky: all where the sky is constant,
+/// else its share; connections bring the rest.
+vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction);
+
+/// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
+float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit);
+
+} // namespace lambent

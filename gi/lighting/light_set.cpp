@@ -1,0 +1,176 @@
+#include "gi/lighting/light_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+vec3 emissionAt(const SceneView& view, const Emitter& e, uint32_t meshTriangle, vec2 bary) {
+  const Mesh& mesh = view.assets->meshes[view.instances[e.instance].mesh];
+  const Primitive& primitive = mesh.primitives[e.primitive];
+  const Material& material = view.assets->materials[primitive.material];
+  if (material.emissiveTexture.image == kNone) return material.emission;
+  const auto& uv = material.emissiveTexture.uvSet == 0 ? mesh.uv0 : mesh.uv1;
+  if (uv.empty()) return material.emission * vec3(sampleTexture(*view.assets, material.emissiveTexture, vec2(0)));
+  const uvec3 t = mesh.triangles[primitive.firstTriangle + meshTriangle];
+  const vec2 at = uv[t.x] * (1 - bary.x - bary.y) + uv[t.y] * bary.x + uv[t.z] * bary.y;
+  return material.emission * vec3(sampleTexture(*view.assets, material.emissiveTexture, at));
+}
+
+} // namespace
+
+EmitterTriangle makeEmitterTriangle(const vec3& p0, const vec3& p1, const vec3& p2, const vec3& radiance) {
+  EmitterTriangle t{p0, p1 - p0, p2 - p0, vec3(0), radiance};
+  const vec3 c = glm::cross(t.e1, t.e2);
+  const float length = glm::length(c);
+  t.area = 0.5f * length;
+  t.normal = length > 0 ? c / length : vec3(0);
+  return t;
+}
+
+void addEmitter(LightSet& lights, uint32_t instance, uint32_t primitive, std::vector<EmitterTriangle> triangles,
+                bool doubleSided) {
+  Emitter e;
+  e.instance = instance;
+  e.primitive = primitive;
+  e.firstTriangle = uint32_t(lights.triangles.size());
+  e.triangleCount = uint32_t(triangles.size());
+  e.doubleSided = doubleSided;
+  Aabb box;
+  std::vector<float> powers;
+  vec3 normals(0);
+  for (const EmitterTriangle& t : triangles) {
+    normals += t.normal * t.area;
+    box.add(t.p0), box.add(t.p0 + t.e1), box.add(t.p0 + t.e2);
+    powers.push_back(luminance(t.radiance) * t.area);
+    e.power += powers.back();
+  }
+  if (!(e.power > 0)) return;
+  e.bounds = {.centre = box.centre(),
+              .half = 0.5f * box.size(),
+              .power = e.power,
+              .range = kInfinity,
+              .bothSides = doubleSided};
+  if (const float length = glm::length(normals); length > 0) {
+    e.bounds.axis = normals / length;
+    e.bounds.cosAxes = 1;
+    for (const EmitterTriangle& t : triangles)
+      if (t.area > 0) e.bounds.cosAxes = std::min(e.bounds.cosAxes, glm::dot(t.normal, e.bounds.axis));
+  }
+  e.byPower = Distribution(powers);
+  lights.triangles.insert(lights.triangles.end(), triangles.begin(), triangles.end());
+  lights.emitters.push_back(std::move(e));
+}
+
+LightSet collectLights(const SceneView& view) {
+  LightSet lights;
+  lights.view = &view;
+  lights.sky = view.sky;
+  for (const LightView& l : view.lights)
+    if (luminance(l.intensity) > 0) lights.punctual.push_back(l);
+  for (uint32_t i = 0; i < view.instances.size(); ++i) {
+    const InstanceView& instance = view.instances[i];
+    const Mesh& mesh = view.assets->meshes[instance.mesh];
+    const std::vector<vec3>& positions = instance.deformed ? instance.deformed->positions : mesh.positions;
+    for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
+      const Primitive& primitive = mesh.primitives[p];
+      const Material& material = view.assets->materials[primitive.material];
+      if (!material.emits()) continue;
+      // The mean of the texture stands for a triangle's share only; a small floor keeps every triangle reachable.
+      vec3 mean = material.emission;
+      if (material.emissiveTexture.image != kNone)
+        mean *= glm::max(vec3(view.assets->images[material.emissiveTexture.image].averageLinear), vec3(1e-3f));
+      // Front side = outside of the mesh also under mirroring transforms (glTF flips the winding there).
+      const bool mirrored = glm::determinant(mat3(instance.worldFromObject)) < 0;
+      std::vector<EmitterTriangle> triangles;
+      for (uint32_t t = 0; t < primitive.triangleCount; ++t) {
+        const uvec3 v = mesh.triangles[primitive.firstTriangle + t];
+        const auto world = [&](uint32_t k) { return vec3(instance.worldFromObject * vec4(positions[k], 1)); };
+        EmitterTriangle e = makeEmitterTriangle(world(v.x), world(v.y), world(v.z), mean);
+        if (mirrored) e.normal = -e.normal;
+        e.meshTriangle = t;
+        triangles.push_back(e);
+      }
+      addEmitter(lights, i, p, std::move(triangles), material.doubleSided);
+    }
+  }
+  lights.tree = LightTree(lights);
+  return lights;
+}
+
+uint32_t LightSet::emitterOf(const SurfaceHit& hit) const {
+  // Sorted by (instance, primitive) because collectLights visits them in that order.
+  const auto key = [](const Emitter& e) { return uint64_t(e.instance) << 32 | e.primitive; };
+  const uint64_t wanted = uint64_t(hit.instance) << 32 | hit.primitive;
+  const auto it = std::lower_bound(emitters.begin(), emitters.end(), wanted,
+                                   [&](const Emitter& e, uint64_t w) { return key(e) < w; });
+  return it != emitters.end() && key(*it) == wanted ? uint32_t(it - emitters.begin()) : kNone;
+}
+
+PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n) {
+  PunctualSample s;
+  if (light.type == LightType::Directional) {
+    s.towards = -light.direction;
+    s.distance = kInfinity;
+    s.irradiance = light.intensity * glm::max(0.0f, glm::dot(n, s.towards));
+    return s;
+  }
+  const vec3 d = light.position - x;
+  const float r2 = glm::dot(d, d);
+  if (!(r2 > 0)) return s;
+  s.distance = std::sqrt(r2);
+  s.towards = d / s.distance;
+  float falloff = 1 / r2;
+  if (light.range < kInfinity) {
+    const float q = r2 / (light.range * light.range);
+    falloff *= glm::clamp(1 - q * q, 0.0f, 1.0f);
+  }
+  if (light.type == LightType::Spot) {
+    const float scale = 1 / glm::max(0.001f, light.innerConeCos - light.outerConeCos);
+    const float a = glm::clamp((glm::dot(light.direction, -s.towards) - light.outerConeCos) * scale, 0.0f, 1.0f);
+    falloff *= a * a;
+  }
+  s.irradiance = light.intensity * (falloff * glm::max(0.0f, glm::dot(n, s.towards)));
+  return s;
+}
+
+EmitterPoint sampleEmitter(const LightSet& lights, const Emitter& emitter, const vec3& u) {
+  const uint32_t k = emitter.byPower.sample(u.x);
+  const EmitterTriangle& t = lights.triangles[emitter.firstTriangle + k];
+  const vec2 bary = sampleTriangle({u.y, u.z});
+  EmitterPoint s;
+  s.position = t.p0 + t.e1 * bary.x + t.e2 * bary.y;
+  s.normal = t.normal;
+  s.radiance = lights.view ? emissionAt(*lights.view, emitter, t.meshTriangle, bary) : t.radiance;
+  s.pdfArea = emitter.byPower.probability(k) / t.area;
+  return s;
+}
+
+float pdfEmitterArea(const LightSet& lights, const Emitter& emitter, uint32_t meshTriangle) {
+  if (meshTriangle >= emitter.triangleCount) return 0;
+  const EmitterTriangle& t = lights.triangles[emitter.firstTriangle + meshTriangle];
+  return t.area > 0 ? emitter.byPower.probability(meshTriangle) / t.area : 0;
+}
+
+std::vector<EmitterPatch> emitterPatches(const LightSet& lights, int count) {
+  float total = 0;
+  for (const Emitter& e : lights.emitters) total += e.power;
+  std::vector<EmitterPatch> patches;
+  for (const Emitter& e : lights.emitters) {
+    const int share = std::max(1, int(std::lround(float(count) * e.power / total)));
+    for (int i = 0; i < share; ++i) {
+      const vec3 spread = additiveRecurrence3(uint32_t(i), vec3(0.5f));
+      const EmitterPoint p = sampleEmitter(lights, e, {(float(i) + 0.5f) / float(share), spread.x, spread.y});
+      const EmitterTriangle& t = lights.triangles[e.firstTriangle + e.byPower.sample((float(i) + 0.5f) / float(share))];
+      // Radiance of the triangle rather than of the point: a texel that happens to be black must not darken the patch.
+      const float area = e.power / float(share) / luminance(t.radiance);
+      patches.push_back({p.position, p.normal, t.radiance, area});
+      if (e.doubleSided) patches.push_back({p.position, -p.normal, t.radiance, area});
+    }
+  }
+  return patches;
+}
+
+} // namespace lambent

@@ -1,0 +1,48 @@
+#include "gi/lighting/receivers.h"
+
+#include "engine/core/sampling.h"
+#include "engine/scene/surface_point.h"
+#include "shaders/shared/paraboloid.h"
+
+#include <cmath>
+
+namespace lambent {
+
+Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
+  const CameraView& camera = view.camera;
+  const vec3 towardsViewer =
+      camera.orthoHalfHeight > 0 ? vec3(camera.worldFromView[2]) : glm::normalize(camera.position() - hit.position);
+  const RoughnessMetalness roughnessMetalness = roughnessMetalnessAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric);
+  return makeReceiver(hit.normal, towardsViewer, hit.albedo, roughnessMetalness.roughness, roughnessMetalness.metalness);
+}
+
+vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {
+  if (!(glm::dot(direction, receiver.normal) > 0)) return vec3(0);
+  return receiver.diffuse / kPi + glossyReflectance(receiver, direction, 0);
+}
+
+vec3 sampleReflection(const Receiver& receiver, float uChoice, vec2 u) {
+  if (uChoice < 0.5f) return sampleCosineHemisphere(receiver.normal, u);
+  const float cosHalf2 = (1 - u.x) / (1 + (receiver.alpha2 - 1) * u.x);
+  const float sine = std::sqrt(std::max(0.0f, 1 - cosHalf2)), phi = 2 * kPi * u.y;
+  vec3 tangent, bitangent;
+  basisAround(receiver.normal, tangent, bitangent);
+  const vec3 half =
+      (tangent * std::cos(phi) + bitangent * std::sin(phi)) * sine + receiver.normal * std::sqrt(cosHalf2);
+  return glm::normalize(2 * glm::dot(half, receiver.towardsViewer) * half - receiver.towardsViewer);
+}
+
+float pdfReflection(const Receiver& receiver, const vec3& direction) {
+  const vec3 sum = direction + receiver.towardsViewer;
+  const float length = glm::length(sum);
+  float lobe = 0;
+  if (length > 1e-6f) {
+    // Of the two normals that mirror the one direction into the other, that on the surface's side is drawn. Its cosine
+    // with either is half the length of their sum; dω_half/dω = 1/(4 cosine).
+    const float cosHalf = std::min(std::abs(glm::dot(sum, receiver.normal)) / length, 1.0f);
+    lobe = ggxDensity(receiver.alpha2, cosHalf) * cosHalf / (2 * length);
+  }
+  return 0.5f * (pdfCosineHemisphere(glm::dot(direction, receiver.normal)) + lobe);
+}
+
+} // namespace lambent

@@ -1,0 +1,118 @@
+// Light averaged over pictures. Each pixel gathers another sixteenth of the lights in every picture and casts other
+// near rays, so that its mean holds them all, without the blur of a filter over its neighbours. It looks up what is
+// kept where the camera before saw its place, and takes it as far as that is of the same surface.
+//
+// Where light changes, means over many pictures lag. There means hold few pictures, and what is kept follows this one:
+// half of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added, so
+// that half of a coarse change is shown in its first picture and nine tenths within three. Tiles of the picture whose
+// light changes by much more than its noise begin anew (history_follow.frag). Numbers: docs/measurements/light.md.
+#include "gi/gather/draw_gather.h"
+#include "gi/gather/stages.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace lambent {
+
+namespace {
+
+constexpr float kFollow = 0.5f;
+constexpr int kFollowOn = 4;    // pictures after the last change that still follow
+constexpr int kFewPictures = 8; // that means hold at most while light changes
+
+} // namespace
+
+SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
+  const gl::PassScope scope = context_.scope(StageId::History);
+  if (in.lightChanges && pictures_ > 0) following_ = kFollowOn + 1;
+  const bool changes = pictures_ > 0 && following_ > 0;
+  following_ = std::max(0, following_ - 1);
+  const Kept& before = kept_[now_];
+  now_ = 1 - now_;
+  const Kept& now = kept_[now_];
+  find(in, before, changes ? changing_ : now.framebuffer, changes);
+  if (changes) follow(in, now);
+  before_ = in.surfaces.block;
+  ++pictures_;
+  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.deinterleaved};
+}
+
+void HistoryPass::fit(const GBuffer& surfaces) {
+  const bool glossy = surfaces.roughnessMetalness != nullptr;
+  const auto fits = [&](const gl::Texture& texture) {
+    return texture && texture.width() == surfaces.width && texture.height() == surfaces.height;
+  };
+  const auto make = [&](const char* label) {
+    return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
+  };
+  if (bool(kept_[now_].glossy) != glossy) forget();
+  Kept& next = kept_[1 - now_]; // the other is looked up, at the size that it has
+  if (!fits(next.irradiance) || bool(next.glossy) != glossy) {
+    next.irradiance = make("history/irradiance");
+    next.seen = make("history/seen");
+    next.glossy = glossy ? make("history/glossy") : gl::Texture();
+    next.framebuffer = glossy ? gl::Framebuffer("history", {&next.irradiance, &next.seen, &next.glossy})
+                              : gl::Framebuffer("history", {&next.irradiance, &next.seen});
+  }
+  if (fits(found_)) return;
+  found_ = make("history/found");
+  change_ = make("history/change");
+  tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,
+                                         .width = (surfaces.width + 15) / 16,
+                                         .height = (surfaces.height + 15) / 16,
+                                         .linear = true});
+  tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
+  changing_ = gl::Framebuffer("history/changing", {&found_, &change_});
+}
+
+void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes) {
+  std::vector<std::string> defines = bindSurfaces(in.surfaces);
+  if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
+  if (changes) defines.push_back("CHANGES");
+  const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
+  program.use();
+  program.set("tileSize", tileSize(in.surfaces));
+  const int most = pictures_ == 0 ? 0 : in.settings.frames - 1;
+  program.set("pictures", float(changes ? std::min(most, kFewPictures) : most));
+  program.set("stands", pictures_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
+  cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
+  in.gathered.irradiance->bind(2);
+  before.irradiance.bind(3);
+  before.seen.bind(4);
+  if (in.gathered.glossy && !changes) {
+    in.gathered.glossy->bind(5);
+    before.glossy.bind(8);
+    program.set("glossyPictures", in.cameraMoved ? 0.0f : float(most));
+  }
+  to.bind();
+  gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
+  gl::drawFullscreen();
+}
+
+void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
+  const SurfaceLighting change{&change_, nullptr, false, in.gathered.deinterleaved};
+  const SurfaceLighting filtered = filter_.run({in.surfaces, change, in.filter});
+  context_.programs.get({.fragment = "history_tiles.frag"}).use();
+  found_.bind(2);
+  change_.bind(3);
+  tilesFramebuffer_.bind();
+  gl::PipelineState{.width = tiles_.width(), .height = tiles_.height()}.apply();
+  gl::drawFullscreen();
+  std::vector<std::string> defines = bindSurfaces(in.surfaces);
+  if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
+  const gl::Program& program =
+      context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
+  program.use();
+  if (in.gathered.glossy) {
+    program.set("tileSize", tileSize(in.surfaces));
+    in.gathered.glossy->bind(5);
+  }
+  program.set("follow", kFollow);
+  filtered.irradiance->bind(4);
+  tiles_.bind(6);
+  now.framebuffer.bind();
+  gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
+  gl::drawFullscreen();
+}
+
+} // namespace lambent

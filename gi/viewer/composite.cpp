@@ -1,0 +1,52 @@
+// The picture from its parts, and the exposure that suits it.
+#include "gi/viewer/picture.h"
+#include "gi/gather/draw_gather.h"
+
+#include <cmath>
+
+namespace lambent {
+
+Picture CompositePass::run(const CompositeInputs& in) {
+  const gl::PassScope scope = context_.scope(StageId::Composite);
+  const int width = in.surfaces.width, height = in.surfaces.height;
+  if (!black_) {
+    black_ = gl::Texture("composite/black", {.format = GL_RGBA32F});
+    black_.clear();
+  }
+  if (!radiance_ || radiance_.width() != width || radiance_.height() != height) {
+    radiance_ = gl::Texture("composite/radiance", {.format = GL_RGBA32F, .width = width, .height = height});
+    framebuffer_ = gl::Framebuffer("composite", {&radiance_});
+  }
+  std::vector<std::string> defines = bindSurfaces(in.surfaces);
+  for (const std::string& variant : backgroundVariants(in.sky)) defines.push_back(variant);
+  const gl::Program& program = context_.programs.get({.fragment = "composite.frag", .defines = std::move(defines)});
+  program.use();
+  setBackground(program, in.sky, in.surfaces);
+  in.surfaces.albedo->bind(2);
+  in.surfaces.emission->bind(3);
+  (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
+  (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
+  (in.direct.glossy ? in.direct.glossy : &black_)->bind(8);
+  (in.indirect.glossy ? in.indirect.glossy : &black_)->bind(9);
+  framebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+  return {&radiance_};
+}
+
+float measureExposure(const Picture& picture) {
+  const int width = picture.radiance->width(), height = picture.radiance->height();
+  std::vector<vec4> texels(size_t(width) * height);
+  picture.radiance->read(std::span(texels), GL_RGBA, GL_FLOAT);
+  double logSum = 0;
+  size_t count = 0;
+  for (const vec4& texel : texels) {
+    const float y = luminance(vec3(texel));
+    if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
+    logSum += std::log(double(y));
+    ++count;
+  }
+  return count == 0 ? 1.0f : float(0.18 / std::exp(logSum / double(count)));
+}
+
+} // namespace lambent

@@ -1,0 +1,128 @@
+// The picture, and looking at everything that led to it.
+#pragma once
+
+#include "engine/core/image.h"
+#include "engine/scene/sky.h"
+#include "gi/contract/surface_lighting.h"
+#include "gi/contract/pass_context.h"
+#include "gi/contract/patches.h"
+#include "gi/contract/virtual_lights.h"
+#include "gi/plan/settings.h"
+
+#include <optional>
+
+namespace lambent {
+
+/// The sky as what is seen where no surface is (shaders/lib/background.glsl): its variants, and its uniforms. It is
+/// seen by the camera of `surfaces`.
+std::vector<std::string> backgroundVariants(const Sky& sky);
+void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& surfaces);
+
+enum class Buffer : int; // gi/frame/gi_frame.h
+struct VplSet;
+
+/// Radiance towards the camera, W/(m² sr).
+struct Picture {
+  const gl::Texture* radiance = nullptr; // RGBA32F; a = 1 on surfaces, 0 on background
+};
+
+struct CompositeInputs {
+  const GBuffer& surfaces;
+  const SurfaceLighting& direct;
+  const SurfaceLighting& indirect;
+  Sky sky;
+};
+
+class CompositePass {
+ public:
+  explicit CompositePass(PassContext context) : context_(context) {}
+  /// emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
+  Picture run(const CompositeInputs& in);
+
+ private:
+  PassContext context_;
+  gl::Texture radiance_, black_;
+  gl::Framebuffer framebuffer_;
+};
+
+/// Factor that brings the log-average luminance of the picture's surfaces (black ones left out) to 0.18; 1 when there
+/// is no light. Reads the picture back: meant to run once.
+float measureExposure(const Picture& picture);
+
+// Looking at it ----------------------------------------------------------------------------------------------------
+
+/// Everything a frame made, for read-back and views. Null where a stage did not run.
+struct FrameResults {
+  GBuffer surfaces;
+  SurfaceLighting direct;
+  SurfaceLighting gathered; // indirect, before the filter
+  SurfaceLighting indirect;
+  Picture picture;
+  ParaboloidMaps vplMaps;
+  std::optional<PatchPyramid> patches; // where somebody asked for them
+  const VplSet* vpls = nullptr;
+  Sky sky;
+  float sceneDiameter = 1; // metres; scales the depth view
+};
+
+struct Look {
+  float exposure = 1; // factor on radiance
+  ToneMapper toneMapper = ToneMapper::Reinhard;
+  bool markNan = true;                           // NaN magenta and infinity cyan in every radiometric view
+  AntiAliasing antiAliasing = AntiAliasing::Off; // of beauty, direct and indirect
+};
+
+/// Draws the error of a buffer of light in place of the buffer (shaders/shared/error_color.h).
+struct ErrorView {
+  const gl::Texture* truth = nullptr; // linear, of the same buffer and size; null: the buffer itself is drawn
+  float full = 1;                     // error with the full colour, in the buffer's unit
+};
+
+class DisplayPass {
+ public:
+  explicit DisplayPass(PassContext context) : context_(context) {}
+
+  /// Draws `buffer` as a display shows it into a texture (RGB8, sRGB-encoded, dithered; alpha means nothing) of the
+  /// picture's size.
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error = {});
+  /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height. With `right`, that
+  /// takes its place right of `divider`, a share of the width, and a line parts them.
+  void present(uint32_t framebuffer, int width, int height, const gl::Texture* right = nullptr, float divider = 1);
+  /// The texture of the last run.
+  Image8 read() const;
+
+ private:
+  void draw(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error, bool smooth);
+  void antiAlias();
+  void drawVpls(const FrameResults& frame);
+
+  PassContext context_;
+  gl::Texture display_, aliased_, black_; // aliased_: a copy of display_ before anti-aliasing
+  gl::Framebuffer framebuffer_;
+  gl::Ring sprites_{"display/vpls"};
+  gl::VertexArray spriteArray_;
+};
+
+/// A truth of what is shown, made on the CPU, as a display shows it.
+class TruthDisplay {
+ public:
+  explicit TruthDisplay(PassContext context) : context_(context), display_(context) {}
+
+  /// Takes the truth of a buffer over: beauty, direct, indirect or irradiance; linear, row 0 at the top.
+  void take(const Image& truth, const FrameResults& frame);
+  /// It, drawn as the frame's own buffer would be. It was taken for a frame of this size.
+  const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
+  const gl::Texture& linear() const { return linear_; }
+
+ private:
+  PassContext context_;
+  gl::Texture linear_;
+  DisplayPass display_;
+};
+
+/// Linear values of a buffer: radiance for beauty, direct (emission and background included: beauty − indirect),
+/// indirect, emission; irradiance (indirect, filtered) and unfiltered; albedo; world normal; depth in metres along the
+/// view direction, 0 on background. The other views give beauty. Stages that did not run read as black.
+Image readBuffer(Buffer buffer, const FrameResults& frame);
+
+} // namespace lambent

@@ -1,0 +1,94 @@
+#include "gi/visibility/shadow_map_cache.h"
+
+#include "gi/lighting/dirty_region.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lambent {
+
+ShadowedLights ShadowMapCache::see(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats) {
+  maps_ = {};
+  if (!in.lights.mayWait) schedule_.clear();
+  if (in.settings.vpl.visibility != VplVisibility::Maps || in.lights.trees) {
+    old_ = true;
+    return {in.lights};
+  }
+  std::vector<MapPose> poses;
+  poses.reserve(in.lights.slots.size());
+  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose(in.world.rays.rayEpsilon()));
+  std::swap(poses_, poses); // `poses` are those before
+  ParaboloidMapInputs maps{in.world.gpu,
+                           &in.world.rays,
+                           poses_,
+                           {},
+                           in.world.reach,
+                           in.settings.shadow.resolution,
+                           in.settings.shadow.maker};
+  std::vector<MapJob> jobs;
+  if (!in.lights.mayWait) {
+    jobs = jobsAtOnce(poses_, poses, in.lights.slots, in.world.moved.boxes(), in.world.view.changes.first || old_,
+                      in.settings.shadow.resolution);
+  } else if (pass_.drawsAllAnew(maps)) {
+    schedule_.clear();
+  } else {
+    jobs = inTurn(in, plan, stats);
+  }
+  old_ = false;
+  maps.jobs = jobs;
+  maps_ = pass_.run(maps);
+  stats.mapsDrawn += pass_.mapsDrawn();
+  stats.of(EffectId::Indirect) += pass_.mapsDrawn();
+  stats.makerTimes = pass_.makerReport();
+  stats.shadowMaker = stats.makerTimes.substr(0, stats.makerTimes.find(' '));
+  return {in.lights, &maps_};
+}
+
+/// Maps of lights that stand elsewhere, and as far as the budget goes of those that see where objects moved.
+std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats) {
+  const SceneView& view = in.world.view;
+  const ShadowSettings& shadow = in.settings.shadow;
+  const int resolution = shadow.resolution;
+  std::vector<float> brightness;
+  for (const VirtualLight& light : in.lights.slots) {
+    // A light that brings nothing now may do so later, so its map is not given up.
+    brightness.push_back(light.alive ? std::max(light.intensity(), 1e-20f) : 0);
+  }
+  int64_t budget = int64_t(shadow.refresh) * resolution * resolution;
+  if (view.changes.first || old_) {
+    schedule_.invalidateAll(poses_.size(), resolution);
+    budget = std::numeric_limits<int64_t>::max();
+  } else if (!plan.on(EffectId::MapRefresh)) {
+    budget = 0;
+  } else if (plan.idle(EffectId::MapRefresh)) {
+    schedule_.invalidateInTurn(poses_.size(), size_t(shadow.refresh), resolution);
+  } else if (view.changes.geometry || view.changes.instances) {
+    schedule_.invalidate(poses_, brightness, in.world.moved, in.world.rays, resolution, shadow.motionRays, in.seed,
+                      stats.frame, stats.raysMapTests);
+  }
+  // A map goes where its light goes: what rides along is seen right, the rest as late as other maps in motion.
+  if (plan.on(EffectId::MapRefresh)) schedule_.invalidateWhole(in.lights.carried, poses_.size(), resolution);
+  const std::vector<MapJob> jobs = schedule_.take(in.lights.moved, brightness, resolution, budget);
+  stats.mapsWaiting = waiting();
+  stats.of(EffectId::MapRefresh) = jobs.size() - in.lights.moved.size() + stats.raysMapTests.occlusion;
+  for (const MapJob& job : jobs) stats.mapTexelsDrawn += uint64_t(texelsTraced(job.texels, job.coarse));
+  return jobs;
+}
+
+std::vector<MapJob> jobsAtOnce(std::span<const MapPose> poses, std::span<const MapPose> before,
+                               std::span<const VirtualLight> lights, std::span<const Aabb> moved, bool all,
+                               int resolution) {
+  std::vector<MapJob> jobs;
+  for (uint32_t slot = 0; slot < poses.size(); ++slot) {
+    if (!lights[slot].alive) continue;
+    TexelRect texels;
+    if (all || slot >= before.size() || before[slot] != poses[slot])
+      texels = TexelRect::whole(resolution);
+    else
+      for (const Aabb& box : moved) texels.add(texelsCovered(poses[slot], box, resolution));
+    if (!texels.empty()) jobs.push_back({slot, texels});
+  }
+  return jobs;
+}
+
+} // namespace lambent
