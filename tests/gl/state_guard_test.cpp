@@ -1,6 +1,6 @@
 // A host with settings of its own: frames inside its context find their conventions and leave its state as it was.
 #include "engine/gl/state_guard.h"
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -227,7 +227,7 @@ TEST_F(StateGuardTest, AFrameLeavesTheHostsStateAndKeepsToItsOwn) {
        {std::pair(ShadowMaker::Rays, VplSource::Smc), std::pair(ShadowMaker::Raster, VplSource::Isr)}) {
     Settings settings = quick(source);
     settings.shadow.maker = maker;
-    GiFrame alone(settings);
+    Viewer alone(settings);
     alone.run(room.scene.view());
     const Image expected = alone.read(Buffer::Beauty);
     const Image8 shown = alone.readDisplay(Buffer::Vpls);
@@ -238,7 +238,7 @@ TEST_F(StateGuardTest, AFrameLeavesTheHostsStateAndKeepsToItsOwn) {
     const gl::Framebuffer framebuffer("host/target", {&target});
     const Snapshot before = snapshot();
     {
-      GiFrame gi(settings);
+      Viewer gi(settings);
       gi.run(room.scene.view());
       expectSame(before, snapshot());
       gi.present(Buffer::Beauty, framebuffer.name(), 64, 48);
@@ -257,7 +257,7 @@ TEST_F(StateGuardTest, TransformFeedbackThatRunsIsPausedMeanwhile) {
   const gl::TransformFeedback feedback("host/feedback", captured);
   const gl::Program& program = programs.get(
       {.vertex = "splat_refine.vert", .defines = {"FIRST"}, .geometry = "splat_refine.geom", .captured = {"patchOut"}});
-  GiFrame gi(quick(VplSource::Isr));
+  Viewer gi(quick(VplSource::Isr));
   program.use();
   feedback.bind();
   glBeginTransformFeedback(GL_POINTS);
