@@ -45,8 +45,8 @@ struct Material {
   TextureRef baseColorTexture;
   vec3 emission{0}; // emissiveFactor × emissiveStrength
   TextureRef emissiveTexture;
-  float roughness = 1, metalness = 0; // factors, [0,1]; roughness is perceptual: α = roughness²
-  TextureRef roughnessMetalnessTexture;           // G: roughness, B: metalness
+  float roughness = 1, metalness = 0;   // factors, [0,1]; roughness is perceptual: α = roughness²
+  TextureRef roughnessMetalnessTexture; // G: roughness, B: metalness
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;

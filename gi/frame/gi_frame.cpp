@@ -71,10 +71,9 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   k.world.take(given, settings);
   indirect.begin(k.world.view(), settings);
   const Needs needs = needsOf(settings);
-  const EffectPlan plan = k.world.plan(settings, {.first = !k.outputs.surfaces.depth,
-                                                  .host = host != nullptr,
-                                                  .needs = needs,
-                                                  .status = indirect.status()});
+  const EffectPlan plan = k.world.plan(
+      settings,
+      {.first = !k.outputs.surfaces.depth, .host = host != nullptr, .needs = needs, .status = indirect.status()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   const FrameWorld now{.world = world,

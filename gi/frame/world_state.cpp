@@ -50,9 +50,9 @@ EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
   gather.debug = before_.debug;
   gatherChanged_ = before_ != gather || shadersChanged_;
   const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
-  settingsChanged_ =
-      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects ||
-      before_.own != settings.own || before_.ownValues != settings.ownValues || in.first;
+  settingsChanged_ = before_.smc != settings.smc || before_.vpl != settings.vpl ||
+                     before_.effects != settings.effects || before_.own != settings.own ||
+                     before_.ownValues != settings.ownValues || in.first;
   before_ = settings;
   shadersChanged_ = false;
   hosted_ = in.host;

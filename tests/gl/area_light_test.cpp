@@ -2,8 +2,8 @@
 #include "engine/core/parallel.h"
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/direct_light.h"
-#include "gi/plan/effects.h"
 #include "gi/lighting/area_lobe.h"
+#include "gi/plan/effects.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -25,8 +25,7 @@ class AreaLightTest : public GlTest {
     FrameResults results;
     results.surfaces = surfacePass.run({world.gpu, world.view.camera});
     Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.indirect =
-        lightOf(direct, world, results.surfaces, patches, settings, stats);
+    results.indirect = lightOf(direct, world, results.surfaces, patches, settings, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 
@@ -75,8 +74,7 @@ class AreaLightTest : public GlTest {
     FrameResults results;
     results.surfaces = surfacePass.run({world.gpu, world.view.camera, true});
     Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.direct =
-        lightOf(direct, world, results.surfaces, patches, settings, stats);
+    results.direct = lightOf(direct, world, results.surfaces, patches, settings, stats);
     return readBuffer(Buffer::Direct, results);
   }
 

@@ -148,8 +148,7 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     const World world = placed->world(lamp);
     DirectLight direct(passes);
     Patches none;
-    results.direct =
-        lightOf(direct, world, results.surfaces, none, settings, stats);
+    results.direct = lightOf(direct, world, results.surfaces, none, settings, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {

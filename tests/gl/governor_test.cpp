@@ -1,7 +1,7 @@
 // The governor over real frames: its clock counts work (pixels, virtual lights, punctual lights), so that it says the
 // same on every machine; the pictures are real.
-#include "gi/viewer/viewer.h"
 #include "gi/plan/governor.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 

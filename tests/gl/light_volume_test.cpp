@@ -1,7 +1,7 @@
 // Light propagation volumes: what is conserved, what walls stop, and what stays when the grid moves on.
 #include "engine/core/rng.h"
-#include "gi/volume/light_volume.h"
 #include "gi/plan/techniques.h"
+#include "gi/volume/light_volume.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 

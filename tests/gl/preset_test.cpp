@@ -1,6 +1,6 @@
 // Every preset draws.
-#include "gi/viewer/viewer.h"
 #include "gi/plan/presets.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 
 #include <set>

@@ -68,8 +68,7 @@ class TurnCounter {
     settings.gather.mode = GatherMode::Full;
     Patches none;
     FrameStats stats;
-    const SurfaceLighting light =
-        gathers_.run(world, gbuffer, none, {{.trees = &trees}}, settings, stats);
+    const SurfaceLighting light = gathers_.run(world, gbuffer, none, {{.trees = &trees}}, settings, stats);
     std::vector<Turns> turns;
     for (const vec4& texel : readTexture(*light.irradiance)) turns.push_back({int(texel.y), texel.x > 0});
     return turns;

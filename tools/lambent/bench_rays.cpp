@@ -3,9 +3,9 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
+#include "engine/gpu_trace/gpu_rays.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/embree_query.h"
-#include "engine/gpu_trace/gpu_rays.h"
 #include "tools/lambent/bench.h"
 #include "tools/lambent/text.h"
 
@@ -42,7 +42,8 @@ constexpr const char* kDifferences[] = {"the same",
                                         "at the border of a mask",
                                         "other"};
 
-Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a, const SurfaceHit& b) {
+Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a,
+                        const SurfaceHit& b) {
   // Metres between two places on the ray, across the surface that lies there.
   const auto apart = [&](const SurfaceHit& h, float t) {
     return std::abs((h.t - t) * glm::dot(h.geometricNormal, ray.direction));

@@ -1,9 +1,9 @@
 // lambent inspect SCENE: contents, size, lights; the effects it calls for, each with its reason; warnings. With
 // --presets the presets, no scene.
 #include "engine/core/error.h"
+#include "gi/lighting/light_set.h"
 #include "gi/plan/effects.h"
 #include "gi/plan/presets.h"
-#include "gi/lighting/light_set.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/text.h"
 
@@ -62,13 +62,12 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   for (const NamedCamera& c : sceneCameras(stage->scene)) j["cameras"].push_back(c.name);
   j["effects"] = nlohmann::json::array();
   // Of a frame some time after the start, so that what moves by itself shows.
-  const EffectPlan plan =
-      planEffects(stage->at(1.0 / 30), stage->settings,
-                  {.first = false,
-                   .settingsChanged = false,
-                   .drawingChanged = false,
-                   .needs = needsOf(stage->settings),
-                   .status = {.settled = true}});
+  const EffectPlan plan = planEffects(stage->at(1.0 / 30), stage->settings,
+                                      {.first = false,
+                                       .settingsChanged = false,
+                                       .drawingChanged = false,
+                                       .needs = needsOf(stage->settings),
+                                       .status = {.settled = true}});
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = plan[EffectId(i)];
     j["effects"].push_back({{"name", effectRow(EffectId(i)).name}, {"on", e.on}, {"reason", e.reason}});

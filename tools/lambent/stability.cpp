@@ -72,7 +72,8 @@ bool drawsWholeFrames(const Settings& settings) {
 }
 
 /// The truth first, path traced in two halves, then each technique with each seed.
-std::vector<Variant> variantsOf(const StabilityOptions& options, const LaunchContext& stage, const WatchedScene& watched) {
+std::vector<Variant> variantsOf(const StabilityOptions& options, const LaunchContext& stage,
+                                const WatchedScene& watched) {
   std::vector<Variant> variants{{"truth", stage.settings, stage.seed}};
   if (options.pathTraced()) {
     variants.push_back({"truth, second half", stage.settings, ~stage.seed});

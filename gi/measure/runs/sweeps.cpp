@@ -173,7 +173,7 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
   for (const Assignments& set : jointDesign(quick))
     if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
   for (const Technique& technique : techniqueTable()) {
-    if (technique.name == std::string("smc") || needsOf(technique).lights == LightSupply::None) continue;
+    if (&technique == &techniqueTable().front() || needsOf(technique).lights == LightSupply::None) continue;
     if (part == SweepPart::Joint || (quick && technique.name != std::string("rsm"))) continue;
     add({.name = technique.name,
          .kind = Named,

@@ -1,8 +1,8 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
 // gather must agree with it, clamped alike, or with what bounds take given back.
 #include "engine/trace/embree_query.h"
-#include "gi/reference/path_tracer.h"
 #include "gi/near/near_light.h"
+#include "gi/reference/path_tracer.h"
 #include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/spread_lights.h"

@@ -1,8 +1,8 @@
 // Glossy receivers in the reference: closed forms, other integrals, and virtual lights as another way to the same
 // number.
 #include "engine/trace/embree_query.h"
-#include "gi/reference/state_file.h"
 #include "gi/lighting/receivers.h"
+#include "gi/reference/state_file.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"

@@ -1,9 +1,9 @@
 // The reference under a sky that is not constant, against fine sums over directions.
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
+#include "gi/lighting/receivers.h"
 #include "gi/reference/path_tracer.h"
 #include "gi/reference/state_file.h"
-#include "gi/lighting/receivers.h"
 #include "tests/support/daylight.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
