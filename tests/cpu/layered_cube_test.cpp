@@ -19,10 +19,10 @@ namespace {
 
 using Bytes = std::vector<char>;
 
-CubeSettings smallCube(CubeSights sights = CubeSights::Rays, int resolution = 32) {
+CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
   CubeSettings s;
   s.resolution = resolution;
-  s.sights = sights;
+  s.visibility = sights;
   s.hemicube = 64;
   return s;
 }
@@ -115,7 +115,7 @@ TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
     w.scene.box(at, at + 0.4f, grey, false);
   }
   w.place();
-  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   settings.levels = 5;
   CubeSurfaces tree, wide, narrow;
   RayCounts counts;
@@ -188,13 +188,13 @@ std::vector<VirtualLight> photonLights(const SceneView& view, const RayQuery& ra
 }
 
 struct CubeKind {
-  CubeSights sights;
+  CubeVisibility sights;
   int levels;
 };
-class CubeSightsTest : public ::testing::TestWithParam<CubeKind> {};
+class CubeVisibilityTest : public ::testing::TestWithParam<CubeKind> {};
 
 /// After anything happened the cube is the one that is built from what there is now.
-TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
+TEST_P(CubeVisibilityTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   test::RandomWorld world(0.01f);
   CubeSettings settings = smallCube(GetParam().sights, 16);
   settings.levels = GetParam().levels;
@@ -234,9 +234,9 @@ TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   EXPECT_GT(compared, 5000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sights, CubeSightsTest,
-                         ::testing::Values(CubeKind{CubeSights::Rays, 0}, CubeKind{CubeSights::Hemicubes, 0},
-                                           CubeKind{CubeSights::Rays, 2}, CubeKind{CubeSights::Hemicubes, 2}));
+INSTANTIATE_TEST_SUITE_P(Sights, CubeVisibilityTest,
+                         ::testing::Values(CubeKind{CubeVisibility::Rays, 0}, CubeKind{CubeVisibility::Hemicubes, 0},
+                                           CubeKind{CubeVisibility::Rays, 2}, CubeKind{CubeVisibility::Hemicubes, 2}));
 
 TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
   test::RandomWorld world(0.01f);
@@ -269,7 +269,7 @@ TEST(LayeredCube, FewerSlotsLeaveNoLightBehind) {
   w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
   w.place();
   for (int i = 0; i < 20; ++i) w.lights.push_back(lightAt({0.09f * float(i) - 0.9f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
-  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube, anew;
   cube.update(w.inputs(settings));
   w.lights.resize(5);
@@ -284,7 +284,7 @@ TEST(LayeredCube, ALightThatWasBlackIsLookedAtWhenItShines) {
   w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
   w.place();
   w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(0)));
-  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube;
   cube.update(w.inputs(settings));
   w.lights[0].radiance = vec3(100);
@@ -305,9 +305,9 @@ TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
   const GatherSettings gather;
   LayeredCube byRays;
   byRays.update(
-      {view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, smallCube(CubeSights::Rays), gather});
+      {view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, smallCube(CubeVisibility::Rays), gather});
   for (int fine = 0; fine < 2; ++fine) {
-    CubeSettings settings = smallCube(CubeSights::Hemicubes);
+    CubeSettings settings = smallCube(CubeVisibility::Hemicubes);
     settings.hemicube = fine ? 128 : 32;
     LayeredCube cube;
     cube.update({view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather});
@@ -383,7 +383,7 @@ class CubeFileTest : public ::testing::Test {
   }
 
   CubeWorld w;
-  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   std::filesystem::path folder_, file_;
   uint64_t key_ = 0;
 };

@@ -186,7 +186,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
   const std::vector<VirtualLight> lights = photonLights(view, world.rays(), 96);
   CubeSettings settings;
   settings.resolution = 32;
-  settings.sights = CubeSights::Hemicubes;
+  settings.visibility = CubeVisibility::Hemicubes;
   settings.hemicube = 64;
   const GatherSettings gather;
   HemicubePass pass(passes);
@@ -216,7 +216,7 @@ class HemicubeFrameTest : public HemicubeTest {
     settings.smc.vpls = 128;
     settings.smc.bounces = 2;
     settings.cube.resolution = 32;
-    settings.cube.sights = CubeSights::Hemicubes;
+    settings.cube.visibility = CubeVisibility::Hemicubes;
     settings.cube.hemicube = 32;
     settings.gather.near = 0;
   }
@@ -252,7 +252,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
   EXPECT_NE(measured.stats.cubeMakerTimes.find("ms a hemicube"), std::string::npos) << measured.stats.cubeMakerTimes;
   EXPECT_EQ(measured.stats.cubeMakerTimes.find(measured.stats.cubeMaker), 0u);
   EXPECT_EQ(measured.light.pixels, measured.stats.cubeMaker == "rays" ? cast.light.pixels : drawn.light.pixels);
-  settings.cube.sights = CubeSights::Rays;
+  settings.cube.visibility = CubeVisibility::Rays;
   EXPECT_EQ(run(CubeMaker::Auto).stats.cubeMaker, "") << "there are none";
 }
 

@@ -29,18 +29,18 @@ std::vector<CubeVariant> variantsOf(const LaunchContext& stage, bool quick) {
   all.push_back({techniqueOf(other).name, other});
   Settings cube = other;
   applyTechnique(cube, "ibrr");
-  const auto add = [&](int resolution, int levels, int lights, CubeSights sights) {
+  const auto add = [&](int resolution, int levels, int lights, CubeVisibility sights) {
     Settings s = cube;
     s.cube.resolution = resolution;
     s.cube.levels = levels;
-    s.cube.sights = sights;
+    s.cube.visibility = sights;
     s.smc.vpls = lights;
     const std::string tree = levels > 0 ? " in " + std::to_string(levels) + " levels" : "";
     all.push_back({"ibrr " + std::to_string(resolution) + tree + ", " + std::to_string(lights) + " lights, " +
-                       (sights == CubeSights::Rays ? "rays" : "hemicubes"),
+                       (sights == CubeVisibility::Rays ? "rays" : "hemicubes"),
                    s});
   };
-  using enum CubeSights;
+  using enum CubeVisibility;
   const int standard = cube.cube.resolution;
   if (quick) {
     add(16, 0, 64, Rays);

@@ -56,7 +56,7 @@ std::string conditionsOf(const LaunchContext& stage, const LaunchOptions& o, con
   for (const std::string& option : {o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
                                     std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.seed)})
     text += '\n' + option;
-  for (const SettingRow& row : settingsTable()) text += '\n' + settingText(stage.settings, row.name);
+  for (const SettingRow& row : settingRows(stage.settings)) text += '\n' + settingText(stage.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})
     for (const std::string& light : *list) text += '\n' + light;
   return format("%016llx",

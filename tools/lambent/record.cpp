@@ -97,7 +97,7 @@ std::vector<Settings> settingsOf(const RecordOptions& options, LaunchContext& st
 std::string choicesOf(const RecordOptions& options, const std::vector<Settings>& sides) {
   std::string text = options.buffer + ' ' + options.format + (options.captions ? " captions" : "");
   if (sides.size() > 1)
-    for (const SettingRow& row : settingsTable()) text += ' ' + settingText(sides[1], row.name);
+    for (const SettingRow& row : settingRows(sides[1])) text += ' ' + settingText(sides[1], row.name);
   return text;
 }
 
