@@ -2,12 +2,12 @@
 #include "engine/core/parallel.h"
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/direct_light.h"
-#include "gi/plan/effects.h"
 #include "gi/lighting/area_lobe.h"
+#include "gi/plan/effects.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::area_light_test {
 
 class AreaLightTest : public GlTest {
  protected:
@@ -38,27 +38,25 @@ class AreaLightTest : public GlTest {
     EmbreeQuery rays(scene.assets);
     rays.update(view);
     Image image(camera.width, camera.height);
-    for (int y = 0; y < camera.height; ++y)
-      for (int x = 0; x < camera.width; ++x) {
-        const CameraRay ray =
-            cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
-        const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
-        if (!hit.valid()) continue;
-        const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
-        vec3 sum(0);
-        for (const EmitterTriangle& t : lights.triangles)
-          for (int i = 0; i < side * side; ++i) {
-            vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
-            if (u.x + u.y > 1) u = 1.0f - u;
-            const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
-            const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
-            if (cosine <= 0 || cosineLight <= 0) continue;
-            if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.rayEpsilon())))) continue;
-            const float r2 = glm::dot(way, way);
-            sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
-          }
-        image.at(x, y) = sum;
-      }
+    for (const auto [x, y] : Pixels(camera)) {
+      const CameraRay ray = pixelRay(camera, x, y);
+      const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
+      if (!hit.valid()) continue;
+      const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
+      vec3 sum(0);
+      for (const EmitterTriangle& t : lights.triangles)
+        for (int i = 0; i < side * side; ++i) {
+          vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+          if (u.x + u.y > 1) u = 1.0f - u;
+          const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
+          const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
+          if (cosine <= 0 || cosineLight <= 0) continue;
+          if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.rayEpsilon())))) continue;
+          const float r2 = glm::dot(way, way);
+          sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
+        }
+      image.at(x, y) = sum;
+    }
     return image;
   }
 
@@ -100,18 +98,17 @@ TEST_F(AreaLightTest, IsExactWhereNothingIsBetween) {
   const SceneView view = scene.view();
   const AreaLights lights = areaLights(collectLights(view));
   int floor = 0;
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 96; ++x) {
-      const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 64);
-      const float t = -ray.origin.y / ray.direction.y;
-      const vec3 at = ray.origin + ray.direction * t;
-      if (t <= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
-      const vec3 expected = unshadowed(lights, lights.lights[0], at, vec3(0, 1, 0));
-      if (glm::distance(image.at(x, y), vec3(0)) == 0) continue; // the lamp is in the way
-      ASSERT_NEAR(image.at(x, y).x, expected.x, 2e-3f * expected.x) << x << ' ' << y;
-      ASSERT_NEAR(image.at(x, y).z, expected.z, 2e-3f * expected.z);
-      ++floor;
-    }
+  for (const auto [x, y] : Pixels(96, 64)) {
+    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const float t = -ray.origin.y / ray.direction.y;
+    const vec3 at = ray.origin + ray.direction * t;
+    if (t <= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+    const vec3 expected = unshadowed(lights, lights.lights[0], at, vec3(0, 1, 0));
+    if (glm::distance(image.at(x, y), vec3(0)) == 0) continue; // the lamp is in the way
+    ASSERT_NEAR(image.at(x, y).x, expected.x, 2e-3f * expected.x) << x << ' ' << y;
+    ASSERT_NEAR(image.at(x, y).z, expected.z, 2e-3f * expected.z);
+    ++floor;
+  }
   EXPECT_GT(floor, 3000);
   EXPECT_LT(stats.areaFragments, 1500u) << "of 6144 pixels";
 }
@@ -135,26 +132,25 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
     const AreaPiece& lamp = lights.pieces.at(0);
     Image onCpu(48, 32), integrated(48, 32), drawn(48, 32);
     int seen = 0;
-    for (int y = 0; y < 32; ++y)
-      for (int x = 0; x < 48; ++x) {
-        const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 48, (float(y) + 0.5f) / 32);
-        const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
-        if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
-        const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
-        const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
-        onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
-        integrated.at(x, y) = lambert;
-        constexpr int kSteps = 24;
-        for (int i = 0; i < kSteps * kSteps; ++i) {
-          const vec3 to = vec3(-0.4f + 0.8f * (float(i % kSteps) + 0.5f) / kSteps, 2,
-                               -0.3f + 0.6f * (float(i / kSteps) + 0.5f) / kSteps);
-          const vec3 way = to - at, towardsLight = glm::normalize(way);
-          const float solid = 0.48f / (kSteps * kSteps) * towardsLight.y / glm::dot(way, way);
-          integrated.at(x, y) += vec3(5, 4, 3) * glossyReflectance(r, towardsLight, 0) * (solid * towardsLight.y);
-        }
-        drawn.at(x, y) = image.at(x, y);
-        ++seen;
+    for (const auto [x, y] : Pixels(48, 32)) {
+      const CameraRay ray = pixelRay(scene.camera, x, y);
+      const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
+      if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+      const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
+      const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
+      onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
+      integrated.at(x, y) = lambert;
+      constexpr int kSteps = 24;
+      for (int i = 0; i < kSteps * kSteps; ++i) {
+        const vec3 to = vec3(-0.4f + 0.8f * (float(i % kSteps) + 0.5f) / kSteps, 2,
+                             -0.3f + 0.6f * (float(i / kSteps) + 0.5f) / kSteps);
+        const vec3 way = to - at, towardsLight = glm::normalize(way);
+        const float solid = 0.48f / (kSteps * kSteps) * towardsLight.y / glm::dot(way, way);
+        integrated.at(x, y) += vec3(5, 4, 3) * glossyReflectance(r, towardsLight, 0) * (solid * towardsLight.y);
       }
+      drawn.at(x, y) = image.at(x, y);
+      ++seen;
+    }
     EXPECT_GT(seen, 800);
     EXPECT_LT(relativeRmse(drawn, onCpu), 0.002) << roughness;
     EXPECT_LT(relativeRmse(drawn, integrated), roughness < 0.4f ? 0.02 : 0.06) << roughness;
@@ -295,11 +291,10 @@ TEST_F(AreaLightTest, ShadowEdgesHoldInEveryBlock) {
   for (int y = 0; y < 360; y += 12)
     for (int x = 0; x < 640; x += 16) {
       double sum = 0;
-      for (int v = y; v < y + 12; ++v)
-        for (int u = x; u < x + 16; ++u) {
-          const double off = luminance(glm::abs(image.at(u, v) - every.at(u, v))) / mean;
-          sum += off * off / (12 * 16);
-        }
+      for (const auto [u, v] : Pixels({x, y}, {x + 16, y + 12})) {
+        const double off = luminance(glm::abs(image.at(u, v) - every.at(u, v))) / mean;
+        sum += off * off / (12 * 16);
+      }
       worst = std::max(worst, std::sqrt(sum));
     }
   std::printf("RMSE %.2f %% of the mean, in the worst block of 16 x 12 pixels %.1f %%\n",
@@ -353,8 +348,7 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   HandScene scene;
   lampOver(scene);
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
-  scene.camera.width = 384;
-  scene.camera.height = 256;
+  scene.picture(384, 256);
   const Image traced = tracedOf(scene, 16), image = irradianceOf(scene);
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
@@ -424,4 +418,4 @@ TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(a.pixels, b.pixels);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::area_light_test

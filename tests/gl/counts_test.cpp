@@ -5,10 +5,9 @@
 #include "gl_fixture.h"
 
 #include <chrono>
-#include <functional>
 #include <thread>
 
-namespace lambent::test {
+namespace lambent::test::counts_test {
 
 class CountsTest : public GlTest {
  protected:
@@ -136,4 +135,4 @@ TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
   EXPECT_EQ(sinceBefore().readBacks, 0u);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::counts_test

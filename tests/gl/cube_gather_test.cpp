@@ -7,12 +7,12 @@
 #include <fstream>
 #include <unistd.h>
 
-namespace lambent::test {
+namespace lambent::test::cube_gather_test {
 
 class CubeGatherTest : public GlTest {
  protected:
   CubeGatherTest() {
-    room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    room.scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     applyTechnique(settings, "ibrr");
     settings.smc.vpls = 256;
     settings.smc.bounces = 2;
@@ -22,7 +22,7 @@ class CubeGatherTest : public GlTest {
   }
   SceneView still() const {
     SceneView view = room.scene.view();
-    view.changes = {false, false, false, false, false};
+    view.changes = kStill;
     return view;
   }
   static double differenceOf(const Image& a, const Image& b) {
@@ -251,7 +251,7 @@ TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
     scene.box(vec3(-2, -1, -2), vec3(2, 1, 2), white, true);
     const vec3 along(std::sin(turn), 0, std::cos(turn)); // of a wall without thickness
     scene.quad(vec3(0.07f, -1, 0) - 3.0f * along, vec3(0, 2, 0), 6.0f * along, white);
-    scene.lights.push_back({.type = LightType::Point, .position = {-1.2f, 0.2f, 0}, .intensity = vec3(5)});
+    scene.lamp({-1.2f, 0.2f, 0}, vec3(5));
     double lit = 0;
     for (const float side : {-1.0f, 1.0f}) {
       scene.camera = cameraAt(vec3(side * 0.9f, 0, -side * 0.8f), vec3(side * 1.5f, -0.2f, side * 2), 1.7f);
@@ -314,4 +314,4 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   std::filesystem::remove(file);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::cube_gather_test

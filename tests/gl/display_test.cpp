@@ -2,7 +2,7 @@
 #include "gl_fixture.h"
 #include "shaders/shared/tone_map.h"
 
-namespace lambent::test {
+namespace lambent::test::display_test {
 
 class DisplayTest : public GlTest {
  protected:
@@ -134,8 +134,7 @@ TEST_F(DisplayTest, EveryViewDraws) {
 
 TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   Image image(64, 48, vec3(0));
-  for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(100); // upper half bright
+  for (const auto [x, y] : Pixels(64, 24)) image.at(x, y) = vec3(100); // upper half bright
   const FrameResults frame = frameWith(image);
   const gl::Texture target("window", {.format = GL_RGBA8, .width = 128, .height = 96});
   const gl::Framebuffer framebuffer("window", {&target});
@@ -146,4 +145,4 @@ TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   EXPECT_GT(shown[80 * 128 + 64].x, 0.9f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::display_test

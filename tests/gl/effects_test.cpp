@@ -4,9 +4,7 @@
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
-#include <cstring>
-
-namespace lambent::test {
+namespace lambent::test::effects_test {
 
 using enum EffectId;
 
@@ -24,13 +22,9 @@ class EffectsTest : public GlTest {
       scene.quad({-1.5f, 0, -1.5f}, {0, 2.5f, 0}, {0, 0, 3}, scene.material({0.7f, 0.1f, 0.1f}));
       block = uint32_t(scene.instances.size());
       scene.box({-0.4f, 0, -0.5f}, {0.4f, 0.9f, 0.2f}, grey, false);
-      LightView point;
-      point.position = {0.9f, 2, 0.5f};
-      point.intensity = vec3(5);
-      scene.lights.push_back(point);
+      scene.lamp({0.9f, 2, 0.5f}, vec3(5));
       scene.camera.worldFromView[3] = vec4(0.2f, 1.1f, 2.6f, 1);
-      scene.camera.width = 64;
-      scene.camera.height = 48;
+      scene.picture(64, 48);
       scene.camera.fovY = 1;
     }
 
@@ -42,7 +36,7 @@ class EffectsTest : public GlTest {
       return v;
     }
     SceneView first() { return view({true, true, true, true, true}); }
-    SceneView still() { return view({false, false, false, false, false}); }
+    SceneView still() { return view(kStill); }
     /// All boxes' faces from `block` on go by `by`.
     SceneView moveBlock(const vec3& by) {
       for (InstanceView& i : scene.instances) i.moved = false;
@@ -55,7 +49,7 @@ class EffectsTest : public GlTest {
         i.moved = true;
       }
       SceneView v = scene.view();
-      v.changes = {false, false, false, true, false};
+      v.changes = kGeometryChanged;
       return v;
     }
     void emissive(const vec3& radiance) {
@@ -250,7 +244,7 @@ TEST_F(EffectsTest, RelightNeedsAChangeOfLight) {
     if (frame > 1) return {};
     if (frame == 0) return w.first();
     w.scene.lights[0].intensity = vec3(1);
-    return w.view({false, false, true, false, false});
+    return w.view(kLightsChanged);
   };
   EXPECT_GT(lossWithout(Relight, quick(), dimmed), 0.05);
 }
@@ -356,15 +350,15 @@ TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
   };
   wakes("camera", [](World& w, Viewer&) {
     w.scene.camera.worldFromView[3].x += 0.1f;
-    return w.view({false, true, false, false, false});
+    return w.view(kCameraChanged);
   });
   wakes("size", [](World& w, Viewer&) {
     w.scene.camera.width = 80;
-    return w.view({false, true, false, false, false});
+    return w.view(kCameraChanged);
   });
   wakes("light", [](World& w, Viewer&) {
     w.scene.lights[0].intensity *= 2;
-    return w.view({false, false, true, false, false});
+    return w.view(kLightsChanged);
   });
   wakes("object", [](World& w, Viewer&) { return w.moveBlock({0.2f, 0, 0}); });
   wakes("setting of drawing", [](World& w, Viewer& gi) {
@@ -412,11 +406,11 @@ TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
     if (frame % 5 == 1) return w.moveBlock({0.1f, 0, 0});
     if (frame % 5 == 3) {
       w.scene.lights[0].position.x -= 0.1f;
-      return w.view({false, false, true, false, false});
+      return w.view(kLightsChanged);
     }
     if (frame % 5 == 4) {
       w.scene.camera.worldFromView[3].x += 0.02f;
-      return w.view({false, true, false, false, false});
+      return w.view(kCameraChanged);
     }
     return w.still();
   };
@@ -454,7 +448,7 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
     const Image before = gi.read(Buffer::Indirect);
     EXPECT_EQ(gi.run(world.still()).work[size_t(Redraw)], 0u) << technique;
     world.scene.lights[0].position.x -= 0.3f;
-    const FrameStats moved = gi.run(world.view({false, false, true, false, false}));
+    const FrameStats moved = gi.run(world.view(kLightsChanged));
     EXPECT_GT(moved.work[size_t(Redraw)], 0u) << technique;
     EXPECT_NE(gi.read(Buffer::Indirect).pixels, before.pixels) << technique;
     Viewer anew(settings);
@@ -509,4 +503,4 @@ TEST_F(EffectsTest, VplsOfReflectiveMapsMayHaveShadows) {
   EXPECT_NEAR(maps / rays, 1, 0.02);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::effects_test

@@ -3,7 +3,7 @@
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::frame_test {
 
 class FrameTest : public GlTest {
  protected:
@@ -15,13 +15,9 @@ class FrameTest : public GlTest {
     scene.quad({-1.5f, 0, -1.5f}, {0, 2.5f, 0}, {0, 0, 3}, scene.material({0.7f, 0.1f, 0.1f}));
     scene.quad({1.5f, 0, -1.5f}, {0, 0, 3}, {0, 2.5f, 0}, scene.material({0.1f, 0.6f, 0.1f}));
     scene.box({-0.9f, 0, -0.9f}, {-0.1f, 1.1f, -0.2f}, white, false);
-    LightView lamp;
-    lamp.position = {0.5f, 2.1f, 0.2f};
-    lamp.intensity = vec3(4);
-    scene.lights.push_back(lamp);
+    scene.lamp({0.5f, 2.1f, 0.2f}, vec3(4));
     scene.camera.worldFromView[3] = vec4(0, 1.2f, 1.45f, 1);
-    scene.camera.width = 96;
-    scene.camera.height = 72;
+    scene.picture(96, 72);
     scene.camera.fovY = 1.2f;
   }
 
@@ -38,7 +34,7 @@ class FrameTest : public GlTest {
 
   static SceneView still(const HandScene& scene) {
     SceneView v = scene.view();
-    v.changes = {false, false, false, false, false};
+    v.changes = kStill;
     return v;
   }
 };
@@ -74,8 +70,7 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
   settings.smc.vpls = settings.smc.points = 64;
   settings.smc.warmup = 2;
   settings.shadow.resolution = 32;
-  scene.camera.width = 48;
-  scene.camera.height = 36;
+  scene.picture(48, 36);
   settings.image.exposure = 0;
   for (const VplSource source : {VplSource::Smc, VplSource::Rsm, VplSource::Hisr})
     for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {
@@ -115,10 +110,7 @@ TEST_F(FrameTest, ACameraCutIsLitInItsFirstFrame) {
   furnish(scene);
   // A second, closed room ten metres away, blue, with a lamp of its own.
   scene.box({8.5f, 0, -1.5f}, {11.5f, 2.5f, 1.5f}, scene.material({0.2f, 0.3f, 0.8f}), true);
-  LightView lamp;
-  lamp.position = {10, 2, 0};
-  lamp.intensity = vec3(4);
-  scene.lights.push_back(lamp);
+  scene.lamp({10, 2, 0}, vec3(4));
   Viewer gi(quick());
   gi.run(scene.view());
   scene.camera.worldFromView[3].x += 10;
@@ -166,4 +158,4 @@ TEST_F(FrameTest, MovingObjectsAndLightsStayFinite) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::frame_test

@@ -1,7 +1,7 @@
 // The G-buffer against rays: what a pixel holds is what the ray through its centre meets.
 #include "gl_fixture.h"
 
-namespace lambent::test {
+namespace lambent::test::gbuffer_test {
 
 using GBufferTest = GlTest;
 
@@ -21,8 +21,7 @@ void expectAgreesWithRays(SurfacePass& pass, gl::ProgramCache& programs, const R
   int differing = 0;
   for (int y = 0; y < depth.height; ++y) {
     for (int x = 0; x < depth.width; ++x) {
-      const CameraRay ray =
-          cameraRay(room.scene.camera, (float(x) + 0.5f) / float(depth.width), (float(y) + 0.5f) / float(depth.height));
+      const CameraRay ray = pixelRay(room.scene.camera, x, y);
       const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
       const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
       if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
@@ -149,4 +148,4 @@ TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   EXPECT_LT(glm::length(at(albedo, 0, -2) - vec3(0.25f, 0.5f, 0.75f)), 2e-3f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::gbuffer_test

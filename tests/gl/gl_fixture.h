@@ -8,12 +8,12 @@
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
 #include "gi/frame/gi_frame.h"
-#include "gi/viewer/picture.h"
 #include "gi/gather/stages.h"
-#include "gi/sources/packed_lights.h"
-#include "gi/surfaces/surfaces.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
+#include "gi/sources/packed_lights.h"
+#include "gi/surfaces/surfaces.h"
+#include "gi/viewer/picture.h"
 #include "shaders/shared/paraboloid.h"
 #include "tests/support/hand_scene.h"
 
@@ -175,8 +175,7 @@ struct Floor {
   }
   /// World position of the plane at the centre of pixel (x, y), y from the top.
   vec3 at(int x, int y) const {
-    const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / float(scene.camera.width),
-                                    (float(y) + 0.5f) / float(scene.camera.height));
+    const CameraRay ray = pixelRay(scene.camera, x, y);
     return ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
   }
 };

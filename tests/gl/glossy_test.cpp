@@ -9,7 +9,7 @@
 #include "tests/support/spread_lights.h"
 #include "tests/support/statistics.h"
 
-namespace lambent::test {
+namespace lambent::test::glossy_test {
 
 class GlossyTest : public GatherTest {
  protected:
@@ -64,24 +64,22 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
     results.surfaces = gbuffer;
     results.picture = picture;
     const Image beauty = readBuffer(Buffer::Beauty, results);
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
-        const float r2 = glm::dot(d, d);
-        const vec3 irradiance =
-            radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
-        const Receiver receiver = floor.receiverAt(x, y);
-        const vec3 lambert = irradiance * receiver.diffuse / kPi;
-        const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
-        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
-        for (int c = 0; c < 3; ++c) {
-          const float wanted = lambert[c] + lobe[c];
-          ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f)
-              << x << ' ' << y << " roughness " << f.roughness;
-          ASSERT_NEAR(beauty.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y;
-        }
-        brightest = std::max(brightest, lobe.x / std::max(irradiance.x / kPi, 1e-6f));
+    for (const auto [x, y] : Pixels(image)) {
+      const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
+      const float r2 = glm::dot(d, d);
+      const vec3 irradiance =
+          radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
+      const Receiver receiver = floor.receiverAt(x, y);
+      const vec3 lambert = irradiance * receiver.diffuse / kPi;
+      const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
+      const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
+      for (int c = 0; c < 3; ++c) {
+        const float wanted = lambert[c] + lobe[c];
+        ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y << " roughness " << f.roughness;
+        ASSERT_NEAR(beauty.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y;
       }
+      brightest = std::max(brightest, lobe.x / std::max(irradiance.x / kPi, 1e-6f));
+    }
   }
   EXPECT_GT(brightest, 10) << "the light's mirror image lies in the picture";
 }
@@ -122,9 +120,8 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
     for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
       const SurfaceLighting raw{&black, &constant, true};
       const Image image = indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = on, .kernel = kernel}}));
-      for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 64; ++x)
-          ASSERT_LT(glm::length(image.at(x, y) - colors[x >= 32] * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
+      for (const auto [x, y] : Pixels(64, 48))
+        ASSERT_LT(glm::length(image.at(x, y) - colors[x >= 32] * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
     }
 }
 
@@ -151,22 +148,21 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     results.direct =
         direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, none}, stats);
     const Image image = readBuffer(Buffer::Direct, results);
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const Receiver receiver = floor.receiverAt(x, y);
-        const vec3 at = floor.at(x, y);
-        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
-          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
-        };
-        const vec3 d = position - at, e = sample.position - at;
-        const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
-        const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
-                            reflected(sun * -sunDirection.y, -sunDirection) +
-                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
-                                      lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
-        for (int c = 0; c < 3; ++c)
-          ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
-      }
+    for (const auto [x, y] : Pixels(image)) {
+      const Receiver receiver = floor.receiverAt(x, y);
+      const vec3 at = floor.at(x, y);
+      const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
+        return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
+      };
+      const vec3 d = position - at, e = sample.position - at;
+      const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
+      const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
+                          reflected(sun * -sunDirection.y, -sunDirection) +
+                          reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
+                                    lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
+    }
   }
 }
 
@@ -241,10 +237,7 @@ class GlossyFrameTest : public GlossyTest {
       room.scene.assets.materials[m].roughness = roughness;
       room.scene.assets.materials[m].metalness = metalness;
     }
-    LightView light;
-    light.position = {0.5f, 0.6f, 0.4f};
-    light.intensity = vec3(1);
-    room.scene.lights.push_back(light);
+    room.scene.lamp({0.5f, 0.6f, 0.4f}, vec3(1));
     settings.smc.vpls = 256;
     settings.smc.points = 256;
     settings.smc.warmup = 10;
@@ -281,10 +274,10 @@ TEST_F(GlossyFrameTest, BuffersAddUpAndSwitchingOffGoesBack) {
   const Image irradiance = gi.read(Buffer::Irradiance);
   gi.settings().gather.glossy = false;
   SceneView still = room.scene.view();
-  still.changes = {false, false, false, false, false};
+  still.changes = kStill;
   gi.run(still);
   EXPECT_EQ(relativeRmse(gi.read(Buffer::Irradiance), irradiance), 0) << "irradiance is that of Lambert surfaces";
   EXPECT_GT(relativeRmse(gi.read(Buffer::Beauty), beauty), 0.02);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::glossy_test

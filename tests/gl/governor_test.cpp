@@ -1,24 +1,19 @@
 // The governor over real frames: its clock counts work (pixels, virtual lights, punctual lights), so that it says the
 // same on every machine; the pictures are real.
-#include "gi/viewer/viewer.h"
 #include "gi/plan/governor.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::governor_test {
 
 using GovernorFrames = GlTest;
 
 constexpr double kTarget = 20;
 
-} // namespace
-
 TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   Room room;
-  room.scene.camera.width = 96;
-  room.scene.camera.height = 64;
+  room.scene.picture(96, 64);
   LightView lamp;
   lamp.position = vec3(0.5f, 0.7f, 0.4f);
   lamp.intensity = vec3(2);
@@ -81,4 +76,4 @@ TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   std::printf("%d changes of scale, mean indirect light by %.2f %% at most\n", changes, 100 * largest);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::governor_test

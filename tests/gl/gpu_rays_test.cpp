@@ -1,16 +1,12 @@
 #include "engine/gpu_trace/gpu_rays.h"
 
-#include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/random_world.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::gpu_rays_test {
 
-using test::HandScene;
-
-class GpuRaysTest : public test::GlTest {};
+class GpuRaysTest : public GlTest {};
 
 std::vector<Ray> raysIn(const Aabb& box, size_t count, uint32_t seed) {
   std::vector<Ray> rays(count);
@@ -52,7 +48,7 @@ int differences(const RayQuery& a, const RayQuery& b, std::span<const Ray> rays)
 }
 
 TEST_F(GpuRaysTest, AgreeWithEmbreeWhileAnythingHappens) {
-  test::RandomWorld world(0.01f);
+  RandomWorld world(0.01f);
   GpuRays gpu(programs, world.assets());
   int wrong = 0, all = 0;
   for (uint32_t frame = 0; frame < 24; ++frame) {
@@ -184,5 +180,4 @@ TEST_F(GpuRaysTest, AnEmptySceneStopsNothing) {
   EXPECT_FALSE(gpu.occluded(Ray{vec3(0), vec3(0, 1, 0)}));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::gpu_rays_test

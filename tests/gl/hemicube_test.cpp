@@ -6,7 +6,7 @@
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/random_world.h"
 
-namespace lambent::test {
+namespace lambent::test::hemicube_test {
 
 class HemicubeTest : public GlTest {
  protected:
@@ -41,16 +41,15 @@ class HemicubeTest : public GlTest {
 
   static void compare(const RayQuery& rays, const Hemicube& drawn, const Hemicube& cast, Agreement& sum) {
     for (int face = 0; face < 5; ++face)
-      for (int y = 0; y < cast.rows(face); ++y)
-        for (int x = 0; x < cast.resolution; ++x) {
-          ++sum.texels;
-          const HemicubeTexel& is = drawn.at(face, x, y);
-          const vec2 middle = vec2(x, y) + 0.5f;
-          const vec3 direction = drawn.direction(face, middle);
-          if (same(is, direction, cast.at(face, x, y), direction, rays.rayEpsilon())) continue;
-          ++sum.apart;
-          sum.astray += !metBeside(rays, drawn, face, middle, is);
-        }
+      for (const auto [x, y] : Pixels(cast.resolution, cast.rows(face))) {
+        ++sum.texels;
+        const HemicubeTexel& is = drawn.at(face, x, y);
+        const vec2 middle = vec2(x, y) + 0.5f;
+        const vec3 direction = drawn.direction(face, middle);
+        if (same(is, direction, cast.at(face, x, y), direction, rays.rayEpsilon())) continue;
+        ++sum.apart;
+        sum.astray += !metBeside(rays, drawn, face, middle, is);
+      }
   }
 
   /// Whether two texels show one surface; each with the direction that it looks in.
@@ -211,7 +210,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
 class HemicubeFrameTest : public HemicubeTest {
  protected:
   HemicubeFrameTest() {
-    room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    room.scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     applyTechnique(settings, "ibrr");
     settings.smc.vpls = 128;
     settings.smc.bounces = 2;
@@ -262,7 +261,7 @@ TEST_F(HemicubeFrameTest, AutoMeasuresBothMakersOnce) {
   const std::string report = gi.run(room.scene.view()).cubeMakerTimes;
   room.scene.lights[0].position.x = -0.3f;
   SceneView view = room.scene.view();
-  view.changes = {false, false, false, false, false};
+  view.changes = kStill;
   view.changes.lights = true;
   const FrameStats& stats = gi.run(view);
   EXPECT_GT(stats.ms(StageId::Cube), 0);
@@ -272,10 +271,10 @@ TEST_F(HemicubeFrameTest, AutoMeasuresBothMakersOnce) {
   EXPECT_EQ(gi.run(view).ms(StageId::Hemicubes), 0);
   room.scene.lights[0].position.x = -0.2f;
   view = room.scene.view();
-  view.changes = {false, false, false, false, false};
+  view.changes = kStill;
   view.changes.lights = true;
   EXPECT_GT(gi.run(view).ms(StageId::Hemicubes), 0);
   EXPECT_EQ(gi.run(view).cubeMaker, "raster");
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::hemicube_test

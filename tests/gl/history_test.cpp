@@ -3,7 +3,7 @@
 #include "still_room.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::history_test {
 
 class HistoryTest : public StillRoomTest {
  protected:
@@ -11,8 +11,7 @@ class HistoryTest : public StillRoomTest {
     settings.gather.checks = false;
     settings.shadow.resolution = 64;
     settings.history.frames = 16;
-    room.scene.camera.width = 96;
-    room.scene.camera.height = 72;
+    room.scene.picture(96, 72);
   }
 
   static Settings with(Settings s, GatherMode mode, int frames) {
@@ -71,7 +70,7 @@ TEST_F(HistoryTest, FollowsTheCamera) {
     mat4& pose = room.scene.camera.worldFromView;
     pose = glm::rotate(pose, 0.01f, vec3(0, 1, 0));
     pose[3].x += 0.015f;
-    gi.run(view({false, true, false, false, false}));
+    gi.run(view(kCameraChanged));
   }
   const Image last = gi.read(Buffer::Irradiance);
   gi.settings() = with(settings, GatherMode::Interleaved, 0); // the same lights
@@ -97,7 +96,7 @@ TEST_F(HistoryTest, TakesNoLightFromOtherSurfaces) {
   gi.run(room.scene.view());
   for (int i = 0; i < 12; ++i) {
     room.scene.camera.worldFromView[3].x += 0.02f;
-    gi.run(view({false, true, false, false, false}));
+    gi.run(view(kCameraChanged));
   }
   const Image last = gi.read(Buffer::Irradiance);
   gi.settings() = with(settings, GatherMode::Full, 0); // the same lights
@@ -111,7 +110,7 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
   for (int i = 1; i < 20; ++i) gi.run(still());
   for (const float intensity : {4.0f, 0.25f, 0.3f}) { // twice at once, then by a fifth
     room.scene.lights[0].intensity = vec3(intensity);
-    gi.run(view({false, false, true, false, false}));
+    gi.run(view(kLightsChanged));
     const double first = meanLuminance(gi.read(Buffer::Irradiance)), wanted = meanLuminance(allLights());
     EXPECT_NEAR(first, wanted, 0.15 * wanted) << intensity;
     for (int i = 0; i < 4; ++i) gi.run(still());
@@ -127,8 +126,7 @@ TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
   gi.run(room.scene.view());
   for (int i = 1; i < 16; ++i) gi.run(still());
   for (const int width : {64, 48, 96}) {
-    room.scene.camera.width = width;
-    room.scene.camera.height = width * 3 / 4;
+    room.scene.picture(width, width * 3 / 4);
     Viewer fresh(settings);
     fresh.run(room.scene.view());
     const Image all = allLights(), one = fresh.read(Buffer::Irradiance);
@@ -171,7 +169,7 @@ TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
   Viewer gi(settings);
   gi.run(room.scene.view());
   room.scene.lights[0].intensity = vec3(kInfinity);
-  gi.run(view({false, false, true, false, false}));
+  gi.run(view(kLightsChanged));
   room.scene.lights[0].intensity = vec3(1);
   for (int i = 0; i < 8; ++i) gi.run(view({false, false, i == 0, false, false}));
   EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(allLights()),
@@ -202,11 +200,10 @@ TEST_F(HistoryPassTest, CornersDoNotMix) {
     const Image normal = readBuffer(Buffer::Normal, results);
     const auto lit = [&](int x, int y) { return normal.at(x, y).y > 0.5f ? 1.0f : 0.0f; };
     std::vector<vec4> light(64 * 48);
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) light[size_t(y) * 64 + x] = vec4(lit(x, 47 - y));
+    for (const auto [x, y] : Pixels(64, 48)) light[size_t(y) * 64 + x] = vec4(lit(x, 47 - y));
     const Image mean = averaged(gbuffer, light, i > 0);
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) ASSERT_NEAR(mean.at(x, y).x, lit(x, y), 1e-5f) << x << ' ' << y << ' ' << i;
+    for (const auto [x, y] : Pixels(64, 48))
+      ASSERT_NEAR(mean.at(x, y).x, lit(x, y), 1e-5f) << x << ' ' << y << ' ' << i;
   }
 }
 
@@ -264,4 +261,4 @@ TEST_F(HistoryTest, TurnsTheClassesOfEveryGather) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::history_test

@@ -1,11 +1,11 @@
 // Light propagation volumes: what is conserved, what walls stop, and what stays when the grid moves on.
 #include "engine/core/rng.h"
-#include "gi/volume/light_volume.h"
 #include "gi/plan/techniques.h"
+#include "gi/volume/light_volume.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::light_volume_test {
 
 class LightVolumeTest : public GatherTest {
  protected:
@@ -140,7 +140,7 @@ TEST_F(LightVolumeTest, ADarkRoomBesideALitOneStaysDark) {
     scene.box(vec3(-2, -1, -2), vec3(2, 1, 2), white, true);
     const vec3 along(std::sin(turn), 0, std::cos(turn)); // of the wall, through a point beside the middle
     scene.quad(vec3(0.07f, -1, 0) - 3.0f * along, vec3(0, 2, 0), 6.0f * along, white);
-    scene.lights.push_back({.type = LightType::Point, .position = {-1.2f, 0.2f, 0}, .intensity = vec3(5)});
+    scene.lamp({-1.2f, 0.2f, 0}, vec3(5));
     applyTechnique(settings, "lpv");
     settings.smc.paths = 8;
     double lit = 0;
@@ -224,21 +224,21 @@ TEST_F(LightVolumeTest, SightsThatAreKeptAreThoseThatWouldBeFound) {
 /// In a scene at rest a volume is made once; what moves is followed.
 TEST_F(LightVolumeTest, IsMadeAnewOnlyForWhatChanges) {
   Room room;
-  room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+  room.scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
   applyTechnique(settings, "lpv");
   settings.smc.vpls = 256;
   Viewer gi(settings);
   SceneView view = room.scene.view();
   gi.run(view);
   const Image first = gi.read(Buffer::Irradiance);
-  view.changes = {false, true, false, false, false}; // the camera's
+  view.changes = kCameraChanged; // the camera's
   const FrameStats& again = gi.run(view);
   EXPECT_EQ(again.raysVolume.occlusion, 0u);
   EXPECT_EQ(again.raysRadiosity.occlusion, 0u);
   EXPECT_EQ(again.ms(StageId::Propagate), 0);
   EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, first.pixels);
   room.scene.lights[0].intensity *= 2;
-  view.changes = {false, false, true, false, false};
+  view.changes = kLightsChanged;
   const FrameStats& brighter = gi.run(view);
   EXPECT_GT(brighter.ms(StageId::Propagate), 0);
   EXPECT_EQ(brighter.raysVolume.occlusion, 0u);
@@ -246,4 +246,4 @@ TEST_F(LightVolumeTest, IsMadeAnewOnlyForWhatChanges) {
   EXPECT_NEAR(meanLuminance(second), 2 * meanLuminance(first), 1e-3 * meanLuminance(first));
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::light_volume_test

@@ -2,7 +2,7 @@
 #include "still_room.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::map_checks_test {
 
 class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface<int> {
  protected:
@@ -47,12 +47,12 @@ TEST_F(MapChecksTest, OnlyWhileTheViewStands) {
   const uint64_t rays = gi.run(still()).raysChecks.occlusion;
   EXPECT_GT(rays, 3500u);
   EXPECT_LE(rays, 81u * 54u);
-  EXPECT_EQ(gi.run(view({false, true, false, false, false})).raysChecks.occlusion, 0u) << "camera";
-  EXPECT_EQ(gi.run(view({false, false, true, false, false})).raysChecks.occlusion, 0u) << "light";
+  EXPECT_EQ(gi.run(view(kCameraChanged)).raysChecks.occlusion, 0u) << "camera";
+  EXPECT_EQ(gi.run(view(kLightsChanged)).raysChecks.occlusion, 0u) << "light";
   for (int i = 0; i < 4; ++i) EXPECT_EQ(gi.run(still()).raysChecks.occlusion, 0u) << "means still follow it";
   EXPECT_GT(gi.run(still()).raysChecks.occlusion, 3500u);
   gi.settings().gather.checks = false;
   EXPECT_EQ(gi.run(still()).raysChecks.occlusion, 0u);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::map_checks_test

@@ -3,17 +3,11 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "engine/trace/embree_query.h"
 #include "gi/visibility/map_schedule.h"
 #include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
-#include "shaders/shared/paraboloid.h"
 
-#include <algorithm>
-#include <numeric>
-
-namespace lambent::test {
-namespace {
+namespace lambent::test::map_schedule_test {
 
 /// The direction that a texel looks in, world space; nothing for those that see nothing (as castMap).
 std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolution) {
@@ -28,10 +22,9 @@ std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolu
 TexelRect texelsMet(const MapPose& pose, const Aabb& box, int resolution) {
   const vec3 origin = offsetPoint(pose.position, pose.geometricNormal, 1e-4f);
   TexelRect met;
-  for (int y = 0; y < resolution; ++y)
-    for (int x = 0; x < resolution; ++x)
-      if (const auto d = texelDirection(pose, x, y, resolution); d && crosses(Ray{origin, *d}, box))
-        met.add({x, y, x + 1, y + 1});
+  for (const auto [x, y] : Pixels(resolution, resolution))
+    if (const auto d = texelDirection(pose, x, y, resolution); d && crosses(Ray{origin, *d}, box))
+      met.add({x, y, x + 1, y + 1});
   return met;
 }
 
@@ -444,16 +437,11 @@ TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
   }
 }
 
-} // namespace
 /// All lights ride on walls that move, as in a lift.
 TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   Room room;
-  LightView lamp;
-  lamp.position = vec3(0.5f, 0.7f, 0.4f);
-  lamp.intensity = vec3(2);
-  room.scene.lights.push_back(lamp);
-  room.scene.camera.width = 32;
-  room.scene.camera.height = 24;
+  room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
+  room.scene.picture(32, 24);
   Settings settings;
   settings.smc.vpls = 256;
   settings.smc.warmup = 4;
@@ -486,4 +474,4 @@ TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   EXPECT_LE(most, 5u * 32 * 32); // the last map may pass the budget
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::map_schedule_test

@@ -1,11 +1,9 @@
 // Every preset draws.
-#include "gi/viewer/viewer.h"
 #include "gi/plan/presets.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 
-#include <set>
-
-namespace lambent::test {
+namespace lambent::test::preset_test {
 
 using PresetTest = GlTest;
 
@@ -19,12 +17,8 @@ std::set<std::string> differing(const Settings& a, const Settings& b) {
 
 TEST_F(PresetTest, EveryPresetDrawsARoomAndSetsOnlyWhatItIsAbout) {
   Room room;
-  room.scene.camera.width = 48;
-  room.scene.camera.height = 32;
-  LightView lamp;
-  lamp.position = vec3(0.5f, 0.7f, 0.4f);
-  lamp.intensity = vec3(2);
-  room.scene.lights.push_back(lamp);
+  room.scene.picture(48, 32);
+  room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
   const std::set<std::string> about{"smc.vpls", "smc.points", "smc.paths", "shadow.resolution", "gather.mode"};
   Settings odd; // no preset's values
   odd.smc.vpls = 77;
@@ -56,4 +50,4 @@ TEST_F(PresetTest, EveryPresetDrawsARoomAndSetsOnlyWhatItIsAbout) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::preset_test

@@ -4,7 +4,7 @@
 #include "engine/gl/state_guard.h"
 #include "still_room.h"
 
-namespace lambent::test {
+namespace lambent::test::pulse_test {
 
 class PulseTest : public StillRoomTest {
  protected:
@@ -77,4 +77,4 @@ TEST_F(PulseTest, IsNotTimed) {
   EXPECT_EQ(beats, before + 1);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::pulse_test

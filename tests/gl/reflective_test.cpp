@@ -4,7 +4,7 @@
 #include "shader_copy.h"
 #include "shaders/shared/solid_angle.h"
 
-namespace lambent::test {
+namespace lambent::test::reflective_test {
 
 constexpr ReflectiveNeeds kGrid, kTrees{.clusters = true}, kClusters{.clusters = true, .patches = true};
 
@@ -101,11 +101,10 @@ TEST(SolidAngle, TexelsOfAFaceAddUpToASixthOfTheSphere) {
   for (const int resolution : {1, 4, 16, 256}) {
     double total = 0;
     const float texel = 2.0f / float(resolution);
-    for (int y = 0; y < resolution; ++y)
-      for (int x = 0; x < resolution; ++x) {
-        const vec2 lo = vec2(x, y) * texel - 1.0f;
-        total += rectSolidAngle(lo, lo + texel);
-      }
+    for (const auto [x, y] : Pixels(resolution, resolution)) {
+      const vec2 lo = vec2(x, y) * texel - 1.0f;
+      total += rectSolidAngle(lo, lo + texel);
+    }
     EXPECT_NEAR(total, 4 * double(kPi) / 6, 2e-6) << resolution;
   }
 }
@@ -502,14 +501,13 @@ TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
   const RsmSettings rsm{.resolution = 1024, .coarsest = 32, .finest = 256, .tau = 0};
   const Image image = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
   const double flux = 3 * 0.01 / (1.999 * 1.999); // I ω of the square
-  for (int y = 0; y < 12; ++y)
-    for (int x = 0; x < 16; ++x) {
-      const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 16, (float(y) + 0.5f) / 12);
-      const vec3 at = ray.origin + ray.direction * ((-2 - ray.origin.z) / ray.direction.z);
-      const double r2 = glm::dot(at, at);
-      const double wanted = flux / double(kPi) * (at.y / std::sqrt(r2)) * (2 / std::sqrt(r2)) / r2; // paper 2, eq. 1
-      ASSERT_NEAR(image.at(x, y).x, wanted, 0.02 * wanted) << x << ' ' << y;
-    }
+  for (const auto [x, y] : Pixels(16, 12)) {
+    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const vec3 at = ray.origin + ray.direction * ((-2 - ray.origin.z) / ray.direction.z);
+    const double r2 = glm::dot(at, at);
+    const double wanted = flux / double(kPi) * (at.y / std::sqrt(r2)) * (2 / std::sqrt(r2)) / r2; // paper 2, eq. 1
+    ASSERT_NEAR(image.at(x, y).x, wanted, 0.02 * wanted) << x << ' ' << y;
+  }
 }
 
 /// Each of the 16 subsets of pixels takes every sixteenth root, so that blocks of 4 × 4 pixels have them all.
@@ -523,15 +521,14 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
   const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, kTrees);
   const Image full = gathered(scene, sheet, rsm, kTrees);
   const Image subsets = gathered(scene, sheet, rsm, kTrees, GatherMode::Interleaved);
-  for (int by = 0; by < 6; ++by)
-    for (int bx = 0; bx < 8; ++bx) {
-      double sum = 0, wanted = 0;
-      for (int k = 0; k < 16; ++k) {
-        sum += subsets.at(4 * bx + k % 4, 4 * by + k / 4).x;
-        wanted += full.at(4 * bx + k % 4, 4 * by + k / 4).x;
-      }
-      ASSERT_NEAR(sum, wanted, 0.02 * wanted) << bx << ' ' << by;
+  for (const auto [bx, by] : Pixels(8, 6)) {
+    double sum = 0, wanted = 0;
+    for (int k = 0; k < 16; ++k) {
+      sum += subsets.at(4 * bx + k % 4, 4 * by + k / 4).x;
+      wanted += full.at(4 * bx + k % 4, 4 * by + k / 4).x;
     }
+    ASSERT_NEAR(sum, wanted, 0.02 * wanted) << bx << ' ' << by;
+  }
 }
 
 TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
@@ -560,4 +557,4 @@ TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   EXPECT_LT(mapPass.mapsDrawn(), 7u);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::reflective_test

@@ -1,7 +1,7 @@
 // No length is absolute: a world scaled by a power of two, with its lights to match, gives the same bytes.
 #include "gl_fixture.h"
 
-namespace lambent::test {
+namespace lambent::test::scale_test {
 
 class ScaleTest : public GlTest {
  protected:
@@ -48,7 +48,7 @@ class ScaleTest : public GlTest {
       gi.run(view);
       images.push_back(gi.read(Buffer::Direct));
       images.push_back(gi.read(Buffer::Indirect));
-      view.changes = {false, false, false, true, false};
+      view.changes = kGeometryChanged;
       for (size_t i = 6; i < scene.instances.size(); ++i) { // the block
         InstanceView& moved = scene.instances[i];
         moved.moved = true;
@@ -90,4 +90,4 @@ TEST_F(ScaleTest, PowersOfTwoGiveTheSameBytes) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::scale_test

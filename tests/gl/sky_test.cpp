@@ -3,7 +3,7 @@
 #include "gl_fixture.h"
 #include "tests/support/daylight.h"
 
-namespace lambent::test {
+namespace lambent::test::sky_test {
 
 class SkyTest : public GlTest {
  protected:
@@ -55,16 +55,15 @@ TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
         gi.run(scene.view());
         const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), depth = gi.read(Buffer::Depth);
         int seen = 0;
-        for (int y = 0; y < 48; ++y)
-          for (int x = 0; x < 64; ++x) {
-            if (depth.at(x, y).x > 0) continue;
-            ++seen;
-            const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
-            const vec3 wanted = scene.sky.radiance(ray.direction);
-            const float tolerance = 1e-3f * maxComponent(wanted);
-            ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
-            ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
-          }
+        for (const auto [x, y] : Pixels(64, 48)) {
+          if (depth.at(x, y).x > 0) continue;
+          ++seen;
+          const CameraRay ray = pixelRay(scene.camera, x, y);
+          const vec3 wanted = scene.sky.radiance(ray.direction);
+          const float tolerance = 1e-3f * maxComponent(wanted);
+          ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+          ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+        }
         EXPECT_GT(seen, 1000);
       }
 }
@@ -118,7 +117,7 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   const Image before = gi.read(Buffer::Beauty);
   floor.scene.sky = Sky::daylight(directionAt(10, 0), 3);
   view = floor.scene.view();
-  view.changes = {false, false, true, false, false};
+  view.changes = kLightsChanged;
   gi.run(view);
   const Image after = gi.read(Buffer::Beauty);
   Viewer other(settings);
@@ -129,4 +128,4 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   for (size_t i = 0; i < after.pixels.size(); ++i) ASSERT_EQ(after.pixels[i], anew.pixels[i]) << i;
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::sky_test

@@ -16,10 +16,7 @@ class StillRoomTest : public GlTest {
     settings.gather.near = 0;
     settings.shadow.maker = ShadowMaker::Rays;
     settings.image.exposure = 1;
-    LightView lamp;
-    lamp.position = {0.4f, 0.7f, 0.4f};
-    lamp.intensity = vec3(1);
-    room.scene.lights.push_back(lamp);
+    room.scene.lamp({0.4f, 0.7f, 0.4f}, vec3(1));
   }
 
   SceneView view(const SceneChanges& changes) const {
@@ -28,7 +25,7 @@ class StillRoomTest : public GlTest {
     for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
     return v;
   }
-  SceneView still() const { return view({false, false, false, false, false}); }
+  SceneView still() const { return view(kStill); }
 
   Room room;
   Settings settings;

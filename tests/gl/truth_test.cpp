@@ -3,7 +3,7 @@
 #include "gl_fixture.h"
 #include "shaders/shared/error_color.h"
 
-namespace lambent::test {
+namespace lambent::test::truth_test {
 
 class TruthTest : public GlTest {
  protected:
@@ -18,10 +18,9 @@ class TruthTest : public GlTest {
   /// Irradiance and radiance that change from pixel to pixel.
   Image waves(float phase) const {
     Image image(width_, height_);
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x)
-        image.at(x, y) = 1.0f + 0.9f * vec3(std::sin(0.3f * float(x) + phase), std::cos(0.2f * float(y) + phase),
-                                            std::sin(0.1f * float(x * y) + phase));
+    for (const auto [x, y] : Pixels(width_, height_))
+      image.at(x, y) = 1.0f + 0.9f * vec3(std::sin(0.3f * float(x) + phase), std::cos(0.2f * float(y) + phase),
+                                          std::sin(0.1f * float(x * y) + phase));
     return image;
   }
   gl::Texture uploaded(const Image& image) const {
@@ -41,11 +40,10 @@ class TruthTest : public GlTest {
     draw(framebuffer.name());
     const std::vector<vec4> texels = readTexture(target);
     Image8 out{width, height, std::vector<uint8_t>(size_t(width) * height * 3)};
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        for (int c = 0; c < 3; ++c)
-          out.rgb[(size_t(y) * width + x) * 3 + c] =
-              uint8_t(std::lround(255 * texels[size_t(height - 1 - y) * width + x][c]));
+    for (const auto [x, y] : Pixels(width, height))
+      for (int c = 0; c < 3; ++c)
+        out.rgb[(size_t(y) * width + x) * 3 + c] =
+            uint8_t(std::lround(255 * texels[size_t(height - 1 - y) * width + x][c]));
     return out;
   }
 
@@ -78,13 +76,12 @@ TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
       display_.present(framebuffer, width_, height_, &right, divider);
     });
     int differ = 0;
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x) {
-        const float beyond = float(x) + 0.5f - divider * float(width_);
-        const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : pixel(beyond > 0 ? truth : gi, x, y);
-        ASSERT_EQ(pixel(both, x, y), expected) << x << ' ' << y << ' ' << divider;
-        differ += pixel(truth, x, y) != pixel(gi, x, y);
-      }
+    for (const auto [x, y] : Pixels(width_, height_)) {
+      const float beyond = float(x) + 0.5f - divider * float(width_);
+      const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : pixel(beyond > 0 ? truth : gi, x, y);
+      ASSERT_EQ(pixel(both, x, y), expected) << x << ' ' << y << ' ' << divider;
+      differ += pixel(truth, x, y) != pixel(gi, x, y);
+    }
     EXPECT_GT(differ, width_ * height_ / 2) << "or the test shows nothing";
   }
 }
@@ -103,9 +100,8 @@ TEST_F(TruthTest, TheTruthOfEveryBufferIsShownAsTheBuffer) {
     const Image8 truth = shown(
         width_, height_, [&](uint32_t framebuffer) { display_.present(framebuffer, width_, height_, &right, 0); });
     int worst = 0;
-    for (int y = 0; y < height_; ++y)
-      for (int x = 1; x < width_; ++x) // the line is at 0
-        worst = std::max(worst, int(maxComponent(glm::abs(pixel(gi, x, y) - pixel(truth, x, y)))));
+    for (const auto [x, y] : Pixels({1, 0}, {width_, height_})) // the line is at 0
+      worst = std::max(worst, int(maxComponent(glm::abs(pixel(gi, x, y) - pixel(truth, x, y)))));
     EXPECT_LE(worst, 1) << bufferNames()[size_t(buffer)] << ": rounding of the products apart";
   }
 }
@@ -134,15 +130,14 @@ TEST_F(TruthTest, NoErrorIsBlackAndItsSignAndSizeAreColours) {
     const auto error = [&](int x, int y) {
       return kFull * float(x) / float(width_) * (y < height_ / 2 ? 1.0f : -1.0f);
     };
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x) truth.at(x, y) -= vec3(1.5f, 1.5f, 0) * error(x, y); // their mean counts
+    for (const auto [x, y] : Pixels(width_, height_))
+      truth.at(x, y) -= vec3(1.5f, 1.5f, 0) * error(x, y); // their mean counts
     truth_.take(truth, frame_);
     display_.run(buffer, frame_, look, {&truth_.linear(), kFull});
     const Image8 heat = display_.read();
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x)
-        ASSERT_LT(maxComponent(glm::abs(pixel(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
-            << bufferNames()[size_t(buffer)] << ' ' << x << ' ' << y;
+    for (const auto [x, y] : Pixels(width_, height_))
+      ASSERT_LT(maxComponent(glm::abs(pixel(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
+          << bufferNames()[size_t(buffer)] << ' ' << x << ' ' << y;
   }
 }
 
@@ -150,9 +145,7 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   Settings settings;
   settings.smc.vpls = 32;
   settings.smc.warmup = 1;
-  LightView lamp;
-  lamp.position = {0, 0.8f, 0};
-  room_.scene.lights.push_back(lamp);
+  room_.scene.lamp({0, 0.8f, 0});
   Viewer gi(settings);
   gi.run(room_.scene.view());
   const auto buffer = Buffer::Indirect;
@@ -173,4 +166,4 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::truth_test
