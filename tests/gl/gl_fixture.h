@@ -7,17 +7,14 @@
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
-#include "gi/frame/gi_frame.h"
-#include "gi/gather/stages.h"
+#include "gi/frame/composed_technique.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/surfaces/surfaces.h"
-#include "gi/viewer/picture.h"
 #include "shaders/shared/paraboloid.h"
-#include "tests/support/hand_scene.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/images.h"
+#include "tests/support/traced_scene.h"
 
 namespace lambent::test {
 
@@ -47,18 +44,6 @@ inline std::vector<vec4> readTexture(const gl::Texture& texture) {
   std::vector<vec4> texels(size_t(texture.width()) * texture.height());
   glGetTextureImage(texture.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
   return texels;
-}
-
-/// Camera at `eye` looking at `target`, +Y up.
-inline CameraView cameraAt(const vec3& eye, const vec3& target, float fovY, int width = 64, int height = 48) {
-  CameraView camera;
-  const vec3 back = glm::normalize(eye - target);
-  const vec3 right = glm::normalize(glm::cross(std::abs(back.y) > 0.999f ? vec3(0, 0, -1) : vec3(0, 1, 0), back));
-  camera.worldFromView = mat4(vec4(right, 0), vec4(glm::cross(back, right), 0), vec4(back, 0), vec4(eye, 1));
-  camera.fovY = fovY;
-  camera.width = width;
-  camera.height = height;
-  return camera;
 }
 
 /// A room [-1,1]³ with a red left and a green right wall and a block in it, as triangles and in closed form.
@@ -122,6 +107,33 @@ class PlacedScene {
   LightSet lights_;
 };
 
+/// Light of a provider on surfaces, as in the first frame of the world.
+inline SurfaceLighting lightOf(LightProvider& provider, const World& world, const GBuffer& surfaces, Patches& patches,
+                               const Settings& settings, FrameStats& stats) {
+  const EffectPlan plan = planEffects(world.view, settings, {.needs = needsOf(settings)});
+  return provider.run({{.world = world, .plan = plan, .settings = settings}, surfaces, patches}, stats);
+}
+
+/// The gathers that settings ask for, each made when it is first asked for.
+class Gathers {
+ public:
+  explicit Gathers(PassContext context) : context_(context) {}
+
+  SurfaceLighting run(const World& world, const GBuffer& surfaces, Patches& patches, const ShadowedLights& lights,
+                      const Settings& settings, FrameStats& stats) {
+    const Axes axes = axesOf(settings);
+    auto made = std::ranges::find_if(made_, [&](const auto& m) { return sameGather(m.first, axes); });
+    if (made == made_.end()) made = made_.insert(made, {axes, makeGather(axes, context_)});
+    static const EffectPlan plan;
+    const Frame frame{{.world = world, .plan = plan, .settings = settings}, surfaces, patches};
+    return made->second->run({.frame = frame, .lights = lights}, stats);
+  }
+
+ private:
+  PassContext context_;
+  std::vector<std::pair<Axes, std::unique_ptr<Gather>>> made_;
+};
+
 /// Surfaces of a scene, and light gathered on them from virtual lights by the stage that settings ask for.
 class GatherTest : public GlTest {
  protected:
@@ -132,8 +144,7 @@ class GatherTest : public GlTest {
   SurfaceLighting gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
                            const ParaboloidMaps* maps = nullptr) {
     Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-    const SurfaceLighting light =
-        stages.of(settings).run({placed->world(), gbuffer, pyramid, {lights, maps}, settings}, stats);
+    const SurfaceLighting light = gathers.run(placed->world(), gbuffer, pyramid, {lights, maps}, settings, stats);
     patches = pyramid.made();
     return light;
   }
@@ -159,7 +170,7 @@ class GatherTest : public GlTest {
   SurfacePass surfacePass{passes};
   PackedLightBuffer lightBuffer{passes, StageId::Vpls};
   PatchPass patchPass{passes, StageId::Patches};
-  IndirectStages stages{passes};
+  Gathers gathers{passes};
   FilterPass filterPass{passes};
   FrameStats stats;
   std::optional<PatchPyramid> patches; // of the last gather
@@ -175,7 +186,8 @@ struct Floor {
   }
   /// World position of the plane at the centre of pixel (x, y), y from the top.
   vec3 at(int x, int y) const {
-    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / float(scene.camera.width),
+                                    (float(y) + 0.5f) / float(scene.camera.height));
     return ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
   }
 };

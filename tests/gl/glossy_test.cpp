@@ -146,7 +146,7 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     DirectLight direct(passes);
     Patches none;
     results.direct =
-        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, none}, stats);
+        lightOf(direct, world, results.surfaces, none, settings, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (const auto [x, y] : Pixels(image)) {
       const Receiver receiver = floor.receiverAt(x, y);
