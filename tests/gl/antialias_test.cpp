@@ -1,5 +1,5 @@
 // Edges of the picture as it is shown, against how much of each pixel really lies beyond them.
-#include "gl_fixture.h"
+#include "frames.h"
 
 namespace lambent::test::antialias_test {
 
@@ -32,10 +32,6 @@ float beyondLine(float x, float y, float degrees, float offset) {
 /// Offsets of a line from the grid that no symmetry favours.
 constexpr float kOffsets[] = {0.06f, 0.19f, 0.31f, 0.44f, 0.56f, 0.69f, 0.81f, 0.94f};
 
-vec3 byteAt(const Image8& image, int x, int y) {
-  const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
-  return {p[0], p[1], p[2]};
-}
 float linearAt(const Image8& image, int x, int y) { return linearFromSrgb(byteAt(image, x, y).y / 255); }
 /// 0 dark, 1 bright.
 float coveredAt(const Image8& image, int x, int y) { return (linearAt(image, x, y) - kDark) / (kBright - kDark); }

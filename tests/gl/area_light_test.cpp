@@ -1,11 +1,8 @@
 // Direct light of emissive surfaces by patches (paper 4) against closed forms and against a thousand rays per pixel.
 #include "engine/core/parallel.h"
+#include "frames.h"
 #include "gi/direct/area_light_pass.h"
-#include "gi/direct/direct_light.h"
 #include "gi/lighting/area_lobe.h"
-#include "gi/plan/effects.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/support/images.h"
 
 namespace lambent::test::area_light_test {
 
@@ -13,30 +10,16 @@ class AreaLightTest : public GlTest {
  protected:
   AreaLightTest() { settings.shadow.emitters = EmitterShadows::Patches; }
 
-  /// Direct irradiance, row 0 at the top, with every emissive surface of the scene as a light.
+  /// Direct irradiance with every emissive surface of the scene as a light.
   Image irradianceOf(const HandScene& scene) {
-    placed = std::make_unique<PlacedScene>(programs, scene);
-    const SceneView view = scene.view();
-    const World world = placed->world(collectLights(view));
-    SurfacePass surfacePass(passes);
-    PatchPass patchPass(passes, StageId::Patches);
-    DirectLight direct(passes);
-    stats = {};
-    FrameResults results;
-    results.surfaces = surfacePass.run({world.gpu, world.view.camera});
-    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.indirect =
-        lightOf(direct, world, results.surfaces, patches, settings, stats);
-    return readBuffer(Buffer::Irradiance, results);
+    return directOf(passes, scene, collectLights(scene.view()), settings, stats);
   }
 
   /// The same with side² rays per triangle of a lamp at every pixel.
   Image tracedOf(const HandScene& scene, int side = 32) const {
     const CameraView& camera = scene.camera;
-    const SceneView view = scene.view();
-    const LightSet lights = collectLights(view);
-    EmbreeQuery rays(scene.assets);
-    rays.update(view);
+    const TracedScene traced(scene);
+    const EmbreeQuery& rays = traced.rays;
     Image image(camera.width, camera.height);
     for (const auto [x, y] : Pixels(camera)) {
       const CameraRay ray = pixelRay(camera, x, y);
@@ -44,7 +27,7 @@ class AreaLightTest : public GlTest {
       if (!hit.valid()) continue;
       const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
       vec3 sum(0);
-      for (const EmitterTriangle& t : lights.triangles)
+      for (const EmitterTriangle& t : traced.lights.triangles)
         for (int i = 0; i < side * side; ++i) {
           vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
           if (u.x + u.y > 1) u = 1.0f - u;
@@ -60,43 +43,29 @@ class AreaLightTest : public GlTest {
     return image;
   }
 
-  /// Direct radiance of glossy surfaces, row 0 at the top.
   Image radianceOf(const HandScene& scene) {
     settings.gather.glossy = true;
     settings.effects[EffectId::Emissive] = EffectMode::On;
-    placed = std::make_unique<PlacedScene>(programs, scene);
-    const SceneView view = scene.view();
-    const World world = placed->world(collectLights(view));
-    SurfacePass surfacePass(passes);
-    PatchPass patchPass(passes, StageId::Patches);
-    DirectLight direct(passes);
-    FrameResults results;
-    results.surfaces = surfacePass.run({world.gpu, world.view.camera, true});
-    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.direct =
-        lightOf(direct, world, results.surfaces, patches, settings, stats);
-    return readBuffer(Buffer::Direct, results);
+    return irradianceOf(scene);
   }
 
-  std::unique_ptr<PlacedScene> placed;
   Settings settings;
-  FrameStats stats; // of the last picture
+  FrameStats stats; // of the last image
 };
 
 /// A floor, and a lamp of 0.8 × 0.6 m above it that faces down.
-HandScene& lampOver(HandScene& scene, const vec3& radiance = vec3(5, 4, 3)) {
-  scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
-  scene.quad(vec3(-0.4f, 2, -0.3f), vec3(0.8f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), radiance));
-  scene.camera = cameraAt(vec3(0, 1.8f, 3), vec3(0, 0.2f, 0), 1.0f, 96, 64);
-  return scene;
-}
+struct LampScene : HandScene {
+  explicit LampScene(const vec3& radiance = vec3(5, 4, 3)) {
+    quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), material(vec3(0.5f)));
+    quad(vec3(-0.4f, 2, -0.3f), vec3(0.8f, 0, 0), vec3(0, 0, 0.6f), material(vec3(0), radiance));
+    camera = cameraAt(vec3(0, 1.8f, 3), vec3(0, 0.2f, 0), 1.0f, 96, 64);
+  }
+};
 
 TEST_F(AreaLightTest, IsExactWhereNothingIsBetween) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   const Image image = irradianceOf(scene);
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = areaLights(collectLights(scene.view()));
   int floor = 0;
   for (const auto [x, y] : Pixels(96, 64)) {
     const CameraRay ray = pixelRay(scene.camera, x, y);
@@ -119,16 +88,14 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
   for (const auto& [albedo, roughness, metalness] :
        {std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.3f, 1.0f), std::tuple(vec3(0.2f, 0.5f, 0.8f), 0.35f, 0.0f),
         std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.6f, 0.7f)}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     Material& floor = scene.assets.materials[0];
     floor.baseColor = albedo;
     floor.roughness = roughness;
     floor.metalness = metalness;
     scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
     const Image image = radianceOf(scene);
-    const SceneView view = scene.view();
-    const AreaLights lights = areaLights(collectLights(view));
+    const AreaLights lights = areaLights(collectLights(scene.view()));
     const AreaPiece& lamp = lights.pieces.at(0);
     Image onCpu(48, 32), integrated(48, 32), drawn(48, 32);
     int seen = 0;
@@ -160,25 +127,18 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
 
 /// With a texture that is white all over, a lamp is what it is without.
 TEST_F(AreaLightTest, GlossyFloorsMirrorTexturedLamps) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.assets.materials[0].roughness = 0.3f;
   scene.assets.materials[0].metalness = 1;
   scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
   const Image whole = radianceOf(scene);
-  TextureImage white;
-  white.width = white.height = 1;
-  white.srgb = false;
-  white.texels = {{255, 255, 255, 255}};
-  scene.assets.images.push_back(white);
-  scene.assets.materials[1].emissiveTexture.image = 0;
+  scene.assets.materials[1].emissiveTexture = scene.texture(1, {u8vec4(255)}, false);
   EXPECT_LT(relativeRmse(radianceOf(scene), whole), 1e-4);
 }
 
 TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
   for (int what = 0; what < 5; ++what) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     if (what == 0) scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, white, false); // a plate in the air
     if (what == 1) scene.box({0.2f, 0, 0.2f}, {0.23f, 1.2f, 0.23f}, white, false);    // a pole
@@ -203,8 +163,7 @@ TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
 }
 
 TEST_F(AreaLightTest, LampsOfUnlikeSizeAndColour) {
-  HandScene scene;
-  lampOver(scene, vec3(4, 0, 0));
+  LampScene scene(vec3(4, 0, 0));
   scene.quad(vec3(1.2f, 1.0f, -0.02f), vec3(0.04f, 0, 0), vec3(0, 0, 0.04f), scene.material(vec3(0), vec3(0, 0, 900)));
   const uint32_t white = scene.material(vec3(0.7f));
   scene.box({0.3f, 0.3f, -0.3f}, {0.7f, 0.5f, 0.3f}, white, false);
@@ -218,8 +177,7 @@ TEST_F(AreaLightTest, LampsOfUnlikeSizeAndColour) {
 }
 
 TEST_F(AreaLightTest, ManyLampsShareTheRays) {
-  HandScene scene;
-  lampOver(scene, vec3(0.1f));
+  LampScene scene(vec3(0.1f));
   const uint32_t lamp = scene.material(vec3(0), vec3(60)), white = scene.material(vec3(0.7f));
   for (int i = 0; i < 49; ++i)
     scene.quad(vec3(-3 + float(i % 7), 2.5f, -3 + float(i / 7)), vec3(0.1f, 0, 0), vec3(0, 0, 0.1f), lamp);
@@ -232,8 +190,7 @@ TEST_F(AreaLightTest, ManyLampsShareTheRays) {
 /// Lamps behind a wall that outshine the one before it, which is due less than one ray beside them.
 TEST_F(AreaLightTest, HiddenLampsDoNotTakeTheRaysOfOthers) {
   for (const int hidden : {1, 40}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box({-2.1f, -1, -20}, {-2, 20, 20}, white, false);
     scene.box({0.2f, 0, 0.2f}, {0.4f, 0.8f, 0.4f}, white, false); // throws a shadow here
@@ -254,8 +211,7 @@ TEST_F(AreaLightTest, HiddenLampsDoNotTakeTheRaysOfOthers) {
 TEST_F(AreaLightTest, HiddenLampsLeaveNoTraceOfTheirPlanes) {
   Image without;
   for (const float strength : {0.0f, 10.0f, 1000.0f}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box({-1.55f, -1, -20}, {-1.5f, 20, 20}, white, false);
     scene.box({0.2f, 0, 0.2f}, {0.4f, 0.8f, 0.4f}, white, false);
@@ -304,8 +260,7 @@ TEST_F(AreaLightTest, ShadowEdgesHoldInEveryBlock) {
 }
 
 TEST_F(AreaLightTest, AClosedBoxStaysBlack) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box(vec3(-1, 0.001f, -1), vec3(1, 1, 1), scene.material(vec3(0.7f)), true);
   scene.camera = cameraAt(vec3(0.5f, 0.5f, 0.9f), vec3(0, 0.3f, 0), 1.2f, 96, 64);
   EXPECT_EQ(meanLuminance(irradianceOf(scene)), 0);
@@ -313,8 +268,7 @@ TEST_F(AreaLightTest, AClosedBoxStaysBlack) {
 
 /// A light that touches a wall, one seen edge-on, one behind a pane that is not cut out.
 TEST_F(AreaLightTest, AtWallsOnEdgeAndBehindGlass) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   const uint32_t white = scene.material(vec3(0.7f)), lamp = scene.material(vec3(0), vec3(5));
   scene.quad(vec3(-2, 0, -1), vec3(4, 0, 0), vec3(0, 3, 0), white);                // wall at z = −1, faces +z
   scene.quad(vec3(-1.5f, 0.5f, -1), vec3(0, 0.5f, 0), vec3(0, 0, 0.5f), lamp);     // stands on it, faces −x
@@ -345,8 +299,7 @@ TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
 }
 
 TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   scene.picture(384, 256);
   const Image traced = tracedOf(scene, 16), image = irradianceOf(scene);
@@ -387,8 +340,7 @@ TEST_F(AreaLightTest, LightEndsWhereTheLampsPlaneDoes) {
 }
 
 TEST_F(AreaLightTest, TheGpuTracesTheSame) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   settings.area.tracer = AreaTracer::Cpu;
   const Image cpu = irradianceOf(scene);
@@ -408,8 +360,7 @@ TEST_F(AreaLightTest, TheGpuTracesTheSame) {
 }
 
 TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   const Image a = irradianceOf(scene);
   setThreadCount(1);

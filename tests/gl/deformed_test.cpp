@@ -12,12 +12,8 @@ class DeformedDraw : public GlTest {
 
   DeformedDraw() {
     const uint32_t red = scene.material({0.8f, 0.2f, 0.1f}), grey = scene.material(vec3(0.5f));
-    TextureImage image; // texture coordinates and colours must stay with their vertices
-    image.width = image.height = 2;
-    image.texels = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}};
-    scene.assets.images.push_back(image);
-    scene.assets.materials[red].baseColorTexture.image = 0;
-    scene.assets.materials[red].baseColorTexture.nearest = true;
+    scene.assets.materials[red].baseColorTexture = // texture coordinates and colours must stay with their vertices
+        scene.texture(2, {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}});
     scene.quad(vec3(-4, -4, -2), vec3(8, 0, 0), vec3(0, 8, 0), grey);
     scene.assets.meshes.push_back(sheet(20, red));
     scene.assets.meshes.push_back(sheet(9, grey));

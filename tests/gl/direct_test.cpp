@@ -1,17 +1,7 @@
 // Direct light against closed forms, and shadow maps that are drawn only when they must be.
-#include "gi/direct/direct_light.h"
-#include "gl_fixture.h"
+#include "frames.h"
 
 namespace lambent::test::direct_test {
-
-/// The passes need sizes; 0 (from the picture's width) is resolved by the frame.
-ShadowSettings fixedResolutions() {
-  ShadowSettings settings;
-  settings.sunResolution = 2048;
-  settings.pointResolution = 512;
-  settings.spotResolution = 1024;
-  return settings;
-}
 
 class DirectTest : public GlTest {
  protected:
@@ -19,36 +9,17 @@ class DirectTest : public GlTest {
   Image irradianceOf(const HandScene& scene, const LightSet& emitters = {}) {
     Settings all;
     all.shadow = settings;
-    all.area = area;
     all.effects[EffectId::Emissive] = emitters.emitters.empty() ? EffectMode::Off : EffectMode::On;
     all.effects[EffectId::SoftShadows] = EffectMode::On;
     LightSet lights = emitters;
     lights.sky = scene.sky;
-    PlacedScene placed(programs, scene);
-    const World world = placed.world(lights);
-    SurfacePass surfaces(passes);
-    DirectLight direct(passes, mostDoubts);
-    stats = {};
-    FrameResults results;
-    results.surfaces = surfaces.run({world.gpu, world.view.camera});
-    // reads as irradiance, without albedo
-    PatchPass patchPass(passes, StageId::Patches);
-    Patches patches([&] { return patchPass.run(results.surfaces, all.multires); });
-    results.indirect = lightOf(direct, world, results.surfaces, patches, all, stats);
-    return readBuffer(Buffer::Irradiance, results);
+    return directOf(passes, scene, lights, all, stats, mostDoubts);
   }
 
-  static void turn(HandScene& scene, const mat4& turned) {
-    for (InstanceView& instance : scene.instances) {
-      instance.worldFromObject = instance.worldFromObjectBefore = turned * instance.worldFromObject;
-      instance.boundsWorld = transformed(scene.assets.meshes[instance.mesh].boundsObject, instance.worldFromObject);
-    }
-  }
-
-  ShadowSettings settings = fixedResolutions();
-  AreaSettings area;
+  /// The passes need sizes; 0 (from the picture's width) is resolved by the frame.
+  ShadowSettings settings{.sunResolution = 2048, .pointResolution = 512, .spotResolution = 1024};
   uint32_t mostDoubts = ShadowRayPass::kMost;
-  FrameStats stats; // of the last picture
+  FrameStats stats; // of the last image
 };
 
 constexpr float kShare = 1e-3f; // tolerance of the closed forms
@@ -272,7 +243,7 @@ TEST_F(DirectTest, InATurnedRoomEveryPixelIsAsByRays) {
     for (const vec3& c :
          {vec3(-0.1f, 0.2f, 0.1f), vec3(0.6f, 0.45f, 0.3f), vec3(0.3f, 0.7f, 0.6f), vec3(0.35f, 0.35f, -0.2f)})
       room.scene.box(c - 0.08f, c + 0.08f, 0, false); // around the lamp
-    turn(room.scene, turned);
+    room.scene.turn(turned);
     LightSet lamp;
     LightView light{.type = LightType::Point, .position = at, .intensity = vec3(10)};
     if (kind == std::string("spot"))
@@ -329,7 +300,7 @@ TEST_F(DirectTest, AClosedRoomUnderTheSkyIsBlack) {
     Room room;
     room.scene.sky = vec3(1);
     const mat4 turned = glm::rotate(glm::rotate(mat4(1), angle, vec3(0, 1, 0)), 0.7f * angle, vec3(1, 0, 0));
-    turn(room.scene, turned);
+    room.scene.turn(turned);
     room.scene.camera = cameraAt(vec3(0.3f, 0.1f, 0.2f), vec3(-0.4f, -0.9f, -0.6f), 1.5f);
     const Image image = irradianceOf(room.scene);
     float most = 0;

@@ -66,17 +66,14 @@ TEST_F(GpuRaysTest, MasksAreCutOutAsEmbreeDoes) {
   for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
     for (const bool nearest : {false, true}) {
       HandScene scene;
-      TextureImage image;
-      image.width = 5;
-      image.height = 3;
-      for (int i = 0; i < 15; ++i) image.texels.push_back({255, 255, 255, uint8_t(i * 977 % 256)});
-      scene.assets.images.push_back(image);
+      std::vector<u8vec4> texels;
+      for (int i = 0; i < 15; ++i) texels.push_back({255, 255, 255, uint8_t(i * 977 % 256)});
       const uint32_t material = scene.material(vec3(0.5f));
       Material& m = scene.assets.materials[material];
       m.alphaMode = AlphaMode::Mask;
       m.alphaCutoff = 0.45f;
       m.alpha = 0.9f;
-      m.baseColorTexture.image = 0;
+      m.baseColorTexture = scene.texture(5, texels);
       m.baseColorTexture.wrapU = wrap;
       m.baseColorTexture.wrapV = Wrap::Repeat;
       m.baseColorTexture.nearest = nearest;
@@ -123,8 +120,7 @@ uint32_t ball(HandScene& scene, uint32_t material, int rings) {
     }
   mesh.boundsObject = {vec3(-1), vec3(1)};
   mesh.primitives.push_back({0, uint32_t(mesh.triangles.size()), material, mesh.boundsObject});
-  scene.assets.meshes.push_back(std::move(mesh));
-  return scene.instance(uint32_t(scene.assets.meshes.size() - 1), mat4(1));
+  return scene.add(std::move(mesh));
 }
 
 TEST_F(GpuRaysTest, NothingSlipsThroughJoints) {

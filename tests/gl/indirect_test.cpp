@@ -146,9 +146,7 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
   const Room room;
   const GBuffer gbuffer = surfaces(room.scene);
   // Light only where the normal points up (the floor and the block's top), in place of a gather.
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
   std::vector<vec4> texels(64 * 48);
   for (const auto [x, y] : Pixels(64, 48))
     texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
@@ -167,9 +165,7 @@ TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same 
   scene.quad(vec3(-0.5f, -0.5f, -2), vec3(1, 0, 0), vec3(0, 1, 0), white);
   scene.camera = cameraAt(vec3(0), vec3(0, 0, -1), 1.0f);
   const GBuffer gbuffer = surfaces(scene);
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image depth = readBuffer(Buffer::Depth, results);
+  const Image depth = surfaceBuffer(Buffer::Depth, gbuffer);
   std::vector<vec4> texels(64 * 48);
   for (const auto [x, y] : Pixels(64, 48))
     texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);

@@ -55,9 +55,7 @@ TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGatheredAroundIt) {
   const std::vector<VirtualLight> lights = lightsIn(vec3(0, -0.5f, 0), vec3(0.5f), 40); // none close to a wall
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const Image image = multires(gbuffer, lights, {.coarsest = 4});
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
   const std::vector<GatheredPatch> places = gatheredPatches(gbuffer);
   const std::vector<int> levels = patchLevels(gbuffer);
   double sumFull = 0, sum = 0;
@@ -111,9 +109,7 @@ TEST_F(MultiresTest, NoPatchSpansAStep) {
   scene.quad(vec3(-9, 1, 0), vec3(18, 0, 0), vec3(0, 0.08f, 0), grey);
   scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 96);
   const GBuffer gbuffer = surfaces(scene);
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image depth = readBuffer(Buffer::Depth, results);
+  const Image depth = surfaceBuffer(Buffer::Depth, gbuffer);
   for (const auto& [balance, edges] : {std::pair(true, true), std::pair(false, false)}) {
     multires(gbuffer, roomLights(), {.coarsest = 2, .balance = balance, .edges = edges});
     const std::vector<int> levels = patchLevels(gbuffer);
@@ -340,9 +336,7 @@ TEST_F(MultiresTest, SurfaceDetailDarkensWhatTurnsAway) {
   const GBuffer gbuffer = surfaces(room.scene);
   const Image plain = multires(gbuffer, roomLights(), {.coarsest = 4});
   const Image detailed = multires(gbuffer, roomLights(), {.coarsest = 4, .detail = 0.5f});
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
   for (const auto [x, y] : Pixels(plain)) {
     const CameraRay ray = pixelRay(room.scene.camera, x, y);
     const float facing = std::max(0.0f, -glm::dot(ray.direction, normal.at(x, y)));

@@ -12,7 +12,7 @@ class TruthTest : public GlTest {
     frame_.surfaces = surfacePass_.run({placed_->gpu(), room_.scene.camera});
     width_ = frame_.surfaces.width;
     height_ = frame_.surfaces.height;
-    frame_.sceneDiameter = 3.5f;
+    frame_.farDistance = 3.5f;
   }
 
   /// Irradiance and radiance that change from pixel to pixel.
@@ -29,10 +29,6 @@ class TruthTest : public GlTest {
     return texture;
   }
 
-  static vec3 pixel(const Image8& image, int x, int y) {
-    const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
-    return {p[0], p[1], p[2]};
-  }
   /// What `draw(framebuffer)` leaves, row 0 at the top.
   template <class Draw> Image8 shown(int width, int height, const Draw& draw) const {
     const gl::Texture target("window", {.format = GL_RGBA8, .width = width, .height = height});
@@ -78,9 +74,9 @@ TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
     int differ = 0;
     for (const auto [x, y] : Pixels(width_, height_)) {
       const float beyond = float(x) + 0.5f - divider * float(width_);
-      const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : pixel(beyond > 0 ? truth : gi, x, y);
-      ASSERT_EQ(pixel(both, x, y), expected) << x << ' ' << y << ' ' << divider;
-      differ += pixel(truth, x, y) != pixel(gi, x, y);
+      const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : byteAt(beyond > 0 ? truth : gi, x, y);
+      ASSERT_EQ(byteAt(both, x, y), expected) << x << ' ' << y << ' ' << divider;
+      differ += byteAt(truth, x, y) != byteAt(gi, x, y);
     }
     EXPECT_GT(differ, width_ * height_ / 2) << "or the test shows nothing";
   }
@@ -101,7 +97,7 @@ TEST_F(TruthTest, TheTruthOfEveryBufferIsShownAsTheBuffer) {
         width_, height_, [&](uint32_t framebuffer) { display_.present(framebuffer, width_, height_, &right, 0); });
     int worst = 0;
     for (const auto [x, y] : Pixels({1, 0}, {width_, height_})) // the line is at 0
-      worst = std::max(worst, int(maxComponent(glm::abs(pixel(gi, x, y) - pixel(truth, x, y)))));
+      worst = std::max(worst, int(maxComponent(glm::abs(byteAt(gi, x, y) - byteAt(truth, x, y)))));
     EXPECT_LE(worst, 1) << bufferNames()[size_t(buffer)] << ": rounding of the products apart";
   }
 }
@@ -136,7 +132,7 @@ TEST_F(TruthTest, NoErrorIsBlackAndItsSignAndSizeAreColours) {
     display_.run(buffer, frame_, look, {&truth_.linear(), kFull});
     const Image8 heat = display_.read();
     for (const auto [x, y] : Pixels(width_, height_))
-      ASSERT_LT(maxComponent(glm::abs(pixel(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
+      ASSERT_LT(maxComponent(glm::abs(byteAt(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
           << bufferNames()[size_t(buffer)] << ' ' << x << ' ' << y;
   }
 }
@@ -156,13 +152,13 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   gi.takeTruth(brighter);
   const Image8 heat = shown(width_, height_, [&](uint32_t f) { gi.presentError(buffer, 1, f, width_, height_); });
   for (int i = 0; i < width_ * height_; ++i)
-    ASSERT_LT(maxComponent(glm::abs(pixel(heat, i % width_, i / width_) - 255.0f * errorColor(-0.25f))), 1.01f);
+    ASSERT_LT(maxComponent(glm::abs(byteAt(heat, i % width_, i / width_) - 255.0f * errorColor(-0.25f))), 1.01f);
   const Image8 split =
       shown(width_, height_, [&](uint32_t f) { gi.presentBesideTruth(buffer, 0.5f, f, width_, height_); });
   for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_ / 2 - 1; ++x) ASSERT_EQ(pixel(split, x, y), pixel(own, x, y));
+    for (int x = 0; x < width_ / 2 - 1; ++x) ASSERT_EQ(byteAt(split, x, y), byteAt(own, x, y));
     for (int x = width_ / 2 + 1; x < width_; ++x)
-      ASSERT_GE(pixel(split, x, y).y + 1, pixel(own, x, y).y) << "the truth is brighter";
+      ASSERT_GE(byteAt(split, x, y).y + 1, byteAt(own, x, y).y) << "the truth is brighter";
   }
 }
 
