@@ -2,18 +2,9 @@
 // back as raw glTF, so that a mistake in the importer cannot hide one in the writer.
 #include "tests/content/written.h"
 
-#include "engine/core/math.h"
-
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <map>
-
-namespace lambent {
-namespace {
+namespace lambent::test::content_test {
 
 using nlohmann::json;
 
@@ -168,5 +159,4 @@ TEST_P(Content, NodeNamesAreUnique) { // shots address nodes by name
 INSTANTIATE_TEST_SUITE_P(Recipes, Content, testing::ValuesIn(testedRecipes()),
                          [](const auto& info) { return testName(info.param); });
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::content_test

@@ -3,14 +3,7 @@
 #include "tests/content/placed.h"
 #include "tests/content/written.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <map>
-#include <set>
-
-namespace lambent {
-namespace {
+namespace lambent::test::coplanar_test {
 
 constexpr double kSamePlane = 1e-3;    // metres
 constexpr double kLeastOverlap = 1e-4; // m², a square of 1 cm
@@ -123,5 +116,4 @@ TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
 INSTANTIATE_TEST_SUITE_P(Recipes, Coplanar, testing::ValuesIn(testedRecipes()),
                          [](const auto& info) { return testName(info.param); });
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::coplanar_test

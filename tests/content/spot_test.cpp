@@ -4,12 +4,7 @@
 #include "tests/content/placed.h"
 #include "tests/content/written.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
-namespace lambent {
-namespace {
+namespace lambent::test::spot_test {
 
 bool skipped(const std::string& name) { // rays against every triangle
   return (name == "knot" || name == "garden") && !std::getenv("LAMBENT_TEST_LARGE");
@@ -112,5 +107,4 @@ TEST(Garden, PlantsStayInsideTheHouse) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::spot_test

@@ -4,12 +4,7 @@
 #include "tests/content/placed.h"
 #include "tests/content/written.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
-namespace lambent {
-namespace {
+namespace lambent::test::walk_test {
 
 struct Walk {
   std::string name; // of the shot
@@ -74,5 +69,4 @@ INSTANTIATE_TEST_SUITE_P(Shots, Walks, testing::ValuesIn(walks()), [](const auto
   return name;
 });
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::walk_test

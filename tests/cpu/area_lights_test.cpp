@@ -4,14 +4,7 @@
 #include "tests/support/area_pieces.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <span>
-
-namespace lambent {
-namespace {
-
-using test::quadPiece;
+namespace lambent::test::area_lights_test {
 
 /// ∫ cosx cosy / r² over a parallelogram, by its midpoints.
 double summed(const AreaPiece& piece, const vec3& position, const vec3& normal, int steps) {
@@ -73,11 +66,12 @@ TEST(AreaPiece, IsANumberOnItsEdgesAndCorners) {
     }
 }
 
+AreaLights lightsOf(const HandScene& scene) { return areaLights(collectLights(scene.view())); }
+
 TEST(AreaLights, ABoxHasSixPiecesAndAllItsArea) {
-  test::HandScene scene;
+  HandScene scene;
   scene.box(vec3(-1, -2, -3), vec3(1, 2, 3), scene.material(vec3(0), vec3(2)), false);
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = lightsOf(scene);
   ASSERT_EQ(lights.lights.size(), 6u) << "an emitter per quad";
   float area = 0;
   for (const AreaPiece& p : lights.pieces) {
@@ -94,10 +88,9 @@ TEST(AreaLights, ABoxHasSixPiecesAndAllItsArea) {
 }
 
 TEST(AreaLights, NeighboursInTheOrderLieSideBySide) {
-  test::HandScene scene;
+  HandScene scene;
   scene.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, scene.material(vec3(0), vec3(2)));
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = lightsOf(scene);
   const size_t count = lights.samples.size();
   float along = 0;
   for (size_t i = 1; i < count; ++i) along += glm::distance(lights.samples[i - 1].position, lights.samples[i].position);
@@ -113,20 +106,11 @@ TEST(AreaLights, NeighboursInTheOrderLieSideBySide) {
 }
 
 TEST(AreaLights, TexturedOnesKeepTheirTexture) {
-  test::HandScene scene;
-  TextureImage image; // left half black
-  image.width = 2;
-  image.height = 1;
-  image.srgb = false;
-  image.texels = {{0, 0, 0, 255}, {255, 255, 255, 255}};
-  image.averageLinear = vec4(0.5f, 0.5f, 0.5f, 1);
-  scene.assets.images.push_back(image);
+  HandScene scene;
   const uint32_t material = scene.material(vec3(0), vec3(4));
-  scene.assets.materials[material].emissiveTexture.image = 0;
-  scene.assets.materials[material].emissiveTexture.nearest = true;
+  scene.assets.materials[material].emissiveTexture = scene.texture(2, {{0, 0, 0, 255}, {255, 255, 255, 255}}, false);
   scene.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, material); // u along x, faces down
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = lightsOf(scene);
   ASSERT_EQ(lights.lights.size(), 1u);
   ASSERT_EQ(lights.pieces.size(), 1u) << "the bright half";
   EXPECT_NEAR(lights.pieces[0].normalArea.w, 2, 1e-6);
@@ -174,21 +158,13 @@ TEST(AreaLights, LampsOfOneMeshThatDoNotTouchAreLightsOfTheirOwn) {
 
 /// Of 64 × 64 texels 4 shine: 4 of 4096, on 4 m².
 TEST(AreaLights, ASmallBrightSpotIsFoundAndStaysSmall) {
-  test::HandScene scene;
-  TextureImage image;
-  image.width = image.height = 64;
-  image.srgb = false;
-  image.texels.assign(64 * 64, {0, 0, 0, 255});
-  for (const int texel : {40 * 64 + 20, 40 * 64 + 21, 41 * 64 + 20, 41 * 64 + 21})
-    image.texels[size_t(texel)] = {255, 255, 255, 255};
-  image.averageLinear = vec4(vec3(4.0f / 4096), 1);
-  scene.assets.images.push_back(image);
+  HandScene scene;
+  std::vector<u8vec4> texels(64 * 64, {0, 0, 0, 255});
+  for (const int texel : {40 * 64 + 20, 40 * 64 + 21, 41 * 64 + 20, 41 * 64 + 21}) texels[size_t(texel)] = u8vec4(255);
   const uint32_t material = scene.material(vec3(0), vec3(1000));
-  scene.assets.materials[material].emissiveTexture.image = 0;
-  scene.assets.materials[material].emissiveTexture.nearest = true;
+  scene.assets.materials[material].emissiveTexture = scene.texture(64, texels, false);
   scene.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, material);
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = lightsOf(scene);
   ASSERT_EQ(lights.lights.size(), 1u);
   float power = 0, area = 0;
   for (const AreaPiece& p : lights.pieces) power += p.radianceSides.x * p.normalArea.w, area += p.normalArea.w;
@@ -210,5 +186,4 @@ TEST(AreaLights, DisksShineToTheirFrontOrToBothSides) {
   EXPECT_EQ(areaFormFactor(disk, vec3(0), vec3(0, 1, 0)), front);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::area_lights_test

@@ -3,15 +3,7 @@
 #include "tests/support/area_pieces.h"
 #include "tests/support/effort.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
-namespace lambent {
-namespace {
-
-using test::quadPiece;
+namespace lambent::test::area_lobe_test {
 
 const float kRoughnesses[] = {0.3f, 0.37f, 0.5f, 0.62f, 0.8f, 1.0f};
 
@@ -191,5 +183,4 @@ TEST(AreaLobe, OnlyFrontsShineUnlessBothSidesDo) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::area_lobe_test

@@ -2,12 +2,7 @@
 #include "engine/trace/flat_scene.h"
 #include "tests/support/random_world.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-namespace lambent {
-namespace {
+namespace lambent::test::bvh_test {
 
 std::vector<Aabb> randomBoxes(uint32_t count, uint32_t seed) {
   std::vector<Aabb> boxes(count);
@@ -82,7 +77,7 @@ TEST(Bvh, ManyBoxesAtOnePlaceEnd) {
 }
 
 TEST(FlatScene, SaysWhatChanged) {
-  test::RandomWorld world(0.01f);
+  RandomWorld world(0.01f);
   FlatScene scene(world.assets());
   EXPECT_TRUE(scene.update(world.step(40)).top);
   for (int i = 0; i < 20; ++i) {
@@ -98,5 +93,4 @@ TEST(FlatScene, SaysWhatChanged) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::bvh_test

@@ -8,10 +8,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <gtest/gtest.h>
-
-namespace lambent {
-namespace {
+namespace lambent::test::deformed_test {
 
 /// Rays from above the sheet, slanted, most of which meet it.
 std::vector<Ray> raysAtSheet(uint32_t count, uint32_t seed) {
@@ -33,24 +30,29 @@ std::vector<SurfaceHit> hitsOf(const EmbreeQuery& query, const std::vector<Ray>&
 
 /// A waved sheet beside a flat one, both instances of one mesh, turned and scaled.
 struct Sheets {
-  test::HandScene scene;
+  HandScene scene;
   mat4 turned = glm::rotate(glm::scale(mat4(1), vec3(0.8f, -0.9f, 0.7f)), 0.4f, glm::normalize(vec3(1, 2, 3)));
 
   Sheets() {
-    scene.assets.meshes.push_back(test::sheet(24, scene.material({0.8f, 0.4f, 0.2f}, vec3(2))));
-    scene.instance(0, turned);
+    scene.add(sheet(24, scene.material({0.8f, 0.4f, 0.2f}, vec3(2))), turned);
     scene.instance(0, glm::translate(mat4(1), vec3(0, 0, -1)));
   }
   const Mesh& mesh() const { return scene.assets.meshes[0]; }
+  /// The flat sheet's vertices elsewhere.
+  std::vector<vec3> shifted(const vec3& by) const {
+    std::vector<vec3> positions = mesh().positions;
+    for (vec3& p : positions) p += by;
+    return positions;
+  }
 };
 
 TEST(DeformedRays, MeetWhatAMeshOfTheSameVerticesShows) {
   Sheets sheets;
-  sheets.scene.reshape(0, test::waves(sheets.mesh(), 0.3f, 1));
+  sheets.scene.reshape(0, waves(sheets.mesh(), 0.3f, 1));
   EmbreeQuery query(sheets.scene.assets);
   query.update(sheets.scene.view());
 
-  test::HandScene baked; // the same shape as a rigid mesh, and the same flat neighbour
+  HandScene baked; // the same shape as a rigid mesh, and the same flat neighbour
   baked.assets = sheets.scene.assets;
   Mesh& mesh = baked.assets.meshes.emplace_back(sheets.mesh());
   mesh.positions = sheets.scene.instances[0].deformed->positions;
@@ -91,15 +93,13 @@ TEST(DeformedRays, MeetWhatAMeshOfTheSameVerticesShows) {
 
 TEST(DeformedRays, RefittedForManyFramesHitsAsBuiltAnew) {
   Sheets sheets;
-  sheets.scene.reshape(0, test::waves(sheets.mesh(), 0.1f, 0));
+  sheets.scene.reshape(0, waves(sheets.mesh(), 0.1f, 0));
   EmbreeQuery refitted(sheets.scene.assets);
   refitted.update(sheets.scene.view());
   for (uint32_t frame = 1; frame <= 200; ++frame) {
     Rng rng(7, Stream::Test, frame);
-    sheets.scene.reshape(0, test::waves(sheets.mesh(), rng.next(), 6 * rng.next()));
-    SceneView view = sheets.scene.view();
-    view.changes = {false, false, false, true, false};
-    refitted.update(view);
+    sheets.scene.reshape(0, waves(sheets.mesh(), rng.next(), 6 * rng.next()));
+    refitted.update(sheets.scene.view(kGeometryChanged));
     if (frame % 20 != 0) continue;
     EmbreeQuery anew(sheets.scene.assets);
     anew.update(sheets.scene.view());
@@ -119,16 +119,14 @@ TEST(DeformedRays, RefittedForManyFramesHitsAsBuiltAnew) {
 
 TEST(DeformedRays, ComeAndGoWithTheirInstance) {
   Sheets sheets;
-  test::HandScene& scene = sheets.scene;
+  HandScene& scene = sheets.scene;
   scene.instances[0].worldFromObject = mat4(1);
   scene.instances.pop_back();
   EmbreeQuery query(scene.assets);
   const Ray down{{0.01f, 0.02f, 5}, {0, 0, -1}};
   query.update(scene.view());
   EXPECT_NEAR(query.closest(down).t, 5, 1e-5f);
-  std::vector<vec3> lifted = sheets.mesh().positions;
-  for (vec3& p : lifted) p.z += 2;
-  scene.reshape(0, lifted);
+  scene.reshape(0, sheets.shifted({0, 0, 2}));
   query.update(scene.view());
   EXPECT_NEAR(query.closest(down).t, 3, 1e-5f);
   scene.instances[0].deformed = nullptr;
@@ -143,9 +141,7 @@ TEST(DeformedRays, RigidInstancesAreBitIdenticalBesideThem) {
   Sheets sheets;
   EmbreeQuery alone(sheets.scene.assets), beside(sheets.scene.assets);
   alone.update(sheets.scene.view());
-  std::vector<vec3> away = sheets.mesh().positions;
-  for (vec3& p : away) p.z += 50;
-  sheets.scene.reshape(0, away);
+  sheets.scene.reshape(0, sheets.shifted({0, 0, 50}));
   beside.update(sheets.scene.view());
   const std::vector<Ray> rays = raysAtSheet(1000, 3);
   const auto a = hitsOf(alone, rays), b = hitsOf(beside, rays);
@@ -161,18 +157,8 @@ TEST(DeformedRays, RigidInstancesAreBitIdenticalBesideThem) {
 }
 
 TEST(DeformedRays, MasksStayWithTheirVertices) {
-  test::HandScene scene;
-  const uint32_t lattice = scene.material(vec3(1));
-  TextureImage image;
-  image.width = 2, image.height = 1;
-  image.texels = {u8vec4(255, 0, 0, 0), u8vec4(0, 255, 0, 255)}; // left half cut out
-  scene.assets.images.push_back(image);
-  Material& m = scene.assets.materials[lattice];
-  m.alphaMode = AlphaMode::Mask;
-  m.baseColorTexture.image = 0;
-  m.baseColorTexture.nearest = true;
-  scene.assets.meshes.push_back(test::sheet(8, lattice));
-  scene.instance(0, mat4(1));
+  HandScene scene;
+  scene.add(sheet(8, scene.lattice()));
   std::vector<vec3> shifted = scene.assets.meshes[0].positions;
   for (vec3& p : shifted) p.x += 10;
   scene.reshape(0, shifted);
@@ -185,8 +171,8 @@ TEST(DeformedRays, MasksStayWithTheirVertices) {
 
 TEST(SurfacePoint, IsWhereTheHitWasAlsoAfterTheSurfaceMoved) {
   Sheets sheets;
-  test::HandScene& scene = sheets.scene;
-  scene.reshape(0, test::waves(sheets.mesh(), 0.3f, 1));
+  HandScene& scene = sheets.scene;
+  scene.reshape(0, waves(sheets.mesh(), 0.3f, 1));
   EmbreeQuery query(scene.assets);
   const SceneView view = scene.view();
   query.update(view);
@@ -231,5 +217,4 @@ TEST(DeformedEmitter, ShinesFromItsVertices) {
   EXPECT_NEAR(lights.emitters[1].bounds.centre.z, -1, 1e-5f);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::deformed_test

@@ -3,12 +3,7 @@
 #include "gi/vpl/smc.h"
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-namespace lambent {
-namespace {
+namespace lambent::test::density_test {
 
 std::vector<DensityPoint> randomPoints(int n, uint32_t seed) {
   Rng rng(seed, Stream::Test, 11);
@@ -49,10 +44,8 @@ TEST(Density, OfAUniformDistributionIsUnbiased) {
       for (float a : representedAreas(points, points, true, k, DensityEstimator::KnnSide, 1e9f)) total += a;
       totals.push_back(total);
     }
-    const test::Mean m = test::meanOf(totals);
     // 1000 points instead of 999 others: the finite-N mean is 4π·N/(N−1).
-    EXPECT_LT(std::abs(m.mean - 4 * kPi * 1000.0 / 999.0), test::kDeviateLimit * m.error) << "k=" << k;
-    EXPECT_LT(m.error, 0.02 * 4 * kPi) << "too noisy to tell";
+    EXPECT_TRUE(agrees(meanOf(totals), 4 * kPi * 1000.0 / 999.0, 0.02 * 4 * kPi)) << "k=" << k;
   }
 }
 
@@ -140,11 +133,11 @@ TEST(Resampling, PicksAreUniformInArea) {
     std::sort(sorted.begin(), sorted.end());
     EXPECT_EQ(std::adjacent_find(sorted.begin(), sorted.end()), sorted.end()) << "picked twice";
   }
-  const test::Mean m = test::meanOf(shares);
+  const Mean m = meanOf(shares);
   // Without replacement the sparse side, 1000 hits with half the weight, is thinned by what was picked already:
   // 200 of 1000 against 200 of 10000, a bias of at most 0.05 towards the dense side.
-  EXPECT_GT(m.mean, 0.45 - test::kDeviateLimit * m.error);
-  EXPECT_LT(m.mean, 0.50 + test::kDeviateLimit * m.error);
+  EXPECT_GT(m.mean, 0.45 - kDeviateLimit * m.error);
+  EXPECT_LT(m.mean, 0.50 + kDeviateLimit * m.error);
 }
 
 TEST(Resampling, SurvivesCoincidentHitsAndSmallSets) {
@@ -156,5 +149,4 @@ TEST(Resampling, SurvivesCoincidentHitsAndSmallSets) {
   EXPECT_TRUE(std::isfinite(resampleUniformInArea(std::span(same).first(1), 5, 1, 0).area)) << "limits all VPLs' areas";
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::density_test

@@ -3,13 +3,9 @@
 
 #include "engine/core/rng.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <algorithm>
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::governor_test {
 
 struct Machine {
   double constant = 4, pixels = 20, lights = 6; // ms of a frame at scale 1, with the default's lights
@@ -162,5 +158,4 @@ TEST(Governor, IsAPureFunction) {
   EXPECT_EQ(a.frames, b.frames);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::governor_test

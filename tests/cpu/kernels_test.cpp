@@ -9,13 +9,12 @@
 #include "shaders/shared/solid_angle.h"
 #include "shaders/shared/tone_map.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <cfloat>
 #include <glm/gtc/packing.hpp>
 
-namespace lambent {
-namespace {
+namespace lambent::test::kernels_test {
 
 using Real = long double;
 
@@ -221,5 +220,4 @@ TEST(Kernels, AreasOfNeighboursGrowWithTheSceneAndTurnWithIt) {
   EXPECT_LE(worst, 1e-5f);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::kernels_test

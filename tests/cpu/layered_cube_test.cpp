@@ -1,30 +1,20 @@
 // The layered depth cube: surfaces found along the axes, light put in and taken out, and the file that keeps it.
 #include "engine/core/error.h"
-#include "engine/core/rng.h"
 #include "engine/scene/scene_hash.h"
 #include "gi/cube/cube_file.h"
 #include "gi/lighting/light_set.h"
 #include "gi/vpl/sources.h"
-#include "tests/support/effort.h"
 #include "tests/support/random_world.h"
-
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
-#include <map>
 
-namespace lambent {
-namespace {
+namespace lambent::test::layered_cube_test {
 
 using Bytes = std::vector<char>;
 
 CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
-  CubeSettings s;
-  s.resolution = resolution;
-  s.visibility = sights;
-  s.hemicube = 64;
-  return s;
+  return {.resolution = resolution, .sights = sights, .hemicube = 64};
 }
 
 VirtualLight lightAt(const vec3& position, const vec3& normal, const vec3& power, float area = 0.01f) {
@@ -33,7 +23,7 @@ VirtualLight lightAt(const vec3& position, const vec3& normal, const vec3& power
 
 /// Rooms made by hand, and a cube over them.
 struct CubeWorld {
-  test::HandScene scene;
+  HandScene scene;
   std::unique_ptr<EmbreeQuery> rays;
   SceneView view;
   GatherSettings gather;
@@ -44,8 +34,20 @@ struct CubeWorld {
     view = scene.view();
     rays->update(view, true);
   }
+  /// A closed one.
+  void room() {
+    scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
+    place();
+  }
   CubeInputs inputs(const CubeSettings& settings) {
     return {view.boundsWorld, *rays, kNothingMoved, false, lights, ~0u, settings, gather};
+  }
+  CubeSurfaces surfaces(const CubeSettings& settings = smallCube()) const {
+    CubeSurfaces built;
+    RayCounts counts;
+    built.build(view.boundsWorld, settings, *rays, counts);
+    EXPECT_GT(counts.closest, 0u);
+    return built;
   }
 };
 
@@ -53,10 +55,7 @@ TEST(CubeSurfaces, AFloorIsALayerOnEachOfItsSides) {
   CubeWorld w;
   w.scene.quad({0, 1, 0}, {0, 0, 4}, {4, 0, 0}, w.scene.material(vec3(0.5f)));
   w.place();
-  CubeSurfaces surfaces;
-  RayCounts counts;
-  surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
-  EXPECT_GT(counts.closest, 0u);
+  const CubeSurfaces surfaces = w.surfaces();
   size_t up = 0, down = 0;
   const CubeGrid grid = surfaces.cubes()[0];
   for (size_t c = 0; c < surfaces.columns(); ++c) {
@@ -85,9 +84,7 @@ TEST(CubeSurfaces, NeighboursBehindAWallAreNotLinked) {
   w.scene.quad({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
   w.scene.quad({2.03f, 0, 0}, {0, 0, 4}, {0, 4, 0}, grey); // through texels, not between them
   w.place();
-  CubeSurfaces surfaces;
-  RayCounts counts;
-  surfaces.build(w.view.boundsWorld, smallCube(), *w.rays, counts);
+  const CubeSurfaces surfaces = w.surfaces();
   size_t across = 0, along = 0;
   const CubeGrid grid = surfaces.cubes()[0];
   for (size_t c = 0; c < surfaces.columns(); ++c) {
@@ -117,13 +114,8 @@ TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
   w.place();
   CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   settings.levels = 5;
-  CubeSurfaces tree, wide, narrow;
-  RayCounts counts;
-  tree.build(w.view.boundsWorld, settings, *w.rays, counts);
-  settings.levels = 0;
-  wide.build(w.view.boundsWorld, settings, *w.rays, counts);
-  settings.resolution = 512;
-  narrow.build(w.view.boundsWorld, settings, *w.rays, counts);
+  const CubeSurfaces tree = w.surfaces(settings), wide = w.surfaces(smallCube(CubeVisibility::Rays, 16)),
+                     narrow = w.surfaces(smallCube(CubeVisibility::Rays, 512));
   float least = kInfinity;
   size_t onBlocks = 0;
   for (size_t c = 0; c + 1 < tree.firsts().size(); ++c) {
@@ -178,14 +170,25 @@ TEST(LayeredCube, ALightOverAFloorBringsWhatItsFormulaSays) {
 
 /// Lights that photons leave in a world.
 std::vector<VirtualLight> photonLights(const SceneView& view, const RayQuery& rays, VplSet& set) {
-  SmcSettings settings;
-  settings.vpls = 96;
-  settings.bounces = 2;
+  const SmcSettings settings{.vpls = 96, .bounces = 2};
   const LightSet lights = collectLights(view);
   VplUpdateLog log;
   placeVpls(VplSource::Ir, set, {view, rays, lights, settings, 5}, log);
   return lightsOf(set);
 }
+
+/// A random world as it begins, lit by photons.
+struct LitWorld {
+  RandomWorld world{0.01f};
+  const SceneView& view = world.step(0);
+  VplSet set;
+  std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  GatherSettings gather;
+
+  CubeInputs inputs(const CubeSettings& settings) const {
+    return {view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather};
+  }
+};
 
 struct CubeKind {
   CubeVisibility sights;
@@ -195,7 +198,7 @@ class CubeVisibilityTest : public ::testing::TestWithParam<CubeKind> {};
 
 /// After anything happened the cube is the one that is built from what there is now.
 TEST_P(CubeVisibilityTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
-  test::RandomWorld world(0.01f);
+  RandomWorld world(0.01f);
   CubeSettings settings = smallCube(GetParam().sights, 16);
   settings.levels = GetParam().levels;
   const GatherSettings gather;
@@ -204,7 +207,7 @@ TEST_P(CubeVisibilityTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   LayeredCube kept;
   VplSet set;
   size_t reused = 0, compared = 0;
-  for (int frame = 0; frame < (test::kSanitized ? 3 : GetParam().levels == 0 ? 9 : 6); ++frame) {
+  for (int frame = 0; frame < (kSanitized ? 3 : GetParam().levels == 0 ? 9 : 6); ++frame) {
     const SceneView& view = world.step(frame % 3 == 2 ? 0 : 2);
     const DirtyRegion moved(view);
     const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
@@ -239,25 +242,17 @@ INSTANTIATE_TEST_SUITE_P(Sights, CubeVisibilityTest,
                                            CubeKind{CubeVisibility::Rays, 2}, CubeKind{CubeVisibility::Hemicubes, 2}));
 
 TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
-  test::RandomWorld world(0.01f);
-  const SceneView& view = world.step(0);
-  VplSet set;
-  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  LitWorld w;
   const CubeSettings settings = smallCube();
-  const GatherSettings gather;
   LayeredCube cube;
-  const CubeInputs in{view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather};
+  const CubeInputs in = w.inputs(settings);
   EXPECT_TRUE(cube.update(in).changed);
   const CubeWork again = cube.update(in);
   EXPECT_FALSE(again.changed);
   EXPECT_EQ(again.rays.closest + again.rays.occlusion, 0u);
   // One light less: it alone is taken out, and nothing is asked.
-  std::vector<VirtualLight> fewer = lights;
-  size_t gone = 0;
-  while (!fewer[gone].alive) ++gone;
-  fewer[gone].alive = false;
-  const CubeWork less =
-      cube.update({view.boundsWorld, world.rays(), kNothingMoved, false, fewer, ~0u, settings, gather});
+  std::ranges::find_if(w.lights, &VirtualLight::alive)->alive = false;
+  const CubeWork less = cube.update(in);
   EXPECT_EQ(less.lightsOut, 1u);
   EXPECT_EQ(less.lightsIn, 0u);
   EXPECT_EQ(less.rays.occlusion, 0u);
@@ -266,8 +261,7 @@ TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
 /// As many words of bits, and other lights in them.
 TEST(LayeredCube, FewerSlotsLeaveNoLightBehind) {
   CubeWorld w;
-  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
-  w.place();
+  w.room();
   for (int i = 0; i < 20; ++i) w.lights.push_back(lightAt({0.09f * float(i) - 0.9f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
   const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube, anew;
@@ -281,8 +275,7 @@ TEST(LayeredCube, FewerSlotsLeaveNoLightBehind) {
 
 TEST(LayeredCube, ALightThatWasBlackIsLookedAtWhenItShines) {
   CubeWorld w;
-  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
-  w.place();
+  w.room();
   w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(0)));
   const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube;
@@ -297,20 +290,15 @@ TEST(LayeredCube, ALightThatWasBlackIsLookedAtWhenItShines) {
 /// A hemicube's texels are wider than the rays that ask for each entry: they disagree along the edges of shadows.
 TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
   SKIP_STATISTICS_WHEN_SANITIZED();
-  test::RandomWorld world(0.01f);
-  const SceneView& view = world.step(0);
-  VplSet set;
-  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  LitWorld w;
   double difference[2] = {}, sum = 0;
-  const GatherSettings gather;
   LayeredCube byRays;
-  byRays.update(
-      {view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, smallCube(CubeVisibility::Rays), gather});
+  byRays.update(w.inputs(smallCube()));
   for (int fine = 0; fine < 2; ++fine) {
     CubeSettings settings = smallCube(CubeVisibility::Hemicubes);
     settings.hemicube = fine ? 128 : 32;
     LayeredCube cube;
-    cube.update({view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather});
+    cube.update(w.inputs(settings));
     ASSERT_EQ(cube.surfaces().entries().size(), byRays.surfaces().entries().size());
     for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) {
       difference[fine] += luminance(glm::abs(cube.irradiance(e) - byRays.irradiance(e)));
@@ -323,8 +311,7 @@ TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
 
 TEST(LayeredCube, EntriesDoNotDependOnLights) {
   CubeWorld w;
-  w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
-  w.place();
+  w.room();
   std::vector<CubeEntry> entries[2];
   Rng random(1, Stream::Test, 0);
   for (int many = 0; many < 2; ++many) {
@@ -340,13 +327,9 @@ TEST(LayeredCube, EntriesDoNotDependOnLights) {
 }
 
 TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
-  test::RandomWorld world(0.01f);
-  const SceneView& view = world.step(0);
-  VplSet set;
-  const std::vector<VirtualLight> lights = photonLights(view, world.rays(), set);
+  LitWorld w;
   const CubeSettings settings = smallCube();
-  const GatherSettings gather;
-  const CubeInputs in{view.boundsWorld, world.rays(), kNothingMoved, false, lights, ~0u, settings, gather};
+  const CubeInputs in = w.inputs(settings);
   LayeredCube whole, parts;
   whole.update(in);
   uint32_t left = ~0u;
@@ -367,10 +350,8 @@ class CubeFileTest : public ::testing::Test {
     folder_ = std::filesystem::temp_directory_path() / ("lambent-cube-" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder_);
     file_ = folder_ / "room.cube";
-    w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f)), true);
-    w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(1)));
-    w.lights.push_back(lightAt({0.5f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
-    w.place();
+    w.lights = {lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(1)), lightAt({0.5f, -0.99f, 0}, {0, 1, 0}, vec3(1))};
+    w.room();
     key_ = cubeKey(w.view);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -423,12 +404,11 @@ TEST_F(CubeFileTest, SaysWhatIsWrongWithAFile) {
 }
 
 TEST_F(CubeFileTest, BelongsToTheGeometryNotToTheLights) {
-  test::HandScene other;
+  HandScene other;
   other.box(vec3(-1), vec3(1.01f), other.material(vec3(0.5f)), true);
   EXPECT_NE(cubeKey(other.view()), key_);
   w.scene.lights.push_back({.type = LightType::Point, .intensity = vec3(1)});
   EXPECT_EQ(cubeKey(w.scene.view()), key_);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::layered_cube_test

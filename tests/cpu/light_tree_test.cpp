@@ -5,15 +5,9 @@
 #include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <map>
 
-namespace lambent {
-namespace {
-
-using test::kDeviateLimit;
+namespace lambent::test::light_tree_test {
 
 enum class Lamps { Corridor, Floor, Filling, ShortRanges, SpotsDown, PanelsDown, PanelsInAir, AllKinds, InThreePlaces };
 constexpr Lamps kAllLamps[] = {Lamps::Corridor,    Lamps::Floor,     Lamps::Filling,
@@ -175,7 +169,7 @@ TEST(LightTree, ChoicesFollowProbabilities) {
         expected.push_back(std::max(0.0, 1 - sum) * kChoices);
         int likely = 0;
         for (double e : expected) likely += e >= 5;
-        if (likely > 1) worst = std::max(worst, test::chiSquareDeviate(counts, expected));
+        if (likely > 1) worst = std::max(worst, chiSquareDeviate(counts, expected));
       }
     }
   // The largest of 270: 27 sets at ten places; exceeded once in 600 good runs.
@@ -201,7 +195,7 @@ TEST(LightTree, WhatShinesOnAPointMayBeChosenThere) {
 
 /// One choice at each of many places, over the sum of all lights there: mean and mean square error, relative.
 struct OneForAll {
-  test::Mean mean;
+  Mean mean;
   double relMse = 0;
 };
 OneForAll oneForAll(const Lit& world, uint32_t places, uint32_t seed) {
@@ -221,7 +215,7 @@ OneForAll oneForAll(const Lit& world, uint32_t places, uint32_t seed) {
     ratios.push_back(one / all);
     squares += (one / all - 1) * (one / all - 1);
   }
-  return {test::meanOf(ratios), squares / double(ratios.size())};
+  return {meanOf(ratios), squares / double(ratios.size())};
 }
 
 TEST(LightTree, OneChoiceStandsForAllLights) {
@@ -230,8 +224,7 @@ TEST(LightTree, OneChoiceStandsForAllLights) {
     for (int count : {20, 33, 300})
       for (uint32_t seed = 1; seed <= 3; ++seed) {
         const OneForAll got = oneForAll(lit(lamps, count, seed), 4000, seed);
-        EXPECT_LT(std::abs(got.mean.mean - 1), kDeviateLimit * got.mean.error + 1e-5)
-            << int(lamps) << " " << count << " seed " << seed << ": " << got.mean.mean << " ± " << got.mean.error;
+        EXPECT_TRUE(agrees(got.mean, 1, kInfinity, 1e-5)) << int(lamps) << " " << count << " seed " << seed;
       }
 }
 
@@ -313,5 +306,4 @@ TEST(LightTree, WithoutItsTreeASetOfManyLightsIsABug) {
   EXPECT_DEATH(LightChoice(world.lights, vec3(0), vec3(0, 1, 0)), "lightCount");
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::light_tree_test

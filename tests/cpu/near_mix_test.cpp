@@ -2,13 +2,9 @@
 #include "engine/core/rng.h"
 #include "gi/near/near_mix.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/pixels.h"
 
-#include <cmath>
-#include <limits>
-
-namespace lambent {
-namespace {
+namespace lambent::test::near_mix_test {
 
 constexpr int kWidth = 24, kHeight = 16;
 
@@ -18,14 +14,13 @@ bool casts(int x, int y) { return ((x + y) & 1) == 0; }
 struct Corner {
   std::vector<vec3> positions, normals;
   explicit Corner(int wallRows, float stretch = 1) {
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const bool wall = y < wallRows;
-        const float along = 0.1f * float(x), up = 0.1f * float(wallRows - y);
-        const vec3 at = wall ? vec3(along, up, 0) : vec3(along, 0, -up * stretch);
-        positions.push_back(casts(x, y) ? at : vec3(std::numeric_limits<float>::infinity()));
-        normals.push_back(casts(x, y) ? (wall ? vec3(0, 0, 1) : vec3(0, 1, 0)) : vec3(0));
-      }
+    for (const auto [x, y] : Pixels(kWidth, kHeight)) {
+      const bool wall = y < wallRows;
+      const float along = 0.1f * float(x), up = 0.1f * float(wallRows - y);
+      const vec3 at = wall ? vec3(along, up, 0) : vec3(along, 0, -up * stretch);
+      positions.push_back(casts(x, y) ? at : vec3(std::numeric_limits<float>::infinity()));
+      normals.push_back(casts(x, y) ? (wall ? vec3(0, 0, 1) : vec3(0, 1, 0)) : vec3(0));
+    }
   }
   NeighbourSurfaces seen(float cell) const { return {positions, normals, kWidth, cell}; }
 };
@@ -59,24 +54,19 @@ TEST(NearMix, FourPatternsAreEvenedOutOnAPlane) {
       for (uint32_t x = 0; x < kWidth; ++x)
         if (casts(int(x), int(y)) && ((x + y) >> 1 & 1) && ((x + ~y) >> 1 & 1)) light[y * kWidth + x] = vec3(4);
     mixPatterns(light, floor.seen(1));
-    for (int y = 2; y < kHeight - 2; ++y)
-      for (int x = 2; x < kWidth - 2; ++x)
-        if (casts(x, y)) {
-          ASSERT_NEAR(light[size_t(y) * kWidth + x].x, 1, 1e-5) << x << ", " << y;
-        }
+    for (const auto [x, y] : Pixels({2, 2}, {kWidth - 2, kHeight - 2}))
+      if (casts(x, y)) ASSERT_NEAR(light[size_t(y) * kWidth + x].x, 1, 1e-5) << x << ", " << y;
   }
 }
 
 TEST(NearMix, AWallTakesNothingFromTheFloor) {
   const Corner corner(6);
   std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
-  for (int y = 6; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      if (casts(x, y)) light[size_t(y) * kWidth + x] = vec3(1);
+  for (const auto [x, y] : Pixels({0, 6}, {kWidth, kHeight}))
+    if (casts(x, y)) light[size_t(y) * kWidth + x] = vec3(1);
   const std::vector<vec3> traced = light;
   mixPatterns(light, corner.seen(3));
   EXPECT_EQ(light, traced);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::near_mix_test

@@ -2,19 +2,16 @@
 #include "engine/trace/open_sky.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
+namespace lambent::test::open_sky_test {
 
-namespace lambent {
-namespace {
-
-bool reaches(const test::HandScene& scene, const vec3& eye) {
+bool reaches(const HandScene& scene, const vec3& eye) {
   EmbreeQuery rays(scene.assets);
   rays.update(scene.view());
   return skyReaches(rays, eye);
 }
 
 TEST(OpenSky, ReachesNothingInARoomAndWhoStandsOutside) {
-  test::HandScene scene;
+  HandScene scene;
   scene.box({-2, 0, -3}, {2, 2.5f, 3}, scene.material(vec3(0.5f)), true);
   EXPECT_FALSE(reaches(scene, {0, 1.6f, 0}));
   EXPECT_FALSE(reaches(scene, {1.9f, 0.1f, -2.9f}));
@@ -22,7 +19,7 @@ TEST(OpenSky, ReachesNothingInARoomAndWhoStandsOutside) {
 }
 
 TEST(OpenSky, IsAbove) {
-  test::HandScene scene;
+  HandScene scene;
   scene.box({-2, 0, -3}, {2, 2.5f, 3}, scene.material(vec3(0.5f)), true);
   scene.instances.erase(scene.instances.begin() + 2); // the floor
   EXPECT_FALSE(reaches(scene, {0, 1.6f, 0}));
@@ -30,7 +27,7 @@ TEST(OpenSky, IsAbove) {
 
 TEST(OpenSky, ReachesARoomWithAWindowAndNotThatBehindAKeyhole) {
   for (const float side : {1.0f, 0.3f}) {
-    test::HandScene scene;
+    HandScene scene;
     const uint32_t wall = scene.material(vec3(0.5f));
     scene.box({-2, 0, -3}, {2, 2.5f, 3}, wall, true);
     scene.instances.pop_back(); // the wall at z = 3 gets a hole in its middle
@@ -45,7 +42,7 @@ TEST(OpenSky, ReachesARoomWithAWindowAndNotThatBehindAKeyhole) {
 
 TEST(OpenSky, ReachesUnderABalconyByTheFloorBeforeIt) {
   // A court with high walls; the eye is in a niche with a roof, and no straight line from it leads upwards and out.
-  test::HandScene scene;
+  HandScene scene;
   const uint32_t wall = scene.material(vec3(0.5f));
   scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, wall);
   scene.quad({-4, 0, -4}, {0, 12, 0}, {8, 0, 0}, wall);
@@ -56,5 +53,4 @@ TEST(OpenSky, ReachesUnderABalconyByTheFloorBeforeIt) {
   EXPECT_TRUE(reaches(scene, {-3.5f, 0.3f, 0}));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::open_sky_test

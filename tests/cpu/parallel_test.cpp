@@ -1,12 +1,10 @@
 #include "engine/core/parallel.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <atomic>
-#include <vector>
 
-namespace lambent {
-namespace {
+namespace lambent::test::parallel_test {
 
 /// Bodies keep figures of their block in element begin / grain: two blocks there at once lost counts.
 TEST(Parallel, BlocksBeginAtMultiplesOfTheGrain) {
@@ -22,5 +20,4 @@ TEST(Parallel, BlocksBeginAtMultiplesOfTheGrain) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::parallel_test

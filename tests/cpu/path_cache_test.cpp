@@ -3,38 +3,31 @@
 #include "gi/vpl/smc.h"
 #include "tests/support/random_world.h"
 
-#include <gtest/gtest.h>
-
-namespace lambent {
-namespace {
+namespace lambent::test::path_cache_test {
 
 void expectEqual(const VplSet& a, const VplSet& b, int frame) {
-  ASSERT_EQ(a.pool.size(), b.pool.size()) << "frame " << frame;
+  SCOPED_TRACE(frame);
+  ASSERT_EQ(a.pool.size(), b.pool.size());
   for (size_t i = 0; i < a.pool.size(); ++i) {
-    ASSERT_EQ(a.pool[i].id, b.pool[i].id) << "candidate " << i << ", frame " << frame;
-    ASSERT_EQ(a.pool[i].samplerRadiance, b.pool[i].samplerRadiance) << "candidate " << i << ", frame " << frame;
+    ASSERT_EQ(a.pool[i].id, b.pool[i].id) << i;
+    ASSERT_EQ(a.pool[i].samplerRadiance, b.pool[i].samplerRadiance) << i;
   }
   ASSERT_EQ(a.slots.size(), b.slots.size());
   for (size_t i = 0; i < a.slots.size(); ++i) {
     const Vpl &x = a.slots[i], &y = b.slots[i];
-    ASSERT_EQ(x.id, y.id) << "slot " << i << ", frame " << frame;
-    ASSERT_EQ(x.alive, y.alive) << "slot " << i << ", frame " << frame;
+    ASSERT_EQ(x.id, y.id) << "slot " << i;
+    ASSERT_EQ(x.alive, y.alive);
     if (!x.alive) continue;
-    ASSERT_EQ(x.position, y.position) << "slot " << i << ", frame " << frame;
-    ASSERT_EQ(x.area, y.area) << "slot " << i << ", frame " << frame;
-    ASSERT_EQ(x.samplerRadiance, y.samplerRadiance) << "slot " << i << ", frame " << frame;
-    ASSERT_EQ(x.radiance, y.radiance) << "slot " << i << ", frame " << frame;
+    ASSERT_EQ(x.position, y.position);
+    ASSERT_EQ(x.area, y.area);
+    ASSERT_EQ(x.samplerRadiance, y.samplerRadiance);
+    ASSERT_EQ(x.radiance, y.radiance);
   }
 }
 
 /// Both kinds of set through `frames` frames; `viewOf(frame)` gives the next view. Share of the paths traced anew.
-template <class ViewOf> double tracedShare(const test::RandomWorld& world, int frames, ViewOf&& viewOf) {
-  SmcSettings kept;
-  kept.vpls = 48;
-  kept.points = 64;
-  kept.candidateRays = 4;
-  kept.paths = 4;
-  kept.warmup = 4;
+template <class ViewOf> double tracedShare(const RandomWorld& world, int frames, ViewOf&& viewOf) {
+  const SmcSettings kept{.vpls = 48, .candidateRays = 4, .paths = 4, .points = 64, .warmup = 4};
   SmcSettings anew = kept;
   anew.cache = false;
   VplSet a, b;
@@ -55,19 +48,16 @@ template <class ViewOf> double tracedShare(const test::RandomWorld& world, int f
 }
 
 TEST(PathCache, EqualsTracingAllPathsThroughRandomEdits) {
-  test::RandomWorld world(1e-3f);
-  const double share = tracedShare(world,
-                                   test::kSanitized ? 200
-                                   : test::isLong() ? 3000
-                                                    : 1000,
-                                   [&](int frame) -> const SceneView& { return world.step(frame % 4); });
+  RandomWorld world(1e-3f);
+  const int frames = kSanitized ? 200 : isLong() ? 3000 : 1000;
+  const double share = tracedShare(world, frames, [&](int frame) -> const SceneView& { return world.step(frame % 4); });
   RecordProperty("traced_share", std::to_string(share));
   EXPECT_LT(share, 0.5);
 }
 
 // Sixty lamps more, of which one moves in every other frame: lights are chosen by a tree, which is then another.
 TEST(PathCache, EqualsTracingAllPathsUnderManyLamps) {
-  test::RandomWorld world(1e-3f);
+  RandomWorld world(1e-3f);
   Rng rng(3, Stream::Test, 0);
   std::vector<LightView> lamps(60);
   for (LightView& l : lamps) {
@@ -76,37 +66,31 @@ TEST(PathCache, EqualsTracingAllPathsUnderManyLamps) {
   }
   std::vector<LightView> lights; // of the frame
   SceneView view;
-  const double share = tracedShare(world,
-                                   test::kSanitized ? 60
-                                   : test::isLong() ? 300
-                                                    : 150,
-                                   [&](int frame) -> const SceneView& {
-                                     view = world.step(frame % 3);
-                                     if (frame % 2 == 0) {
-                                       lamps[rng.below(uint32_t(lamps.size()))].position += 0.1f * (rng.next3() - 0.5f);
-                                       view.changes.lights = true;
-                                     }
-                                     lights.assign(view.lights.begin(), view.lights.end());
-                                     lights.insert(lights.end(), lamps.begin(), lamps.end());
-                                     view.lights = lights;
-                                     return view;
-                                   });
+  const int frames = kSanitized ? 60 : isLong() ? 300 : 150;
+  const double share = tracedShare(world, frames, [&](int frame) -> const SceneView& {
+    view = world.step(frame % 3);
+    if (frame % 2 == 0) {
+      lamps[rng.below(uint32_t(lamps.size()))].position += 0.1f * (rng.next3() - 0.5f);
+      view.changes.lights = true;
+    }
+    lights.assign(view.lights.begin(), view.lights.end());
+    lights.insert(lights.end(), lamps.begin(), lamps.end());
+    view.lights = lights;
+    return view;
+  });
   EXPECT_LT(share, 0.5);
 }
 
 TEST(PathCache, LightsThatMoveTraceNoPath) {
-  test::RandomWorld world;
-  SmcSettings settings;
-  settings.vpls = 64;
-  settings.points = 128;
-  settings.moves = 0;
+  RandomWorld world;
+  const SmcSettings settings{.vpls = 64, .moves = 0, .points = 128};
   VplSet set;
   const LightSet lights = collectLights(world.step(0));
   SceneView view = world.step(0);
   VplUpdateLog log;
   view.changes.first = view.changes.camera = view.changes.lights = true;
   updateVpls(set, {view, world.rays(), lights, settings, 1}, log);
-  view.changes = {false, false, true, false, false};
+  view.changes = kLightsChanged;
   LightSet moved = lights;
   moved.punctual[0].position += vec3(0.3f, 0, 0.1f);
   log = {};
@@ -118,5 +102,4 @@ TEST(PathCache, LightsThatMoveTraceNoPath) {
   EXPECT_GT(log.radiosity.occlusion, 1000u);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::path_cache_test

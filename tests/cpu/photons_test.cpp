@@ -1,22 +1,14 @@
 // Photons from every kind of light against closed forms, through the `ir` sampler where the light must end up in VPLs,
 // and the resampling that the comparators share.
 #include "engine/core/rng.h"
-#include "engine/trace/embree_query.h"
 #include "gi/lighting/photons.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_scene.h"
 
-#include <gtest/gtest.h>
+namespace lambent::test::photons_test {
 
-#include <algorithm>
-#include <numeric>
-
-namespace lambent {
-namespace {
-
-using test::lampAt;
-using World = test::ComparatorWorld;
+using World = ComparatorWorld;
 
 TEST(Photons, PunctualLightsInAClosedRoomLoseNothing) {
   // Nothing leaves a closed room: bounce b reflects Φ ρ^b, exactly, whatever way the photons went.
@@ -44,23 +36,16 @@ TEST(Photons, PunctualLightsInAClosedRoomLoseNothing) {
 TEST(Photons, GlowingSurfacesSendTheirPower) {
   // An open lamp inside a closed room: π L A per side.
   for (bool doubleSided : {false, true}) {
-    test::HandScene scene;
+    HandScene scene;
     scene.box({-2, 0, -2}, {2, 3, 2}, scene.material(vec3(0.5f)), true);
     scene.quad({-0.5f, 2, -0.3f}, {1, 0, 0}, {0, 0.2f, 0.6f}, scene.material(vec3(0.5f), vec3(4), doubleSided));
-    const SceneView view = scene.view();
-    EmbreeQuery rays(scene.assets);
-    rays.update(view);
-    const LightSet lights = collectLights(view);
-    SmcSettings settings;
-    settings.vpls = 512;
-    settings.bounces = 2;
+    const TracedScene traced(scene);
+    const SmcSettings settings{.vpls = 512, .bounces = 2};
     VplSet set;
     VplUpdateLog log;
-    placeVpls(VplSource::Ir, set, {view, rays, lights, settings, 1, {}}, log);
-    double power = 0;
-    for (const Vpl& v : set.slots) power += double(v.radiance.x) * v.area;
+    placeVpls(VplSource::Ir, set, {traced.view, traced.rays, traced.lights, settings, 1, {}}, log);
     const double area = std::sqrt(0.36 + 0.04), expected = (doubleSided ? 2 : 1) * 4 * area * (0.5 + 0.25);
-    EXPECT_NEAR(power, expected, 1e-3 * expected);
+    EXPECT_NEAR(powerOf(set.slots), expected, 1e-3 * expected);
   }
 }
 
@@ -77,21 +62,16 @@ TEST(Photons, SunAndSkyOnASphere) {
       if (sky) {
         world.lights.sky = vec3(2);
       } else {
-        LightView sun;
-        sun.type = LightType::Directional;
-        sun.direction = glm::normalize(vec3(1, -2, 0.5f));
-        sun.intensity = vec3(2);
-        world.lights.punctual = {sun};
+        world.lights.punctual = {
+            {.type = LightType::Directional, .direction = glm::normalize(vec3(1, -2, 0.5f)), .intensity = vec3(2)}};
       }
       world.settings.bounces = 1;
       EXPECT_LT(world.update(seed).alive, 256u); // many miss: the price that paper 1 names
       powers.push_back(world.power());
     }
-    const test::Mean m = test::meanOf(powers);
     const double pi = double(kPi), area = pi * 2.25;
     const double expected = 0.5 * (sky ? 2 * 4 * area : 2 * area / pi);
-    EXPECT_LT(std::abs(m.mean - expected), test::kDeviateLimit * m.error) << (sky ? "sky" : "sun");
-    EXPECT_LT(m.error, 0.03 * expected);
+    EXPECT_TRUE(agrees(meanOf(powers), expected, 0.03 * expected)) << (sky ? "sky" : "sun");
   }
 }
 
@@ -119,7 +99,7 @@ TEST(Photons, SpotFollowsItsFalloff) {
     total += a * a;
   }
   for (double& e : expected) e *= kPhotons / total;
-  EXPECT_LT(test::chiSquareDeviate(observed, expected), test::kDeviateLimit);
+  EXPECT_LT(chiSquareDeviate(observed, expected), kDeviateLimit);
 }
 
 TEST(Photons, LightsAreChosenByPowerAndRangeIsKept) {
@@ -182,5 +162,4 @@ TEST(SystematicResampling, DrawsExpectedNumbers) {
   EXPECT_EQ(systematicMultiplicities(std::vector<float>{0, 0}, 5, 0.5f), (std::vector<uint32_t>{0, 0}));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::photons_test

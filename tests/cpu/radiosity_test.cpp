@@ -1,14 +1,10 @@
 // Closed forms of the VPL radiance estimate.
-#include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
-#include "gi/vpl/smc.h"
-#include "tests/support/hand_scene.h"
+
+#include "tests/support/comparator_world.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_scene.h"
 
-#include <gtest/gtest.h>
-
-namespace lambent {
-namespace {
+namespace lambent::test::radiosity_test {
 
 Vpl vplAt(const vec3& position, const vec3& normal, float albedo, uint64_t id = 1) {
   Vpl v;
@@ -26,9 +22,15 @@ vec3 radianceOf(Vpl v, const RayQuery& rays, const LightSet& lights, int bounces
   return v.radiance;
 }
 
-TEST(Radiosity, PointSpotAndSunOnAPlane) {
+AnalyticQuery floorPlane() {
   AnalyticQuery plane;
   plane.addPlane({0, 0, 0}, {0, 1, 0}, {});
+  return plane;
+}
+const AnalyticQuery plane = floorPlane();
+
+TEST(Radiosity, PointSpotAndSunOnAPlane) {
+
   const vec3 at(1, 0, -0.5f);
   const float albedo = 0.6f;
   LightSet lights;
@@ -72,8 +74,7 @@ TEST(Radiosity, PointSpotAndSunOnAPlane) {
 }
 
 TEST(Radiosity, LightsAddUp) {
-  AnalyticQuery plane;
-  plane.addPlane({0, 0, 0}, {0, 1, 0}, {});
+
   LightSet all;
   vec3 sum(0);
   for (int i = 0; i < 5; ++i) {
@@ -96,27 +97,24 @@ TEST(Radiosity, EmissiveQuadMatchesTheFormFactor) {
   // Quad of a×b at height c with a corner above the point: F = 1/2π (A/√(1+A²) atan(B/√(1+A²)) + B/√(1+B²)
   // atan(A/√(1+B²))).
   for (const float c : {1.0f, 0.2f}) {
-    test::HandScene scene;
+    HandScene scene;
     const float a = 1.5f, b = 0.8f, A = a / c, B = b / c;
     scene.quad({0, c, 0}, {a, 0, 0}, {0, 0, b}, scene.material(vec3(0), vec3(2, 1, 0.5f))); // faces down
     scene.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, scene.material(vec3(0.5f)));
-    const SceneView view = scene.view();
-    EmbreeQuery rays(scene.assets);
-    rays.update(view);
-    const LightSet lights = collectLights(view);
+    const TracedScene traced(scene);
+    const LightSet& lights = traced.lights;
     ASSERT_EQ(lights.emitters.size(), 1u);
     ASSERT_LT(lights.triangles[0].normal.y, -0.9f);
     const double factor = (A / std::sqrt(1 + A * A) * std::atan(B / std::sqrt(1 + A * A)) +
                            B / std::sqrt(1 + B * B) * std::atan(A / std::sqrt(1 + B * B))) /
                           (2 * kPi);
-    std::vector<double> values, single;
+    std::vector<double> values;
     for (uint32_t id = 0; id < 2000; ++id)
-      values.push_back(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f, id), rays, lights, 1).x);
-    const test::Mean m = test::meanOf(values);
+      values.push_back(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f, id), traced.rays, lights, 1).x);
     const double expected = 0.5 * 2 * factor;
-    EXPECT_LT(std::abs(m.mean - expected), test::kDeviateLimit * m.error + 1e-4 * expected) << "height " << c;
     // The stated noise of one estimate with 16 paths (gi/vpl/radiosity.cpp).
-    EXPECT_LT(m.error * std::sqrt(2000.0), 0.20 * expected) << "height " << c;
+    EXPECT_TRUE(agrees(meanOf(values), expected, 0.20 * expected / std::sqrt(2000.0), 1e-4 * expected))
+        << "height " << c;
   }
 }
 
@@ -127,13 +125,7 @@ TEST(Radiosity, PointsOfACellMeetEveryLight) {
   rays.addPlane({0, 0, 0}, {0, 1, 0}, {});
   rays.addBox({-0.001f, 0, -5}, {0.001f, 5, 5}, {vec3(0)});
   LightSet lights;
-  LightView lamp;
-  lamp.type = LightType::Point;
-  lamp.intensity = vec3(10);
-  for (const float x : {-1.0f, 1.0f}) {
-    lamp.position = {x, 2, 0};
-    lights.punctual.push_back(lamp);
-  }
+  for (const float x : {-1.0f, 1.0f}) lights.punctual.push_back(lampAt({x, 2, 0}, 10));
   VplCell cell;
   double truth = 0;
   for (int i = 0; i < 32; ++i) {
@@ -152,9 +144,7 @@ TEST(Radiosity, PointsOfACellMeetEveryLight) {
       estimateRadiance({&one, 1}, rays, lights, paths, 1, 1, counts, RadianceUse::Rendering, {&cells, 1});
       values.push_back(v.radiance.x);
     }
-    double mean = 0;
-    for (const double v : values) mean += v / double(values.size());
-    EXPECT_NEAR(mean / truth, 1, 0.03) << paths << " paths";
+    EXPECT_NEAR(meanOf(values).mean / truth, 1, 0.03) << paths << " paths";
   }
 }
 
@@ -173,18 +163,13 @@ TEST(Radiosity, WhiteFurnaceOfASphere) {
 
 TEST(Radiosity, WhiteFurnaceOfARoomWithSampledEmitters) {
   // The same with emitters that are sampled: next-event estimation and cosine rays must share the light exactly.
-  test::HandScene scene;
+  HandScene scene;
   scene.box({0, 0, 0}, {2, 1, 3}, scene.material(vec3(0.5f), vec3(1)), true);
-  const SceneView view = scene.view();
-  EmbreeQuery rays(scene.assets);
-  rays.update(view);
-  const LightSet lights = collectLights(view);
+  const TracedScene traced(scene);
   std::vector<double> values;
   for (uint32_t id = 0; id < 1000; ++id)
-    values.push_back(radianceOf(vplAt({0.3f, 0, 1.1f}, {0, 1, 0}, 0.5f, id), rays, lights, 3).x);
-  const test::Mean m = test::meanOf(values);
-  EXPECT_LT(std::abs(m.mean - 0.875), test::kDeviateLimit * m.error + 1e-4);
-  EXPECT_LT(m.error, 0.01);
+    values.push_back(radianceOf(vplAt({0.3f, 0, 1.1f}, {0, 1, 0}, 0.5f, id), traced.rays, traced.lights, 3).x);
+  EXPECT_TRUE(agrees(meanOf(values), 0.875, 0.01, 1e-4));
 }
 
 TEST(Radiosity, SkyOverAConvexBody) {
@@ -222,12 +207,10 @@ TEST(Radiosity, NoLightAndLightInAClosedBoxGiveZero) {
 }
 
 TEST(Radiosity, LightOnTheSurfaceStaysFinite) {
-  AnalyticQuery plane;
-  plane.addPlane({0, 0, 0}, {0, 1, 0}, {});
+
   LightSet lights;
   lights.punctual.resize(1); // exactly at the VPL
   EXPECT_EQ(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 0.5f), plane, lights, 3), vec3(0));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::radiosity_test

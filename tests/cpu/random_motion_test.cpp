@@ -5,36 +5,20 @@
 #include "gi/vpl/smc.h"
 #include "tests/support/random_world.h"
 
-#include <gtest/gtest.h>
-
 #include <malloc.h>
 
-#include <cstring>
 #include <unordered_map>
 #include <unordered_set>
 
-namespace lambent {
-namespace {
+namespace lambent::test::random_motion_test {
 
-const int kFrames = test::kSanitized ? 400 : test::isLong() ? 10000 : 5000;
+const int kFrames = kSanitized ? 400 : isLong() ? 10000 : 5000;
 constexpr int kFramesPerRayCheck = 5;
-
-SmcSettings smallSettings() {
-  SmcSettings s;
-  s.vpls = 64;
-  s.moves = 2;
-  s.candidateRays = 4;
-  s.paths = 4;
-  s.bounces = 2;
-  s.points = 64;
-  s.warmup = 4;
-  return s;
-}
 
 /// A world and the set that follows it.
 struct Motion {
-  test::RandomWorld world;
-  SmcSettings settings = smallSettings();
+  RandomWorld world;
+  SmcSettings settings{.vpls = 64, .moves = 2, .candidateRays = 4, .paths = 4, .bounces = 2, .points = 64, .warmup = 4};
   VplSet set;
   VplChanges changes;
   Rng random{3, Stream::Test, 1};
@@ -152,7 +136,7 @@ void expectOnSurfaces(const VplSet& set, const SceneView& view, EmbreeQuery& alo
 // In the open ---------------------------------------------------------------------------------------------------------
 
 /// Whether the point that rays to and from `v` end at lies in the solid, by more than rounding.
-bool isWithin(const Vpl& v, const test::RandomWorld::Solid& solid, float rayEpsilon) {
+bool isWithin(const Vpl& v, const RandomWorld::Solid& solid, float rayEpsilon) {
   const vec3 p = vec3(solid.objectFromWorld * vec4(offsetPoint(v.position, v.geometricNormal, rayEpsilon), 1));
   for (int axis = 0; axis < 3; ++axis) {
     const float depth =
@@ -161,7 +145,7 @@ bool isWithin(const Vpl& v, const test::RandomWorld::Solid& solid, float rayEpsi
   }
   return true;
 }
-bool isWithin(const vec3& world, const test::RandomWorld::Solid& solid) {
+bool isWithin(const vec3& world, const RandomWorld::Solid& solid) {
   const vec3 p = glm::abs(vec3(solid.objectFromWorld * vec4(world, 1)));
   return p.x <= solid.halfSize.x && p.y <= solid.halfSize.y && p.z <= solid.halfSize.z;
 }
@@ -174,7 +158,7 @@ bool isWithin(const vec3& world, const test::RandomWorld::Solid& solid) {
 class Enclosed {
  public:
   void look(const Motion& m, const SceneView& view, int frame) {
-    std::vector<test::RandomWorld::Solid> solids = m.world.solids();
+    std::vector<RandomWorld::Solid> solids = m.world.solids();
     std::erase_if(solids, [&](const auto& s) { return isWithin(view.camera.position(), s); });
     const bool chance = std::any_of(m.set.pool.begin(), m.set.pool.end(), [](const Vpl& c) {
       return !c.alive && luminance(c.samplerRadiance) * c.candidateArea > 0;
@@ -256,7 +240,7 @@ TEST(RandomMotion, LightsStayOnSurfacesInTheOpenAndMemoryFlat) {
   // Else the checks above had nothing to look at.
   EXPECT_GT(double(carried) * perFrame, 2);
   EXPECT_GT(enclosed.seen, 0u);
-  if (test::kSanitized) return; // its heap is another, and it finds leaks by itself
+  if (kSanitized) return; // its heap is another, and it finds leaks by itself
   // Six bytes lost per frame are a tenth of the set by the end of five thousand. The heap is also Embree's and the
   // world's.
   for (size_t thousand = 4; 1000 * (thousand + 1) <= size_t(kFrames); thousand += 5) {
@@ -304,5 +288,4 @@ TEST(RandomMotion, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::random_motion_test

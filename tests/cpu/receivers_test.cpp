@@ -4,13 +4,7 @@
 #include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
-namespace lambent {
-namespace {
+namespace lambent::test::receivers_test {
 
 const vec3 kUp(0, 0, 1);
 
@@ -155,25 +149,19 @@ TEST(Receivers, SamplesFollowTheirDensity) {
           above += share;
         }
       expected.back() = (1 - above) * kSamples;
-      EXPECT_LT(test::chiSquareDeviate(counts, expected), test::kDeviateLimit) << roughness << ' ' << cosViewer;
+      EXPECT_LT(chiSquareDeviate(counts, expected), kDeviateLimit) << roughness << ' ' << cosViewer;
     }
 }
 
 TEST(Receivers, FinishComesFromFactorsAndTexture) {
-  test::HandScene scene;
+  HandScene scene;
   const uint32_t m = scene.material(vec3(0.4f, 0.6f, 0.8f));
   Material& material = scene.assets.materials[m];
   EXPECT_FALSE(material.glossy());
   material.roughness = 0.8f;
   material.metalness = 0.5f;
-  TextureImage image;
-  image.width = 2;
-  image.height = 1;
-  image.srgb = false;
-  image.texels = {{255, 255, 0, 255}, {0, 128, 255, 255}}; // left: rough dielectric, right: half as rough, metal
-  scene.assets.images.push_back(image);
-  material.roughnessMetalnessTexture.image = 0;
-  material.roughnessMetalnessTexture.nearest = true;
+  material.roughnessMetalnessTexture = // left: rough dielectric, right: half as rough, metal
+      scene.texture(2, {{255, 255, 0, 255}, {0, 128, 255, 255}}, false);
   EXPECT_TRUE(material.glossy());
   scene.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, m);
   scene.camera.worldFromView[3] = vec4(0, 0, 2, 1);
@@ -196,5 +184,4 @@ TEST(Receivers, FinishComesFromFactorsAndTexture) {
   EXPECT_LT(glm::length(r.specular - wanted.specular), 1e-6f);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::receivers_test

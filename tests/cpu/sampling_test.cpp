@@ -3,13 +3,7 @@
 #include "gi/lighting/light_set.h"
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
-namespace lambent {
-namespace {
-
-using test::chiSquareDeviate;
-using test::kDeviateLimit;
+namespace lambent::test::sampling_test {
 
 TEST(Rng, IsUniformAndStreamsDiffer) {
   std::vector<double> counts(64, 0), expected(64, 65536 / 64);
@@ -184,5 +178,4 @@ TEST(Lights, PatchesAddUpToTheEmittersPower) {
   EXPECT_NEAR(power[1], lights.emitters[1].power, 1e-5);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::sampling_test

@@ -4,9 +4,9 @@
 #include "engine/core/error.h"
 #include "gi/plan/presets.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent {
+namespace lambent::test::settings_test {
 
 TEST(Settings, TextsAndValuesOfEveryRowAgree) {
   for (const SettingRow& row : settingsTable()) {
@@ -116,4 +116,4 @@ TEST(Axes, SettingsSayTheirAxes) {
   EXPECT_FALSE(whyNot(s).empty()) << "no technique has given a stage";
 }
 
-} // namespace lambent
+} // namespace lambent::test::settings_test

@@ -1,60 +1,45 @@
 // When a set of VPLs in a still world is taken to have settled: not too early, and at all.
-#include "engine/trace/embree_query.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/effort.h"
-#include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::settling_test {
 
 /// A room with a block and a narrow spot on one wall: light that a new set does not find at once.
 struct LitRoom {
   HandScene scene;
-  std::unique_ptr<EmbreeQuery> rays;
-  SceneView view;
-  LightSet lights;
+  std::optional<TracedScene> traced;
   std::vector<SurfaceHit> seen;
 
   LitRoom() {
     const uint32_t grey = scene.material(vec3(0.6f));
     scene.box({-2, 0, -2}, {2, 2.5f, 2}, grey, true);
     scene.box({-0.5f, 0, -0.8f}, {0.4f, 1.2f, 0}, grey, false);
-    LightView spot;
+    LightView& spot = scene.lamp({0.5f, 2.3f, 1}, vec3(20));
     spot.type = LightType::Spot;
-    spot.position = {0.5f, 2.3f, 1};
     spot.direction = glm::normalize(vec3(-1, -0.9f, -0.4f));
     spot.innerConeCos = 0.97f;
     spot.outerConeCos = 0.93f;
-    spot.intensity = vec3(20);
-    scene.lights.push_back(spot);
     scene.camera.worldFromView[3] = vec4(0.8f, 1.2f, 1.9f, 1);
     scene.camera.fovY = 1.1f;
-    rays = std::make_unique<EmbreeQuery>(scene.assets);
-    view = scene.view();
-    rays->update(view);
-    lights = collectLights(view);
+    traced.emplace(scene);
     std::vector<vec2> points;
     for (int i = 0; i < 12; ++i)
       for (int j = 0; j < 16; ++j) points.push_back((vec2(j, i) + 0.5f) / vec2(16, 12));
-    seen = surfacesAt(*rays, view.camera, points);
+    seen = surfacesAt(traced->rays, scene.camera, points);
   }
 
   void update(VplSet& set, const SmcSettings& settings, uint32_t seed) {
-    SceneView now = view;
-    if (set.frame > 0) now.changes = {false, false, false, false, false};
+    SceneView now = traced->view;
+    if (set.frame > 0) now.changes = kStill;
     VplUpdateLog log;
-    updateVpls(set, {now, *rays, lights, settings, seed}, log);
+    updateVpls(set, {now, traced->rays, traced->lights, settings, seed}, log);
   }
 
   std::vector<vec3> irradiance(const VplSet& set) {
     RayCounts counts;
-    return irradianceByRays(*rays, seen, lightsOf(set), {}, counts);
+    return irradianceByRays(traced->rays, seen, lightsOf(set), {}, counts);
   }
 };
 
@@ -67,8 +52,6 @@ double relativeError(const std::vector<vec3>& a, const std::vector<vec3>& truth)
   }
   return std::sqrt(difference / whole);
 }
-
-} // namespace
 
 TEST(Settling, WaitsForTheFallToEnd) {
   Settling s;
@@ -108,19 +91,12 @@ TEST(Settling, NotWhileAVplIsUnverified) {
 TEST(Settling, SettledSetsAreNoWorseThanLater) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   LitRoom room;
-  SmcSettings many;
-  many.vpls = 2048;
-  many.paths = 64;
-  many.warmup = 20;
+  const SmcSettings many{.vpls = 2048, .paths = 64, .warmup = 20},
+      few{.vpls = 64, .moves = 2, .points = 128, .warmup = 0};
   VplSet best;
   room.update(best, many, 77);
   const std::vector<vec3> truth = room.irradiance(best);
 
-  SmcSettings few;
-  few.vpls = 64;
-  few.points = 128;
-  few.moves = 2;
-  few.warmup = 0;
   std::vector<double> atFirst, later, differences;
   int frames = 0;
   for (uint32_t seed = 1; seed <= 64; ++seed) {
@@ -146,4 +122,4 @@ TEST(Settling, SettledSetsAreNoWorseThanLater) {
   EXPECT_LT(difference.mean, 0.03 * whole); // two and a half of these: 99.4 %, one-sided
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::settling_test

@@ -3,28 +3,22 @@
 #include "engine/core/sampling.h"
 #include "engine/scene/scene.h"
 #include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_paths.h"
 #include "gi/lighting/photons.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/daylight.h"
 #include "tests/support/effort.h"
-#include "tests/support/hand_scene.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
-namespace lambent {
-namespace {
-
-using test::directionAt;
+namespace lambent::test::sky_test {
 
 constexpr float kTurbidities[] = {1.7f, 2, 2.5f, 3, 4, 6, 8, 10};
 
 // The model -----------------------------------------------------------------------------------------------------------
+
+bool isLight(const vec3& l) { return isFinite(l) && luminance(l) > 0 && l.x >= 0 && l.y >= 0 && l.z >= 0; }
 
 TEST(Daylight, IsFiniteAndPositiveEverywhere) {
   for (float elevation = -90; elevation <= 90; elevation += 5)
@@ -35,14 +29,11 @@ TEST(Daylight, IsFiniteAndPositiveEverywhere) {
       EXPECT_TRUE(isFinite(sun) && sun.x >= 0 && sun.y >= 0 && sun.z >= 0);
       for (const vec3& d :
            {vec3(0, 1, 0), vec3(0, -1, 0), vec3(1, 0, 0), directionAt(elevation, 40), directionAt(-elevation, 220)}) {
-        const vec3 l = sky.radiance(d);
-        ASSERT_TRUE(isFinite(l) && luminance(l) > 0 && l.x >= 0 && l.y >= 0 && l.z >= 0)
-            << elevation << ' ' << turbidity;
+        ASSERT_TRUE(isLight(sky.radiance(d))) << elevation << ' ' << turbidity;
       }
-      test::overSphere(32, [&](const vec3& d) {
+      overSphere(32, [&](const vec3& d) {
         const vec3 l = sky.radiance(d);
-        EXPECT_TRUE(isFinite(l) && luminance(l) > 0 && l.x >= 0 && l.y >= 0 && l.z >= 0)
-            << elevation << ' ' << turbidity;
+        EXPECT_TRUE(isLight(l)) << elevation << ' ' << turbidity;
         EXPECT_LT(luminance(l), 6) << elevation << ' ' << turbidity; // the unit: a white surface in the sun is about 1
         return 1.0;
       });
@@ -55,7 +46,7 @@ TEST(Daylight, IsBrightestAtTheSun) {
       const vec3 sun = directionAt(elevation, -70);
       const Sky sky = Sky::daylight(sun, turbidity);
       vec3 brightest(0);
-      test::overSphere(128, [&](const vec3& d) {
+      overSphere(128, [&](const vec3& d) {
         if (luminance(sky.radiance(d)) > luminance(sky.radiance(brightest))) brightest = d;
         return 1.0;
       });
@@ -83,7 +74,7 @@ TEST(Daylight, GroundIsLitBySkyAndSun) {
   for (const float elevation : {-3.0f, 10.0f, 50.0f}) {
     const vec3 towards = directionAt(elevation, 100);
     const Sky sky = Sky::daylight(towards, 3);
-    const dvec3 open = test::openIrradiance(sky, {0, 1, 0});
+    const dvec3 open = openIrradiance(sky, {0, 1, 0});
     const vec3 sun = daylightSun(towards, 3) * std::max(0.0f, towards.y), ground = sky.radiance({0.3f, -0.2f, 0.1f});
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(sky.irradiance()[c], open[c], 2e-3 * open[c]) << elevation;
@@ -151,7 +142,7 @@ void expectDensity(const std::function<SkySample(vec2)>& sample, const std::func
       total += p;
     }
   EXPECT_NEAR(total, 1, 1e-5) << what;
-  EXPECT_LT(test::chiSquareDeviate(observed, expected), test::kDeviateLimit) << what;
+  EXPECT_LT(chiSquareDeviate(observed, expected), kDeviateLimit) << what;
 }
 
 TEST(SkySampling, FollowsItsDensity) {
@@ -171,7 +162,7 @@ TEST(SkySampling, FollowsItsDensity) {
 TEST(SkySampling, IsByWhatArrives) {
   const Sky sky = Sky::daylight(directionAt(20, 130), 3);
   EXPECT_NEAR(sky.meanLuminance() * 4 * kPi,
-              test::overSphere(512, [&](const vec3& d) { return double(luminance(sky.radiance(d))); }),
+              overSphere(512, [&](const vec3& d) { return double(luminance(sky.radiance(d))); }),
               1e-2 * double(sky.meanLuminance()) * 12);
   // Luminance over density is nearly the same everywhere: its scatter is that of the cells.
   Rng rng(2, Stream::Test, 1);
@@ -190,7 +181,7 @@ TEST(SkySampling, IsByWhatArrives) {
 
 /// A room of 4 m × 3 m × 4 m, a window of 1.2 m × 1 m in its +x wall, without glass.
 struct WindowRoom {
-  test::HandScene scene;
+  HandScene scene;
   vec3 lo{-2, 0, -2}, hi{2, 3, 2};
 
   explicit WindowRoom(const vec3& albedo = vec3(0.5f)) {
@@ -225,10 +216,9 @@ double throughWindow(const Sky& sky, const vec3& at, const vec3& normal) {
 
 TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
   SKIP_STATISTICS_WHEN_SANITIZED();
-  WindowRoom room;
-  const SceneView view = room.scene.view();
-  EmbreeQuery rays(room.scene.assets);
-  rays.update(view);
+  const WindowRoom room;
+  const TracedScene traced(room.scene);
+  const EmbreeQuery& rays = traced.rays;
   struct Place {
     vec3 at, normal;
   };
@@ -244,7 +234,7 @@ TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
       LightSet lights;
       lights.sky = Sky::daylight(directionAt(elevation, azimuth), 3);
       double brightest = 0;
-      test::overSphere(128, [&](const vec3& d) {
+      overSphere(128, [&](const vec3& d) {
         brightest = std::max(brightest, double(luminance(lights.sky.radiance(d))));
         return 1.0;
       });
@@ -278,9 +268,9 @@ TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
           largest = std::max(largest, share + connected);
         }
         const double truth = throughWindow(lights.sky, place.at, place.normal);
-        const test::Mean a = test::meanOf(byCosine), b = test::meanOf(together);
-        EXPECT_LT(std::abs(a.mean - truth), test::kDeviateLimit * a.error + 1e-3 * truth);
-        EXPECT_LT(std::abs(b.mean - truth), test::kDeviateLimit * b.error + 1e-3 * truth);
+        const Mean a = meanOf(byCosine), b = meanOf(together);
+        EXPECT_TRUE(agrees(a, truth, kInfinity, 1e-3 * truth));
+        EXPECT_TRUE(agrees(b, truth, kInfinity, 1e-3 * truth));
         EXPECT_LE(largest, 1.51 * brightest);
         // Two rays each: variance of the mean of two cosine rays is half of one's.
         const double ratio = b.error * b.error / (0.5 * a.error * a.error);
@@ -318,27 +308,22 @@ TEST(SkyPaths, RadiosityOfOpenPlanesAndOfARoom) {
   lights.sky = Sky::daylight(directionAt(25, 75), 3);
   for (const vec3& n :
        {vec3(0, 1, 0), vec3(0, -1, 0), glm::normalize(vec3(1, 0.4f, 0)), glm::normalize(vec3(-1, -0.2f, 2))}) {
-    const double wanted = 0.5 / std::acos(-1.0) * double(luminance(vec3(test::openIrradiance(lights.sky, n))));
+    const double wanted = 0.5 / std::acos(-1.0) * double(luminance(vec3(openIrradiance(lights.sky, n))));
     for (const int paths : {8, 16}) {
       std::vector<double> values;
       for (uint64_t id = 1; id <= 500; ++id)
         values.push_back(double(luminance(radianceOf(vplAt(vec3(0), n, id), nothing, lights, 1, paths))));
-      const test::Mean m = test::meanOf(values);
-      EXPECT_LT(std::abs(m.mean - wanted), test::kDeviateLimit * m.error + 1e-3 * wanted) << n.x << ' ' << n.y;
-      EXPECT_LT(m.error * std::sqrt(500.0), 0.25 * wanted);
+      EXPECT_TRUE(agrees(meanOf(values), wanted, 0.25 * wanted / std::sqrt(500.0), 1e-3 * wanted)) << n.x << ' ' << n.y;
     }
   }
-  WindowRoom room;
-  const SceneView view = room.scene.view();
-  EmbreeQuery rays(room.scene.assets);
-  rays.update(view);
+  const WindowRoom room;
+  const TracedScene traced(room.scene);
+  const EmbreeQuery& rays = traced.rays;
   std::vector<double> values;
   for (uint64_t id = 1; id <= 4000; ++id)
     values.push_back(double(luminance(radianceOf(vplAt({-1, 0, 0.5f}, {0, 1, 0}, id), rays, lights, 1, 16))));
-  const test::Mean m = test::meanOf(values);
   const double wanted = 0.5 * throughWindow(lights.sky, {-1, 0, 0.5f}, {0, 1, 0});
-  EXPECT_LT(std::abs(m.mean - wanted), test::kDeviateLimit * m.error + 1e-3 * wanted);
-  EXPECT_LT(m.error, 0.03 * wanted);
+  EXPECT_TRUE(agrees(meanOf(values), wanted, 0.03 * wanted, 1e-3 * wanted));
 }
 
 /// Kept paths give what paths from scratch do, whatever becomes of the sky and of what stands before the window.
@@ -348,7 +333,7 @@ TEST(SkyPaths, NothingComesFromBelowTheShadingHorizon) {
   lights.sky = Sky::daylight(directionAt(25, 75), 3);
   const PathVertex vertex{vec3(0), {0, 1, 0}, {0.6f, 0.8f, 0}};
   int below = 0;
-  test::overSphere(64, [&](const vec3& d) {
+  overSphere(64, [&](const vec3& d) {
     if (d.y <= 0 && glm::dot(d, vertex.geometricNormal) > 0) {
       ++below;
       EXPECT_EQ(skyByRay(lights, vertex, d), vec3(0)) << d.x << ' ' << d.y << ' ' << d.z;
@@ -367,27 +352,17 @@ TEST(SkyPaths, KeptThroughChangesOfSkyAndGeometry) {
   std::vector<Vpl> vpls;
   for (uint64_t id = 1; id <= 40; ++id) vpls.push_back(vplAt({-1.8f + 0.09f * float(id), 0, 0.5f}, {0, 1, 0}, id));
   std::vector<KeptPaths> kept(vpls.size());
-  const Sky skies[] = {Sky::daylight(directionAt(20, 90), 3),
-                       Sky::daylight(directionAt(40, 70), 3),
-                       Sky(vec3(1, 2, 3)),
-                       Sky(),
-                       Sky::daylight(directionAt(20, 90), 3),
-                       Sky::daylight(directionAt(20, 90), 3),
-                       Sky::daylight(directionAt(-5, 90), 5),
-                       Sky(vec3(1)),
-                       Sky::daylight(directionAt(20, 90), 3)};
+  const Sky day = Sky::daylight(directionAt(20, 90), 3), dusk = Sky::daylight(directionAt(-5, 90), 5);
+  const Sky skies[] = {
+      day, Sky::daylight(directionAt(40, 70), 3), Sky(vec3(1, 2, 3)), Sky(), day, day, dusk, Sky(vec3(1)), day};
   LightSet lights;
   uint64_t asked = 0;
   int different = 0;
   for (int step = 0; step < 18; ++step) {
     const Sky before = lights.sky;
     lights.sky = skies[step % std::size(skies)];
-    InstanceView& moving = room.scene.instances[shutter];
-    moving.moved = step % 2 == 1;
-    moving.worldFromObjectBefore = moving.worldFromObject;
-    moving.boundsWorldBefore = moving.boundsWorld;
-    if (moving.moved) moving.worldFromObject[3].z += step % 4 == 1 ? 0.4f : -0.4f;
-    moving.boundsWorld = transformed(room.scene.assets.meshes[moving.mesh].boundsObject, moving.worldFromObject);
+    room.scene.move(shutter, {0, 0, step % 2 == 0 ? 0 : step % 4 == 1 ? 0.4f : -0.4f});
+    room.scene.instances[shutter].moved = step % 2 == 1;
     const SceneView view = room.scene.view();
     rays.update(view);
     const DirtyRegion moved(view);
@@ -421,7 +396,7 @@ TEST(SkyPaths, PhotonsBringWhatTheSkySends) {
   const PhotonSource source(lights, bounds, 1e-6f);
   ASSERT_FALSE(source.empty());
   for (const vec3& n : {vec3(0, 1, 0), vec3(0, -1, 0), directionAt(15, 40), directionAt(0, 220)}) {
-    const double area = 0.25, wanted = area * double(luminance(vec3(test::openIrradiance(lights.sky, n))));
+    const double area = 0.25, wanted = area * double(luminance(vec3(openIrradiance(lights.sky, n))));
     vec3 s = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0))), t = glm::cross(n, s);
     std::vector<double> means;
     for (uint32_t seed = 0; seed < 20; ++seed) {
@@ -437,11 +412,8 @@ TEST(SkyPaths, PhotonsBringWhatTheSkySends) {
       }
       means.push_back(sum);
     }
-    const test::Mean m = test::meanOf(means);
-    EXPECT_LT(std::abs(m.mean - wanted), test::kDeviateLimit * m.error + 1e-3 * wanted) << n.x << ' ' << n.y;
-    EXPECT_LT(m.error, 0.03 * wanted);
+    EXPECT_TRUE(agrees(meanOf(means), wanted, 0.03 * wanted, 1e-3 * wanted)) << n.x << ' ' << n.y;
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::sky_test

@@ -1,26 +1,13 @@
 // The sequential sampler as a whole, on rooms with closed-form rays.
 #include "engine/core/parallel.h"
-#include "engine/core/rng.h"
-#include "engine/trace/analytic_query.h"
 #include "gi/vpl/smc.h"
-#include "gi/vpl/sources.h"
+#include "tests/support/comparator_world.h"
 #include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <cstring>
 #include <numbers>
 
-namespace lambent {
-namespace {
-
-CameraView cameraAt(const vec3& eye, const vec3& forward) {
-  CameraView c;
-  const vec3 z = -glm::normalize(forward), x = glm::normalize(glm::cross(vec3(0, 1, 0), z)), y = glm::cross(z, x);
-  c.worldFromView = mat4(vec4(x, 0), vec4(y, 0), vec4(z, 0), vec4(eye, 1));
-  return c;
-}
+namespace lambent::test::smc_test {
 
 /// A room 6×3×6 m with a block in it, a lamp, and a set to update.
 struct Room {
@@ -35,27 +22,28 @@ struct Room {
   Room() {
     rays.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.7f, 0.6f, 0.5f)});
     rays.addBox({-0.5f, 0, -0.5f}, {0.5f, 1.5f, 0.5f}, {vec3(0.4f)});
-    lights.punctual.resize(1);
-    lights.punctual[0].position = {2, 2.5f, 1};
-    lights.punctual[0].intensity = vec3(5);
+    lights.punctual = {lampAt({2, 2.5f, 1}, 5)};
     instances[1].id = 1;
     view.instances = instances;
-    view.camera = cameraAt({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1});
-    settings.vpls = 256;
-    settings.points = 512;
-    settings.warmup = 10;
+    view.camera = cameraAlong({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1}, 1);
+    settings = {.vpls = 256, .points = 512, .warmup = 10};
   }
   VplChanges update(uint32_t seed = 1) {
     log = {};
     const VplChanges c = updateVpls(set, {view, rays, lights, settings, seed}, log);
-    view.changes = {false, false, false, false, false};
+    view.changes = kStill;
     return c;
   }
 };
 
+class Smc : public ::testing::Test {
+ protected:
+  Room room;
+};
+
 TEST(Mailboxes, LoseALightWhoseCarrierTurnedItAway) {
   const AnalyticQuery rays; // the carrier is too small to be met
-  const CameraView camera = cameraAt({0, 0, 6}, {0, 0, -1});
+  const CameraView camera = cameraAlong({0, 0, 6}, {0, 0, -1}, 1);
   for (const float side : {1.0f, -1.0f}) {
     Vpl v;
     v.normal = v.geometricNormal = {0, 0, side};
@@ -79,7 +67,7 @@ TEST(Mailboxes, AreNotSeenThroughThinWalls) {
     v.mailbox = offsetPoint({0, 0, 0}, {0, 0, -1}, 1e-4f);
     v.alive = v.valid = true;
     RayCounts counts;
-    verifyMailboxes({&v, 1}, rays, cameraAt({0, 0, eye}, {0, 0, -eye}), {true}, counts);
+    verifyMailboxes({&v, 1}, rays, cameraAlong({0, 0, eye}, {0, 0, -eye}, 1), {true}, counts);
     EXPECT_EQ(v.valid, eye < 0);
   }
 }
@@ -100,8 +88,7 @@ TEST(Visibility, LightsAreNotFoundThroughThinWalls) {
   EXPECT_FALSE(v.valid);
 }
 
-TEST(Smc, FillsTheSetOnSurfaces) {
-  Room room;
+TEST_F(Smc, FillsTheSetOnSurfaces) {
   const VplChanges c = room.update();
   EXPECT_EQ(c.alive, 256u);
   for (const Vpl& v : room.set.slots) {
@@ -116,35 +103,28 @@ TEST(Smc, FillsTheSetOnSurfaces) {
   }
 }
 
-TEST(Smc, IsByteIdenticalForAnyThreadCount) {
+TEST_F(Smc, IsByteIdenticalForAnyThreadCount) {
   std::vector<Vpl> first;
   for (int threads : {1, 2, 2}) {
     setThreadCount(threads);
     Room room;
     room.update();
     for (int i = 0; i < 5; ++i) {
-      room.view.camera = cameraAt({-2.5f + 0.1f * float(i), 1.5f, 2.5f}, {1, -0.2f, -1});
+      room.view.camera = cameraAlong({-2.5f + 0.1f * float(i), 1.5f, 2.5f}, {1, -0.2f, -1}, 1);
       room.view.changes.camera = true;
       room.update();
     }
     if (first.empty()) first = room.set.slots;
-    for (size_t i = 0; i < first.size(); ++i) {
-      const Vpl &a = first[i], &b = room.set.slots[i];
-      EXPECT_EQ(a.id, b.id);
-      EXPECT_EQ(a.position, b.position);
-      EXPECT_EQ(a.radiance, b.radiance);
-      EXPECT_EQ(a.area, b.area);
-    }
+    expectSame(first, room.set.slots);
   }
   setThreadCount(0);
 }
 
-TEST(Smc, MovesAtMostTheBound) {
-  Room room;
+TEST_F(Smc, MovesAtMostTheBound) {
   room.settings.moves = 5;
   room.update();
   for (int i = 0; i < 20; ++i) {
-    room.view.camera = cameraAt({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1 + 0.05f * float(i)});
+    room.view.camera = cameraAlong({-2.5f, 1.5f, 2.5f}, {1, -0.2f, -1 + 0.05f * float(i)}, 1);
     room.view.changes.camera = true;
     const VplSet before = room.set;
     const VplChanges c = room.update();
@@ -156,11 +136,10 @@ TEST(Smc, MovesAtMostTheBound) {
   }
 }
 
-TEST(Smc, SurvivesFacingTheSky) {
-  Room room;
+TEST_F(Smc, SurvivesFacingTheSky) {
   room.update();
   const VplSet before = room.set;
-  room.view.camera = cameraAt({0, 100, 0}, {0, 1, 0.1f});
+  room.view.camera = cameraAlong({0, 100, 0}, {0, 1, 0.1f}, 1);
   room.view.changes.camera = true;
   const VplChanges c = room.update();
   EXPECT_TRUE(c.movedSlots.empty());
@@ -168,19 +147,15 @@ TEST(Smc, SurvivesFacingTheSky) {
   for (size_t i = 0; i < before.slots.size(); ++i) EXPECT_EQ(before.slots[i].id, room.set.slots[i].id);
 }
 
-TEST(Smc, CameraCutLiftsTheBound) {
+TEST_F(Smc, CameraCutLiftsTheBound) {
   // Two closed rooms: a jump from one to the other loses every VPL at once.
-  Room room;
   room.rays.addBox({20, 0, -3}, {26, 3, 3}, {vec3(0.6f)});
   room.instances.resize(3);
   room.instances[2].id = 2;
   room.view.instances = room.instances;
-  LightView lamp;
-  lamp.position = {23, 2.5f, 0};
-  lamp.intensity = vec3(5);
-  room.lights.punctual.push_back(lamp);
+  room.lights.punctual.push_back(lampAt({23, 2.5f, 0}, 5));
   room.update();
-  room.view.camera = cameraAt({21, 1.5f, 2}, {1, 0, -1});
+  room.view.camera = cameraAlong({21, 1.5f, 2}, {1, 0, -1}, 1);
   room.view.changes.camera = true;
   const VplChanges c = room.update();
   EXPECT_TRUE(c.burst);
@@ -191,8 +166,7 @@ TEST(Smc, CameraCutLiftsTheBound) {
   EXPECT_FALSE(next.burst);
 }
 
-TEST(Smc, LostVplsAreReplacedWithinTheBoundWhenTheCameraTurns) {
-  Room room;
+TEST_F(Smc, LostVplsAreReplacedWithinTheBoundWhenTheCameraTurns) {
   room.update();
   for (Vpl& v : room.set.slots) { // hide a quarter of the set where nobody sees it
     if (&v - room.set.slots.data() < 64) v.position = vec3(50, 0, 0), v.mailbox = vec3(50, 0.1f, 0);
@@ -204,8 +178,7 @@ TEST(Smc, LostVplsAreReplacedWithinTheBoundWhenTheCameraTurns) {
   EXPECT_EQ(c.movedSlots.size(), 16u);
 }
 
-TEST(Smc, ALossOfALargePartIsMadeUpAtOnce) {
-  Room room;
+TEST_F(Smc, ALossOfALargePartIsMadeUpAtOnce) {
   room.update();
   for (uint32_t s = 0; s < 115; ++s) { // 45 %
     Vpl& v = room.set.slots[s];
@@ -219,8 +192,7 @@ TEST(Smc, ALossOfALargePartIsMadeUpAtOnce) {
   for (uint32_t s = 115; s < 256; ++s) EXPECT_EQ(room.set.slots[s].id, before.slots[s].id) << "what is seen stays";
 }
 
-TEST(Smc, OneVpl) {
-  Room room;
+TEST_F(Smc, OneVpl) {
   room.settings.vpls = 1;
   for (int i = 0; i < 5; ++i) {
     const VplChanges c = room.update();
@@ -229,7 +201,7 @@ TEST(Smc, OneVpl) {
   }
 }
 
-TEST(Smc, NoLightAndLightInsideAClosedBox) {
+TEST_F(Smc, NoLightAndLightInsideAClosedBox) {
   Room dark;
   dark.lights.punctual.clear();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(dark.update().alive, 0u); // nothing brings light: no VPL
@@ -238,8 +210,7 @@ TEST(Smc, NoLightAndLightInsideAClosedBox) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(boxed.update().alive, 0u);
 }
 
-TEST(Smc, LightSwitchedOffTakesEffectAtOnceAndBackOn) {
-  Room room;
+TEST_F(Smc, LightSwitchedOffTakesEffectAtOnceAndBackOn) {
   room.update();
   room.lights.punctual.clear();
   room.view.changes.lights = true;
@@ -254,8 +225,7 @@ TEST(Smc, LightSwitchedOffTakesEffectAtOnceAndBackOn) {
   EXPECT_GT(sum, 0);
 }
 
-TEST(Smc, UnchangedWorldReestimatesOnlyCandidates) {
-  Room room;
+TEST_F(Smc, UnchangedWorldReestimatesOnlyCandidates) {
   room.update();
   room.update();
   EXPECT_EQ(room.log.relit, 0u);
@@ -264,8 +234,7 @@ TEST(Smc, UnchangedWorldReestimatesOnlyCandidates) {
   EXPECT_EQ(room.log.relit, 256u);
 }
 
-TEST(Smc, KeptValuesEqualEstimatingAgain) {
-  Room room;
+TEST_F(Smc, KeptValuesEqualEstimatingAgain) {
   room.update();
   for (int i = 0; i < 3; ++i) room.update();
   std::vector<Vpl> again = room.set.slots;
@@ -281,8 +250,7 @@ TEST(Smc, KeptValuesEqualEstimatingAgain) {
   for (size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].radiance, room.set.slots[i].radiance);
 }
 
-TEST(Smc, VplsRideOnMovingObjects) {
-  Room room;
+TEST_F(Smc, VplsRideOnMovingObjects) {
   room.update();
   const VplSet before = room.set;
   const mat4 step = mat4(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(0.25f, 0, 0, 1));
@@ -308,8 +276,7 @@ TEST(Smc, VplsRideOnMovingObjects) {
   EXPECT_GT(carried, 0u);
 }
 
-TEST(Smc, VplsOfARemovedObjectGoWithIt) {
-  Room room;
+TEST_F(Smc, VplsOfARemovedObjectGoWithIt) {
   room.instances[0].id = 7; // ids are not indices
   room.update();
   const VplSet before = room.set;
@@ -333,8 +300,7 @@ TEST(Smc, VplsOfARemovedObjectGoWithIt) {
   EXPECT_GT(stayed, before.slots.size() * 3 / 4);
 }
 
-TEST(Smc, NumberOfVplsMayChangeBetweenFrames) {
-  Room room;
+TEST_F(Smc, NumberOfVplsMayChangeBetweenFrames) {
   room.update();
   for (int n : {64, 300, 1, 128}) {
     room.settings.vpls = n;
@@ -355,16 +321,14 @@ double beamOf(const LightView& lamp) {
 
 /// Light of sets in an empty room over what it must be. All of a lamp's flux Φ meets a wall, and so does what each
 /// bounce leaves of it: ∫ L dA = (ρ + ρ² + … + ρ^B) Φ/π.
-test::Mean shareOfTheRoomsLight(const LightView& lamp, uint32_t seeds) {
+Mean shareOfTheRoomsLight(const LightView& lamp, uint32_t seeds) {
   std::vector<double> shares;
   for (uint32_t seed = 1; seed <= seeds; ++seed) {
     Room room;
     room.rays = {};
     room.rays.addBox({-3, 0, -3}, {3, 3, 3}, {vec3(0.6f)});
     room.lights.punctual[0] = lamp;
-    room.settings.vpls = 512;
-    room.settings.points = 512;
-    room.settings.warmup = 30;
+    room.settings = {.vpls = 512, .points = 512, .warmup = 30};
     room.update(seed);
     double set = 0, truth = 0;
     for (const Vpl& v : room.set.slots) set += double(luminance(v.radiance)) * v.area;
@@ -372,11 +336,10 @@ test::Mean shareOfTheRoomsLight(const LightView& lamp, uint32_t seeds) {
       truth += std::pow(0.6, bounce) * double(luminance(lamp.intensity)) * beamOf(lamp) / std::numbers::pi;
     shares.push_back(set / truth);
   }
-  return test::meanOf(shares);
+  return meanOf(shares);
 }
 
-TEST(Smc, NoVplReflectsMoreThanTheLampsSend) {
-  Room room;
+TEST_F(Smc, NoVplReflectsMoreThanTheLampsSend) {
   room.view.boundsWorld = {{-3, 0, -3}, {3, 3, 3}};
   placeVpls(VplSource::Smc, room.set, {room.view, room.rays, room.lights, room.settings, 1}, room.log);
   const float lamps = 4 * kPi * luminance(room.lights.punctual[0].intensity); // W
@@ -387,36 +350,27 @@ TEST(Smc, NoVplReflectsMoreThanTheLampsSend) {
   for (size_t i = 1; i < lights.size(); ++i) ASSERT_EQ(lights[i].radiance, room.set.slots[i].radiance);
 }
 
-TEST(Smc, TheSetCarriesTheRoomsLight) {
+TEST_F(Smc, TheSetCarriesTheRoomsLight) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   // The set spreads VPLs apart, where the nearest neighbour alone would find 35 % too much light.
-  LightView lamp;
-  lamp.position = {0.3f, 1.5f, -0.2f};
-  lamp.intensity = vec3(5);
-  const test::Mean share = shareOfTheRoomsLight(lamp, 8);
-  EXPECT_LT(std::abs(share.mean - 1), test::kDeviateLimit * share.error);
-  EXPECT_LT(share.error, 0.002) << "too noisy to tell";
+  EXPECT_TRUE(agrees(shareOfTheRoomsLight(lampAt({0.3f, 1.5f, -0.2f}, 5), 8), 1, 0.002));
 }
 
-TEST(Smc, ChoosingBrightVplsDoesNotMakeTheRoomBrighter) {
+TEST_F(Smc, ChoosingBrightVplsDoesNotMakeTheRoomBrighter) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   // A narrow spot: most of the room is lit by rare paths through a small patch, so estimates are noisy, and a set that
   // kept what looks bright by the estimate it renders with would carry 45 % too much.
-  LightView spot;
+  LightView spot = lampAt({0, 2.9f, 0}, 50);
   spot.type = LightType::Spot;
-  spot.position = {0, 2.9f, 0};
   spot.direction = glm::normalize(vec3(0.1f, -1, 0));
-  spot.intensity = vec3(50);
   spot.outerConeCos = std::cos(0.35f);
   spot.innerConeCos = std::cos(0.2f);
-  const test::Mean share = shareOfTheRoomsLight(spot, 12);
-  EXPECT_LT(std::abs(share.mean - 1), test::kDeviateLimit * share.error);
-  EXPECT_LT(share.error, 0.015) << "too noisy to tell";
+  EXPECT_TRUE(agrees(shareOfTheRoomsLight(spot, 12), 1, 0.015));
 }
 
 /// A lamp in the middle of a sphere lights all of it alike, E = I/R², and so does every bounce: L = (ρ + ρ² + … + ρ^B)
 /// I/(π R²) everywhere, and πL falls on any plane anywhere inside.
-TEST(Smc, WhiteFurnaceOfASphere) {
+TEST_F(Smc, WhiteFurnaceOfASphere) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   constexpr float kRadius = 2, kAlbedo = 0.6f, kIntensity = 5;
   std::vector<SurfaceHit> planes;
@@ -436,7 +390,7 @@ TEST(Smc, WhiteFurnaceOfASphere) {
     room.rays.addSphere(vec3(0), kRadius, {vec3(kAlbedo)});
     room.lights.punctual[0].position = vec3(0);
     room.lights.punctual[0].intensity = vec3(kIntensity);
-    room.view.camera = cameraAt({-1, 0.3f, 0.8f}, {1, 0, -0.5f});
+    room.view.camera = cameraAlong({-1, 0.3f, 0.8f}, {1, 0, -0.5f}, 1);
     room.settings.bounces = int(seed % 3) + 1;
     room.update(seed);
     double bounces = 0;
@@ -453,15 +407,8 @@ TEST(Smc, WhiteFurnaceOfASphere) {
       ofAll.back() += shares[i].back() / double(planes.size());
     }
   }
-  for (size_t i = 0; i < planes.size(); ++i) {
-    const test::Mean m = test::meanOf(shares[i]);
-    EXPECT_LT(std::abs(m.mean - 1), test::kDeviateLimit * m.error) << "plane " << i;
-    EXPECT_LT(m.error, 0.006) << "too noisy to tell";
-  }
-  const test::Mean m = test::meanOf(ofAll);
-  EXPECT_LT(std::abs(m.mean - 1), test::kDeviateLimit * m.error);
-  EXPECT_LT(m.error, 0.0025) << "too noisy to tell";
+  for (size_t i = 0; i < planes.size(); ++i) EXPECT_TRUE(agrees(meanOf(shares[i]), 1, 0.006)) << "plane " << i;
+  EXPECT_TRUE(agrees(meanOf(ofAll), 1, 0.0025));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::smc_test

@@ -3,9 +3,7 @@
 #include "gi/vpl/sources.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
-
-namespace lambent::test {
+namespace lambent::test::surface_samples_test {
 
 class SurfaceSamplesTest : public ::testing::Test {
  protected:
@@ -14,13 +12,10 @@ class SurfaceSamplesTest : public ::testing::Test {
     scene.quad(vec3(-2, 0, -2), vec3(0, 0, 4), vec3(4, 0, 0), white); // 16 m², front up
     scene.box(vec3(0, 1, 0), vec3(1, 2, 1), white, false);            // 6 m²
     scene.quad(vec3(-2, 3, -2), vec3(0, 0, 1), vec3(1, 0, 0), black);
-    scene.lights.push_back({.type = LightType::Point, .position = {-1, 2.5f, 0.3f}, .intensity = vec3(3)});
-    settings.vpls = 1000;
-    settings.paths = 4;
+    scene.lamp({-1, 2.5f, 0.3f}, vec3(3));
   }
   VplChanges update(const SceneChanges& changes = {}) {
-    SceneView view = scene.view();
-    view.changes = changes;
+    const SceneView view = scene.view(changes);
     if (!rays) rays = std::make_unique<EmbreeQuery>(scene.assets);
     rays->update(view, true);
     log = {};
@@ -29,7 +24,7 @@ class SurfaceSamplesTest : public ::testing::Test {
 
   HandScene scene;
   std::unique_ptr<EmbreeQuery> rays;
-  SmcSettings settings;
+  SmcSettings settings{.vpls = 1000, .paths = 4};
   VplSet set;
   VplUpdateLog log;
 };
@@ -70,7 +65,7 @@ TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
   for (const Vpl& v : first.slots) light += luminance(v.radiance) * v.area;
   EXPECT_GT(light, 0);
 
-  EXPECT_TRUE(update({false, true, false, false, false}).movedSlots.empty()); // the camera's
+  EXPECT_TRUE(update(kCameraChanged).movedSlots.empty()); // the camera's
   EXPECT_EQ(log.paths.traced, 0u);
   for (size_t i = 0; i < set.slots.size(); ++i) {
     EXPECT_EQ(set.slots[i].position, first.slots[i].position);
@@ -78,23 +73,17 @@ TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
   }
 
   scene.lights[0].intensity *= 2;
-  update({false, false, true, false, false});
+  update(kLightsChanged);
   EXPECT_EQ(log.paths.traced, 0u) << "the paths stay, their light is another";
   for (size_t i = 0; i < set.slots.size(); ++i)
     EXPECT_LT(glm::distance(set.slots[i].radiance, 2.0f * first.slots[i].radiance),
               1e-5f + 1e-4f * first.slots[i].radiance.y);
   scene.lights[0].intensity *= 0.5f;
-  update({false, false, true, false, false});
+  update(kLightsChanged);
 
   const vec3 way(0.5f, 0.25f, -0.5f);
-  for (uint32_t i = 1; i < 7; ++i) {
-    InstanceView& in = scene.instances[i];
-    in.boundsWorldBefore = in.boundsWorld;
-    in.worldFromObject[3] += vec4(way, 0);
-    in.boundsWorld = transformed(scene.assets.meshes[in.mesh].boundsObject, in.worldFromObject);
-    in.moved = true;
-  }
-  const VplChanges moved = update({false, false, false, true, false});
+  scene.move(1, way, 7);
+  const VplChanges moved = update(kGeometryChanged);
   int rode = 0;
   for (size_t i = 0; i < set.slots.size(); ++i) {
     const bool onBox = first.slots[i].position.y > 0.5f;
@@ -120,7 +109,7 @@ TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
 TEST_F(SurfaceSamplesTest, AreSharedOutAgain) {
   update();
   scene.instances.resize(1);
-  const VplChanges changes = update({false, false, false, false, true});
+  const VplChanges changes = update(kInstancesChanged);
   EXPECT_EQ(changes.movedSlots.size(), 1000u);
   double area = 0;
   for (const Vpl& v : set.slots) {
@@ -130,4 +119,4 @@ TEST_F(SurfaceSamplesTest, AreSharedOutAgain) {
   EXPECT_NEAR(area, 32, 0.1);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::surface_samples_test

@@ -4,16 +4,11 @@
 #include "engine/trace/embree_query.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-namespace lambent {
-namespace {
+namespace lambent::test::trace_test {
 
 TEST(Trace, EmbreeAgreesWithClosedForms) {
   // A room of quads with a rotated, scaled and mirrored instance of a box against the same analytic shapes.
-  test::HandScene scene;
+  HandScene scene;
   const uint32_t wall = scene.material(vec3(0.5f)), red = scene.material({0.8f, 0.1f, 0.1f});
   scene.box({-2, -1, -3}, {2, 1, 3}, wall, true);
   scene.box({-0.5f, -1, -0.5f}, {0.5f, 0, 0.5f}, red, false);
@@ -50,7 +45,7 @@ TEST(Trace, EmbreeAgreesWithClosedForms) {
 }
 
 TEST(Trace, InstancesWithRotationScaleAndMirror) {
-  test::HandScene scene;
+  HandScene scene;
   const uint32_t lamp = scene.material(vec3(0.5f), vec3(3));
   scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, lamp); // front +y
   scene.instances[0].worldFromObject = mat4(vec4(2, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, -3, 0), vec4(0, 5, 0, 1));
@@ -71,15 +66,12 @@ TEST(Trace, InstancesWithRotationScaleAndMirror) {
 /// Faces of a box are meshes of their own that share corners and nothing else; the box is turned and far from round
 /// numbers. Rays at its joints and corners, and at the diagonals of its faces, must meet something.
 TEST(Trace, NoRaySlipsThroughTheJointsOfAClosedBox) {
-  test::HandScene scene;
+  HandScene scene;
   scene.box(vec3(-1.37f, -0.71f, -2.13f), vec3(1.91f, 1.13f, 0.77f), scene.material(vec3(0.5f)), true);
   const mat4 turned =
       glm::rotate(glm::rotate(glm::translate(mat4(1), vec3(31.7f, -12.3f, 7.9f)), 0.83f, vec3(0.2f, 1, 0.1f)), 0.31f,
                   vec3(1, 0, 0.3f));
-  for (InstanceView& i : scene.instances) {
-    i.worldFromObject = i.worldFromObjectBefore = turned;
-    i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, turned);
-  }
+  scene.turn(turned);
   EmbreeQuery query(scene.assets);
   query.update(scene.view(), true);
   Rng rng(5, Stream::Test, 0);
@@ -101,33 +93,20 @@ TEST(Trace, NoRaySlipsThroughTheJointsOfAClosedBox) {
 }
 
 TEST(Trace, MovedInstancesAreFound) {
-  test::HandScene scene;
+  HandScene scene;
   scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, scene.material(vec3(0.5f)));
   EmbreeQuery rays(scene.assets);
-  SceneView view = scene.view();
-  rays.update(view);
+  rays.update(scene.view());
   EXPECT_TRUE(rays.occluded(Ray{{0, 1, 0}, {0, -1, 0}}));
-  scene.instances[0].worldFromObject[3] = vec4(10, 0, 0, 1);
-  scene.instances[0].moved = true;
-  view = scene.view();
-  view.changes = {false, false, false, true, false};
-  rays.update(view);
+  scene.move(0, {10, 0, 0});
+  rays.update(scene.view(kGeometryChanged));
   EXPECT_FALSE(rays.occluded(Ray{{0, 1, 0}, {0, -1, 0}}));
   EXPECT_TRUE(rays.occluded(Ray{{10, 1, 0}, {0, -1, 0}}));
 }
 
 TEST(Trace, AlphaMaskLetsRaysThrough) {
-  test::HandScene scene;
-  const uint32_t lattice = scene.material(vec3(1));
-  TextureImage image;
-  image.width = 2, image.height = 1;
-  image.texels = {u8vec4(255, 0, 0, 0), u8vec4(0, 255, 0, 255)}; // left half cut out
-  scene.assets.images.push_back(image);
-  Material& m = scene.assets.materials[lattice];
-  m.alphaMode = AlphaMode::Mask;
-  m.baseColorTexture.image = 0;
-  m.baseColorTexture.nearest = true;
-  scene.quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, lattice);
+  HandScene scene;
+  scene.quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, scene.lattice());
   EmbreeQuery rays(scene.assets);
   rays.update(scene.view());
   const Ray left{{0.5f, 1, 1}, {0, 0, -1}}, right{{1.5f, 1, 1}, {0, 0, -1}};
@@ -142,7 +121,7 @@ TEST(Trace, AlphaMaskLetsRaysThrough) {
 }
 
 TEST(Trace, NotANumberIsAMissAndDoesNotAbort) {
-  test::HandScene scene;
+  HandScene scene;
   scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, scene.material(vec3(0.5f)));
   EmbreeQuery rays(scene.assets);
   rays.update(scene.view());
@@ -170,5 +149,4 @@ TEST(Trace, EmptyScene) {
   EXPECT_FALSE(rays.closest(Ray{{0, 1, 0}, {0, -1, 0}}).valid());
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::trace_test

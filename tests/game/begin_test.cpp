@@ -1,10 +1,9 @@
 // What the governor begins with, before any frame has told what frames cost.
 #include "gi/plan/governor.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::begin_test {
 
 TEST(GovernorBegins, AsItIsWhereFramesAreFast) {
   const Governed g = begun({}, 20, 30);
@@ -35,5 +34,4 @@ TEST(GovernorBegins, AndTheScaleThenFollowsTheLoad) {
   EXPECT_LT(g.scale, before);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::begin_test

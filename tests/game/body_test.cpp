@@ -6,12 +6,7 @@
 #include "engine/trace/embree_query.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::body_test {
 
 constexpr float kFrame = 1.0f / 30;
 
@@ -131,7 +126,7 @@ TEST(Body, HitsItsHeadAndGoesUnderNothingTooLow) {
 }
 
 TEST(Body, WalksUpAGentleSlopeAndNoSteepOne) {
-  test::HandScene scene;
+  HandScene scene;
   const uint32_t grey = scene.material(vec3(0.5f));
   scene.quad({-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, grey);
   scene.quad({1, 0, -2}, {0, 0, 4}, {4, 2, 0}, grey);   // 27 degrees
@@ -221,7 +216,7 @@ TEST(Body, AGhostPassesWallsAndADollIsStoppedAsAPersonIs) {
 class Platform {
  public:
   Platform() {
-    scene.assets.meshes.push_back(test::block({1, 0.1f, 1}, scene.material(vec3(0.5f))));
+    scene.assets.meshes.push_back(block({1, 0.1f, 1}, scene.material(vec3(0.5f))));
     scene.quad({-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);
     lift = scene.instance(0, glm::translate(mat4(1), vec3(0, 0.1f, 0)));
     rays = std::make_unique<EmbreeQuery>(scene.assets);
@@ -239,7 +234,7 @@ class Platform {
     return view;
   }
 
-  test::HandScene scene;
+  HandScene scene;
   uint32_t lift = 0;
   std::unique_ptr<EmbreeQuery> rays;
 };
@@ -321,5 +316,4 @@ TEST(Player, WhoFallsOutOfTheSceneComesHome) {
   EXPECT_EQ(player.gait(), Gait::Walk);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::body_test

@@ -1,9 +1,8 @@
 #include "game/rules/day.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::day_test {
 
 TEST(Day, TheSunRisesInTheEastStandsHighAtNoonAndIsGoneAtNight) {
   EXPECT_NEAR(towardsSun(6).x, 1, 1e-5f);
@@ -59,5 +58,4 @@ TEST(Day, TakesThePlaceOfTheScenesLightAndGivesItBack) {
   EXPECT_TRUE(scene.sky == Sky(vec3(0.3f)));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::day_test

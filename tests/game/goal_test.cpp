@@ -5,12 +5,9 @@
 #include "game/rules/shapes.h"
 #include "game/rules/things.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::goal_test {
 
 constexpr float kFrame = 1.0f / 30;
 
@@ -197,5 +194,4 @@ TEST(Shrine, IsMeasuredAlikeEveryTime) {
   EXPECT_EQ(values[0], values[1]);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::goal_test

@@ -1,9 +1,8 @@
 #include "game/rules/pad.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::pad_test {
 
 TEST(Pad, AStickAtRestMovesNothingAndAtTheRimAll) {
   EXPECT_EQ(stick({0.1f, -0.12f}), vec2(0));
@@ -31,5 +30,4 @@ TEST(Pad, WalksWithTheLeftStickAndLooksWithTheRight) {
   EXPECT_NEAR(twice.direction.z, -1, 1e-6f) << "keys and pad together are no faster";
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::pad_test

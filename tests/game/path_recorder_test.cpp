@@ -3,13 +3,11 @@
 
 #include "engine/core/error.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <cmath>
 #include <fstream>
 
-namespace lambent {
-namespace {
+namespace lambent::test::path_recorder_test {
 
 namespace fs = std::filesystem;
 
@@ -90,5 +88,4 @@ TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   EXPECT_FALSE(recorder.recording());
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::path_recorder_test

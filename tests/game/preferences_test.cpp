@@ -4,12 +4,11 @@
 #include "engine/core/error.h"
 #include "gi/plan/presets.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <fstream>
 
-namespace lambent {
-namespace {
+namespace lambent::test::preferences_test {
 
 namespace fs = std::filesystem;
 
@@ -178,5 +177,4 @@ TEST_F(PreferencesTest, AreLeftOutWithAReasonWhereTheyNoLongerFit) {
   EXPECT_NE(complaint, "");
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::preferences_test

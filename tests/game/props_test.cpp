@@ -5,12 +5,11 @@
 #include "engine/scene/gltf_import.h"
 #include "game/rules/solids.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <filesystem>
 
-namespace lambent {
-namespace {
+namespace lambent::test::props_test {
 
 struct Room {
   Room() : scene(loadScene("content/door/door.gltf")), props(scene), solids(scene) { animate(scene, 0); }
@@ -112,5 +111,4 @@ TEST(PropsTest, RefuseWhatTheyDoNotKnow) {
   EXPECT_THROW(room.props.show(moment, "shot"), InputError);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::props_test

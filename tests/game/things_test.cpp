@@ -3,12 +3,9 @@
 #include "game/rules/shapes.h"
 #include "game/rules/things.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::things_test {
 
 constexpr float kFrame = 1.0f / 30;
 
@@ -260,5 +257,4 @@ TEST_F(MoversTest, TheFrameRateChangesNoWayAndNobodyTouchesWhatIsNotUsed) {
   EXPECT_NEAR(height(), 2, 1e-9);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::things_test

@@ -1,11 +1,7 @@
 // Edges of the picture as it is shown, against how much of each pixel really lies beyond them.
-#include "gl_fixture.h"
+#include "frames.h"
 
-#include <functional>
-
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::antialias_test {
 
 using Inside = std::function<bool(float x, float y)>; // y from the top, pixels
 
@@ -23,8 +19,7 @@ float share(const Inside& inside, int x, int y, int samples) {
 /// A shape as a camera sees it: one look per pixel.
 Image drawn(int width, int height, const Inside& inside) {
   Image image(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) image.at(x, y) = vec3(share(inside, x, y, 1) > 0 ? kBright : kDark);
+  for (const auto [x, y] : Pixels(width, height)) image.at(x, y) = vec3(share(inside, x, y, 1) > 0 ? kBright : kDark);
   return image;
 }
 
@@ -37,15 +32,9 @@ float beyondLine(float x, float y, float degrees, float offset) {
 /// Offsets of a line from the grid that no symmetry favours.
 constexpr float kOffsets[] = {0.06f, 0.19f, 0.31f, 0.44f, 0.56f, 0.69f, 0.81f, 0.94f};
 
-vec3 byteAt(const Image8& image, int x, int y) {
-  const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
-  return {p[0], p[1], p[2]};
-}
 float linearAt(const Image8& image, int x, int y) { return linearFromSrgb(byteAt(image, x, y).y / 255); }
 /// 0 dark, 1 bright.
 float coveredAt(const Image8& image, int x, int y) { return (linearAt(image, x, y) - kDark) / (kBright - kDark); }
-
-} // namespace
 
 class AntiAliasTest : public GlTest {
  protected:
@@ -85,13 +74,12 @@ class AntiAliasTest : public GlTest {
     for (const float offset : kOffsets) {
       const Inside shape = [&](float x, float y) { return inside(beyondLine(x, y, degrees, offset)); };
       const Image8 picture = shown(drawn(64, 64, shape), mode);
-      for (int y = 20; y < 44; ++y)
-        for (int x = 20; x < 44; ++x) {
-          if (std::abs(beyondLine(float(x) + 0.5f, float(y) + 0.5f, degrees, offset)) > width) continue;
-          const double error = coveredAt(picture, x, y) - share(shape, x, y, 16);
-          sum += error * error;
-          ++count;
-        }
+      for (const auto [x, y] : Pixels({20, 20}, {44, 44})) {
+        if (std::abs(beyondLine(float(x) + 0.5f, float(y) + 0.5f, degrees, offset)) > width) continue;
+        const double error = coveredAt(picture, x, y) - share(shape, x, y, 16);
+        sum += error * error;
+        ++count;
+      }
     }
     return std::sqrt(sum / count);
   }
@@ -130,12 +118,11 @@ TEST_F(AntiAliasTest, LinesAsThinAsAPixelKeepTheirLight) {
         const Image line =
             drawn(64, 64, [&](float x, float y) { return inside(beyondLine(x, y, degrees, 0.3f)) == bright; });
         const Image8 before = shown(line, AntiAliasing::Off), after = shown(line);
-        for (int y = 0; y < 64; ++y)
-          for (int x = 0; x < 64; ++x) {
-            const float sign = bright ? 1.0f : -1.0f;
-            off += sign * (coveredAt(before, x, y) - (bright ? 0 : 1));
-            on += sign * (coveredAt(after, x, y) - (bright ? 0 : 1));
-          }
+        for (const auto [x, y] : Pixels(64, 64)) {
+          const float sign = bright ? 1.0f : -1.0f;
+          off += sign * (coveredAt(before, x, y) - (bright ? 0 : 1));
+          on += sign * (coveredAt(after, x, y) - (bright ? 0 : 1));
+        }
       }
       EXPECT_NEAR(on, off, 0.05 * off) << degrees << " degrees";
     }
@@ -143,9 +130,8 @@ TEST_F(AntiAliasTest, LinesAsThinAsAPixelKeepTheirLight) {
 
 TEST_F(AntiAliasTest, WhatHasNoEdgeKeepsItsBytes) {
   Image picture(64, 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) // slopes, and a texture of small steps
-      picture.at(x, y) = vec3(0.2f + 0.004f * float(x), 0.3f, 0.25f) * ((x ^ y) & 4 ? 1.0f : 1.08f);
+  for (const auto [x, y] : Pixels(64, 48)) // slopes, and a texture of small steps
+    picture.at(x, y) = vec3(0.2f + 0.004f * float(x), 0.3f, 0.25f) * ((x ^ y) & 4 ? 1.0f : 1.08f);
   EXPECT_EQ(shown(picture).rgb, shown(picture, AntiAliasing::Off).rgb);
 
   const Image board = drawn(32, 32, [](float x, float y) { return ((int(x) ^ int(y)) & 1) != 0; });
@@ -156,12 +142,11 @@ TEST_F(AntiAliasTest, WhatHasNoEdgeKeepsItsBytes) {
   const Image half = drawn(64, 64, [](float x, float y) { return beyondLine(x, y, 10, 0.3f) > 0; });
   const Image8 on = shown(half), off = shown(half, AntiAliasing::Off);
   int changed = 0;
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      if (byteAt(on, x, y) == byteAt(off, x, y)) continue;
-      EXPECT_LT(std::abs(beyondLine(float(x) + 0.5f, float(y) + 0.5f, 10, 0.3f)), 1) << x << ", " << y;
-      ++changed;
-    }
+  for (const auto [x, y] : Pixels(64, 64)) {
+    if (byteAt(on, x, y) == byteAt(off, x, y)) continue;
+    EXPECT_LT(std::abs(beyondLine(float(x) + 0.5f, float(y) + 0.5f, 10, 0.3f)), 1) << x << ", " << y;
+    ++changed;
+  }
   EXPECT_GT(changed, 64);
 }
 
@@ -174,13 +159,12 @@ TEST_F(AntiAliasTest, APictureOnItsSideIsSmoothedLikewise) {
   const Image8 mirrored = shown(drawn(64, 64, [&](float x, float y) { return shape(64 - x, y); }));
   const Image8 upsideDown = shown(drawn(64, 64, [&](float x, float y) { return shape(x, 64 - y); }));
   int differ = 0; // edges that run exactly between the two axes are taken as horizontal
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const vec3 c = byteAt(given, x, y);
-      EXPECT_LE(maxComponent(glm::abs(byteAt(mirrored, 63 - x, y) - c)), 3) << x << ", " << y;
-      EXPECT_LE(maxComponent(glm::abs(byteAt(upsideDown, x, 63 - y) - c)), 3) << x << ", " << y;
-      differ += maxComponent(glm::abs(byteAt(turned, y, x) - c)) > 3;
-    }
+  for (const auto [x, y] : Pixels(64, 64)) {
+    const vec3 c = byteAt(given, x, y);
+    EXPECT_LE(maxComponent(glm::abs(byteAt(mirrored, 63 - x, y) - c)), 3) << x << ", " << y;
+    EXPECT_LE(maxComponent(glm::abs(byteAt(upsideDown, x, 63 - y) - c)), 3) << x << ", " << y;
+    differ += maxComponent(glm::abs(byteAt(turned, y, x) - c)) > 3;
+  }
   EXPECT_LT(differ, 12);
 }
 
@@ -194,12 +178,11 @@ TEST_F(AntiAliasTest, AnEdgeThatMovesSlowlyIsSteadier) {
         const Image8 now =
             shown(drawn(64, 64, [&](float x, float y) { return beyondLine(x, y, degrees, offset) > 0; }), mode);
         if (frame > 0)
-          for (int y = 16; y < 48; ++y)
-            for (int x = 16; x < 48; ++x) {
-              const double change = coveredAt(now, x, y) - coveredAt(before, x, y);
-              squares[int(mode)] += change * change;
-              sums[int(mode)] += std::abs(change);
-            }
+          for (const auto [x, y] : Pixels({16, 16}, {48, 48})) {
+            const double change = coveredAt(now, x, y) - coveredAt(before, x, y);
+            squares[int(mode)] += change * change;
+            sums[int(mode)] += std::abs(change);
+          }
         before = now;
       }
     }
@@ -218,19 +201,17 @@ TEST_F(AntiAliasTest, MarksStayAndColourNothingElse) {
   const auto area = [](int x, int y) {
     return beyondLine(float(x), float(y), 80, 22.3f) > 0;
   }; // with stairs of its own
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x)
-      if (area(x, y)) picture.at(x, y) = vec3(std::nanf(""));
+  for (const auto [x, y] : Pixels(64, 64))
+    if (area(x, y)) picture.at(x, y) = vec3(std::nanf(""));
   const Image8 marked = shown(picture);
   EXPECT_EQ(byteAt(marked, 12, 40), vec3(0, 255, 255));
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const vec3 c = byteAt(marked, x, y);
-      if (area(x, y) || (y == 32 && x >= 8 && x < 56 && x % 8 == 0))
-        EXPECT_EQ(c, vec3(255, 0, 255)) << x;
-      else if (x != 12 || y != 40)
-        EXPECT_LE(maxComponent(c) + maxComponent(-c), 1) << x << ", " << y << ": grey";
-    }
+  for (const auto [x, y] : Pixels(64, 64)) {
+    const vec3 c = byteAt(marked, x, y);
+    if (area(x, y) || (y == 32 && x >= 8 && x < 56 && x % 8 == 0))
+      EXPECT_EQ(c, vec3(255, 0, 255)) << x;
+    else if (x != 12 || y != 40)
+      EXPECT_LE(maxComponent(c) + maxComponent(-c), 1) << x << ", " << y << ": grey";
+  }
   EXPECT_EQ(byteAt(marked, 4, 4), byteAt(unmarked, 4, 4));
 }
 
@@ -263,10 +244,7 @@ TEST_F(AntiAliasTest, PicturesOfAnySize) {
 /// What programs get: smooth where it is shown, radiance where it is read.
 TEST_F(AntiAliasTest, FramesAreShownSmoothAndReadAsTheyAre) {
   Room room;
-  LightView lamp;
-  lamp.position = {0.5f, 0.6f, 0.3f};
-  lamp.intensity = vec3(2);
-  room.scene.lights.push_back(lamp);
+  room.scene.lamp({0.5f, 0.6f, 0.3f}, vec3(2));
   Settings settings;
   settings.effects[EffectId::Indirect] = EffectMode::Off;
   settings.image.exposure = 1;
@@ -281,4 +259,4 @@ TEST_F(AntiAliasTest, FramesAreShownSmoothAndReadAsTheyAre) {
   EXPECT_EQ(gi.read(Buffer::Beauty).pixels, radiance.pixels);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::antialias_test

@@ -1,115 +1,83 @@
 // Direct light of emissive surfaces by patches (paper 4) against closed forms and against a thousand rays per pixel.
 #include "engine/core/parallel.h"
+#include "frames.h"
 #include "gi/direct/area_light_pass.h"
-#include "gi/direct/direct_light.h"
 #include "gi/lighting/area_lobe.h"
-#include "gi/plan/effects.h"
-#include "tests/gl/gl_fixture.h"
-#include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::area_light_test {
 
 class AreaLightTest : public GlTest {
  protected:
   AreaLightTest() { settings.shadow.emitters = EmitterShadows::Patches; }
 
-  /// Direct irradiance, row 0 at the top, with every emissive surface of the scene as a light.
+  /// Direct irradiance with every emissive surface of the scene as a light.
   Image irradianceOf(const HandScene& scene) {
-    placed = std::make_unique<PlacedScene>(programs, scene);
-    const SceneView view = scene.view();
-    const World world = placed->world(collectLights(view));
-    SurfacePass surfacePass(passes);
-    PatchPass patchPass(passes, StageId::Patches);
-    DirectLight direct(passes);
-    stats = {};
-    FrameResults results;
-    results.surfaces = surfacePass.run({world.gpu, world.view.camera});
-    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.indirect = lightOf(direct, world, results.surfaces, patches, settings, stats);
-    return readBuffer(Buffer::Irradiance, results);
+    return directOf(passes, scene, collectLights(scene.view()), settings, stats);
   }
 
   /// The same with side² rays per triangle of a lamp at every pixel.
   Image tracedOf(const HandScene& scene, int side = 32) const {
     const CameraView& camera = scene.camera;
-    const SceneView view = scene.view();
-    const LightSet lights = collectLights(view);
-    EmbreeQuery rays(scene.assets);
-    rays.update(view);
+    const TracedScene traced(scene);
+    const EmbreeQuery& rays = traced.rays;
     Image image(camera.width, camera.height);
-    for (int y = 0; y < camera.height; ++y)
-      for (int x = 0; x < camera.width; ++x) {
-        const CameraRay ray =
-            cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
-        const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
-        if (!hit.valid()) continue;
-        const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
-        vec3 sum(0);
-        for (const EmitterTriangle& t : lights.triangles)
-          for (int i = 0; i < side * side; ++i) {
-            vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
-            if (u.x + u.y > 1) u = 1.0f - u;
-            const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
-            const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
-            if (cosine <= 0 || cosineLight <= 0) continue;
-            if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.rayEpsilon())))) continue;
-            const float r2 = glm::dot(way, way);
-            sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
-          }
-        image.at(x, y) = sum;
-      }
+    for (const auto [x, y] : Pixels(camera)) {
+      const CameraRay ray = pixelRay(camera, x, y);
+      const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
+      if (!hit.valid()) continue;
+      const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
+      vec3 sum(0);
+      for (const EmitterTriangle& t : traced.lights.triangles)
+        for (int i = 0; i < side * side; ++i) {
+          vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+          if (u.x + u.y > 1) u = 1.0f - u;
+          const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
+          const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
+          if (cosine <= 0 || cosineLight <= 0) continue;
+          if (rays.occluded(segment(origin, offsetPoint(at, t.normal, rays.rayEpsilon())))) continue;
+          const float r2 = glm::dot(way, way);
+          sum += t.radiance * (cosine * cosineLight / (r2 * r2) * t.area / float(side * side));
+        }
+      image.at(x, y) = sum;
+    }
     return image;
   }
 
-  /// Direct radiance of glossy surfaces, row 0 at the top.
   Image radianceOf(const HandScene& scene) {
     settings.gather.glossy = true;
     settings.effects[EffectId::Emissive] = EffectMode::On;
-    placed = std::make_unique<PlacedScene>(programs, scene);
-    const SceneView view = scene.view();
-    const World world = placed->world(collectLights(view));
-    SurfacePass surfacePass(passes);
-    PatchPass patchPass(passes, StageId::Patches);
-    DirectLight direct(passes);
-    FrameResults results;
-    results.surfaces = surfacePass.run({world.gpu, world.view.camera, true});
-    Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
-    results.direct = lightOf(direct, world, results.surfaces, patches, settings, stats);
-    return readBuffer(Buffer::Direct, results);
+    return irradianceOf(scene);
   }
 
-  std::unique_ptr<PlacedScene> placed;
   Settings settings;
-  FrameStats stats; // of the last picture
+  FrameStats stats; // of the last image
 };
 
 /// A floor, and a lamp of 0.8 × 0.6 m above it that faces down.
-HandScene& lampOver(HandScene& scene, const vec3& radiance = vec3(5, 4, 3)) {
-  scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
-  scene.quad(vec3(-0.4f, 2, -0.3f), vec3(0.8f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), radiance));
-  scene.camera = cameraAt(vec3(0, 1.8f, 3), vec3(0, 0.2f, 0), 1.0f, 96, 64);
-  return scene;
-}
+struct LampScene : HandScene {
+  explicit LampScene(const vec3& radiance = vec3(5, 4, 3)) {
+    quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), material(vec3(0.5f)));
+    quad(vec3(-0.4f, 2, -0.3f), vec3(0.8f, 0, 0), vec3(0, 0, 0.6f), material(vec3(0), radiance));
+    camera = cameraAt(vec3(0, 1.8f, 3), vec3(0, 0.2f, 0), 1.0f, 96, 64);
+  }
+};
 
 TEST_F(AreaLightTest, IsExactWhereNothingIsBetween) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   const Image image = irradianceOf(scene);
-  const SceneView view = scene.view();
-  const AreaLights lights = areaLights(collectLights(view));
+  const AreaLights lights = areaLights(collectLights(scene.view()));
   int floor = 0;
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 96; ++x) {
-      const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 96, (float(y) + 0.5f) / 64);
-      const float t = -ray.origin.y / ray.direction.y;
-      const vec3 at = ray.origin + ray.direction * t;
-      if (t <= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
-      const vec3 expected = unshadowed(lights, lights.lights[0], at, vec3(0, 1, 0));
-      if (glm::distance(image.at(x, y), vec3(0)) == 0) continue; // the lamp is in the way
-      ASSERT_NEAR(image.at(x, y).x, expected.x, 2e-3f * expected.x) << x << ' ' << y;
-      ASSERT_NEAR(image.at(x, y).z, expected.z, 2e-3f * expected.z);
-      ++floor;
-    }
+  for (const auto [x, y] : Pixels(96, 64)) {
+    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const float t = -ray.origin.y / ray.direction.y;
+    const vec3 at = ray.origin + ray.direction * t;
+    if (t <= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+    const vec3 expected = unshadowed(lights, lights.lights[0], at, vec3(0, 1, 0));
+    if (glm::distance(image.at(x, y), vec3(0)) == 0) continue; // the lamp is in the way
+    ASSERT_NEAR(image.at(x, y).x, expected.x, 2e-3f * expected.x) << x << ' ' << y;
+    ASSERT_NEAR(image.at(x, y).z, expected.z, 2e-3f * expected.z);
+    ++floor;
+  }
   EXPECT_GT(floor, 3000);
   EXPECT_LT(stats.areaFragments, 1500u) << "of 6144 pixels";
 }
@@ -120,39 +88,36 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
   for (const auto& [albedo, roughness, metalness] :
        {std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.3f, 1.0f), std::tuple(vec3(0.2f, 0.5f, 0.8f), 0.35f, 0.0f),
         std::tuple(vec3(0.9f, 0.6f, 0.2f), 0.6f, 0.7f)}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     Material& floor = scene.assets.materials[0];
     floor.baseColor = albedo;
     floor.roughness = roughness;
     floor.metalness = metalness;
     scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
     const Image image = radianceOf(scene);
-    const SceneView view = scene.view();
-    const AreaLights lights = areaLights(collectLights(view));
+    const AreaLights lights = areaLights(collectLights(scene.view()));
     const AreaPiece& lamp = lights.pieces.at(0);
     Image onCpu(48, 32), integrated(48, 32), drawn(48, 32);
     int seen = 0;
-    for (int y = 0; y < 32; ++y)
-      for (int x = 0; x < 48; ++x) {
-        const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 48, (float(y) + 0.5f) / 32);
-        const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
-        if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
-        const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
-        const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
-        onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
-        integrated.at(x, y) = lambert;
-        constexpr int kSteps = 24;
-        for (int i = 0; i < kSteps * kSteps; ++i) {
-          const vec3 to = vec3(-0.4f + 0.8f * (float(i % kSteps) + 0.5f) / kSteps, 2,
-                               -0.3f + 0.6f * (float(i / kSteps) + 0.5f) / kSteps);
-          const vec3 way = to - at, towardsLight = glm::normalize(way);
-          const float solid = 0.48f / (kSteps * kSteps) * towardsLight.y / glm::dot(way, way);
-          integrated.at(x, y) += vec3(5, 4, 3) * glossyReflectance(r, towardsLight, 0) * (solid * towardsLight.y);
-        }
-        drawn.at(x, y) = image.at(x, y);
-        ++seen;
+    for (const auto [x, y] : Pixels(48, 32)) {
+      const CameraRay ray = pixelRay(scene.camera, x, y);
+      const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
+      if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
+      const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
+      const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
+      onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
+      integrated.at(x, y) = lambert;
+      constexpr int kSteps = 24;
+      for (int i = 0; i < kSteps * kSteps; ++i) {
+        const vec3 to = vec3(-0.4f + 0.8f * (float(i % kSteps) + 0.5f) / kSteps, 2,
+                             -0.3f + 0.6f * (float(i / kSteps) + 0.5f) / kSteps);
+        const vec3 way = to - at, towardsLight = glm::normalize(way);
+        const float solid = 0.48f / (kSteps * kSteps) * towardsLight.y / glm::dot(way, way);
+        integrated.at(x, y) += vec3(5, 4, 3) * glossyReflectance(r, towardsLight, 0) * (solid * towardsLight.y);
       }
+      drawn.at(x, y) = image.at(x, y);
+      ++seen;
+    }
     EXPECT_GT(seen, 800);
     EXPECT_LT(relativeRmse(drawn, onCpu), 0.002) << roughness;
     EXPECT_LT(relativeRmse(drawn, integrated), roughness < 0.4f ? 0.02 : 0.06) << roughness;
@@ -162,25 +127,18 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
 
 /// With a texture that is white all over, a lamp is what it is without.
 TEST_F(AreaLightTest, GlossyFloorsMirrorTexturedLamps) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.assets.materials[0].roughness = 0.3f;
   scene.assets.materials[0].metalness = 1;
   scene.camera = cameraAt(vec3(0, 0.7f, 2.5f), vec3(0, 0, 0.4f), 1.2f, 48, 32);
   const Image whole = radianceOf(scene);
-  TextureImage white;
-  white.width = white.height = 1;
-  white.srgb = false;
-  white.texels = {{255, 255, 255, 255}};
-  scene.assets.images.push_back(white);
-  scene.assets.materials[1].emissiveTexture.image = 0;
+  scene.assets.materials[1].emissiveTexture = scene.texture(1, {u8vec4(255)}, false);
   EXPECT_LT(relativeRmse(radianceOf(scene), whole), 1e-4);
 }
 
 TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
   for (int what = 0; what < 5; ++what) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     if (what == 0) scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, white, false); // a plate in the air
     if (what == 1) scene.box({0.2f, 0, 0.2f}, {0.23f, 1.2f, 0.23f}, white, false);    // a pole
@@ -205,8 +163,7 @@ TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
 }
 
 TEST_F(AreaLightTest, LampsOfUnlikeSizeAndColour) {
-  HandScene scene;
-  lampOver(scene, vec3(4, 0, 0));
+  LampScene scene(vec3(4, 0, 0));
   scene.quad(vec3(1.2f, 1.0f, -0.02f), vec3(0.04f, 0, 0), vec3(0, 0, 0.04f), scene.material(vec3(0), vec3(0, 0, 900)));
   const uint32_t white = scene.material(vec3(0.7f));
   scene.box({0.3f, 0.3f, -0.3f}, {0.7f, 0.5f, 0.3f}, white, false);
@@ -220,8 +177,7 @@ TEST_F(AreaLightTest, LampsOfUnlikeSizeAndColour) {
 }
 
 TEST_F(AreaLightTest, ManyLampsShareTheRays) {
-  HandScene scene;
-  lampOver(scene, vec3(0.1f));
+  LampScene scene(vec3(0.1f));
   const uint32_t lamp = scene.material(vec3(0), vec3(60)), white = scene.material(vec3(0.7f));
   for (int i = 0; i < 49; ++i)
     scene.quad(vec3(-3 + float(i % 7), 2.5f, -3 + float(i / 7)), vec3(0.1f, 0, 0), vec3(0, 0, 0.1f), lamp);
@@ -234,8 +190,7 @@ TEST_F(AreaLightTest, ManyLampsShareTheRays) {
 /// Lamps behind a wall that outshine the one before it, which is due less than one ray beside them.
 TEST_F(AreaLightTest, HiddenLampsDoNotTakeTheRaysOfOthers) {
   for (const int hidden : {1, 40}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box({-2.1f, -1, -20}, {-2, 20, 20}, white, false);
     scene.box({0.2f, 0, 0.2f}, {0.4f, 0.8f, 0.4f}, white, false); // throws a shadow here
@@ -256,8 +211,7 @@ TEST_F(AreaLightTest, HiddenLampsDoNotTakeTheRaysOfOthers) {
 TEST_F(AreaLightTest, HiddenLampsLeaveNoTraceOfTheirPlanes) {
   Image without;
   for (const float strength : {0.0f, 10.0f, 1000.0f}) {
-    HandScene scene;
-    lampOver(scene);
+    LampScene scene;
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box({-1.55f, -1, -20}, {-1.5f, 20, 20}, white, false);
     scene.box({0.2f, 0, 0.2f}, {0.4f, 0.8f, 0.4f}, white, false);
@@ -293,11 +247,10 @@ TEST_F(AreaLightTest, ShadowEdgesHoldInEveryBlock) {
   for (int y = 0; y < 360; y += 12)
     for (int x = 0; x < 640; x += 16) {
       double sum = 0;
-      for (int v = y; v < y + 12; ++v)
-        for (int u = x; u < x + 16; ++u) {
-          const double off = luminance(glm::abs(image.at(u, v) - every.at(u, v))) / mean;
-          sum += off * off / (12 * 16);
-        }
+      for (const auto [u, v] : Pixels({x, y}, {x + 16, y + 12})) {
+        const double off = luminance(glm::abs(image.at(u, v) - every.at(u, v))) / mean;
+        sum += off * off / (12 * 16);
+      }
       worst = std::max(worst, std::sqrt(sum));
     }
   std::printf("RMSE %.2f %% of the mean, in the worst block of 16 x 12 pixels %.1f %%\n",
@@ -307,8 +260,7 @@ TEST_F(AreaLightTest, ShadowEdgesHoldInEveryBlock) {
 }
 
 TEST_F(AreaLightTest, AClosedBoxStaysBlack) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box(vec3(-1, 0.001f, -1), vec3(1, 1, 1), scene.material(vec3(0.7f)), true);
   scene.camera = cameraAt(vec3(0.5f, 0.5f, 0.9f), vec3(0, 0.3f, 0), 1.2f, 96, 64);
   EXPECT_EQ(meanLuminance(irradianceOf(scene)), 0);
@@ -316,8 +268,7 @@ TEST_F(AreaLightTest, AClosedBoxStaysBlack) {
 
 /// A light that touches a wall, one seen edge-on, one behind a pane that is not cut out.
 TEST_F(AreaLightTest, AtWallsOnEdgeAndBehindGlass) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   const uint32_t white = scene.material(vec3(0.7f)), lamp = scene.material(vec3(0), vec3(5));
   scene.quad(vec3(-2, 0, -1), vec3(4, 0, 0), vec3(0, 3, 0), white);                // wall at z = −1, faces +z
   scene.quad(vec3(-1.5f, 0.5f, -1), vec3(0, 0.5f, 0), vec3(0, 0, 0.5f), lamp);     // stands on it, faces −x
@@ -348,11 +299,9 @@ TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
 }
 
 TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
-  scene.camera.width = 384;
-  scene.camera.height = 256;
+  scene.picture(384, 256);
   const Image traced = tracedOf(scene, 16), image = irradianceOf(scene);
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
@@ -391,8 +340,7 @@ TEST_F(AreaLightTest, LightEndsWhereTheLampsPlaneDoes) {
 }
 
 TEST_F(AreaLightTest, TheGpuTracesTheSame) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   settings.area.tracer = AreaTracer::Cpu;
   const Image cpu = irradianceOf(scene);
@@ -412,8 +360,7 @@ TEST_F(AreaLightTest, TheGpuTracesTheSame) {
 }
 
 TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {
-  HandScene scene;
-  lampOver(scene);
+  LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   const Image a = irradianceOf(scene);
   setThreadCount(1);
@@ -422,4 +369,4 @@ TEST_F(AreaLightTest, SaysTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(a.pixels, b.pixels);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::area_light_test

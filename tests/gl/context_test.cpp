@@ -7,7 +7,7 @@
 #include <fstream>
 #include <unistd.h>
 
-namespace lambent::test {
+namespace lambent::test::context_test {
 
 namespace fs = std::filesystem;
 
@@ -191,4 +191,4 @@ TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
   EXPECT_EQ(offsetOf(surface, "material.emissiveUvV"), int(offsetof(MaterialBlock, emissiveUvV)));
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::context_test

@@ -1,14 +1,12 @@
 // Draws, waits and read-backs are counted wherever they happen, and a frame makes no more of the last two than it
 // needs.
 #include "engine/gl/query_ring.h"
-#include "gi/reflective/reflective_maps.h"
 #include "gl_fixture.h"
 
 #include <chrono>
-#include <functional>
 #include <thread>
 
-namespace lambent::test {
+namespace lambent::test::counts_test {
 
 class CountsTest : public GlTest {
  protected:
@@ -113,27 +111,4 @@ TEST_F(CountsTest, ARunOfOneMaterialIsOneDraw) {
   EXPECT_EQ(sinceBefore().draws, 9u);
 }
 
-TEST_F(CountsTest, OnlyIsrWaitsForTheNumberOfItsLights) {
-  Room room;
-  GpuScene gpu(programs, room.scene.assets);
-  gpu.place(room.scene.instances);
-  LightView light;
-  light.position = vec3(0.3f, 0.6f, 0.5f);
-  light.intensity = vec3(1);
-  const std::vector<LightView> lights{light};
-  const auto waits = [&](bool clusters) {
-    ReflectiveMapPass mapPass{passes};
-    ReflectiveLightPass lightPass{passes};
-    const RsmSettings rsm{.resolution = 32};
-    const uint64_t begin = gl::counts().waits;
-    const ReflectiveMaps maps =
-        mapPass.run({gpu, lights, room.scene.view().boundsWorld, false, {}, rsm, {clusters, clusters}});
-    clusters ? lightPass.runClusters(maps, rsm) : lightPass.runGrid(maps, rsm);
-    return gl::counts().waits - begin;
-  };
-  EXPECT_EQ(waits(false), 0u);
-  EXPECT_EQ(waits(true), 1u);
-  EXPECT_EQ(sinceBefore().readBacks, 0u);
-}
-
-} // namespace lambent::test
+} // namespace lambent::test::counts_test

@@ -4,7 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace lambent::test {
+namespace lambent::test::deformed_test {
 
 class DeformedDraw : public GlTest {
  protected:
@@ -12,12 +12,8 @@ class DeformedDraw : public GlTest {
 
   DeformedDraw() {
     const uint32_t red = scene.material({0.8f, 0.2f, 0.1f}), grey = scene.material(vec3(0.5f));
-    TextureImage image; // texture coordinates and colours must stay with their vertices
-    image.width = image.height = 2;
-    image.texels = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}};
-    scene.assets.images.push_back(image);
-    scene.assets.materials[red].baseColorTexture.image = 0;
-    scene.assets.materials[red].baseColorTexture.nearest = true;
+    scene.assets.materials[red].baseColorTexture = // texture coordinates and colours must stay with their vertices
+        scene.texture(2, {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}});
     scene.quad(vec3(-4, -4, -2), vec3(8, 0, 0), vec3(0, 8, 0), grey);
     scene.assets.meshes.push_back(sheet(20, red));
     scene.assets.meshes.push_back(sheet(9, grey));
@@ -42,20 +38,18 @@ class DeformedDraw : public GlTest {
                 albedo = readBuffer(Buffer::Albedo, results);
     const vec3 forward = -vec3(scene.camera.worldFromView[2]);
     int differing = 0, deformed = 0;
-    for (int y = 0; y < depth.height; ++y)
-      for (int x = 0; x < depth.width; ++x) {
-        const CameraRay ray =
-            cameraRay(scene.camera, (float(x) + 0.5f) / float(depth.width), (float(y) + 0.5f) / float(depth.height));
-        const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
-        if (!hit.valid()) {
-          differing += depth.at(x, y).x != 0;
-          continue;
-        }
-        deformed += hit.instance == 1 || hit.instance == 2;
-        const float wanted = glm::dot(hit.position - scene.camera.position(), forward);
-        differing += std::abs(depth.at(x, y).x - wanted) > 1e-3f || glm::length(normal.at(x, y) - hit.normal) > 4e-3f ||
-                     glm::length(albedo.at(x, y) - hit.albedo) > 4e-3f;
+    for (const auto [x, y] : Pixels(depth)) {
+      const CameraRay ray = pixelRay(scene.camera, x, y);
+      const SurfaceHit hit = rays.closest(Ray{ray.origin, ray.direction});
+      if (!hit.valid()) {
+        differing += depth.at(x, y).x != 0;
+        continue;
       }
+      deformed += hit.instance == 1 || hit.instance == 2;
+      const float wanted = glm::dot(hit.position - scene.camera.position(), forward);
+      differing += std::abs(depth.at(x, y).x - wanted) > 1e-3f || glm::length(normal.at(x, y) - hit.normal) > 4e-3f ||
+                   glm::length(albedo.at(x, y) - hit.albedo) > 4e-3f;
+    }
     EXPECT_GT(deformed, 1500);
     // Silhouettes and texel borders: a pixel centre on an edge may fall to either side.
     EXPECT_LE(differing, 10);
@@ -114,4 +108,4 @@ TEST_F(DeformedDraw, PicturesOfRigidScenesDoNotDependOnThem) {
   EXPECT_EQ(normals(gpu), rigid);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::deformed_test

@@ -3,9 +3,9 @@
 
 #include "engine/core/error.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent::test {
+namespace lambent::test::device_choice_test {
 
 using Attempts = std::vector<DeviceAttempt>;
 constexpr int kSurfaceless = DeviceAttempt::kSurfaceless;
@@ -76,4 +76,4 @@ TEST(DeviceChoice, TellsTheCureInOneLine) {
   EXPECT_NE(text.find("1 = software"), std::string::npos) << text;
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::device_choice_test

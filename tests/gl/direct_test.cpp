@@ -1,17 +1,7 @@
 // Direct light against closed forms, and shadow maps that are drawn only when they must be.
-#include "gi/direct/direct_light.h"
-#include "gl_fixture.h"
+#include "frames.h"
 
-namespace lambent::test {
-
-/// The passes need sizes; 0 (from the picture's width) is resolved by the frame.
-ShadowSettings fixedResolutions() {
-  ShadowSettings settings;
-  settings.sunResolution = 2048;
-  settings.pointResolution = 512;
-  settings.spotResolution = 1024;
-  return settings;
-}
+namespace lambent::test::direct_test {
 
 class DirectTest : public GlTest {
  protected:
@@ -19,36 +9,17 @@ class DirectTest : public GlTest {
   Image irradianceOf(const HandScene& scene, const LightSet& emitters = {}) {
     Settings all;
     all.shadow = settings;
-    all.area = area;
     all.effects[EffectId::Emissive] = emitters.emitters.empty() ? EffectMode::Off : EffectMode::On;
     all.effects[EffectId::SoftShadows] = EffectMode::On;
     LightSet lights = emitters;
     lights.sky = scene.sky;
-    PlacedScene placed(programs, scene);
-    const World world = placed.world(lights);
-    SurfacePass surfaces(passes);
-    DirectLight direct(passes, mostDoubts);
-    stats = {};
-    FrameResults results;
-    results.surfaces = surfaces.run({world.gpu, world.view.camera});
-    // reads as irradiance, without albedo
-    PatchPass patchPass(passes, StageId::Patches);
-    Patches patches([&] { return patchPass.run(results.surfaces, all.multires); });
-    results.indirect = lightOf(direct, world, results.surfaces, patches, all, stats);
-    return readBuffer(Buffer::Irradiance, results);
+    return directOf(passes, scene, lights, all, stats, mostDoubts);
   }
 
-  static void turn(HandScene& scene, const mat4& turned) {
-    for (InstanceView& instance : scene.instances) {
-      instance.worldFromObject = instance.worldFromObjectBefore = turned * instance.worldFromObject;
-      instance.boundsWorld = transformed(scene.assets.meshes[instance.mesh].boundsObject, instance.worldFromObject);
-    }
-  }
-
-  ShadowSettings settings = fixedResolutions();
-  AreaSettings area;
+  /// The passes need sizes; 0 (from the picture's width) is resolved by the frame.
+  ShadowSettings settings{.sunResolution = 2048, .pointResolution = 512, .spotResolution = 1024};
   uint32_t mostDoubts = ShadowRayPass::kMost;
-  FrameStats stats; // of the last picture
+  FrameStats stats; // of the last image
 };
 
 constexpr float kShare = 1e-3f; // tolerance of the closed forms
@@ -57,19 +28,17 @@ constexpr float kShare = 1e-3f; // tolerance of the closed forms
 /// dark.
 void expectFloor(const Floor& floor, const Image& image, const std::function<float(const vec3&)>& expected) {
   float largest = 0;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) largest = std::max(largest, expected(floor.at(x, y)));
+  for (const auto [x, y] : Pixels(image)) largest = std::max(largest, expected(floor.at(x, y)));
   ASSERT_GT(largest, 0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const float wanted = expected(floor.at(x, y));
-      ASSERT_NEAR(image.at(x, y).y, wanted, kShare * wanted + 1e-5f * largest) << "pixel " << x << ' ' << y;
-    }
+  for (const auto [x, y] : Pixels(image)) {
+    const float wanted = expected(floor.at(x, y));
+    ASSERT_NEAR(image.at(x, y).y, wanted, kShare * wanted + 1e-5f * largest) << "pixel " << x << ' ' << y;
+  }
 }
 
 TEST_F(DirectTest, PointLightOnAPlane) {
   Floor floor;
-  floor.scene.lights.push_back({.type = LightType::Point, .position = {0.5f, 1.5f, 0.3f}, .intensity = vec3(10)});
+  floor.scene.lamp({0.5f, 1.5f, 0.3f}, vec3(10));
   expectFloor(floor, irradianceOf(floor.scene), [](const vec3& p) {
     const vec3 d = vec3(0.5f, 1.5f, 0.3f) - p;
     return 10 * d.y / std::pow(glm::dot(d, d), 1.5f);
@@ -119,8 +88,7 @@ TEST_F(DirectTest, DirectionalLightAndSkyOnAPlane) {
 TEST_F(DirectTest, MoreLightsThanABlockHolds) {
   Floor floor;
   settings.pointResolution = 16;
-  for (int i = 0; i < 150; ++i)
-    floor.scene.lights.push_back({.type = LightType::Point, .position = {0, 2, 0}, .intensity = vec3(0.1f)});
+  for (int i = 0; i < 150; ++i) floor.scene.lamp({0, 2, 0}, vec3(0.1f));
   const Image image = irradianceOf(floor.scene);
   const vec3 d = vec3(0, 2, 0) - floor.at(32, 24);
   const float wanted = 15 * d.y / std::pow(glm::dot(d, d), 1.5f);
@@ -172,14 +140,13 @@ TEST_F(DirectTest, BlockersCastShadowsOfEveryKind) {
     // A blocker halfway throws a shadow twice its size, a directional light one of its own size.
     const float edge = light.type == LightType::Directional ? 0.3f : 0.6f;
     int lit = 0, dark = 0, wrong = 0;
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) {
-        const vec3 p = floor.at(x, y);
-        const float outside = std::max(std::abs(p.x), std::abs(p.z)) - edge;
-        const bool isLit = shadowed.at(x, y).x > 0;
-        (isLit ? lit : dark)++;
-        if (std::abs(outside) > 1e-3f && isLit != (outside > 0)) ++wrong;
-      }
+    for (const auto [x, y] : Pixels(64, 48)) {
+      const vec3 p = floor.at(x, y);
+      const float outside = std::max(std::abs(p.x), std::abs(p.z)) - edge;
+      const bool isLit = shadowed.at(x, y).x > 0;
+      (isLit ? lit : dark)++;
+      if (std::abs(outside) > 1e-3f && isLit != (outside > 0)) ++wrong;
+    }
     EXPECT_EQ(wrong, 0) << "kind " << int(light.type);
     EXPECT_GT(dark, 100);
     EXPECT_GT(open.at(32, 24).x, 0);
@@ -220,13 +187,12 @@ class DoubtTest : public DirectTest {
   /// do not count.
   int wrong(const Case& c, const Image& image) const {
     int count = 0;
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) {
-        const vec3 p = floor_->at(x, y), d = c.parallel ? c.from : c.from - p;
-        const vec3 met = p + d * (kHeight / d.y);
-        const float outside = std::max(std::abs(met.x), std::abs(met.z)) - kHalf;
-        if (std::abs(outside) > 1e-3f && (image.at(x, y).x > 0) != (outside > 0)) ++count;
-      }
+    for (const auto [x, y] : Pixels(64, 48)) {
+      const vec3 p = floor_->at(x, y), d = c.parallel ? c.from : c.from - p;
+      const vec3 met = p + d * (kHeight / d.y);
+      const float outside = std::max(std::abs(met.x), std::abs(met.z)) - kHalf;
+      if (std::abs(outside) > 1e-3f && (image.at(x, y).x > 0) != (outside > 0)) ++count;
+    }
     return count;
   }
 
@@ -256,13 +222,12 @@ TEST_F(DoubtTest, MoreDoubtsThanTheListHolds) {
     const Image image = picture(c);
     EXPECT_GT(stats.raysShadows.occlusion, 1u << 14);
     EXPECT_EQ(wrong(c, image), 0);
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) {
-        if (image.at(x, y).x <= 0) continue;
-        const vec3 d = c.from - floor_->at(x, y);
-        const float wanted = 1500 * d.y / std::pow(glm::dot(d, d), 1.5f);
-        ASSERT_NEAR(image.at(x, y).x, wanted, kShare * wanted) << "each light once: " << x << ' ' << y;
-      }
+    for (const auto [x, y] : Pixels(64, 48)) {
+      if (image.at(x, y).x <= 0) continue;
+      const vec3 d = c.from - floor_->at(x, y);
+      const float wanted = 1500 * d.y / std::pow(glm::dot(d, d), 1.5f);
+      ASSERT_NEAR(image.at(x, y).x, wanted, kShare * wanted) << "each light once: " << x << ' ' << y;
+    }
   }
 }
 
@@ -278,7 +243,7 @@ TEST_F(DirectTest, InATurnedRoomEveryPixelIsAsByRays) {
     for (const vec3& c :
          {vec3(-0.1f, 0.2f, 0.1f), vec3(0.6f, 0.45f, 0.3f), vec3(0.3f, 0.7f, 0.6f), vec3(0.35f, 0.35f, -0.2f)})
       room.scene.box(c - 0.08f, c + 0.08f, 0, false); // around the lamp
-    turn(room.scene, turned);
+    room.scene.turn(turned);
     LightSet lamp;
     LightView light{.type = LightType::Point, .position = at, .intensity = vec3(10)};
     if (kind == std::string("spot"))
@@ -296,22 +261,21 @@ TEST_F(DirectTest, InATurnedRoomEveryPixelIsAsByRays) {
       room.scene.camera = cameraAt(vec3(turned * vec4(0.1f, 0.1f, 0.2f, 1)), target, 1.4f);
       const Image image = irradianceOf(room.scene, lamp);
       asked += stats.raysShadows.occlusion;
-      for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 64; ++x) {
-          const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
-          const SurfaceHit h = rays.closest(Ray{ray.origin, ray.direction});
-          ASSERT_TRUE(h.valid());
-          const vec3 towards = at - h.position, unit = glm::normalize(towards);
-          if (std::abs(glm::dot(unit, h.normal)) < 0.02f) continue; // as good as along the surface
-          float shines = glm::dot(unit, h.normal);
-          if (kind == std::string("spot")) shines = glm::min(shines, glm::dot(-unit, down) - 0.52f);
-          if (kind == std::string("emitter")) shines = glm::min(shines, glm::dot(-unit, down) - 0.02f);
-          const vec3 start = offsetPoint(h.position, h.normal, 1e-4f);
-          const bool expected = shines > 0 && !rays.occluded(segment(start, at));
-          if (std::abs(shines) < 0.04f) continue;
-          (expected ? lit : dark)++;
-          wrong += expected != (image.at(x, y).y > 0);
-        }
+      for (const auto [x, y] : Pixels(64, 48)) {
+        const CameraRay ray = pixelRay(room.scene.camera, x, y);
+        const SurfaceHit h = rays.closest(Ray{ray.origin, ray.direction});
+        ASSERT_TRUE(h.valid());
+        const vec3 towards = at - h.position, unit = glm::normalize(towards);
+        if (std::abs(glm::dot(unit, h.normal)) < 0.02f) continue; // as good as along the surface
+        float shines = glm::dot(unit, h.normal);
+        if (kind == std::string("spot")) shines = glm::min(shines, glm::dot(-unit, down) - 0.52f);
+        if (kind == std::string("emitter")) shines = glm::min(shines, glm::dot(-unit, down) - 0.02f);
+        const vec3 start = offsetPoint(h.position, h.normal, 1e-4f);
+        const bool expected = shines > 0 && !rays.occluded(segment(start, at));
+        if (std::abs(shines) < 0.04f) continue;
+        (expected ? lit : dark)++;
+        wrong += expected != (image.at(x, y).y > 0);
+      }
     }
     EXPECT_LE(wrong, 8) << kind;     // of 12 288: edges that the rasteriser puts elsewhere
     EXPECT_LT(asked, 1300u) << kind; // as many as edges need: 783, 698 and 924
@@ -336,7 +300,7 @@ TEST_F(DirectTest, AClosedRoomUnderTheSkyIsBlack) {
     Room room;
     room.scene.sky = vec3(1);
     const mat4 turned = glm::rotate(glm::rotate(mat4(1), angle, vec3(0, 1, 0)), 0.7f * angle, vec3(1, 0, 0));
-    turn(room.scene, turned);
+    room.scene.turn(turned);
     room.scene.camera = cameraAt(vec3(0.3f, 0.1f, 0.2f), vec3(-0.4f, -0.9f, -0.6f), 1.5f);
     const Image image = irradianceOf(room.scene);
     float most = 0;
@@ -487,4 +451,4 @@ TEST(SkyDirections, CoverTheSphereEvenly) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::direct_test

@@ -2,7 +2,7 @@
 #include "gl_fixture.h"
 #include "shaders/shared/tone_map.h"
 
-namespace lambent::test {
+namespace lambent::test::display_test {
 
 class DisplayTest : public GlTest {
  protected:
@@ -18,12 +18,8 @@ class DisplayTest : public GlTest {
                           &radiance.pixels[size_t(y) * radiance.width]);
     frame.indirect = {&texture};
     frame.picture = {frame.indirect.irradiance};
-    frame.sceneDiameter = 3.5f;
+    frame.farDistance = 3.5f;
     return frame;
-  }
-  static vec3 pixel(const Image8& image, int x, int y) {
-    const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
-    return {p[0], p[1], p[2]};
   }
 
   Room room;
@@ -43,8 +39,8 @@ TEST_F(DisplayTest, ReinhardOnLuminanceThenSrgb) {
     const vec3 mapped = c / (1 + luminance(c));
     return vec3(srgbFromLinear(std::min(1.0f, mapped.x)), srgbFromLinear(mapped.y), srgbFromLinear(mapped.z)) * 255.0f;
   };
-  EXPECT_LT(maxComponent(glm::abs(pixel(shown, 5, 5) - encoded(vec3(1)))), 1.01f);
-  EXPECT_LT(maxComponent(glm::abs(pixel(shown, 0, 0) - encoded(vec3(8, 2, 0.4f)))), 1.01f) << "top left is first";
+  EXPECT_LT(maxComponent(glm::abs(byteAt(shown, 5, 5) - encoded(vec3(1)))), 1.01f);
+  EXPECT_LT(maxComponent(glm::abs(byteAt(shown, 0, 0) - encoded(vec3(8, 2, 0.4f)))), 1.01f) << "top left is first";
 }
 
 TEST_F(DisplayTest, ToneMappersAreThoseOfTheCpuAndKeepTheirPromises) {
@@ -57,7 +53,7 @@ TEST_F(DisplayTest, ToneMappersAreThoseOfTheCpuAndKeepTheirPromises) {
     for (const int i : {0, 10, 100, 250, 300, 1000, 3000}) {
       const vec3 c = glm::clamp(toneMapped(image.pixels[size_t(i)], int(mapper)), vec3(0), vec3(1));
       const vec3 expected = 255.0f * vec3(srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z));
-      EXPECT_LT(maxComponent(glm::abs(pixel(shown, i % 64, i / 64) - expected)), 1.01f) << i << ' ' << int(mapper);
+      EXPECT_LT(maxComponent(glm::abs(byteAt(shown, i % 64, i / 64) - expected)), 1.01f) << i << ' ' << int(mapper);
     }
   }
   EXPECT_LT(maxComponent(glm::abs(pbrNeutral(vec3(0.6f, 0.3f, 0.2f)) - vec3(0.56f, 0.26f, 0.16f))), 1e-6f);
@@ -93,9 +89,9 @@ TEST_F(DisplayTest, MarksWhatIsNoNumber) {
   for (const Buffer buffer : {Buffer::Beauty, Buffer::Nan}) {
     displayPass.run(buffer, frame, {1});
     const Image8 shown = displayPass.read();
-    EXPECT_EQ(pixel(shown, 3, 4), vec3(255, 0, 255));
-    EXPECT_EQ(pixel(shown, 5, 6), vec3(0, 255, 255));
-    EXPECT_EQ(pixel(shown, 7, 8).x, pixel(shown, 7, 8).y);
+    EXPECT_EQ(byteAt(shown, 3, 4), vec3(255, 0, 255));
+    EXPECT_EQ(byteAt(shown, 5, 6), vec3(0, 255, 255));
+    EXPECT_EQ(byteAt(shown, 7, 8).x, byteAt(shown, 7, 8).y);
   }
 }
 
@@ -120,7 +116,7 @@ TEST_F(DisplayTest, EveryViewDraws) {
   set.slots[1].normal = {0, 0, 1};
   set.slots[1].radiance = vec3(1);
   set.slots[1].area = 1;
-  frame.vpls = &set;
+  frame.inside.vpls = &set;
   for (int i = 0; i <= int(Buffer::Nan); ++i) {
     displayPass.run(Buffer(i), frame, {1});
     EXPECT_EQ(displayPass.read().rgb.size(), 64u * 48 * 3) << i;
@@ -134,8 +130,7 @@ TEST_F(DisplayTest, EveryViewDraws) {
 
 TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   Image image(64, 48, vec3(0));
-  for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(100); // upper half bright
+  for (const auto [x, y] : Pixels(64, 24)) image.at(x, y) = vec3(100); // upper half bright
   const FrameResults frame = frameWith(image);
   const gl::Texture target("window", {.format = GL_RGBA8, .width = 128, .height = 96});
   const gl::Framebuffer framebuffer("window", {&target});
@@ -146,4 +141,4 @@ TEST_F(DisplayTest, PresentScalesIntoAnyFramebuffer) {
   EXPECT_GT(shown[80 * 128 + 64].x, 0.9f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::display_test

@@ -1,12 +1,9 @@
 // The effect plan. For each effect: a scene without it, where its work is not done at all (counted) and the picture is,
 // byte for byte, the one with everything forced on; and a scene with it, where leaving it out changes the picture.
-#include "gi/viewer/viewer.h"
-#include "gl_fixture.h"
-#include "tests/support/images.h"
+#include "frames.h"
+#include "tests/support/comparator_world.h"
 
-#include <cstring>
-
-namespace lambent::test {
+namespace lambent::test::effects_test {
 
 using enum EffectId;
 
@@ -24,87 +21,48 @@ class EffectsTest : public GlTest {
       scene.quad({-1.5f, 0, -1.5f}, {0, 2.5f, 0}, {0, 0, 3}, scene.material({0.7f, 0.1f, 0.1f}));
       block = uint32_t(scene.instances.size());
       scene.box({-0.4f, 0, -0.5f}, {0.4f, 0.9f, 0.2f}, grey, false);
-      LightView point;
-      point.position = {0.9f, 2, 0.5f};
-      point.intensity = vec3(5);
-      scene.lights.push_back(point);
-      scene.camera.worldFromView[3] = vec4(0.2f, 1.1f, 2.6f, 1);
-      scene.camera.width = 64;
-      scene.camera.height = 48;
-      scene.camera.fovY = 1;
+      scene.lamp({0.9f, 2, 0.5f}, vec3(5));
+      scene.camera = cameraAt({0.2f, 1.1f, 2.6f}, {0.2f, 1.1f, 0}, 1);
     }
 
     /// What a frame in which these things changed shows.
     SceneView view(const SceneChanges& changes) {
-      for (InstanceView& i : scene.instances) i.moved = false;
-      SceneView v = scene.view();
-      v.changes = changes;
-      return v;
+      scene.move(kNone, {});
+      return scene.view(changes);
     }
-    SceneView first() { return view({true, true, true, true, true}); }
-    SceneView still() { return view({false, false, false, false, false}); }
+    SceneView first() { return view({}); }
+    SceneView still() { return view(kStill); }
     /// All boxes' faces from `block` on go by `by`.
     SceneView moveBlock(const vec3& by) {
-      for (InstanceView& i : scene.instances) i.moved = false;
-      for (uint32_t k = block; k < scene.instances.size(); ++k) {
-        InstanceView& i = scene.instances[k];
-        i.worldFromObjectBefore = i.worldFromObject;
-        i.boundsWorldBefore = i.boundsWorld;
-        i.worldFromObject[3] += vec4(by, 0);
-        i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
-        i.moved = true;
-      }
-      SceneView v = scene.view();
-      v.changes = {false, false, false, true, false};
-      return v;
+      scene.move(block, by);
+      return scene.view(kGeometryChanged);
     }
     void emissive(const vec3& radiance) {
-      const uint32_t glow = scene.material(vec3(0));
-      scene.assets.materials[glow].emission = radiance;
-      scene.quad({0.3f, 2.9f, 0.2f}, {0.8f, 0, 0}, {0, 0, 0.8f}, glow); // out of the picture
+      scene.quad({0.3f, 2.9f, 0.2f}, {0.8f, 0, 0}, {0, 0, 0.8f},
+                 scene.material(vec3(0), radiance)); // out of the picture
     }
     /// A quad in the light's way whose texture is a chequer: green and half of it cut out, or green and blue.
     void textured(AlphaMode alpha) {
-      TextureImage image;
-      image.width = image.height = 2;
       const u8vec4 green(20, 200, 20, 255), other = alpha == AlphaMode::Mask ? u8vec4(0) : u8vec4(20, 20, 220, 255);
-      image.texels = {green, other, other, green};
-      for (const u8vec4& t : image.texels) image.averageLinear += 0.25f * (vec4(t) / 255.0f);
-      image.averageLinear -= vec4(1);
-      scene.assets.images.push_back(image);
       const uint32_t m = scene.material(vec3(1));
       scene.assets.materials[m].alphaMode = alpha;
-      scene.assets.materials[m].baseColorTexture.image = 0;
-      scene.assets.materials[m].baseColorTexture.nearest = true;
-      const uint32_t q = scene.quad({-0.2f, 1.3f, -0.6f}, {0, 0, 1.6f}, {1.4f, 0, 0}, m);
-      scene.assets.meshes[scene.instances[q].mesh].uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+      scene.assets.materials[m].baseColorTexture = scene.texture(2, {green, other, other, green});
+      scene.quad({-0.2f, 1.3f, -0.6f}, {0, 0, 1.6f}, {1.4f, 0, 0}, m);
     }
   };
 
   static Settings quick() {
     Settings s;
-    s.smc.vpls = 128;
-    s.smc.points = 256;
-    s.smc.moves = 8;
-    s.smc.warmup = 5;
-    s.shadow.resolution = 32;
-    s.shadow.emitterResolution = 64;
-    s.shadow.skyMaps = 8;
-    s.shadow.skyResolution = 64;
-    s.shadow.maker = ShadowMaker::Rays;
+    s.smc = {.vpls = 128, .moves = 8, .points = 256, .warmup = 5};
+    s.shadow = {
+        .resolution = 32, .maker = ShadowMaker::Rays, .emitterResolution = 64, .skyMaps = 8, .skyResolution = 64};
     s.debug.timing = TimingMode::Finish;
     s.image.exposure = 1;
     s.history.frames = 0; // history_test.cpp
     return s;
   }
-  static Settings withAll(EffectMode mode) {
-    Settings s = quick();
+  static Settings withAll(EffectMode mode, Settings s = quick()) {
     for (size_t i = 0; i < kEffects; ++i) s.effects[EffectId(i)] = mode;
-    return s;
-  }
-  static Settings with(EffectId id, EffectMode mode) {
-    Settings s = quick();
-    s.effects[id] = mode;
     return s;
   }
 
@@ -117,9 +75,7 @@ class EffectsTest : public GlTest {
   /// `skip`, and the pictures must be those with everything forced on, where it must do some unless `hollow`.
   template <class Views>
   void withoutIt(EffectId id, Settings settings, const Views& viewsOf, int skip = 0, bool hollow = false) {
-    Settings forced = settings;
-    for (size_t i = 0; i < kEffects; ++i) forced.effects[EffectId(i)] = EffectMode::On;
-    Viewer plain(settings), all(forced);
+    Viewer plain(settings), all(withAll(EffectMode::On, settings));
     World a, b;
     uint64_t forcedWork = 0;
     for (int frame = 0;; ++frame) {
@@ -172,7 +128,6 @@ class EffectsTest : public GlTest {
 };
 
 // Every effect has both a scene without it and one with it below
-// ----------------------------------------------------------
 
 TEST_F(EffectsTest, IndirectNeedsLight) {
   const auto dark = stillWorld([](World& w) { w.scene.lights.clear(); });
@@ -197,11 +152,8 @@ TEST_F(EffectsTest, BouncesNeedSurfacesThatReflectToOneAnother) {
   settings.effects[Indirect] = EffectMode::On;
   // A black wall stops the paths, so that none but the first vertex reflects.
   const auto flat = [](World& w) {
-    for (uint32_t i = 1; i < w.scene.instances.size(); ++i)
-      for (Primitive& p : w.scene.assets.meshes[w.scene.instances[i].mesh].primitives)
-        w.scene.assets.materials[p.material].baseColor = vec3(0);
-    const uint32_t floor = w.scene.material(vec3(0.6f));
-    w.scene.assets.meshes[w.scene.instances[0].mesh].primitives[0].material = floor;
+    for (Material& m : w.scene.assets.materials) m.baseColor = vec3(0);
+    w.scene.assets.meshes[0].primitives[0].material = w.scene.material(vec3(0.6f));
   };
   withoutIt(Bounces, settings, stillWorld(flat));
   EXPECT_GT(lossWithout(Bounces, quick(), asItIs()), 0.01);
@@ -250,7 +202,7 @@ TEST_F(EffectsTest, RelightNeedsAChangeOfLight) {
     if (frame > 1) return {};
     if (frame == 0) return w.first();
     w.scene.lights[0].intensity = vec3(1);
-    return w.view({false, false, true, false, false});
+    return w.view(kLightsChanged);
   };
   EXPECT_GT(lossWithout(Relight, quick(), dimmed), 0.05);
 }
@@ -280,13 +232,8 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
   glossy.gather.glossy = true;
   // All that reflects lies in one plane; only the lobes of black walls can show its light.
   const auto varnished = stillWorld([](World& w) {
-    const uint32_t floor = w.scene.material(vec3(0.6f));
-    for (Material& m : w.scene.assets.materials) m.roughness = 0.4f;
-    for (uint32_t i = 1; i < w.scene.instances.size(); ++i)
-      for (Primitive& p : w.scene.assets.meshes[w.scene.instances[i].mesh].primitives)
-        w.scene.assets.materials[p.material].baseColor = vec3(0);
-    w.scene.assets.materials[floor].roughness = 1;
-    w.scene.assets.meshes[w.scene.instances[0].mesh].primitives[0].material = floor;
+    for (Material& m : w.scene.assets.materials) m.roughness = 0.4f, m.baseColor = vec3(0);
+    w.scene.assets.meshes[0].primitives[0].material = w.scene.material(vec3(0.6f));
   });
   World w;
   Viewer lambert(quick());
@@ -295,7 +242,6 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
 }
 
 // A still world
-// ---------------------------------------------------------------------------------------------------------
 
 /// Frames until nothing is done any more.
 int framesToSettle(Viewer& gi, const SceneView& still, int most) {
@@ -356,15 +302,15 @@ TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
   };
   wakes("camera", [](World& w, Viewer&) {
     w.scene.camera.worldFromView[3].x += 0.1f;
-    return w.view({false, true, false, false, false});
+    return w.view(kCameraChanged);
   });
   wakes("size", [](World& w, Viewer&) {
     w.scene.camera.width = 80;
-    return w.view({false, true, false, false, false});
+    return w.view(kCameraChanged);
   });
   wakes("light", [](World& w, Viewer&) {
     w.scene.lights[0].intensity *= 2;
-    return w.view({false, false, true, false, false});
+    return w.view(kLightsChanged);
   });
   wakes("object", [](World& w, Viewer&) { return w.moveBlock({0.2f, 0, 0}); });
   wakes("setting of drawing", [](World& w, Viewer& gi) {
@@ -400,7 +346,6 @@ TEST_F(EffectsTest, ReplaceAndRedrawNeedAChange) {
 }
 
 // Beside the GPU
-// ----------------------------------------------------------------------------------------------------------
 
 TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
   Settings beside = quick();
@@ -412,26 +357,19 @@ TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
     if (frame % 5 == 1) return w.moveBlock({0.1f, 0, 0});
     if (frame % 5 == 3) {
       w.scene.lights[0].position.x -= 0.1f;
-      return w.view({false, false, true, false, false});
+      return w.view(kLightsChanged);
     }
     if (frame % 5 == 4) {
       w.scene.camera.worldFromView[3].x += 0.02f;
-      return w.view({false, true, false, false, false});
+      return w.view(kCameraChanged);
     }
     return w.still();
   };
   for (int frame = 0; frame < 30; ++frame) {
     plain.run(viewOf(a, frame));
     overlapped.run(viewOf(b, frame));
-    const std::vector<Vpl>&p = plain.vpls().slots, &o = overlapped.vpls().slots;
-    ASSERT_EQ(p.size(), o.size());
-    for (size_t i = 0; i < p.size(); ++i) {
-      ASSERT_EQ(p[i].id, o[i].id) << "frame " << frame << ", slot " << i;
-      ASSERT_EQ(p[i].position, o[i].position);
-      ASSERT_EQ(p[i].radiance, o[i].radiance);
-      ASSERT_EQ(p[i].area, o[i].area);
-      ASSERT_EQ(p[i].alive, o[i].alive);
-    }
+    SCOPED_TRACE(frame);
+    expectSame(plain.vpls().slots, overlapped.vpls().slots);
   }
   // At rest they show the same.
   for (int i = 0; i < 2000 && plain.run(a.still()).plan.on(Redraw); ++i) overlapped.run(b.still());
@@ -454,12 +392,11 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
     const Image before = gi.read(Buffer::Indirect);
     EXPECT_EQ(gi.run(world.still()).work[size_t(Redraw)], 0u) << technique;
     world.scene.lights[0].position.x -= 0.3f;
-    const FrameStats moved = gi.run(world.view({false, false, true, false, false}));
+    const FrameStats moved = gi.run(world.view(kLightsChanged));
     EXPECT_GT(moved.work[size_t(Redraw)], 0u) << technique;
     EXPECT_NE(gi.read(Buffer::Indirect).pixels, before.pixels) << technique;
-    Viewer anew(settings);
-    anew.run(world.first());
-    EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels) << technique;
+    EXPECT_EQ(gi.read(Buffer::Indirect).pixels, firstFrame(settings, world.first(), Buffer::Indirect).pixels)
+        << technique;
     world.scene.lights.clear();
     world.scene.sky = vec3(1);
     const FrameStats dark = gi.run(world.first());
@@ -483,9 +420,7 @@ TEST_F(EffectsTest, ReflectiveMapsComeBackUpToDate) {
   gi.run(world.moveBlock({0.3f, 0, 0.2f}));
   applyTechnique(gi.settings(), "isr");
   gi.run(world.still());
-  Viewer anew(settings);
-  anew.run(world.first());
-  EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels);
+  EXPECT_EQ(gi.read(Buffer::Indirect).pixels, firstFrame(settings, world.first(), Buffer::Indirect).pixels);
 }
 
 /// The same VPLs with shadow maps and with a ray for every pair.
@@ -498,15 +433,11 @@ TEST_F(EffectsTest, VplsOfReflectiveMapsMayHaveShadows) {
   settings.image.exposure = 1;
   const auto mean = [&](VplVisibility visibility) {
     settings.vpl.visibility = visibility;
-    Viewer gi(settings);
-    gi.run(world.first());
-    double sum = 0;
-    for (const vec3& p : gi.read(Buffer::Irradiance).pixels) sum += p.x;
-    return sum;
+    return meanLuminance(firstFrame(settings, world.first()));
   };
   const double none = mean(VplVisibility::None), maps = mean(VplVisibility::Maps), rays = mean(VplVisibility::Rays);
   EXPECT_LT(rays, 0.97 * none);
   EXPECT_NEAR(maps / rays, 1, 0.02);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::effects_test

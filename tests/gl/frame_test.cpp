@@ -1,63 +1,46 @@
 // The frame as a whole, through the interface that programs use.
+#include "frames.h"
 #include "gi/viewer/viewer.h"
-#include "gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::frame_test {
 
 class FrameTest : public GlTest {
  protected:
   /// A white room with a red and a green wall, a block, and a lamp; the camera looks along -z.
-  static void furnish(HandScene& scene) {
+  FrameTest() {
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box({-1.5f, 0, -1.5f}, {1.5f, 2.5f, 1.5f}, white, true);
     scene.instances.erase(scene.instances.begin(), scene.instances.begin() + 2);
     scene.quad({-1.5f, 0, -1.5f}, {0, 2.5f, 0}, {0, 0, 3}, scene.material({0.7f, 0.1f, 0.1f}));
     scene.quad({1.5f, 0, -1.5f}, {0, 0, 3}, {0, 2.5f, 0}, scene.material({0.1f, 0.6f, 0.1f}));
     scene.box({-0.9f, 0, -0.9f}, {-0.1f, 1.1f, -0.2f}, white, false);
-    LightView lamp;
-    lamp.position = {0.5f, 2.1f, 0.2f};
-    lamp.intensity = vec3(4);
-    scene.lights.push_back(lamp);
-    scene.camera.worldFromView[3] = vec4(0, 1.2f, 1.45f, 1);
-    scene.camera.width = 96;
-    scene.camera.height = 72;
-    scene.camera.fovY = 1.2f;
+    scene.lamp({0.5f, 2.1f, 0.2f}, vec3(4));
+    scene.camera = cameraAt({0, 1.2f, 1.45f}, {0, 1.2f, 0}, 1.2f, 96, 72);
   }
+
+  HandScene scene;
 
   static Settings quick() {
     Settings s;
-    s.smc.vpls = 1024;
-    s.smc.points = 1024;
-    s.smc.warmup = 20;
+    s.smc = {.vpls = 1024, .points = 1024, .warmup = 20};
     s.shadow.maker = ShadowMaker::Rays;
     s.debug.timing = TimingMode::Finish;
     s.image.exposure = 1;
     return s;
   }
-
-  static SceneView still(const HandScene& scene) {
-    SceneView v = scene.view();
-    v.changes = {false, false, false, false, false};
-    return v;
-  }
 };
 
 TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
-  HandScene scene;
-  furnish(scene);
   Settings settings = quick();
   settings.history.frames = 0;
   Viewer gi(settings);
-  gi.run(scene.view());
-  const Image interleaved = gi.read(Buffer::Irradiance);
+  const Image interleaved = nextFrame(gi, scene.view());
   gi.settings().smc.moves = 0; // the same lights for all three
   gi.settings().gather.mode = GatherMode::Full;
-  gi.run(still(scene));
-  const Image full = gi.read(Buffer::Irradiance);
+  const Image full = nextFrame(gi, scene.view(kStill));
   gi.settings().vpl.visibility = VplVisibility::Rays;
-  gi.run(still(scene));
-  const Image rays = gi.read(Buffer::Irradiance);
+  const Image rays = nextFrame(gi, scene.view(kStill));
   EXPECT_GT(meanLuminance(rays), 0.1);
   // Measured 0.9 % and 4.1 %: shadow maps of 128 texels blur edges, interleaving and its filter blur more.
   expectClose("full-against-rays", full, rays, 0.02);
@@ -68,14 +51,11 @@ TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
 /// What is said of techniques that wait (isr) is in counts_test.cpp; all others never stand still after the first
 /// frame, which measures the exposure, but to ask which shadows are in doubt.
 TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
-  HandScene scene;
-  furnish(scene);
   Settings settings = quick();
   settings.smc.vpls = settings.smc.points = 64;
   settings.smc.warmup = 2;
   settings.shadow.resolution = 32;
-  scene.camera.width = 48;
-  scene.camera.height = 36;
+  scene.picture(48, 36);
   settings.image.exposure = 0;
   for (const VplSource source : {VplSource::Smc, VplSource::Rsm, VplSource::Hisr})
     for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {
@@ -98,42 +78,29 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
 }
 
 TEST_F(FrameTest, TheSameTwice) {
-  HandScene scene;
-  furnish(scene);
-  std::vector<Image> pictures;
-  for (int run = 0; run < 2; ++run) {
+  const auto second = [&] {
     Viewer gi(quick());
     gi.run(scene.view());
-    gi.run(still(scene));
-    pictures.push_back(gi.read(Buffer::Beauty));
-  }
-  EXPECT_EQ(relativeRmse(pictures[0], pictures[1]), 0);
+    return nextFrame(gi, scene.view(kStill), Buffer::Beauty);
+  };
+  EXPECT_EQ(relativeRmse(second(), second()), 0);
 }
 
 TEST_F(FrameTest, ACameraCutIsLitInItsFirstFrame) {
-  HandScene scene;
-  furnish(scene);
   // A second, closed room ten metres away, blue, with a lamp of its own.
   scene.box({8.5f, 0, -1.5f}, {11.5f, 2.5f, 1.5f}, scene.material({0.2f, 0.3f, 0.8f}), true);
-  LightView lamp;
-  lamp.position = {10, 2, 0};
-  lamp.intensity = vec3(4);
-  scene.lights.push_back(lamp);
+  scene.lamp({10, 2, 0}, vec3(4));
   Viewer gi(quick());
   gi.run(scene.view());
   scene.camera.worldFromView[3].x += 10;
-  SceneView cut = still(scene);
-  cut.changes.camera = true;
-  EXPECT_TRUE(gi.run(cut).burst);
+  EXPECT_TRUE(gi.run(scene.view(kCameraChanged)).burst);
   const Image first = gi.read(Buffer::Irradiance);
-  for (int i = 0; i < 10; ++i) gi.run(still(scene));
+  for (int i = 0; i < 10; ++i) gi.run(scene.view(kStill));
   const Image later = gi.read(Buffer::Irradiance);
   EXPECT_NEAR(meanLuminance(first), meanLuminance(later), 0.1 * meanLuminance(later));
 }
 
 TEST_F(FrameTest, StagesThatTheSceneDoesNotCallForDoNotRun) {
-  HandScene scene;
-  furnish(scene);
   scene.lights.clear();
   Viewer gi(quick());
   const FrameStats& dark = gi.run(scene.view());
@@ -144,26 +111,18 @@ TEST_F(FrameTest, StagesThatTheSceneDoesNotCallForDoNotRun) {
 }
 
 TEST_F(FrameTest, MovingObjectsAndLightsStayFinite) {
-  HandScene scene;
-  furnish(scene);
   Settings settings = quick();
-  settings.smc.vpls = 256;
-  settings.smc.points = 256;
+  settings.smc.vpls = settings.smc.points = 256;
   Viewer gi(settings);
   gi.run(scene.view());
   for (int frame = 0; frame < 60; ++frame) {
-    for (InstanceView& i : scene.instances) i.moved = false;
-    InstanceView& block = scene.instances.back();
-    block.worldFromObjectBefore = block.worldFromObject;
-    block.worldFromObject[3].x = 0.3f * std::sin(0.2f * float(frame));
-    block.boundsWorld = transformed(scene.assets.meshes[block.mesh].boundsObject, block.worldFromObject);
-    block.moved = true;
+    scene.place(uint32_t(scene.instances.size() - 1),
+                glm::translate(mat4(1), vec3(0.3f * std::sin(0.2f * float(frame)), 0, 0)));
     scene.lights[0].position.x = std::cos(0.1f * float(frame));
-    SceneView view = still(scene);
-    view.changes.geometry = view.changes.lights = true;
-    gi.run(view);
-    for (const vec3& p : gi.read(Buffer::Beauty).pixels) ASSERT_TRUE(isFinite(p)) << "frame " << frame;
+    const Image image =
+        nextFrame(gi, scene.view({.first = false, .camera = false, .instances = false}), Buffer::Beauty);
+    for (const vec3& p : image.pixels) ASSERT_TRUE(isFinite(p)) << "frame " << frame;
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::frame_test

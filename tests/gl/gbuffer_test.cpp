@@ -1,7 +1,7 @@
 // The G-buffer against rays: what a pixel holds is what the ray through its centre meets.
 #include "gl_fixture.h"
 
-namespace lambent::test {
+namespace lambent::test::gbuffer_test {
 
 using GBufferTest = GlTest;
 
@@ -19,14 +19,11 @@ void expectAgreesWithRays(SurfacePass& pass, gl::ProgramCache& programs, const R
   const Image depth = readBuffer(Buffer::Depth, frame), normal = readBuffer(Buffer::Normal, frame);
   const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
   int differing = 0;
-  for (int y = 0; y < depth.height; ++y) {
-    for (int x = 0; x < depth.width; ++x) {
-      const CameraRay ray =
-          cameraRay(room.scene.camera, (float(x) + 0.5f) / float(depth.width), (float(y) + 0.5f) / float(depth.height));
-      const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
-      const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
-      if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
-    }
+  for (const auto [x, y] : Pixels(depth)) {
+    const CameraRay ray = pixelRay(room.scene.camera, x, y);
+    const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+    const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
+    if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
   }
   EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
 }
@@ -113,19 +110,10 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
 
 TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   HandScene scene;
-  TextureImage image;
-  image.width = 2;
-  image.height = 1;
-  image.srgb = true;
-  image.texels = {{188, 0, 0, 255}, {0, 188, 0, 0}}; // left: red, opaque; right: green, transparent
-  scene.assets.images.push_back(image);
+  const TextureRef picture = scene.texture(2, {{188, 0, 0, 255}, {0, 188, 0, 0}}); // red and opaque; green, transparent
   const uint32_t textured = scene.material(vec3(0.5f)), masked = scene.material(vec3(1)),
                  plain = scene.material(vec3(1));
-  for (uint32_t m : {textured, masked}) {
-    TextureRef& ref = scene.assets.materials[m].baseColorTexture;
-    ref.image = 0;
-    ref.nearest = true;
-  }
+  for (uint32_t m : {textured, masked}) scene.assets.materials[m].baseColorTexture = picture;
   scene.assets.materials[masked].alphaMode = AlphaMode::Mask;
   // uv' = 1 - u: the masked quad shows the picture mirrored.
   scene.assets.materials[masked].baseColorTexture.uvTransform = mat3(-1, 0, 0, 0, 1, 0, 1, 0, 1);
@@ -149,4 +137,4 @@ TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   EXPECT_LT(glm::length(at(albedo, 0, -2) - vec3(0.25f, 0.5f, 0.75f)), 2e-3f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::gbuffer_test

@@ -12,10 +12,11 @@
 #include "gi/lighting/light_set.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/surfaces/surfaces.h"
+#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer.h"
 #include "shaders/shared/paraboloid.h"
-#include "tests/support/hand_scene.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/images.h"
+#include "tests/support/traced_scene.h"
 
 namespace lambent::test {
 
@@ -40,6 +41,13 @@ class GlTest : public ::testing::Test {
   uint64_t errorsBefore_;
 };
 
+/// Of a float texture with as many texels, row 0 at the bottom.
+inline gl::Texture textureOf(int width, int height, std::span<const vec4> texels) {
+  gl::Texture texture("given", {.format = GL_RGBA32F, .width = width, .height = height});
+  glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, texels.data());
+  return texture;
+}
+
 /// RGBA values of a float texture, row 0 at the bottom.
 inline std::vector<vec4> readTexture(const gl::Texture& texture) {
   std::vector<vec4> texels(size_t(texture.width()) * texture.height());
@@ -47,23 +55,12 @@ inline std::vector<vec4> readTexture(const gl::Texture& texture) {
   return texels;
 }
 
-/// Camera at `eye` looking at `target`, +Y up.
-inline CameraView cameraAt(const vec3& eye, const vec3& target, float fovY, int width = 64, int height = 48) {
-  CameraView camera;
-  const vec3 back = glm::normalize(eye - target);
-  const vec3 right = glm::normalize(glm::cross(std::abs(back.y) > 0.999f ? vec3(0, 0, -1) : vec3(0, 1, 0), back));
-  camera.worldFromView = mat4(vec4(right, 0), vec4(glm::cross(back, right), 0), vec4(back, 0), vec4(eye, 1));
-  camera.fovY = fovY;
-  camera.width = width;
-  camera.height = height;
-  return camera;
-}
-
 /// A room [-1,1]³ with a red left and a green right wall and a block in it, as triangles and in closed form.
 struct Room {
   HandScene scene;
   AnalyticQuery rays;
   vec3 blockLo{-0.5f, -1, -0.6f}, blockHi{0, 0.2f, -0.1f};
+  static constexpr uint32_t kBlock = 6; // the first of its instances
 
   Room() {
     const vec3 white(0.7f), red(0.6f, 0.1f, 0.1f), green(0.1f, 0.6f, 0.1f);
@@ -123,7 +120,7 @@ class PlacedScene {
 /// Light of a provider on surfaces, as in the first frame of the world.
 inline SurfaceLighting lightOf(LightProvider& provider, const World& world, const GBuffer& surfaces, Patches& patches,
                                const Settings& settings, FrameStats& stats) {
-  const EffectPlan plan = planEffects(world.view, settings, {.needs = needsOf(settings)});
+  const EffectPlan plan = planEffects(world.view, settings, {.needs = needsOf(settings), .status = {}});
   return provider.run({{.world = world, .plan = plan, .settings = settings}, surfaces, patches}, stats);
 }
 
@@ -146,6 +143,13 @@ class Gathers {
   PassContext context_;
   std::vector<std::pair<Axes, std::unique_ptr<Gather>>> made_;
 };
+
+/// Of the surfaces alone.
+inline Image surfaceBuffer(Buffer buffer, const GBuffer& gbuffer) {
+  FrameResults results;
+  results.surfaces = gbuffer;
+  return readBuffer(buffer, results);
+}
 
 /// Surfaces of a scene, and light gathered on them from virtual lights by the stage that settings ask for.
 class GatherTest : public GlTest {
@@ -193,8 +197,8 @@ class GatherTest : public GlTest {
 struct Floor {
   HandScene scene;
 
-  Floor() {
-    scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
+  explicit Floor(const vec3& albedo = vec3(0.5f), float roughness = 1, float metalness = 0) {
+    scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.glossyMaterial(albedo, roughness, metalness));
     scene.camera = cameraAt(vec3(0, 4, 0), vec3(0), 1.0f);
   }
   /// World position of the plane at the centre of pixel (x, y), y from the top.

@@ -1,25 +1,18 @@
 // Glossy receivers on the GPU against the shared BRDF evaluated on the CPU, pixel by pixel.
-#include "engine/trace/embree_query.h"
-#include "gi/direct/direct_light.h"
+#include "frames.h"
 #include "gi/direct/light_shadows.h"
-#include "gi/reference/path_tracer.h"
-#include "gl_fixture.h"
 #include "shaders/shared/ggx.h"
-#include "tests/support/images.h"
+#include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
-#include "tests/support/statistics.h"
 
-namespace lambent::test {
+namespace lambent::test::glossy_test {
 
 class GlossyTest : public GatherTest {
  protected:
   /// The floor of one material, seen askew so that views, lights and lobes differ from pixel to pixel.
   struct GlossyFloor : Floor {
-    GlossyFloor(const vec3& albedo, float roughness, float metalness, bool orthographic = false) {
-      Material& m = scene.assets.materials[0];
-      m.baseColor = albedo;
-      m.roughness = roughness;
-      m.metalness = metalness;
+    GlossyFloor(const vec3& albedo, float roughness, float metalness, bool orthographic = false)
+        : Floor(albedo, roughness, metalness) {
       scene.camera = cameraAt(vec3(1, 2, 2.2f), vec3(0), 0.7f);
       if (orthographic) scene.camera.orthoHalfHeight = 1.2f;
     }
@@ -64,24 +57,22 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
     results.surfaces = gbuffer;
     results.picture = picture;
     const Image beauty = readBuffer(Buffer::Beauty, results);
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
-        const float r2 = glm::dot(d, d);
-        const vec3 irradiance =
-            radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
-        const Receiver receiver = floor.receiverAt(x, y);
-        const vec3 lambert = irradiance * receiver.diffuse / kPi;
-        const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
-        const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
-        for (int c = 0; c < 3; ++c) {
-          const float wanted = lambert[c] + lobe[c];
-          ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f)
-              << x << ' ' << y << " roughness " << f.roughness;
-          ASSERT_NEAR(beauty.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y;
-        }
-        brightest = std::max(brightest, lobe.x / std::max(irradiance.x / kPi, 1e-6f));
+    for (const auto [x, y] : Pixels(image)) {
+      const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
+      const float r2 = glm::dot(d, d);
+      const vec3 irradiance =
+          radiance * (kArea * std::max(0.0f, -glm::dot(normal, towardsLight)) * towardsLight.y / (r2 + kArea / kPi));
+      const Receiver receiver = floor.receiverAt(x, y);
+      const vec3 lambert = irradiance * receiver.diffuse / kPi;
+      const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
+      const vec3 lobe = irradiance * glossyReflectance(receiver, towardsLight, spread);
+      for (int c = 0; c < 3; ++c) {
+        const float wanted = lambert[c] + lobe[c];
+        ASSERT_NEAR(image.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y << " roughness " << f.roughness;
+        ASSERT_NEAR(beauty.at(x, y)[c], wanted, 3e-3f * wanted + 1e-6f) << x << ' ' << y;
       }
+      brightest = std::max(brightest, lobe.x / std::max(irradiance.x / kPi, 1e-6f));
+    }
   }
   EXPECT_GT(brightest, 10) << "the light's mirror image lies in the picture";
 }
@@ -106,10 +97,7 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
   HandScene scene;
   const vec3 colors[2] = {{1, 0.7f, 0.3f}, {0.5f, 0.6f, 0.9f}};
   for (int i = 0; i < 2; ++i) {
-    const uint32_t m = scene.material(colors[i]);
-    scene.assets.materials[m].metalness = 1;
-    scene.assets.materials[m].roughness = 0.5f;
-    scene.quad({i ? 0.0f : -9.0f, -9, 0}, {9, 0, 0}, {0, 18, 0}, m);
+    scene.quad({i ? 0.0f : -9.0f, -9, 0}, {9, 0, 0}, {0, 18, 0}, scene.glossyMaterial(colors[i], 0.5f, 1));
   }
   scene.camera = cameraAt({0, 0, 3}, vec3(0), 1);
   const GBuffer gbuffer = surfaces(scene);
@@ -122,17 +110,15 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
     for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
       const SurfaceLighting raw{&black, &constant, true};
       const Image image = indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {.on = on, .kernel = kernel}}));
-      for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 64; ++x)
-          ASSERT_LT(glm::length(image.at(x, y) - colors[x >= 32] * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
+      for (const auto [x, y] : Pixels(64, 48))
+        ASSERT_LT(glm::length(image.at(x, y) - colors[x >= 32] * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
     }
 }
 
 TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
   const vec3 position(-0.6f, 0.9f, -1.2f), intensity(5, 4, 3);
   const vec3 sunDirection = glm::normalize(vec3(-0.3f, -0.7f, -0.8f)), sun(2, 2, 1);
-  ShadowSettings shadow;
-  shadow.sunResolution = shadow.pointResolution = shadow.spotResolution = 512;
+  const ShadowSettings shadow{.sunResolution = 512, .pointResolution = 512, .spotResolution = 512};
   for (const Finish& f : kFinishes) {
     GlossyFloor floor(f.albedo, f.roughness, f.metalness, f.orthographic);
     floor.scene.lights.push_back({.type = LightType::Point, .position = position, .intensity = intensity});
@@ -143,40 +129,28 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     settings.shadow = shadow;
     settings.gather.glossy = true;
     settings.effects[EffectId::Emissive] = EffectMode::On;
-    FrameResults results;
-    results.surfaces = surfaces(floor.scene);
-    const World world = placed->world(lamp);
-    DirectLight direct(passes);
-    Patches none;
-    results.direct = lightOf(direct, world, results.surfaces, none, settings, stats);
-    const Image image = readBuffer(Buffer::Direct, results);
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const Receiver receiver = floor.receiverAt(x, y);
-        const vec3 at = floor.at(x, y);
-        const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
-          return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
-        };
-        const vec3 d = position - at, e = sample.position - at;
-        const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
-        const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
-                            reflected(sun * -sunDirection.y, -sunDirection) +
-                            reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
-                                      lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
-        for (int c = 0; c < 3; ++c)
-          ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
-      }
+    const Image image = directOf(passes, floor.scene, lamp, settings, stats);
+    for (const auto [x, y] : Pixels(image)) {
+      const Receiver receiver = floor.receiverAt(x, y);
+      const vec3 at = floor.at(x, y);
+      const auto reflected = [&](const vec3& irradiance, const vec3& towardsLight, float spread = 0) {
+        return irradiance * (receiver.diffuse / kPi + glossyReflectance(receiver, towardsLight, spread));
+      };
+      const vec3 d = position - at, e = sample.position - at;
+      const float r2 = glm::dot(d, d), q2 = glm::dot(e, e);
+      const vec3 wanted = reflected(intensity * (d.y / std::pow(r2, 1.5f)), glm::normalize(d)) +
+                          reflected(sun * -sunDirection.y, -sunDirection) +
+                          reflected(vec3(6 * 0.04f * e.y * e.y / q2 / (q2 + 0.04f / kPi)), glm::normalize(e),
+                                    lobeSpread(GatherSettings{}.spread, 0.04f, e.y / std::sqrt(q2), q2));
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.at(x, y)[c], wanted[c], 3e-3f * wanted[c] + 1e-5f) << x << ' ' << y << ' ' << f.roughness;
+    }
   }
 }
 
 TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
   GlossyFloor floor(vec3(0.5f), 0.8f, 0.5f);
-  TextureImage image;
-  image.width = image.height = 1;
-  image.srgb = false;
-  image.texels = {{255, 191, 102, 255}};
-  floor.scene.assets.images.push_back(image);
-  floor.scene.assets.materials[0].roughnessMetalnessTexture.image = 0;
+  floor.scene.assets.materials[0].roughnessMetalnessTexture = floor.scene.texture(1, {{255, 191, 102, 255}}, false);
   const GBuffer gbuffer = surfaces(floor.scene);
   for (const vec4& t : readTexture(*gbuffer.roughnessMetalness)) {
     ASSERT_NEAR(t.x, 0.8f * 191 / 255, 1e-4f);
@@ -187,48 +161,32 @@ TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
 
 TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
   // One bounce in an empty box, where every light sees every point.
-  const vec3 size(2, 1, 3), albedo(0.6f, 0.5f, 0.4f);
-  for (const Finish& f : {Finish{albedo, 0.35f, 1}, Finish{albedo, 0.5f, 0}}) {
-    HandScene scene;
-    const uint32_t m = scene.material(albedo);
-    scene.assets.materials[m].roughness = f.roughness;
-    scene.assets.materials[m].metalness = f.metalness;
-    scene.box(vec3(0), size, m, true);
-    LightView point;
-    point.position = {1.6f, 0.4f, 2.5f};
-    scene.lights.push_back(point);
+  for (const Finish& f : {Finish{{}, 0.35f, 1}, Finish{{}, 0.5f, 0}}) {
+    ReferenceBox box(f.roughness, f.metalness);
+    HandScene& scene = box.scene;
     scene.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.4f, 3}, 1, 24, 16);
-    const SceneView view = scene.view();
-    EmbreeQuery rays(scene.assets);
-    rays.update(view);
-    const LightSet lights = collectLights(view);
-    RayCounts counts;
+    const TracedScene traced(scene);
     const GBuffer gbuffer = surfaces(scene);
     const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0};
     Settings all;
     all.gather = settings;
     std::vector<double> means;
     for (uint32_t set = 0; set < 32; ++set) {
-      std::vector<Vpl> vpls = spreadOverBox(size, albedo, 2000, set);
+      std::vector<Vpl> vpls = spreadOverBox(box.size, box.albedo, 2000, set);
       std::vector<VirtualLight> shown;
       for (Vpl& v : vpls) {
-        v.radiance = albedo / kPi * punctualIrradiance(point, v.position, v.normal).irradiance;
+        v.radiance = box.albedo / kPi * punctualIrradiance(scene.lights[0], v.position, v.normal).irradiance;
         shown.push_back(lightOf(v));
       }
       const SurfaceLighting raw = gathered(gbuffer, shown, all);
       means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
     }
-    const ReferenceInputs in{rays, lights, view.camera, 1, settings.clamp, 1, &view};
-    ReferenceSums sums(24, 16);
-    addSamples(sums, in, 2000, counts);
-    const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Indirect);
-    const double truth = meanLuminance(picture.mean);
-    const Mean mean = meanOf(means);
+    const ReferenceInputs in{traced.rays, traced.lights, scene.camera, 1, settings.clamp, 1, &traced.view};
+    const ReferencePicture picture = trace(in, 2000, ReferenceBuffer::Indirect);
+    const Mean truth{meanLuminance(picture.mean), meanLuminance(picture.mean) * picture.relativeErrorOfMean};
     // 5e-4: the G-buffer's normals and albedos are half floats.
-    EXPECT_LT(std::abs(mean.mean - truth),
-              kDeviateLimit * std::hypot(mean.error, truth * picture.relativeErrorOfMean) + 5e-4 * truth)
-        << mean.mean << " against " << truth << ", roughness " << f.roughness;
-    EXPECT_LT(std::hypot(mean.error, truth * picture.relativeErrorOfMean), 0.015 * truth) << "too noisy to tell";
+    EXPECT_TRUE(agrees(meanOf(means), truth, 0.01 * truth.mean, 5e-4 * truth.mean)) << "roughness " << f.roughness;
+    EXPECT_LT(truth.error, 0.01 * truth.mean) << "too noisy to tell";
   }
 }
 
@@ -240,13 +198,8 @@ class GlossyFrameTest : public GlossyTest {
       room.scene.assets.materials[m].roughness = roughness;
       room.scene.assets.materials[m].metalness = metalness;
     }
-    LightView light;
-    light.position = {0.5f, 0.6f, 0.4f};
-    light.intensity = vec3(1);
-    room.scene.lights.push_back(light);
-    settings.smc.vpls = 256;
-    settings.smc.points = 256;
-    settings.smc.warmup = 10;
+    room.scene.lamp({0.5f, 0.6f, 0.4f}, vec3(1));
+    settings.smc = {.vpls = 256, .points = 256, .warmup = 10};
     settings.shadow.resolution = 64;
     settings.shadow.maker = ShadowMaker::Rays;
     settings.debug.timing = TimingMode::Finish;
@@ -260,9 +213,7 @@ class GlossyFrameTest : public GlossyTest {
 TEST_F(GlossyFrameTest, MapsAgreeWithARayForEveryPair) {
   const auto radianceOf = [&](VplVisibility visibility) {
     settings.vpl.visibility = visibility;
-    Viewer gi(settings);
-    gi.run(room.scene.view());
-    return gi.read(Buffer::Indirect);
+    return firstFrame(settings, room.scene.view(), Buffer::Indirect);
   };
   expectClose("glossy-maps", radianceOf(VplVisibility::Maps), radianceOf(VplVisibility::Rays), 0.03);
 }
@@ -279,11 +230,9 @@ TEST_F(GlossyFrameTest, BuffersAddUpAndSwitchingOffGoesBack) {
               1e-3f * glm::length(beauty.pixels[i]) + 1e-6f);
   const Image irradiance = gi.read(Buffer::Irradiance);
   gi.settings().gather.glossy = false;
-  SceneView still = room.scene.view();
-  still.changes = {false, false, false, false, false};
-  gi.run(still);
-  EXPECT_EQ(relativeRmse(gi.read(Buffer::Irradiance), irradiance), 0) << "irradiance is that of Lambert surfaces";
+  EXPECT_EQ(relativeRmse(nextFrame(gi, room.scene.view(kStill)), irradiance), 0)
+      << "irradiance is that of Lambert surfaces";
   EXPECT_GT(relativeRmse(gi.read(Buffer::Beauty), beauty), 0.02);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::glossy_test

@@ -1,28 +1,19 @@
 // The governor over real frames: its clock counts work (pixels, virtual lights, punctual lights), so that it says the
 // same on every machine; the pictures are real.
+#include "frames.h"
 #include "gi/plan/governor.h"
 #include "gi/viewer/viewer.h"
-#include "gl_fixture.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::governor_test {
 
 using GovernorFrames = GlTest;
-
 constexpr double kTarget = 20;
-
-} // namespace
 
 TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   Room room;
-  room.scene.camera.width = 96;
-  room.scene.camera.height = 64;
-  LightView lamp;
-  lamp.position = vec3(0.5f, 0.7f, 0.4f);
-  lamp.intensity = vec3(2);
-  room.scene.lights.push_back(lamp);
+  room.scene.picture(96, 64);
+  LightView lamp = room.scene.lamp({0.5f, 0.7f, 0.4f}, vec3(2));
   Settings settings;
   settings.smc.vpls = 512;
   settings.shadow.resolution = 64;
@@ -47,12 +38,10 @@ TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
     float scale = g.scale;
     for (int i = 0; i < frames; ++i) {
       room.scene.camera = whole.scaled(g.scale);
-      SceneView view = room.scene.view();
-      view.changes = {
-          .first = begins, .camera = g.scale != scale, .lights = i == 0, .geometry = begins, .instances = begins};
+      const SceneView view = room.scene.view(
+          {.first = begins, .camera = g.scale != scale, .lights = i == 0, .geometry = begins, .instances = begins});
       begins = false;
-      gi.run(view);
-      const double mean = meanLuminance(gi.read(Buffer::Indirect));
+      const double mean = meanLuminance(nextFrame(gi, view, Buffer::Indirect));
       if (i > 0 && g.scale != scale) { // this frame is the first at another scale
         largest = std::max(largest, std::abs(mean / before - 1));
         ++changes;
@@ -81,4 +70,4 @@ TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   std::printf("%d changes of scale, mean indirect light by %.2f %% at most\n", changes, 100 * largest);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::governor_test

@@ -1,16 +1,12 @@
 #include "engine/gpu_trace/gpu_rays.h"
 
-#include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/random_world.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::gpu_rays_test {
 
-using test::HandScene;
-
-class GpuRaysTest : public test::GlTest {};
+class GpuRaysTest : public GlTest {};
 
 std::vector<Ray> raysIn(const Aabb& box, size_t count, uint32_t seed) {
   std::vector<Ray> rays(count);
@@ -52,7 +48,7 @@ int differences(const RayQuery& a, const RayQuery& b, std::span<const Ray> rays)
 }
 
 TEST_F(GpuRaysTest, AgreeWithEmbreeWhileAnythingHappens) {
-  test::RandomWorld world(0.01f);
+  RandomWorld world(0.01f);
   GpuRays gpu(programs, world.assets());
   int wrong = 0, all = 0;
   for (uint32_t frame = 0; frame < 24; ++frame) {
@@ -70,17 +66,14 @@ TEST_F(GpuRaysTest, MasksAreCutOutAsEmbreeDoes) {
   for (const Wrap wrap : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge}) {
     for (const bool nearest : {false, true}) {
       HandScene scene;
-      TextureImage image;
-      image.width = 5;
-      image.height = 3;
-      for (int i = 0; i < 15; ++i) image.texels.push_back({255, 255, 255, uint8_t(i * 977 % 256)});
-      scene.assets.images.push_back(image);
+      std::vector<u8vec4> texels;
+      for (int i = 0; i < 15; ++i) texels.push_back({255, 255, 255, uint8_t(i * 977 % 256)});
       const uint32_t material = scene.material(vec3(0.5f));
       Material& m = scene.assets.materials[material];
       m.alphaMode = AlphaMode::Mask;
       m.alphaCutoff = 0.45f;
       m.alpha = 0.9f;
-      m.baseColorTexture.image = 0;
+      m.baseColorTexture = scene.texture(5, texels);
       m.baseColorTexture.wrapU = wrap;
       m.baseColorTexture.wrapV = Wrap::Repeat;
       m.baseColorTexture.nearest = nearest;
@@ -127,8 +120,7 @@ uint32_t ball(HandScene& scene, uint32_t material, int rings) {
     }
   mesh.boundsObject = {vec3(-1), vec3(1)};
   mesh.primitives.push_back({0, uint32_t(mesh.triangles.size()), material, mesh.boundsObject});
-  scene.assets.meshes.push_back(std::move(mesh));
-  return scene.instance(uint32_t(scene.assets.meshes.size() - 1), mat4(1));
+  return scene.add(std::move(mesh));
 }
 
 TEST_F(GpuRaysTest, NothingSlipsThroughJoints) {
@@ -184,5 +176,4 @@ TEST_F(GpuRaysTest, AnEmptySceneStopsNothing) {
   EXPECT_FALSE(gpu.occluded(Ray{vec3(0), vec3(0, 1, 0)}));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::gpu_rays_test

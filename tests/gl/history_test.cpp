@@ -3,7 +3,7 @@
 #include "still_room.h"
 #include "tests/support/images.h"
 
-namespace lambent::test {
+namespace lambent::test::history_test {
 
 class HistoryTest : public StillRoomTest {
  protected:
@@ -11,8 +11,7 @@ class HistoryTest : public StillRoomTest {
     settings.gather.checks = false;
     settings.shadow.resolution = 64;
     settings.history.frames = 16;
-    room.scene.camera.width = 96;
-    room.scene.camera.height = 72;
+    room.scene.picture(96, 72);
   }
 
   static Settings with(Settings s, GatherMode mode, int frames) {
@@ -71,15 +70,13 @@ TEST_F(HistoryTest, FollowsTheCamera) {
     mat4& pose = room.scene.camera.worldFromView;
     pose = glm::rotate(pose, 0.01f, vec3(0, 1, 0));
     pose[3].x += 0.015f;
-    gi.run(view({false, true, false, false, false}));
+    gi.run(view(kCameraChanged));
   }
   const Image last = gi.read(Buffer::Irradiance);
   gi.settings() = with(settings, GatherMode::Interleaved, 0); // the same lights
-  gi.run(still());
-  const Image one = gi.read(Buffer::Irradiance);
+  const Image one = nextFrame(gi, still());
   gi.settings() = with(settings, GatherMode::Full, 0);
-  gi.run(still());
-  const Image all = gi.read(Buffer::Irradiance);
+  const Image all = nextFrame(gi, still());
   const double moving = relativeRmse(last, all), single = relativeRmse(one, all);
   EXPECT_LT(moving, 0.95 * single);
   EXPECT_NEAR(meanLuminance(last), meanLuminance(all), 0.01 * meanLuminance(all));
@@ -97,7 +94,7 @@ TEST_F(HistoryTest, TakesNoLightFromOtherSurfaces) {
   gi.run(room.scene.view());
   for (int i = 0; i < 12; ++i) {
     room.scene.camera.worldFromView[3].x += 0.02f;
-    gi.run(view({false, true, false, false, false}));
+    gi.run(view(kCameraChanged));
   }
   const Image last = gi.read(Buffer::Irradiance);
   gi.settings() = with(settings, GatherMode::Full, 0); // the same lights
@@ -111,8 +108,7 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
   for (int i = 1; i < 20; ++i) gi.run(still());
   for (const float intensity : {4.0f, 0.25f, 0.3f}) { // twice at once, then by a fifth
     room.scene.lights[0].intensity = vec3(intensity);
-    gi.run(view({false, false, true, false, false}));
-    const double first = meanLuminance(gi.read(Buffer::Irradiance)), wanted = meanLuminance(allLights());
+    const double first = meanLuminance(nextFrame(gi, view(kLightsChanged))), wanted = meanLuminance(allLights());
     EXPECT_NEAR(first, wanted, 0.15 * wanted) << intensity;
     for (int i = 0; i < 4; ++i) gi.run(still());
     EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), wanted, 0.03 * wanted) << intensity;
@@ -127,14 +123,10 @@ TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
   gi.run(room.scene.view());
   for (int i = 1; i < 16; ++i) gi.run(still());
   for (const int width : {64, 48, 96}) {
-    room.scene.camera.width = width;
-    room.scene.camera.height = width * 3 / 4;
-    Viewer fresh(settings);
-    fresh.run(room.scene.view());
-    const Image all = allLights(), one = fresh.read(Buffer::Irradiance);
+    room.scene.picture(width, width * 3 / 4);
+    const Image all = allLights(), one = firstFrame(settings, room.scene.view());
     for (int i = 0; i < 3; ++i) { // the first of this size, and two that look up one of it
-      gi.run(view({false, i == 0, false, false, false}));
-      const Image along = gi.read(Buffer::Irradiance);
+      const Image along = nextFrame(gi, view({false, i == 0, false, false, false}));
       const double most = width < 96 ? 0.8 : 1.1; // larger: of coarser pixels, but no worse than none
       EXPECT_LT(relativeRmse(along, all), most * relativeRmse(one, all)) << width << " " << i;
       EXPECT_NEAR(meanLuminance(along), meanLuminance(all), 0.01 * meanLuminance(all)) << width << " " << i;
@@ -145,9 +137,7 @@ TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
 /// After other settings or another scene the next picture is that of a frame that begins.
 TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
   const auto asNew = [&](Viewer& gi, const Room& shown, const char* what) {
-    Viewer fresh(gi.settings());
-    fresh.run(shown.scene.view());
-    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, fresh.read(Buffer::Irradiance).pixels) << what;
+    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, firstFrame(gi.settings(), shown.scene.view()).pixels) << what;
   };
   Viewer gi(settings);
   gi.run(room.scene.view());
@@ -171,7 +161,7 @@ TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
   Viewer gi(settings);
   gi.run(room.scene.view());
   room.scene.lights[0].intensity = vec3(kInfinity);
-  gi.run(view({false, false, true, false, false}));
+  gi.run(view(kLightsChanged));
   room.scene.lights[0].intensity = vec3(1);
   for (int i = 0; i < 8; ++i) gi.run(view({false, false, i == 0, false, false}));
   EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(allLights()),
@@ -197,16 +187,13 @@ TEST_F(HistoryPassTest, CornersDoNotMix) {
     room.scene.camera.worldFromView[3].x += 0.003f; // part of a pixel
     room.scene.camera.worldFromView[3].y += 0.002f;
     const GBuffer gbuffer = surfaces(room.scene);
-    FrameResults results;
-    results.surfaces = gbuffer;
-    const Image normal = readBuffer(Buffer::Normal, results);
+    const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
     const auto lit = [&](int x, int y) { return normal.at(x, y).y > 0.5f ? 1.0f : 0.0f; };
     std::vector<vec4> light(64 * 48);
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) light[size_t(y) * 64 + x] = vec4(lit(x, 47 - y));
+    for (const auto [x, y] : Pixels(64, 48)) light[size_t(y) * 64 + x] = vec4(lit(x, 47 - y));
     const Image mean = averaged(gbuffer, light, i > 0);
-    for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 64; ++x) ASSERT_NEAR(mean.at(x, y).x, lit(x, y), 1e-5f) << x << ' ' << y << ' ' << i;
+    for (const auto [x, y] : Pixels(64, 48))
+      ASSERT_NEAR(mean.at(x, y).x, lit(x, y), 1e-5f) << x << ' ' << y << ' ' << i;
   }
 }
 
@@ -264,4 +251,4 @@ TEST_F(HistoryTest, TurnsTheClassesOfEveryGather) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::history_test

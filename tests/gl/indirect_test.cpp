@@ -3,7 +3,7 @@
 
 #include <random>
 
-namespace lambent::test {
+namespace lambent::test::indirect_test {
 
 using IndirectTest = GatherTest;
 
@@ -23,14 +23,13 @@ TEST_F(IndirectTest, OneVplOnAPlane) {
       const std::vector lights{lamp(position, normal, 4, 0.2f)};
       const SurfaceLighting raw = gathered(gbuffer, lights, settings);
       const Image image = read(Buffer::Unfiltered, gbuffer, raw);
-      for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-          const vec3 d = position - floor.at(x, y);
-          const float r2 = glm::dot(d, d), r = std::sqrt(r2);
-          float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + disk * 0.2f / kPi);
-          if (clamp > 0) g = std::min(g, clamp);
-          ASSERT_NEAR(image.at(x, y).x, 4 * 0.2f * g, 1e-3f * 0.8f * g + 1e-5f) << x << ' ' << y;
-        }
+      for (const auto [x, y] : Pixels(image)) {
+        const vec3 d = position - floor.at(x, y);
+        const float r2 = glm::dot(d, d), r = std::sqrt(r2);
+        float g = std::max(0.0f, glm::dot(normal, -d) / r) * d.y / r / (r2 + disk * 0.2f / kPi);
+        if (clamp > 0) g = std::min(g, clamp);
+        ASSERT_NEAR(image.at(x, y).x, 4 * 0.2f * g, 1e-3f * 0.8f * g + 1e-5f) << x << ' ' << y;
+      }
     }
 }
 
@@ -52,25 +51,23 @@ TEST_F(IndirectTest, AVplOnTheShadedPointIsNoDivisionByZero) {
 /// 40 VPLs that make every class of 16 different, over several sizes that 4 does not divide.
 TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
   Floor floor;
-  floor.scene.camera.width = 37;
-  floor.scene.camera.height = 27;
+  floor.scene.picture(37, 27);
   const GBuffer gbuffer = surfaces(floor.scene);
   std::vector<VirtualLight> vpls;
   for (int i = 0; i < 40; ++i)
     vpls.push_back(lamp(vec3(0.1f * float(i) - 2, 1 + 0.05f * float(i), 0.3f), vec3(0, -1, 0), 1 + float(i), 0.1f));
   const Image image = read(Buffer::Unfiltered, gbuffer, gathered(gbuffer, vpls, Settings{}));
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const int fromBottom = image.height - 1 - y;
-      const size_t c = size_t(x % 4 + 4 * (fromBottom % 4));
-      float wanted = 0;
-      for (size_t i = c; i < vpls.size(); i += 16) {
-        const vec3 d = vpls[i].position - floor.at(x, y);
-        const float r2 = glm::dot(d, d);
-        wanted += 16 * vpls[i].radiance.x * 0.1f * d.y * d.y / r2 / (r2 + GatherSettings{}.disk * 0.1f / kPi);
-      }
-      ASSERT_NEAR(image.at(x, y).x, wanted, 2e-3f * wanted) << x << ' ' << y;
+  for (const auto [x, y] : Pixels(image)) {
+    const int fromBottom = image.height - 1 - y;
+    const size_t c = size_t(x % 4 + 4 * (fromBottom % 4));
+    float wanted = 0;
+    for (size_t i = c; i < vpls.size(); i += 16) {
+      const vec3 d = vpls[i].position - floor.at(x, y);
+      const float r2 = glm::dot(d, d);
+      wanted += 16 * vpls[i].radiance.x * 0.1f * d.y * d.y / r2 / (r2 + GatherSettings{}.disk * 0.1f / kPi);
     }
+    ASSERT_NEAR(image.at(x, y).x, wanted, 2e-3f * wanted) << x << ' ' << y;
+  }
 }
 
 TEST_F(IndirectTest, InterleavedMeansTheSameAsFull) {
@@ -136,33 +133,29 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   // Each subset holds another constant; their mean must appear wherever the kernel lies inside the picture.
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec4> texels(64 * 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(vec3(float(1 << (x / 16 + 4 * (y / 12)))), 1);
+  for (const auto [x, y] : Pixels(64, 48))
+    texels[size_t(y) * 64 + x] = vec4(vec3(float(1 << (x / 16 + 4 * (y / 12)))), 1);
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
-  for (int y = 3; y < 45; ++y)
-    for (int x = 3; x < 61; ++x) ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
+  for (const auto [x, y] : Pixels({3, 3}, {61, 45}))
+    ASSERT_NEAR(image.at(x, y).x, 65535 / 16.0f, 0.05f) << x << ' ' << y;
 }
 
 TEST_F(IndirectTest, FilterStopsAtEdges) {
   const Room room;
   const GBuffer gbuffer = surfaces(room.scene);
   // Light only where the normal points up (the floor and the block's top), in place of a gather.
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
   std::vector<vec4> texels(64 * 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x)
-      texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
+  for (const auto [x, y] : Pixels(64, 48))
+    texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
   const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x)
-      ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
+  for (const auto [x, y] : Pixels(64, 48))
+    ASSERT_NEAR(image.at(x, y).x, normal.at(x, y).y > 0.5f ? 1 : 0, 1e-3f) << x << ' ' << y;
 }
 
 TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same way
@@ -172,23 +165,20 @@ TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same 
   scene.quad(vec3(-0.5f, -0.5f, -2), vec3(1, 0, 0), vec3(0, 1, 0), white);
   scene.camera = cameraAt(vec3(0), vec3(0, 0, -1), 1.0f);
   const GBuffer gbuffer = surfaces(scene);
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image depth = readBuffer(Buffer::Depth, results);
+  const Image depth = surfaceBuffer(Buffer::Depth, gbuffer);
   std::vector<vec4> texels(64 * 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);
+  for (const auto [x, y] : Pixels(64, 48))
+    texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);
   const gl::Texture light("light", {.format = GL_RGBA32F, .width = 64, .height = 48});
   glTextureSubImage2D(light.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
   const SurfaceLighting raw{&light, nullptr, false, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   int nearer = 0;
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const bool lit = depth.at(x, y).x < 2.5f;
-      nearer += lit;
-      ASSERT_NEAR(image.at(x, y).x, lit ? 1 : 0, 1e-3f) << x << ' ' << y;
-    }
+  for (const auto [x, y] : Pixels(64, 48)) {
+    const bool lit = depth.at(x, y).x < 2.5f;
+    nearer += lit;
+    ASSERT_NEAR(image.at(x, y).x, lit ? 1 : 0, 1e-3f) << x << ' ' << y;
+  }
   EXPECT_GT(nearer, 100);
 }
 
@@ -199,8 +189,7 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   const GBuffer gbuffer = surfaces(scene);
   const gl::Texture irradiance("irradiance", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec3> texels(64 * 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) texels[size_t(47 - y) * 64 + x] = vec3(float(y + 1)); // rows from the bottom
+  for (const auto [x, y] : Pixels(64, 48)) texels[size_t(47 - y) * 64 + x] = vec3(float(y + 1)); // rows from the bottom
   glTextureSubImage2D(irradiance.name(), 0, 0, 0, 64, 48, GL_RGB, GL_FLOAT, texels.data());
   CompositePass composite(passes);
   const SurfaceLighting indirect{&irradiance}, direct{&irradiance};
@@ -223,4 +212,4 @@ TEST_F(IndirectTest, CompositeAddsUp) {
     ASSERT_LT(glm::length(beauty.pixels[i] - parts[0].pixels[i] - parts[1].pixels[i]), 1e-3f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::indirect_test

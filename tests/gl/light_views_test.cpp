@@ -1,11 +1,9 @@
 // What direct and reflected light agree on about a punctual light.
 #include "gi/contract/light_views.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <limits>
-
-namespace lambent::test {
+namespace lambent::test::light_views_test {
 
 LightView lightOf(LightType type, float outerDegrees = 45) {
   LightView light;
@@ -58,4 +56,4 @@ TEST(LightViews, RangeAndNearPlane) {
   EXPECT_NEAR(nearPlane(bounds), 0.005f, 1e-7f);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::light_views_test

@@ -3,17 +3,11 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "engine/trace/embree_query.h"
 #include "gi/visibility/map_schedule.h"
 #include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
-#include "shaders/shared/paraboloid.h"
 
-#include <algorithm>
-#include <numeric>
-
-namespace lambent::test {
-namespace {
+namespace lambent::test::map_schedule_test {
 
 /// The direction that a texel looks in, world space; nothing for those that see nothing (as castMap).
 std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolution) {
@@ -28,10 +22,9 @@ std::optional<vec3> texelDirection(const MapPose& pose, int x, int y, int resolu
 TexelRect texelsMet(const MapPose& pose, const Aabb& box, int resolution) {
   const vec3 origin = offsetPoint(pose.position, pose.geometricNormal, 1e-4f);
   TexelRect met;
-  for (int y = 0; y < resolution; ++y)
-    for (int x = 0; x < resolution; ++x)
-      if (const auto d = texelDirection(pose, x, y, resolution); d && crosses(Ray{origin, *d}, box))
-        met.add({x, y, x + 1, y + 1});
+  for (const auto [x, y] : Pixels(resolution, resolution))
+    if (const auto d = texelDirection(pose, x, y, resolution); d && crosses(Ray{origin, *d}, box))
+      met.add({x, y, x + 1, y + 1});
   return met;
 }
 
@@ -115,35 +108,19 @@ TEST(TexelsCovered, NothingBehindTheLightAndAllAroundIt) {
 /// A closed room with a block in it that can be carried about.
 struct RoomWithBlock {
   HandScene scene;
-  uint32_t block = 0;
+  uint32_t carried = 0;
 
   RoomWithBlock() {
     const uint32_t white = scene.material(vec3(0.7f));
     scene.box(vec3(-1), vec3(1), white, true);
-    Mesh mesh;
-    for (int i = 0; i < 8; ++i) mesh.positions.push_back(0.2f * vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-    mesh.normals.assign(8, vec3(0, 1, 0));
-    mesh.uv0.assign(8, vec2(0));
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
-    mesh.primitives.push_back({0, 12, white, mesh.boundsObject});
-    scene.assets.meshes.push_back(std::move(mesh));
-    block = scene.instance(uint32_t(scene.assets.meshes.size() - 1), mat4(1));
+    carried = scene.add(block(vec3(0.2f), white));
   }
 
   /// Carries the block and returns the view that tells of it.
   SceneView carry(const vec3& to, float turn) {
-    InstanceView& i = scene.instances[block];
-    i.worldFromObjectBefore = i.worldFromObject;
-    i.boundsWorldBefore = i.boundsWorld;
     const float c = std::cos(turn), s = std::sin(turn);
-    i.worldFromObject = mat4(vec4(c, 0, -s, 0), vec4(0, 1, 0, 0), vec4(s, 0, c, 0), vec4(to, 1));
-    i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
-    i.moved = true;
-    SceneView view = scene.view();
-    view.changes.geometry = true;
-    return view;
+    scene.place(carried, mat4(vec4(c, 0, -s, 0), vec4(0, 1, 0, 0), vec4(s, 0, c, 0), vec4(to, 1)));
+    return scene.view();
   }
 };
 
@@ -444,40 +421,23 @@ TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
   }
 }
 
-} // namespace
 /// All lights ride on walls that move, as in a lift.
 TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   Room room;
-  LightView lamp;
-  lamp.position = vec3(0.5f, 0.7f, 0.4f);
-  lamp.intensity = vec3(2);
-  room.scene.lights.push_back(lamp);
-  room.scene.camera.width = 32;
-  room.scene.camera.height = 24;
+  room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
+  room.scene.picture(32, 24);
   Settings settings;
-  settings.smc.vpls = 256;
-  settings.smc.warmup = 4;
-  settings.smc.moves = 0;
-  settings.shadow.resolution = 32;
-  settings.shadow.refresh = 4;
-  settings.shadow.maker = ShadowMaker::Rays;
+  settings.smc = {.vpls = 256, .moves = 0, .warmup = 4};
+  settings.shadow = {.resolution = 32, .maker = ShadowMaker::Rays, .refresh = 4};
   Viewer gi(settings);
   gi.run(room.scene.view());
   uint64_t most = 0;
   for (int frame = 0; frame < 4; ++frame) {
     const vec4 step(0, 0.01f, 0, 0);
-    for (InstanceView& i : room.scene.instances) {
-      i.moved = true;
-      i.worldFromObjectBefore = i.worldFromObject;
-      i.boundsWorldBefore = i.boundsWorld;
-      i.worldFromObject[3] += step;
-      i.boundsWorld = transformed(room.scene.assets.meshes[i.mesh].boundsObject, i.worldFromObject);
-    }
+    room.scene.move(0, vec3(step));
     room.scene.lights[0].position += vec3(step);
     room.scene.camera.worldFromView[3] += step;
-    SceneView view = room.scene.view();
-    view.changes = {false, true, true, true, false};
-    const FrameStats& stats = gi.run(view);
+    const FrameStats& stats = gi.run(room.scene.view({false, true, true, true, false}));
     EXPECT_GT(stats.vplsAlive, 200u);
     EXPECT_GT(stats.mapsWaiting, 200u) << "or nothing rode";
     most = std::max(most, stats.mapTexelsDrawn);
@@ -486,4 +446,4 @@ TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   EXPECT_LE(most, 5u * 32 * 32); // the last map may pass the budget
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::map_schedule_test

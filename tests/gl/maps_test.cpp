@@ -1,9 +1,8 @@
 // Paraboloid maps: the two makers agree, and both agree with closed forms.
 #include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
-#include "shaders/shared/paraboloid.h"
 
-namespace lambent::test {
+namespace lambent::test::maps_test {
 
 class MapsTest : public GatherTest {
  protected:
@@ -44,16 +43,15 @@ TEST_F(MapsTest, MakersAgree) {
   for (const MapPose& pose : all) {
     const MakerComparison maps = pass.compareMakers(in, pose);
     int inside = 0, close = 0;
-    for (int y = 0; y < maps.resolution; ++y)
-      for (int x = 0; x < maps.resolution; ++x) {
-        const vec2 uv = (vec2(x, y) + 0.5f) / float(maps.resolution);
-        if (directionFromParaboloid(uv).z < 0.1f) continue; // at the horizon a texel sees metres of the floor it is on
-        ++inside;
-        const size_t i = size_t(y) * maps.resolution + x;
-        // A face's texel stands for up to 0.7 texels around it; on a surface at 80° to the ray that is 3 % per texel.
-        // Below a tilted map's own surface, distances are millimetres, and only their size means anything.
-        if (std::abs(maps.raster[i] - maps.rays[i]) < 0.08f * maps.rays[i] + 0.005f) ++close;
-      }
+    for (const auto [x, y] : Pixels(maps.resolution, maps.resolution)) {
+      const vec2 uv = (vec2(x, y) + 0.5f) / float(maps.resolution);
+      if (directionFromParaboloid(uv).z < 0.1f) continue; // at the horizon a texel sees metres of the floor it is on
+      ++inside;
+      const size_t i = size_t(y) * maps.resolution + x;
+      // A face's texel stands for up to 0.7 texels around it; on a surface at 80° to the ray that is 3 % per texel.
+      // Below a tilted map's own surface, distances are millimetres, and only their size means anything.
+      if (std::abs(maps.raster[i] - maps.rays[i]) < 0.08f * maps.rays[i] + 0.005f) ++close;
+    }
     EXPECT_GT(inside, 2000);
     // The rest lies on silhouettes, where the nearest texel falls to the other side.
     EXPECT_GT(double(close) / inside, 0.97)
@@ -114,8 +112,7 @@ TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
 /// A VPL on the floor lights the room through its map exactly where a ray from it is free.
 TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
   Room room;
-  room.scene.camera.width = 96;
-  room.scene.camera.height = 72;
+  room.scene.picture(96, 72);
   const VirtualLight vpl = lightAt({0.6f, -1, 0}, {0, 1, 0}, vec3(1), 0.01f);
   poses = {vpl.pose(1e-4f)};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
@@ -135,16 +132,15 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
     std::vector<int> answers(kWidth * kHeight, None); // of rays
     std::vector<vec3> normals(kWidth * kHeight);
     const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        if (!(open.at(x, y).x > 0)) continue;
-        const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / kWidth, (float(y) + 0.5f) / kHeight);
-        const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
-        answers[y * kWidth + x] = room.rays.occluded(segment(offsetPoint(hit.position, hit.geometricNormal, 1e-4f),
-                                                             offsetPoint(vpl.position, vpl.geometricNormal, 1e-4f)));
-        normals[y * kWidth + x] = hit.geometricNormal;
-        EXPECT_NEAR(depth.at(x, y).x, glm::dot(hit.position - ray.origin, forward), 0.3f);
-      }
+    for (const auto [x, y] : Pixels(kWidth, kHeight)) {
+      if (!(open.at(x, y).x > 0)) continue;
+      const CameraRay ray = pixelRay(room.scene.camera, x, y);
+      const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+      answers[y * kWidth + x] = room.rays.occluded(segment(offsetPoint(hit.position, hit.geometricNormal, 1e-4f),
+                                                           offsetPoint(vpl.position, vpl.geometricNormal, 1e-4f)));
+      normals[y * kWidth + x] = hit.geometricNormal;
+      EXPECT_NEAR(depth.at(x, y).x, glm::dot(hit.position - ray.origin, forward), 0.3f);
+    }
     const auto alike = [&](int x, int y, int reach) { // all around it on this surface have its answer
       for (int v = std::max(0, y - reach); v <= std::min(kHeight - 1, y + reach); ++v)
         for (int u = std::max(0, x - reach); u <= std::min(kWidth - 1, x + reach); ++u)
@@ -155,14 +151,13 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
     struct Count {
       int pixels = 0, wrong = 0;
     } far[2], near[2], edge[2]; // by answer
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const int answer = answers[y * kWidth + x];
-        if (answer == None) continue;
-        Count& count = (alike(x, y, 4) ? far : alike(x, y, 2) ? near : edge)[answer];
-        ++count.pixels;
-        count.wrong += (lit.at(x, y).x > 0) == (answer == Blocked);
-      }
+    for (const auto [x, y] : Pixels(kWidth, kHeight)) {
+      const int answer = answers[y * kWidth + x];
+      if (answer == None) continue;
+      Count& count = (alike(x, y, 4) ? far : alike(x, y, 2) ? near : edge)[answer];
+      ++count.pixels;
+      count.wrong += (lit.at(x, y).x > 0) == (answer == Blocked);
+    }
     for (const Answer answer : {Free, Blocked}) {
       const std::string what = std::string(answer == Free ? "acne" : "leaks") + ", maker " + std::to_string(int(maker));
       EXPECT_GT(far[answer].pixels, answer == Free ? 2500 : 400) << what;
@@ -174,4 +169,4 @@ TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::maps_test

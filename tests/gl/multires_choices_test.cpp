@@ -1,10 +1,7 @@
 // Patches as the papers have them: a finest size, split by depth, upsampled without regard to surfaces.
 #include "multires_fixture.h"
-#include "shaders/shared/patches.h"
 
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::multires_choices_test {
 
 /// A panel before a wall, over the left half of the picture, and a lamp between them that lights the wall alone.
 struct Panels {
@@ -36,12 +33,9 @@ std::vector<float> depths(const GBuffer& gbuffer) {
   return depth;
 }
 
-} // namespace
-
 TEST_F(MultiresTest, NoPatchIsSmallerThanTheFinest) {
   Room room;
-  room.scene.camera.width = 128;
-  room.scene.camera.height = 96;
+  room.scene.picture(128, 96);
   const GBuffer gbuffer = surfaces(room.scene);
   uint64_t before = ~0ull;
   for (int level = 0; level <= 4; ++level) {
@@ -69,8 +63,7 @@ TEST_F(MultiresTest, NoPatchIsSmallerThanTheFinest) {
 /// What makes a patch of the finest size split if it might be, splits those that it is part of.
 TEST_F(MultiresTest, AboveTheFinestPatchesAreThoseOfPixels) {
   Room room;
-  room.scene.camera.width = 128;
-  room.scene.camera.height = 96;
+  room.scene.picture(128, 96);
   const GBuffer gbuffer = surfaces(room.scene);
   for (const bool edges : {true, false}) {
     multires(gbuffer, roomLights(), {.coarsest = 8, .balance = false, .edges = edges});
@@ -81,10 +74,9 @@ TEST_F(MultiresTest, AboveTheFinestPatchesAreThoseOfPixels) {
   }
   multires(gbuffer, roomLights(), {.coarsest = 8, .finest = 4});
   const std::vector<int> levels = patchLevels(gbuffer);
-  for (int y = 0; y < 95; ++y)
-    for (int x = 0; x < 127; ++x)
-      for (const int other : {y * 128 + x + 1, (y + 1) * 128 + x, (y + 1) * 128 + x + 1})
-        ASSERT_LE(std::abs(levels[size_t(y) * 128 + x] - levels[size_t(other)]), 1) << "balance";
+  for (const auto [x, y] : Pixels(127, 95))
+    for (const int other : {y * 128 + x + 1, (y + 1) * 128 + x, (y + 1) * 128 + x + 1})
+      ASSERT_LE(std::abs(levels[size_t(y) * 128 + x] - levels[size_t(other)]), 1) << "balance";
 }
 
 /// A patch that would be split and may not has no parts to be balanced against.
@@ -142,8 +134,7 @@ TEST_F(MultiresTest, SplattingIsGatheringAtFinestPatchesToo) {
 /// Paper 2, 3.3.1, over view depths that nothing but the picture tells.
 TEST_F(MultiresTest, DepthSplitsWhereItsRangeIsTooLarge) {
   Room room;
-  room.scene.camera.width = 128;
-  room.scene.camera.height = 96;
+  room.scene.picture(128, 96);
   const GBuffer gbuffer = surfaces(room.scene);
   const std::vector<float> depth = depths(gbuffer);
   for (const float threshold : {0.01f, 0.05f, 0.3f}) {
@@ -155,20 +146,19 @@ TEST_F(MultiresTest, DepthSplitsWhereItsRangeIsTooLarge) {
               .balance = false,
               .edges = false});
     const std::vector<int> levels = patchLevels(gbuffer);
-    for (int y = 0; y < 96; ++y)
-      for (int x = 0; x < 128; ++x) {
-        int expected = 0;
-        for (int level = 1; level <= patches->levels; ++level) {
-          float lo = kInfinity, hi = 0; // inverse
-          for (int j = y >> level << level; j < std::min(96, ((y >> level) + 1) << level); ++j)
-            for (int i = x >> level << level; i < ((x >> level) + 1) << level; ++i) {
-              lo = std::min(lo, depth[size_t(j) * 128 + i]);
-              hi = std::max(hi, depth[size_t(j) * 128 + i]);
-            }
-          if ((hi - lo) * (1 / lo) < threshold) expected = level;
-        }
-        ASSERT_EQ(levels[size_t(y) * 128 + x], expected) << x << ' ' << y << ' ' << threshold;
+    for (const auto [x, y] : Pixels(128, 96)) {
+      int expected = 0;
+      for (int level = 1; level <= patches->levels; ++level) {
+        float lo = kInfinity, hi = 0; // inverse
+        for (int j = y >> level << level; j < std::min(96, ((y >> level) + 1) << level); ++j)
+          for (int i = x >> level << level; i < ((x >> level) + 1) << level; ++i) {
+            lo = std::min(lo, depth[size_t(j) * 128 + i]);
+            hi = std::max(hi, depth[size_t(j) * 128 + i]);
+          }
+        if ((hi - lo) * (1 / lo) < threshold) expected = level;
       }
+      ASSERT_EQ(levels[size_t(y) * 128 + x], expected) << x << ' ' << y << ' ' << threshold;
+    }
   }
 }
 
@@ -203,13 +193,12 @@ TEST_F(MultiresTest, BilinearLeaksOverAnEdgeAndBilateralDoesNot) {
     const Image image =
         multires(gbuffer, panels.lamp, {.coarsest = 4, .finest = finest, .edges = edges, .upsample = upsample});
     double dark = 0, missing = 0, all = 0;
-    for (int y = 0; y < 64; ++y)
-      for (int x = 56; x < 72; ++x) {
-        const float light = image.at(x, y).x, right = full.at(x, y).x;
-        EXPECT_EQ(right > 0, x >= 64);
-        (right == 0 ? dark : missing) += right == 0 ? light : std::max(0.0f, right - light);
-        all += right;
-      }
+    for (const auto [x, y] : Pixels({56, 0}, {72, 64})) {
+      const float light = image.at(x, y).x, right = full.at(x, y).x;
+      EXPECT_EQ(right > 0, x >= 64);
+      (right == 0 ? dark : missing) += right == 0 ? light : std::max(0.0f, right - light);
+      all += right;
+    }
     return std::pair(dark / all, missing / all);
   };
   for (const bool edges : {true, false})
@@ -237,41 +226,38 @@ TEST_F(MultiresTest, BilinearIsThePapersUpsampling) {
   Level coarse{0, 0, {}};
   for (int level = 4; level >= 0; --level) {
     Level fine{64 >> level, 48 >> level, {}};
-    for (int y = 0; y < fine.height; ++y)
-      for (int x = 0; x < fine.width; ++x) {
-        std::optional<float>& light = fine.light.emplace_back();
-        const ivec2 centre = patchCentre(ivec2(x, y), level);
-        if (levels[size_t(y << level) * 64 + (x << level)] == level) {
-          light = full.at(centre.x, 47 - centre.y).y;
-          continue;
-        }
-        if (level == 4 || !coarse.light[size_t(y / 2 * coarse.width + x / 2)]) continue;
-        const vec2 at = (vec2(centre) - vec2(patchCentre(ivec2(0), level + 1))) / float(2 << level); // coarse texels
-        float sum = 0, weights = 0;
-        for (int j = 0; j < coarse.height; ++j)
-          for (int i = 0; i < coarse.width; ++i) {
-            const vec2 away = glm::abs(at - vec2(i, j));
-            const std::optional<float>& value = coarse.light[size_t(j * coarse.width + i)];
-            if (!value || away.x >= 1 || away.y >= 1) continue;
-            sum += (1 - away.x) * (1 - away.y) * *value;
-            weights += (1 - away.x) * (1 - away.y);
-          }
-        light = sum / weights;
+    for (const auto [x, y] : Pixels(fine)) {
+      std::optional<float>& light = fine.light.emplace_back();
+      const ivec2 centre = patchCentre(ivec2(x, y), level);
+      if (levels[size_t(y << level) * 64 + (x << level)] == level) {
+        light = full.at(centre.x, 47 - centre.y).y;
+        continue;
       }
+      if (level == 4 || !coarse.light[size_t(y / 2 * coarse.width + x / 2)]) continue;
+      const vec2 at = (vec2(centre) - vec2(patchCentre(ivec2(0), level + 1))) / float(2 << level); // coarse texels
+      float sum = 0, weights = 0;
+      for (int j = 0; j < coarse.height; ++j)
+        for (int i = 0; i < coarse.width; ++i) {
+          const vec2 away = glm::abs(at - vec2(i, j));
+          const std::optional<float>& value = coarse.light[size_t(j * coarse.width + i)];
+          if (!value || away.x >= 1 || away.y >= 1) continue;
+          sum += (1 - away.x) * (1 - away.y) * *value;
+          weights += (1 - away.x) * (1 - away.y);
+        }
+      light = sum / weights;
+    }
     coarse = std::move(fine);
   }
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const float expected = *coarse.light[size_t(y) * 64 + x];
-      ASSERT_NEAR(image.at(x, 47 - y).y, expected, 1e-4f * expected) << x << ' ' << y;
-    }
+  for (const auto [x, y] : Pixels(64, 48)) {
+    const float expected = *coarse.light[size_t(y) * 64 + x];
+    ASSERT_NEAR(image.at(x, 47 - y).y, expected, 1e-4f * expected) << x << ' ' << y;
+  }
 }
 
 /// As the paper's figure 3: nothing comes from texels that hold no light, and nothing goes to them.
 TEST_F(MultiresTest, AConstantStaysConstantUpsampledEitherWay) {
   Room room;
-  room.scene.camera.width = 131;
-  room.scene.camera.height = 77;
+  room.scene.picture(131, 77);
   const GBuffer gbuffer = surfaces(room.scene);
   std::vector<VirtualLight> lights;
   for (const vec3& axis : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)})
@@ -306,4 +292,4 @@ TEST_F(MultiresTest, GlossyLightOfFinestPatchesIsUpsampledEitherWay) {
     }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::multires_choices_test

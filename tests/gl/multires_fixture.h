@@ -36,9 +36,8 @@ class MultiresTest : public GatherTest {
       const glm::ivec2 size = p.padded / (1 << level);
       std::vector<vec4> lo(size_t(size.x) * size.y);
       glGetTextureImage(p.normalLo->name(), level - 1, GL_RGBA, GL_FLOAT, GLsizei(lo.size() * sizeof(vec4)), lo.data());
-      for (int y = 0; y < gbuffer.height; ++y)
-        for (int x = 0; x < gbuffer.width; ++x)
-          if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f) levels[size_t(y) * gbuffer.width + x] = level;
+      for (const auto [x, y] : Pixels(gbuffer))
+        if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f) levels[size_t(y) * gbuffer.width + x] = level;
     }
     std::vector<float> depth(levels.size());
     glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
@@ -54,22 +53,20 @@ class MultiresTest : public GatherTest {
   std::vector<GatheredPatch> gatheredPatches(const GBuffer& gbuffer) {
     const std::vector<int> levels = patchLevels(gbuffer);
     std::vector<GatheredPatch> patches;
-    for (int y = 0; y < gbuffer.height; ++y)
-      for (int x = 0; x < gbuffer.width; ++x) {
-        const int level = levels[size_t(y) * gbuffer.width + x];
-        if (level < 0 || x % (1 << level) || y % (1 << level)) continue;
-        const glm::ivec2 size(gbuffer.width, gbuffer.height);
-        patches.push_back({patchPixel(glm::ivec2(x >> level, y >> level), level, 1, glm::ivec2(0), size), level});
-      }
+    for (const auto [x, y] : Pixels(gbuffer)) {
+      const int level = levels[size_t(y) * gbuffer.width + x];
+      if (level < 0 || x % (1 << level) || y % (1 << level)) continue;
+      const glm::ivec2 size(gbuffer.width, gbuffer.height);
+      patches.push_back({patchPixel(glm::ivec2(x >> level, y >> level), level, 1, glm::ivec2(0), size), level});
+    }
     return patches;
   }
   static uint64_t patchesOf(const std::vector<int>& levels, int width, int height) {
     uint64_t count = 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const int level = levels[size_t(y) * width + x];
-        count += level >= 0 && x % (1 << level) == 0 && y % (1 << level) == 0;
-      }
+    for (const auto [x, y] : Pixels(width, height)) {
+      const int level = levels[size_t(y) * width + x];
+      count += level >= 0 && x % (1 << level) == 0 && y % (1 << level) == 0;
+    }
     return count;
   }
 };

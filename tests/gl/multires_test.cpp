@@ -1,13 +1,12 @@
 // The multiresolution buffer: which patches it takes, what it gathers there, and how pixels get their light back.
 #include "multires_fixture.h"
 
-namespace lambent::test {
+namespace lambent::test::multires_test {
 
 TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
   Room room;
   for (const glm::ivec2 size : {glm::ivec2(64, 48), glm::ivec2(131, 77)}) {
-    room.scene.camera.width = size.x;
-    room.scene.camera.height = size.y;
+    room.scene.picture(size.x, size.y);
     const GBuffer gbuffer = surfaces(room.scene);
     const MultiresSettings settings{.coarsest = 4, .depth = 0};
     const Image full = gathered(gbuffer, roomLights(), GatherMode::Full);
@@ -20,8 +19,7 @@ TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
 /// Six lights far away, one along each axis, light every face of axis-aligned boxes alike.
 TEST_F(MultiresTest, AConstantStaysConstant) {
   Room room;
-  room.scene.camera.width = 131;
-  room.scene.camera.height = 77;
+  room.scene.picture(131, 77);
   const GBuffer gbuffer = surfaces(room.scene);
   std::vector<VirtualLight> lights(16 * 6, VirtualLight{}); // every class has all six
   for (int i = 0; i < 6; ++i) {
@@ -52,37 +50,33 @@ TEST_F(MultiresTest, AConstantStaysConstant) {
 /// pixel was gathered within one and a half sides of a patch, on surfaces that face its way.
 TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGatheredAroundIt) {
   Room room;
-  room.scene.camera.width = 128;
-  room.scene.camera.height = 96;
+  room.scene.picture(128, 96);
   const GBuffer gbuffer = surfaces(room.scene);
   const std::vector<VirtualLight> lights = lightsIn(vec3(0, -0.5f, 0), vec3(0.5f), 40); // none close to a wall
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const Image image = multires(gbuffer, lights, {.coarsest = 4});
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
   const std::vector<GatheredPatch> places = gatheredPatches(gbuffer);
   const std::vector<int> levels = patchLevels(gbuffer);
   double sumFull = 0, sum = 0;
-  for (int y = 0; y < 96; ++y)
-    for (int x = 0; x < 128; ++x) {
-      float lo = kInfinity, hi = 0;
-      for (const GatheredPatch& p : places) {
-        const glm::ivec2 away = glm::abs(p.pixel - glm::ivec2(x, y));
-        const float side = float(1 << std::max(p.level, levels[size_t(y) * 128 + x]));
-        if (float(std::max(away.x, away.y)) > 1.5f * side ||
-            glm::dot(normal.at(x, 95 - y), normal.at(p.pixel.x, 95 - p.pixel.y)) < 0.5f)
-          continue;
-        const float light = full.at(p.pixel.x, 95 - p.pixel.y).y;
-        lo = std::min(lo, light);
-        hi = std::max(hi, light);
-      }
-      const float light = image.at(x, 95 - y).y;
-      ASSERT_GE(light, 0.9999f * lo) << x << ' ' << y;
-      ASSERT_LE(light, 1.0001f * hi) << x << ' ' << y;
-      sumFull += full.at(x, 95 - y).y;
-      sum += light;
+  for (const auto [x, y] : Pixels(128, 96)) {
+    float lo = kInfinity, hi = 0;
+    for (const GatheredPatch& p : places) {
+      const glm::ivec2 away = glm::abs(p.pixel - glm::ivec2(x, y));
+      const float side = float(1 << std::max(p.level, levels[size_t(y) * 128 + x]));
+      if (float(std::max(away.x, away.y)) > 1.5f * side ||
+          glm::dot(normal.at(x, 95 - y), normal.at(p.pixel.x, 95 - p.pixel.y)) < 0.5f)
+        continue;
+      const float light = full.at(p.pixel.x, 95 - p.pixel.y).y;
+      lo = std::min(lo, light);
+      hi = std::max(hi, light);
     }
+    const float light = image.at(x, 95 - y).y;
+    ASSERT_GE(light, 0.9999f * lo) << x << ' ' << y;
+    ASSERT_LE(light, 1.0001f * hi) << x << ' ' << y;
+    sumFull += full.at(x, 95 - y).y;
+    sum += light;
+  }
   EXPECT_NEAR(sum / sumFull, 1, 0.02);
 }
 
@@ -115,19 +109,16 @@ TEST_F(MultiresTest, NoPatchSpansAStep) {
   scene.quad(vec3(-9, 1, 0), vec3(18, 0, 0), vec3(0, 0.08f, 0), grey);
   scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 96);
   const GBuffer gbuffer = surfaces(scene);
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image depth = readBuffer(Buffer::Depth, results);
+  const Image depth = surfaceBuffer(Buffer::Depth, gbuffer);
   for (const auto& [balance, edges] : {std::pair(true, true), std::pair(false, false)}) {
     multires(gbuffer, roomLights(), {.coarsest = 2, .balance = balance, .edges = edges});
     const std::vector<int> levels = patchLevels(gbuffer);
     EXPECT_GE(*std::max_element(levels.begin(), levels.end()), 3) << "or nothing could span a step";
-    for (int y = 0; y < 96; ++y)
-      for (int x = 0; x < 128; ++x) { // against the first pixel of its patch
-        const int level = levels[size_t(y) * 128 + x];
-        ASSERT_NEAR(depth.at(x >> level << level, 95 - (y >> level << level)).x, depth.at(x, 95 - y).x, 0.5f)
-            << x << ' ' << y << ", level " << level;
-      }
+    for (const auto [x, y] : Pixels(128, 96)) { // against the first pixel of its patch
+      const int level = levels[size_t(y) * 128 + x];
+      ASSERT_NEAR(depth.at(x >> level << level, 95 - (y >> level << level)).x, depth.at(x, 95 - y).x, 0.5f)
+          << x << ' ' << y << ", level " << level;
+    }
   }
 }
 
@@ -152,17 +143,16 @@ TEST_F(MultiresTest, NoPixelLiesFartherFromItsPlaneThanThePatchSays) {
     const glm::ivec2 size = patches->padded / (1 << level);
     std::vector<vec4> planes(size_t(size.x) * size_t(size.y));
     patches->plane->read(std::span(planes), GL_RGBA, GL_FLOAT, level - 1);
-    for (int y = 0; y < 96; ++y)
-      for (int x = 0; x < 128; ++x) {
-        const vec4& plane = planes[size_t(y >> level) * size_t(size.x) + size_t(x >> level)];
-        const float d = depth[size_t(y) * 128 + size_t(x)];
-        if (plane.x <= 0 || plane.w > 1 || d == 0) continue;
-        const float middle = 0.5f * float((1 << level) - 1), mask = float((1 << level) - 1);
-        const vec2 offset(float(x & int(mask)) - middle, float(y & int(mask)) - middle);
-        ASSERT_LE(std::abs(d - plane.x - glm::dot(vec2(plane.y, plane.z), offset)), plane.w * 1.001f + 1e-7f)
-            << x << ' ' << y << ", level " << level;
-        bounded += level > 2;
-      }
+    for (const auto [x, y] : Pixels(128, 96)) {
+      const vec4& plane = planes[size_t(y >> level) * size_t(size.x) + size_t(x >> level)];
+      const float d = depth[size_t(y) * 128 + size_t(x)];
+      if (plane.x <= 0 || plane.w > 1 || d == 0) continue;
+      const float middle = 0.5f * float((1 << level) - 1), mask = float((1 << level) - 1);
+      const vec2 offset(float(x & int(mask)) - middle, float(y & int(mask)) - middle);
+      ASSERT_LE(std::abs(d - plane.x - glm::dot(vec2(plane.y, plane.z), offset)), plane.w * 1.001f + 1e-7f)
+          << x << ' ' << y << ", level " << level;
+      bounded += level > 2;
+    }
   }
   EXPECT_GT(bounded, 1000);
 }
@@ -181,21 +171,19 @@ TEST_F(MultiresTest, NoPatchHoldsBackground) {
     std::vector<float> split(size_t(size.x) * size_t(size.y)), plane(split.size());
     patches->normalLo->read(std::span(split), GL_ALPHA, GL_FLOAT, level - 1);
     patches->plane->read(std::span(plane), GL_RED, GL_FLOAT, level - 1);
-    for (int y = 0; y < 96; ++y)
-      for (int x = 0; x < 128; ++x) {
-        const size_t i = size_t(y >> level) * size_t(size.x) + size_t(x >> level);
-        if (split[i] > 0.5f || !(plane[i] > 0)) continue;
-        ASSERT_GT(depth[size_t(y) * 128 + size_t(x)], 0) << x << ' ' << y << ", level " << level;
-        ++whole;
-      }
+    for (const auto [x, y] : Pixels(128, 96)) {
+      const size_t i = size_t(y >> level) * size_t(size.x) + size_t(x >> level);
+      if (split[i] > 0.5f || !(plane[i] > 0)) continue;
+      ASSERT_GT(depth[size_t(y) * 128 + size_t(x)], 0) << x << ' ' << y << ", level " << level;
+      ++whole;
+    }
   }
   EXPECT_GT(whole, 1000);
 }
 
 TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
   Room room;
-  room.scene.camera.width = 256;
-  room.scene.camera.height = 192;
+  room.scene.picture(256, 192);
   const GBuffer gbuffer = surfaces(room.scene);
   for (const bool balance : {true, false}) {
     multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance});
@@ -266,8 +254,7 @@ TEST_F(MultiresTest, NoLightLeaksOverAnEdge) {
 
 TEST_F(MultiresTest, SplattingIsGatheringTheOtherWayRound) {
   Room room;
-  room.scene.camera.width = 131;
-  room.scene.camera.height = 77;
+  room.scene.picture(131, 77);
   const GBuffer gbuffer = surfaces(room.scene);
   const MultiresSettings settings{.coarsest = 4, .light = 1e9f};
   for (const int count : {40, 2100}) { // two chunks of lights
@@ -349,15 +336,12 @@ TEST_F(MultiresTest, SurfaceDetailDarkensWhatTurnsAway) {
   const GBuffer gbuffer = surfaces(room.scene);
   const Image plain = multires(gbuffer, roomLights(), {.coarsest = 4});
   const Image detailed = multires(gbuffer, roomLights(), {.coarsest = 4, .detail = 0.5f});
-  FrameResults results;
-  results.surfaces = gbuffer;
-  const Image normal = readBuffer(Buffer::Normal, results);
-  for (int y = 0; y < plain.height; ++y)
-    for (int x = 0; x < plain.width; ++x) {
-      const CameraRay ray = cameraRay(room.scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
-      const float facing = std::max(0.0f, -glm::dot(ray.direction, normal.at(x, y)));
-      ASSERT_NEAR(detailed.at(x, y).y, plain.at(x, y).y * (0.5f * facing + 0.5f), 2e-3f * plain.at(x, y).y + 1e-6f);
-    }
+  const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);
+  for (const auto [x, y] : Pixels(plain)) {
+    const CameraRay ray = pixelRay(room.scene.camera, x, y);
+    const float facing = std::max(0.0f, -glm::dot(ray.direction, normal.at(x, y)));
+    ASSERT_NEAR(detailed.at(x, y).y, plain.at(x, y).y * (0.5f * facing + 0.5f), 2e-3f * plain.at(x, y).y + 1e-6f);
+  }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::multires_test

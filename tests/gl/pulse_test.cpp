@@ -4,21 +4,19 @@
 #include "engine/gl/state_guard.h"
 #include "still_room.h"
 
-namespace lambent::test {
+namespace lambent::test::pulse_test {
 
 class PulseTest : public StillRoomTest {
  protected:
-  PulseTest() {
-    settings.smc.vpls = 32;
-    settings.smc.warmup = 2;
-  }
+  PulseTest() { settings.smc.vpls = 32, settings.smc.warmup = 2; }
+  const gl::Texture target{"pulse/target", {.format = GL_RGBA8, .width = 4, .height = 4}};
+  const gl::Framebuffer framebuffer{"pulse", {&target}};
 };
 
 TEST_F(PulseTest, WhatDrawsBetweenDrawsChangesNothing) {
   Viewer plain(settings), beating(settings);
   plain.run(still());
-  const gl::Texture target("pulse/target", {.format = GL_RGBA8, .width = 4, .height = 4});
-  const gl::Framebuffer framebuffer("pulse", {&target});
+
   const gl::Program& program = programs.get({.fragment = "present.frag"});
   uint64_t beats = 0, draws = 0;
   {
@@ -43,8 +41,7 @@ TEST_F(PulseTest, WhatDrawsBetweenDrawsChangesNothing) {
 }
 
 TEST_F(PulseTest, WhatThrowsEndsTheFrameAndOthersGoOn) {
-  Viewer plain(settings);
-  plain.run(still());
+  const Image plain = firstFrame(settings, still(), Buffer::Beauty);
   for (const int last : {1, 7, 20}) {
     Viewer ended(settings);
     int beats = 0;
@@ -57,16 +54,13 @@ TEST_F(PulseTest, WhatThrowsEndsTheFrameAndOthersGoOn) {
     EXPECT_THROW(run(), RunError);
     EXPECT_EQ(beats, last);
   }
-  Viewer again(settings);
-  again.run(still());
-  EXPECT_EQ(again.read(Buffer::Beauty).pixels, plain.read(Buffer::Beauty).pixels);
+  EXPECT_EQ(firstFrame(settings, still(), Buffer::Beauty).pixels, plain.pixels);
 }
 
 TEST_F(PulseTest, IsNotTimed) {
   int beats = 0;
   const gl::Pulse pulse([&] { ++beats; });
-  const gl::Texture target("pulse/target", {.format = GL_RGBA8, .width = 4, .height = 4});
-  const gl::Framebuffer framebuffer("pulse", {&target});
+
   programs.get({.fragment = "present.frag"}).use();
   framebuffer.bind();
   gl::PipelineState{.width = 4, .height = 4}.apply();
@@ -77,4 +71,4 @@ TEST_F(PulseTest, IsNotTimed) {
   EXPECT_EQ(beats, before + 1);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::pulse_test

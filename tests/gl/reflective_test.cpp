@@ -4,7 +4,7 @@
 #include "shader_copy.h"
 #include "shaders/shared/solid_angle.h"
 
-namespace lambent::test {
+namespace lambent::test::reflective_test {
 
 constexpr ReflectiveNeeds kGrid, kTrees{.clusters = true}, kClusters{.clusters = true, .patches = true};
 
@@ -19,11 +19,27 @@ class ReflectiveTest : public GatherTest {
   }
   /// Sum over a mip level of a texture, double precision.
   static glm::dvec4 sum(const gl::Texture& texture, int level) {
-    std::vector<vec4> texels(size_t(texture.width() >> level) * (texture.height() >> level));
-    glGetTextureImage(texture.name(), level, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
     glm::dvec4 total(0);
-    for (const vec4& t : texels) total += glm::dvec4(t);
+    for (const vec4& t : texelsOf(texture, level)) total += glm::dvec4(t);
     return total;
+  }
+  static std::vector<vec4> texelsOf(const gl::Texture& texture, int level) {
+    std::vector<vec4> texels(size_t(texture.width() >> level) * size_t(texture.height() >> level));
+    texture.read(std::span(texels), GL_RGBA, GL_FLOAT, level);
+    return texels;
+  }
+  /// A closed room of 2 m.
+  void placeBox(const vec3& albedo) {
+    HandScene scene;
+    scene.box(vec3(-1), vec3(1), scene.material(albedo), true);
+    place(scene);
+  }
+  /// Of the point light of (1, 2, 3) W/sr in a box of albedo (½, ¼, 1), all of whose flux is reflected.
+  static void expectAllReflected(const glm::dvec3& flux) {
+    const double sphere = 4 * double(kPi);
+    EXPECT_NEAR(flux.x, 0.5 * sphere, 1e-4 * flux.x);
+    EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
+    EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
   }
   glm::dvec3 fluxOfLights() const {
     glm::dvec3 total(0);
@@ -81,10 +97,7 @@ class TurnCounter {
 };
 
 LightView pointLight(const vec3& position, const vec3& intensity) {
-  LightView light;
-  light.position = position;
-  light.intensity = intensity;
-  return light;
+  return {.position = position, .intensity = intensity};
 }
 
 LightView spotLight(const vec3& position, const vec3& direction) {
@@ -96,39 +109,35 @@ LightView spotLight(const vec3& position, const vec3& direction) {
   return light;
 }
 
+LightView sunLight(float irradiance) {
+  return {
+      .type = LightType::Directional, .direction = glm::normalize(vec3(0.3f, -1, 0.2f)), .intensity = vec3(irradiance)};
+}
+
 TEST(SolidAngle, TexelsOfAFaceAddUpToASixthOfTheSphere) {
   for (const int resolution : {1, 4, 16, 256}) {
     double total = 0;
     const float texel = 2.0f / float(resolution);
-    for (int y = 0; y < resolution; ++y)
-      for (int x = 0; x < resolution; ++x) {
-        const vec2 lo = vec2(x, y) * texel - 1.0f;
-        total += rectSolidAngle(lo, lo + texel);
-      }
+    for (const auto [x, y] : Pixels(resolution, resolution)) {
+      const vec2 lo = vec2(x, y) * texel - 1.0f;
+      total += rectSolidAngle(lo, lo + texel);
+    }
     EXPECT_NEAR(total, 4 * double(kPi) / 6, 2e-6) << resolution;
   }
 }
 
 TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
-  HandScene scene;
-  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f, 0.25f, 1)), true);
-  place(scene);
+  placeBox(vec3(0.5f, 0.25f, 1));
   for (const bool exact : {true, false}) {
     const RsmSettings rsm{.resolution = 64, .exact = exact};
     const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, kTrees);
-    const glm::dvec3 flux(sum(*sheet.flux, 0));
-    const double sphere = 4 * double(kPi);
-    // The walls share no vertices, so a texel or two of 24 576 may fall between them.
-    EXPECT_NEAR(flux.x, 0.5 * sphere, 1e-4 * flux.x);
-    EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
-    EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
+    expectAllReflected(
+        glm::dvec3(sum(*sheet.flux, 0))); // walls share no vertices: a texel or two may fall between them
   }
 }
 
 TEST_F(ReflectiveTest, ASpotReflectsWhatItsConeLetsThrough) {
-  HandScene scene;
-  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
-  place(scene);
+  placeBox(vec3(0.5f));
   const LightView spot = spotLight(vec3(0.1f, 0.3f, -0.2f), vec3(0.2f, -1, 0.4f));
   const ReflectiveMaps sheet = maps({spot}, {.resolution = 256}, kGrid);
   // glTF: the square of what falls from 1 at the inner cone to 0 at the outer, linear in the cosine.
@@ -157,9 +166,7 @@ TEST(LightGrid, HardlyFewerVplsThanAskedFor) {
 
 /// Cells of unlike sizes, whose light is that of one texel times what they have of its solid angle.
 TEST_F(ReflectiveTest, AnyNumberOfVplsCarriesAllFlux) {
-  HandScene scene;
-  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f, 0.25f, 1)), true);
-  place(scene);
+  placeBox(vec3(0.5f, 0.25f, 1));
   for (const bool exact : {true, false})
     for (const int vpls : {6, 20, 256, 300, 1024}) {
       const RsmSettings rsm{.resolution = 256, .vpls = vpls, .exact = exact};
@@ -167,11 +174,8 @@ TEST_F(ReflectiveTest, AnyNumberOfVplsCarriesAllFlux) {
       const PackedLights lights = lightPass.runGrid(sheet, rsm);
       EXPECT_LE(int(lights.count), vpls);
       EXPECT_GE(int(lights.count), vpls - 8);
-      const glm::dvec3 flux = fluxOfLights();
-      const double sphere = 4 * double(kPi);
-      EXPECT_NEAR(flux.x, 0.5 * sphere, 1e-4 * flux.x) << vpls;
-      EXPECT_NEAR(flux.y, 0.25 * 2 * sphere, 1e-4 * flux.y);
-      EXPECT_NEAR(flux.z, 3 * sphere, 1e-4 * flux.z);
+      SCOPED_TRACE(vpls);
+      expectAllReflected(fluxOfLights());
     }
 }
 
@@ -179,10 +183,7 @@ TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
   HandScene scene;
   scene.quad(vec3(-1, 0, 2), vec3(2, 0, 0), vec3(0, 0, -4), scene.material(vec3(0.5f)));
   place(scene);
-  LightView sun;
-  sun.type = LightType::Directional;
-  sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
-  sun.intensity = vec3(10);
+  const LightView sun = sunLight(10);
   const ReflectiveMaps sheet = maps({sun}, {.resolution = 512}, kGrid);
   // 8 m² across the light's way; the map counts whole texels along the edge.
   EXPECT_NEAR(sum(*sheet.flux, 0).x, 0.5 * 10 * 8 * double(-sun.direction.y), 0.3);
@@ -191,11 +192,7 @@ TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
 TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
   const Room room;
   place(room.scene);
-  LightView sun;
-  sun.type = LightType::Directional;
-  sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
-  sun.intensity = vec3(4);
-  const std::vector<LightView> lights{sun, pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3)),
+  const std::vector<LightView> lights{sunLight(4), pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3)),
                                       spotLight(vec3(-0.4f, 0.8f, 0.5f), vec3(0.2f, -1, -0.5f))};
   const RsmSettings rsm{.resolution = 128, .coarsest = 8, .finest = 64};
   const ReflectiveMaps sheet = maps(lights, rsm, kClusters);
@@ -214,18 +211,12 @@ TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
 
 /// Where a cluster's light seems to come from.
 TEST_F(ReflectiveTest, ClustersStandInTheMiddleOfTheirFlux) {
-  HandScene scene;
-  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
-  place(scene);
+  placeBox(vec3(0.5f));
   const ReflectiveMaps sheet =
       maps({pointLight(vec3(0.8f, 0.3f, -0.6f), vec3(1))}, {.resolution = 16, .coarsest = 2}, kTrees);
-  const auto texels = [](const gl::Texture& t, int level) {
-    std::vector<vec4> out(size_t(t.width() >> level) * size_t(t.height() >> level));
-    t.read(std::span(out), GL_RGBA, GL_FLOAT, level);
-    return out;
-  };
-  const std::vector<vec4> positions = texels(*sheet.position, 0), fluxes = texels(*sheet.flux, 0);
-  const std::vector<vec4> means = texels(*sheet.position, 1);
+
+  const std::vector<vec4> positions = texelsOf(*sheet.position, 0), fluxes = texelsOf(*sheet.flux, 0),
+                          means = texelsOf(*sheet.position, 1);
   const size_t width = size_t(sheet.flux->width());
   double unweighted = 0;
   for (size_t i = 0; i < means.size(); ++i) {
@@ -252,12 +243,7 @@ TEST_F(ReflectiveTest, CoarseClustersLoseNoLight) {
   RsmSettings coarse = fine;
   coarse.tau = 0.02f;
   const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, 0.6f, 0.2f), vec3(1))}, fine, kTrees);
-  const auto mean = [&](const RsmSettings& rsm) {
-    const Image image = gathered(room.scene, sheet, rsm, kTrees);
-    double sum = 0;
-    for (const vec3& e : image.pixels) sum += double(luminance(e));
-    return sum / double(image.pixels.size());
-  };
+  const auto mean = [&](const RsmSettings& rsm) { return meanLuminance(gathered(room.scene, sheet, rsm, kTrees)); };
   const double all = mean(fine);
   EXPECT_NEAR(mean(coarse) / all, 1, 0.013); // 1.008; of short normals 0.982
 }
@@ -268,9 +254,10 @@ TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
   std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
   const RsmSettings rsm{.resolution = 32};
   const auto waitsOf = [&](ReflectiveNeeds needs) {
-    const uint64_t before = gl::counts().waits;
+    const gl::Counts before = gl::counts();
     lightsOf(maps(lights, rsm, needs), rsm, needs);
-    return gl::counts().waits - before;
+    EXPECT_EQ((gl::counts() - before).readBacks, 0u);
+    return (gl::counts() - before).waits;
   };
   EXPECT_EQ(waitsOf(kGrid), 0u);
   EXPECT_EQ(waitsOf(kClusters), 1u);
@@ -376,9 +363,7 @@ TEST_F(ReflectiveTest, ASmallMoveChangesTheCutByLittle) {
       rsm.tau = 0;
       const Image whole = gathered(room.scene, sheet, rsm, kTrees);
       double exitance = 0; // the largest
-      std::vector<vec4> texels(size_t(rsm.resolution) * rsm.resolution);
-      glGetTextureImage(sheet.flux->name(), 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
-      for (const vec4& t : texels)
+      for (const vec4& t : texelsOf(*sheet.flux, 0))
         if (t.a > 0) exitance = std::max(exitance, double(t.x) / double(t.a));
       double largest = 0, sum = 0;
       for (size_t i = 0; i < whole.pixels.size(); ++i) {
@@ -426,10 +411,7 @@ TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
         rsm.tau = tau;
         const ReflectiveMaps sheet = maps({spot}, rsm, kTrees);
         const glm::dvec4 cell = sum(*sheet.flux, sheet.levels - 1); // nothing else shines, but all has area
-        std::vector<vec4> clusters(64), places(64);
-        glGetTextureImage(sheet.flux->name(), sheet.levels - 1, GL_RGBA, GL_FLOAT, 64 * sizeof(vec4), clusters.data());
-        const vec4 bright =
-            *std::max_element(clusters.begin(), clusters.end(), [](const vec4& a, const vec4& b) { return a.x < b.x; });
+        const vec4 bright = std::ranges::max(texelsOf(*sheet.flux, sheet.levels - 1), {}, &vec4::x);
         ASSERT_GT(bright.x, 0.97 * cell.x) << "the bright square is one cluster";
         const Image cut = gathered(scene, sheet, rsm, kTrees);
         for (size_t i = 0; i < cut.pixels.size(); ++i) {
@@ -501,14 +483,13 @@ TEST_F(ReflectiveTest, OneReflectedPatchOnAPlane) {
   const RsmSettings rsm{.resolution = 1024, .coarsest = 32, .finest = 256, .tau = 0};
   const Image image = gathered(scene, maps({spot}, rsm, kTrees), rsm, kTrees);
   const double flux = 3 * 0.01 / (1.999 * 1.999); // I ω of the square
-  for (int y = 0; y < 12; ++y)
-    for (int x = 0; x < 16; ++x) {
-      const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 16, (float(y) + 0.5f) / 12);
-      const vec3 at = ray.origin + ray.direction * ((-2 - ray.origin.z) / ray.direction.z);
-      const double r2 = glm::dot(at, at);
-      const double wanted = flux / double(kPi) * (at.y / std::sqrt(r2)) * (2 / std::sqrt(r2)) / r2; // paper 2, eq. 1
-      ASSERT_NEAR(image.at(x, y).x, wanted, 0.02 * wanted) << x << ' ' << y;
-    }
+  for (const auto [x, y] : Pixels(16, 12)) {
+    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const vec3 at = ray.origin + ray.direction * ((-2 - ray.origin.z) / ray.direction.z);
+    const double r2 = glm::dot(at, at);
+    const double wanted = flux / double(kPi) * (at.y / std::sqrt(r2)) * (2 / std::sqrt(r2)) / r2; // paper 2, eq. 1
+    ASSERT_NEAR(image.at(x, y).x, wanted, 0.02 * wanted) << x << ' ' << y;
+  }
 }
 
 /// Each of the 16 subsets of pixels takes every sixteenth root, so that blocks of 4 × 4 pixels have them all.
@@ -522,15 +503,14 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
   const ReflectiveMaps sheet = maps({pointLight(vec3(0, 2, 0), vec3(1))}, rsm, kTrees);
   const Image full = gathered(scene, sheet, rsm, kTrees);
   const Image subsets = gathered(scene, sheet, rsm, kTrees, GatherMode::Interleaved);
-  for (int by = 0; by < 6; ++by)
-    for (int bx = 0; bx < 8; ++bx) {
-      double sum = 0, wanted = 0;
-      for (int k = 0; k < 16; ++k) {
-        sum += subsets.at(4 * bx + k % 4, 4 * by + k / 4).x;
-        wanted += full.at(4 * bx + k % 4, 4 * by + k / 4).x;
-      }
-      ASSERT_NEAR(sum, wanted, 0.02 * wanted) << bx << ' ' << by;
+  for (const auto [bx, by] : Pixels(8, 6)) {
+    double sum = 0, wanted = 0;
+    for (int k = 0; k < 16; ++k) {
+      sum += subsets.at(4 * bx + k % 4, 4 * by + k / 4).x;
+      wanted += full.at(4 * bx + k % 4, 4 * by + k / 4).x;
     }
+    ASSERT_NEAR(sum, wanted, 0.02 * wanted) << bx << ' ' << by;
+  }
 }
 
 TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
@@ -559,4 +539,4 @@ TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
   EXPECT_LT(mapPass.mapsDrawn(), 7u);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::reflective_test

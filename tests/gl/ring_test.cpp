@@ -2,9 +2,7 @@
 #include "engine/gl/ring.h"
 #include "gl_fixture.h"
 
-#include <numeric>
-
-namespace lambent::test {
+namespace lambent::test::ring_test {
 
 using RingTest = GlTest;
 
@@ -54,4 +52,4 @@ TEST_F(RingTest, GrowsForWhatIsLargerThanThought) {
   EXPECT_EQ(heard, values);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::ring_test

@@ -2,12 +2,9 @@
 #include "engine/core/error.h"
 #include "gi/measure/runs/runs.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <algorithm>
-
-namespace lambent {
-namespace {
+namespace lambent::test::runs_test {
 
 /// In which order who ran which frame, and who lives.
 struct Diary {
@@ -139,5 +136,4 @@ TEST_F(RunsTest, CancelledItEndsAndGivesNothing) {
   EXPECT_EQ(diary.alive, 0);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::runs_test

@@ -3,7 +3,7 @@
 #include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"
 
-namespace lambent::test {
+namespace lambent::test::shadowed_patches_test {
 
 /// A floor below a roof over x > 0, and lights above its edge: half of them, at random, at x = −0.3 m, whose shadow
 /// begins at x = 0.3 m, the others the other way round: a light that looked into another's map would be seen to.
@@ -54,15 +54,14 @@ class ShadowedPatchesTest : public GatherTest {
     const Image shadowed = picture(lights(), settings, &seen), right = picture(lights(0), settings),
                 left = picture(lights(1), settings);
     int counts[3] = {};
-    for (int y = 0; y < shadowed.height; ++y)
-      for (int x = 0; x < shadowed.width; ++x) {
-        const float at = -2 * 0.9f * std::tan(0.5f) / 96 * (63.5f - float(x)); // metres
-        if (std::min(std::abs(at - 0.3f), std::abs(at + 0.3f)) < blurred) continue;
-        const bool rightSeen = at < -0.3f, leftSeen = at < 0.3f;
-        const float wanted = (rightSeen ? right.at(x, y).x : 0) + (leftSeen ? left.at(x, y).x : 0);
-        ASSERT_NEAR(shadowed.at(x, y).x, wanted, tolerance * (right.at(x, y).x + left.at(x, y).x)) << at << " m, " << y;
-        ++counts[int(rightSeen) + int(leftSeen)];
-      }
+    for (const auto [x, y] : Pixels(shadowed)) {
+      const float at = -2 * 0.9f * std::tan(0.5f) / 96 * (63.5f - float(x)); // metres
+      if (std::min(std::abs(at - 0.3f), std::abs(at + 0.3f)) < blurred) continue;
+      const bool rightSeen = at < -0.3f, leftSeen = at < 0.3f;
+      const float wanted = (rightSeen ? right.at(x, y).x : 0) + (leftSeen ? left.at(x, y).x : 0);
+      ASSERT_NEAR(shadowed.at(x, y).x, wanted, tolerance * (right.at(x, y).x + left.at(x, y).x)) << at << " m, " << y;
+      ++counts[int(rightSeen) + int(leftSeen)];
+    }
     for (const int count : counts) EXPECT_GT(count, 1000);
   }
 
@@ -91,4 +90,4 @@ TEST_F(ShadowedPatchesTest, PatchesPerLightFollowItsShadow) {
   expectHalves(settings, 0.22f, 0.05f); // four points say whether a patch splits: an edge beyond them is missed
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::shadowed_patches_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <unistd.h>
 
-namespace lambent::test {
+namespace lambent::test::shared_test {
 
 namespace fs = std::filesystem;
 
@@ -85,15 +85,14 @@ void main() {
 }
 
 TEST(SharedMappings, ParaboloidInverts) {
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 16; ++x) {
-      const vec2 uv = (vec2(x, y) + 0.5f) / 16.0f;
-      const vec3 d = directionFromParaboloid(uv);
-      EXPECT_NEAR(glm::length(d), 1, 1e-5f);
-      if (d.z > -0.5f) {
-        EXPECT_LT(glm::length(paraboloidFromDirection(d) - uv), 1e-5f);
-      }
+  for (const auto [x, y] : Pixels(16, 16)) {
+    const vec2 uv = (vec2(x, y) + 0.5f) / 16.0f;
+    const vec3 d = directionFromParaboloid(uv);
+    EXPECT_NEAR(glm::length(d), 1, 1e-5f);
+    if (d.z > -0.5f) {
+      EXPECT_LT(glm::length(paraboloidFromDirection(d) - uv), 1e-5f);
     }
+  }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::shared_test

@@ -1,29 +1,11 @@
 // A sky by day: seen behind surfaces, and as direct light.
-#include "gi/direct/direct_light.h"
-#include "gl_fixture.h"
+#include "frames.h"
 #include "tests/support/daylight.h"
 
-namespace lambent::test {
+namespace lambent::test::sky_test {
 
 class SkyTest : public GlTest {
  protected:
-  /// Direct irradiance of the picture, row 0 at the top.
-  Image irradianceOf(const HandScene& scene) {
-    Settings all;
-    all.shadow.skyMaps = maps;
-    LightSet lights;
-    lights.sky = scene.sky;
-    PlacedScene placed(programs, scene);
-    const World world = placed.world(lights);
-    SurfacePass surfaces(passes);
-    DirectLight direct(passes);
-    FrameStats stats;
-    FrameResults results;
-    results.surfaces = surfaces.run({world.gpu, world.view.camera});
-    Patches patches;
-    results.indirect = lightOf(direct, world, results.surfaces, patches, all, stats);
-    return readBuffer(Buffer::Irradiance, results); // reads without albedo
-  }
   /// Irradiance of a lone plate in the middle of the picture.
   vec3 plate(const Sky& sky, const vec3& normal) {
     HandScene scene;
@@ -31,10 +13,11 @@ class SkyTest : public GlTest {
     basisAround(normal, s, t);
     scene.quad(-2.0f * (s + t), 4.0f * s, 4.0f * t, scene.material(vec3(0.5f)));
     scene.camera = cameraAt(3.0f * normal + 0.2f * s, vec3(0), 0.8f);
-    scene.sky = sky;
-    return irradianceOf(scene).at(32, 24);
+    LightSet lights;
+    lights.sky = scene.sky = sky;
+    FrameStats stats;
+    return directOf(passes, scene, lights, {}, stats).at(32, 24);
   }
-  int maps = 32;
 };
 
 TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
@@ -55,16 +38,15 @@ TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
         gi.run(scene.view());
         const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), depth = gi.read(Buffer::Depth);
         int seen = 0;
-        for (int y = 0; y < 48; ++y)
-          for (int x = 0; x < 64; ++x) {
-            if (depth.at(x, y).x > 0) continue;
-            ++seen;
-            const CameraRay ray = cameraRay(scene.camera, (float(x) + 0.5f) / 64, (float(y) + 0.5f) / 48);
-            const vec3 wanted = scene.sky.radiance(ray.direction);
-            const float tolerance = 1e-3f * maxComponent(wanted);
-            ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
-            ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
-          }
+        for (const auto [x, y] : Pixels(64, 48)) {
+          if (depth.at(x, y).x > 0) continue;
+          ++seen;
+          const CameraRay ray = pixelRay(scene.camera, x, y);
+          const vec3 wanted = scene.sky.radiance(ray.direction);
+          const float tolerance = 1e-3f * maxComponent(wanted);
+          ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+          ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+        }
         EXPECT_GT(seen, 1000);
       }
 }
@@ -112,21 +94,12 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   floor.scene.sky = Sky::daylight(directionAt(60, 0), 3);
   Settings settings;
   Viewer gi(settings);
-  SceneView view = floor.scene.view();
-  view.changes = {true, true, true, true, true};
-  gi.run(view);
-  const Image before = gi.read(Buffer::Beauty);
+  const Image before = nextFrame(gi, floor.scene.view(), Buffer::Beauty);
   floor.scene.sky = Sky::daylight(directionAt(10, 0), 3);
-  view = floor.scene.view();
-  view.changes = {false, false, true, false, false};
-  gi.run(view);
-  const Image after = gi.read(Buffer::Beauty);
-  Viewer other(settings);
-  view.changes = {true, true, true, true, true};
-  other.run(view);
-  const Image anew = other.read(Buffer::Beauty);
+  const Image after = nextFrame(gi, floor.scene.view(kLightsChanged), Buffer::Beauty);
+  const Image anew = firstFrame(settings, floor.scene.view(), Buffer::Beauty);
   EXPECT_LT(luminance(after.at(32, 24)), 0.8f * luminance(before.at(32, 24)));
   for (size_t i = 0; i < after.pixels.size(); ++i) ASSERT_EQ(after.pixels[i], anew.pixels[i]) << i;
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::sky_test

@@ -1,34 +1,26 @@
 // A room whose virtual lights stay the same in every picture, and views of it in which something or nothing changes.
 #pragma once
 
-#include "gi/frame/gi_frame.h"
-#include "gl_fixture.h"
+#include "frames.h"
 
 namespace lambent::test {
 
 class StillRoomTest : public GlTest {
  protected:
   StillRoomTest() {
-    settings.smc.vpls = 512;
-    settings.smc.points = 512;
-    settings.smc.warmup = 20;
-    settings.smc.moves = 0;
+    settings.smc = {.vpls = 512, .moves = 0, .points = 512, .warmup = 20};
     settings.gather.near = 0;
     settings.shadow.maker = ShadowMaker::Rays;
     settings.image.exposure = 1;
-    LightView lamp;
-    lamp.position = {0.4f, 0.7f, 0.4f};
-    lamp.intensity = vec3(1);
-    room.scene.lights.push_back(lamp);
+    room.scene.lamp({0.4f, 0.7f, 0.4f});
   }
 
   SceneView view(const SceneChanges& changes) const {
-    SceneView v = room.scene.view();
-    v.changes = changes;
+    SceneView v = room.scene.view(changes);
     for (const LightView& l : v.lights) const_cast<LightView&>(l).changed = changes.lights;
     return v;
   }
-  SceneView still() const { return view({false, false, false, false, false}); }
+  SceneView still() const { return view(kStill); }
 
   Room room;
   Settings settings;

@@ -5,7 +5,7 @@
 
 namespace fs = std::filesystem;
 
-namespace lambent::test {
+namespace lambent::test::strict_fetch_test {
 
 /// Makes shaders fetch `outside` outside the mip level that they ask for.
 void makeStrict(const ShaderCopy& shaders, float outside) {
@@ -40,8 +40,7 @@ class StrictFetchTest : public GlTest {
     const PassContext context{strict, profiler};
     std::vector<std::vector<vec4>> images;
     for (const glm::ivec2 size : {glm::ivec2(64, 32), glm::ivec2(67, 39)}) { // patches fit, or reach beyond the picture
-      room.scene.camera.width = size.x;
-      room.scene.camera.height = size.y;
+      room.scene.picture(size.x, size.y);
       PlacedScene placed(strict, room.scene);
       const World world = placed.world();
       SurfacePass surfacePass{context};
@@ -100,4 +99,4 @@ TEST_F(StrictFetchTest, NoPictureDependsOnWhatLiesOutsideATexture) {
   for (size_t i = 0; i < zeros.size(); ++i) EXPECT_TRUE(zeros[i] == large[i]) << "picture " << i;
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::strict_fetch_test

@@ -3,15 +3,12 @@
 #include "gi/measure/front.h"
 #include "gi/plan/techniques.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <algorithm>
 #include <fstream>
-#include <set>
 #include <sstream>
 
-namespace lambent {
-namespace {
+namespace lambent::test::sweeps_test {
 
 TEST(Sweeps, EverySettingIsAKnobOrSaysWhyNot) {
   std::set<std::string> listed;
@@ -86,5 +83,4 @@ TEST(Presets, ArePointsOfTheJointSweep) {
     EXPECT_TRUE(std::ranges::count(points, presetPoint(preset), &SweepPoint::name)) << preset.name;
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::sweeps_test

@@ -3,7 +3,7 @@
 #include "gl_fixture.h"
 #include "shaders/shared/error_color.h"
 
-namespace lambent::test {
+namespace lambent::test::truth_test {
 
 class TruthTest : public GlTest {
  protected:
@@ -12,16 +12,15 @@ class TruthTest : public GlTest {
     frame_.surfaces = surfacePass_.run({placed_->gpu(), room_.scene.camera});
     width_ = frame_.surfaces.width;
     height_ = frame_.surfaces.height;
-    frame_.sceneDiameter = 3.5f;
+    frame_.farDistance = 3.5f;
   }
 
   /// Irradiance and radiance that change from pixel to pixel.
   Image waves(float phase) const {
     Image image(width_, height_);
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x)
-        image.at(x, y) = 1.0f + 0.9f * vec3(std::sin(0.3f * float(x) + phase), std::cos(0.2f * float(y) + phase),
-                                            std::sin(0.1f * float(x * y) + phase));
+    for (const auto [x, y] : Pixels(width_, height_))
+      image.at(x, y) = 1.0f + 0.9f * vec3(std::sin(0.3f * float(x) + phase), std::cos(0.2f * float(y) + phase),
+                                          std::sin(0.1f * float(x * y) + phase));
     return image;
   }
   gl::Texture uploaded(const Image& image) const {
@@ -30,10 +29,6 @@ class TruthTest : public GlTest {
     return texture;
   }
 
-  static vec3 pixel(const Image8& image, int x, int y) {
-    const uint8_t* p = &image.rgb[(size_t(y) * image.width + x) * 3];
-    return {p[0], p[1], p[2]};
-  }
   /// What `draw(framebuffer)` leaves, row 0 at the top.
   template <class Draw> Image8 shown(int width, int height, const Draw& draw) const {
     const gl::Texture target("window", {.format = GL_RGBA8, .width = width, .height = height});
@@ -41,11 +36,10 @@ class TruthTest : public GlTest {
     draw(framebuffer.name());
     const std::vector<vec4> texels = readTexture(target);
     Image8 out{width, height, std::vector<uint8_t>(size_t(width) * height * 3)};
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        for (int c = 0; c < 3; ++c)
-          out.rgb[(size_t(y) * width + x) * 3 + c] =
-              uint8_t(std::lround(255 * texels[size_t(height - 1 - y) * width + x][c]));
+    for (const auto [x, y] : Pixels(width, height))
+      for (int c = 0; c < 3; ++c)
+        out.rgb[(size_t(y) * width + x) * 3 + c] =
+            uint8_t(std::lround(255 * texels[size_t(height - 1 - y) * width + x][c]));
     return out;
   }
 
@@ -78,13 +72,12 @@ TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
       display_.present(framebuffer, width_, height_, &right, divider);
     });
     int differ = 0;
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x) {
-        const float beyond = float(x) + 0.5f - divider * float(width_);
-        const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : pixel(beyond > 0 ? truth : gi, x, y);
-        ASSERT_EQ(pixel(both, x, y), expected) << x << ' ' << y << ' ' << divider;
-        differ += pixel(truth, x, y) != pixel(gi, x, y);
-      }
+    for (const auto [x, y] : Pixels(width_, height_)) {
+      const float beyond = float(x) + 0.5f - divider * float(width_);
+      const vec3 expected = std::abs(beyond) < 1 ? vec3(255) : byteAt(beyond > 0 ? truth : gi, x, y);
+      ASSERT_EQ(byteAt(both, x, y), expected) << x << ' ' << y << ' ' << divider;
+      differ += byteAt(truth, x, y) != byteAt(gi, x, y);
+    }
     EXPECT_GT(differ, width_ * height_ / 2) << "or the test shows nothing";
   }
 }
@@ -103,9 +96,8 @@ TEST_F(TruthTest, TheTruthOfEveryBufferIsShownAsTheBuffer) {
     const Image8 truth = shown(
         width_, height_, [&](uint32_t framebuffer) { display_.present(framebuffer, width_, height_, &right, 0); });
     int worst = 0;
-    for (int y = 0; y < height_; ++y)
-      for (int x = 1; x < width_; ++x) // the line is at 0
-        worst = std::max(worst, int(maxComponent(glm::abs(pixel(gi, x, y) - pixel(truth, x, y)))));
+    for (const auto [x, y] : Pixels({1, 0}, {width_, height_})) // the line is at 0
+      worst = std::max(worst, int(maxComponent(glm::abs(byteAt(gi, x, y) - byteAt(truth, x, y)))));
     EXPECT_LE(worst, 1) << bufferNames()[size_t(buffer)] << ": rounding of the products apart";
   }
 }
@@ -134,15 +126,14 @@ TEST_F(TruthTest, NoErrorIsBlackAndItsSignAndSizeAreColours) {
     const auto error = [&](int x, int y) {
       return kFull * float(x) / float(width_) * (y < height_ / 2 ? 1.0f : -1.0f);
     };
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x) truth.at(x, y) -= vec3(1.5f, 1.5f, 0) * error(x, y); // their mean counts
+    for (const auto [x, y] : Pixels(width_, height_))
+      truth.at(x, y) -= vec3(1.5f, 1.5f, 0) * error(x, y); // their mean counts
     truth_.take(truth, frame_);
     display_.run(buffer, frame_, look, {&truth_.linear(), kFull});
     const Image8 heat = display_.read();
-    for (int y = 0; y < height_; ++y)
-      for (int x = 0; x < width_; ++x)
-        ASSERT_LT(maxComponent(glm::abs(pixel(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
-            << bufferNames()[size_t(buffer)] << ' ' << x << ' ' << y;
+    for (const auto [x, y] : Pixels(width_, height_))
+      ASSERT_LT(maxComponent(glm::abs(byteAt(heat, x, y) - 255.0f * errorColor(error(x, y) / kFull))), 1.01f)
+          << bufferNames()[size_t(buffer)] << ' ' << x << ' ' << y;
   }
 }
 
@@ -150,9 +141,7 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   Settings settings;
   settings.smc.vpls = 32;
   settings.smc.warmup = 1;
-  LightView lamp;
-  lamp.position = {0, 0.8f, 0};
-  room_.scene.lights.push_back(lamp);
+  room_.scene.lamp({0, 0.8f, 0});
   Viewer gi(settings);
   gi.run(room_.scene.view());
   const auto buffer = Buffer::Indirect;
@@ -163,14 +152,14 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   gi.takeTruth(brighter);
   const Image8 heat = shown(width_, height_, [&](uint32_t f) { gi.presentError(buffer, 1, f, width_, height_); });
   for (int i = 0; i < width_ * height_; ++i)
-    ASSERT_LT(maxComponent(glm::abs(pixel(heat, i % width_, i / width_) - 255.0f * errorColor(-0.25f))), 1.01f);
+    ASSERT_LT(maxComponent(glm::abs(byteAt(heat, i % width_, i / width_) - 255.0f * errorColor(-0.25f))), 1.01f);
   const Image8 split =
       shown(width_, height_, [&](uint32_t f) { gi.presentBesideTruth(buffer, 0.5f, f, width_, height_); });
   for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_ / 2 - 1; ++x) ASSERT_EQ(pixel(split, x, y), pixel(own, x, y));
+    for (int x = 0; x < width_ / 2 - 1; ++x) ASSERT_EQ(byteAt(split, x, y), byteAt(own, x, y));
     for (int x = width_ / 2 + 1; x < width_; ++x)
-      ASSERT_GE(pixel(split, x, y).y + 1, pixel(own, x, y).y) << "the truth is brighter";
+      ASSERT_GE(byteAt(split, x, y).y + 1, byteAt(own, x, y).y) << "the truth is brighter";
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::truth_test

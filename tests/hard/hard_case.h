@@ -1,5 +1,5 @@
-// Hard cases: scenes and edits on which global illumination goes wrong. Each is a row: what it is, why it is hard, the
-// world, and between what its light must lie. All run with every technique (hard_test.cpp).
+// Hard cases: scenes and edits on which global illumination goes wrong. Each is a row: what it is, why it is hard,
+// between what its light must lie, and the world. All run with every technique (hard_test.cpp).
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -24,8 +24,6 @@ struct HardWorld {
   /// A closed room from `lo` to `hi` of this albedo, seen from inside.
   void room(const vec3& lo = vec3(-1), const vec3& hi = vec3(1), const vec3& albedo = vec3(0.7f));
   LightView& lamp(const vec3& position, float intensity = 1); // W/sr
-  /// Mirrored, scaled, moved: the instance as it stands from now on.
-  void place(uint32_t instance, const mat4& worldFromObject);
 };
 
 /// Looks from `eye` to `target`, 32 × 18 pixels.
@@ -41,8 +39,8 @@ struct HardBounds {
 
 struct HardCase {
   const char *name, *reason;
-  void (*make)(HardWorld&);
   HardBounds bounds;
+  std::function<void(HardWorld&)> make;
 };
 const std::vector<HardCase>& hardCases();
 /// Those that take minutes: with LAMBENT_LONG alone.

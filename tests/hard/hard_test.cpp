@@ -13,8 +13,7 @@
 #include <iterator>
 #include <sstream>
 
-namespace lambent::test {
-namespace {
+namespace lambent::test::hard_test {
 
 class HardTest : public GlTest, public ::testing::WithParamInterface<HardCase> {};
 
@@ -168,5 +167,4 @@ TEST_F(WalkIn, GivesTheLightOfAFreshStart) {
   EXPECT_NEAR(walked, fresh, 0.05 * fresh);
 }
 
-} // namespace
-} // namespace lambent::test
+} // namespace lambent::test::hard_test

@@ -16,10 +16,7 @@ HardWorld::HardWorld(const char* preset) {
     applyPreset(settings, preset);
     return;
   }
-  settings.smc.vpls = 64;
-  settings.smc.points = 128;
-  settings.smc.warmup = 4;
-  settings.smc.moves = 8;
+  settings.smc = {.vpls = 64, .moves = 8, .points = 128, .warmup = 4};
   settings.shadow.resolution = 32;
   settings.shadow.maker = ShadowMaker::Rays;
   settings.vpl.mirCandidates = 4;
@@ -32,22 +29,10 @@ void HardWorld::room(const vec3& lo, const vec3& hi, const vec3& albedo) {
 }
 
 LightView& HardWorld::lamp(const vec3& position, float intensity) {
-  LightView light;
-  light.id = uint32_t(scene.lights.size());
-  light.position = position;
-  light.intensity = vec3(intensity);
+  LightView& light = scene.lamp(position, vec3(intensity));
+  light.id = uint32_t(scene.lights.size() - 1);
   light.changed = true;
-  scene.lights.push_back(light);
-  return scene.lights.back();
-}
-
-void HardWorld::place(uint32_t index, const mat4& worldFromObject) {
-  InstanceView& i = scene.instances[index];
-  i.worldFromObjectBefore = i.worldFromObject;
-  i.boundsWorldBefore = i.boundsWorld;
-  i.worldFromObject = worldFromObject;
-  i.boundsWorld = transformed(scene.assets.meshes[i.mesh].boundsObject, worldFromObject);
-  i.moved = true;
+  return light;
 }
 
 } // namespace lambent::test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shaders/shared/area_piece.h"
+#include "tests/support/test.h"
 
 namespace lambent::test {
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "engine/scene/sky.h"
-
-#include <cmath>
+#include "tests/support/test.h"
 
 namespace lambent::test {
 

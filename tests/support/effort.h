@@ -1,7 +1,7 @@
 // How much a test of many frames or scenes does.
 #pragma once
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <cstdlib>
 

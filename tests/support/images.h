@@ -1,53 +1,21 @@
-// Comparison of pictures in tests: a failure leaves both pictures and their difference, and says how to look again.
+// Comparison of images in tests: a failure leaves both images and their difference, and says how to look again.
 #pragma once
 
 #include "engine/core/image.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <string>
+#include "tests/support/pixels.h"
 
 namespace lambent::test {
 
 /// Root of the mean squared difference over the root of b's mean square.
-inline double relativeRmse(const Image& a, const Image& b) {
-  double difference = 0, reference = 0;
-  for (size_t i = 0; i < a.pixels.size(); ++i) {
-    const vec3 d = a.pixels[i] - b.pixels[i];
-    difference += double(glm::dot(d, d));
-    reference += double(glm::dot(b.pixels[i], b.pixels[i]));
-  }
-  return reference > 0 ? std::sqrt(difference / reference) : difference > 0 ? 1e9 : 0;
-}
-
+double relativeRmse(const Image& a, const Image& b);
+/// Mean |difference| of luminances over b's mean.
+double relativeDifference(const Image& a, const Image& b);
 /// Mean of the luminances.
-inline double meanLuminance(const Image& a) {
-  double sum = 0;
-  for (const vec3& p : a.pixels) sum += double(luminance(p)) / double(a.pixels.size());
-  return sum;
-}
+double meanLuminance(const Image& a);
+vec3 byteAt(const Image8& image, int x, int y);
 
-/// Fails when the pictures differ by more than `bound`, and then writes NAME-actual.exr, NAME-expected.exr and
+/// Fails when the images differ by more than `bound`, and then writes NAME-actual.exr, NAME-expected.exr and
 /// NAME-difference.exr to out/failed.
-inline void expectClose(const std::string& name, const Image& actual, const Image& expected, double bound) {
-  ASSERT_EQ(actual.width, expected.width);
-  ASSERT_EQ(actual.height, expected.height);
-  const double error = relativeRmse(actual, expected);
-  if (error <= bound) return;
-  Image difference = actual;
-  for (size_t i = 0; i < difference.pixels.size(); ++i)
-    difference.pixels[i] = glm::abs(actual.pixels[i] - expected.pixels[i]);
-  const std::filesystem::path folder = "out/failed";
-  std::filesystem::create_directories(folder);
-  writeExr(folder / (name + "-actual.exr"), actual);
-  writeExr(folder / (name + "-expected.exr"), expected);
-  writeExr(folder / (name + "-difference.exr"), difference);
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  ADD_FAILURE() << name << ": relative RMSE " << error << " is over " << bound << "; pictures in "
-                << std::filesystem::absolute(folder).string() << "; again: build/bin/tests_gl --gtest_filter="
-                << test->test_suite_name() << "." << test->name();
-}
+void expectClose(const std::string& name, const Image& actual, const Image& expected, double bound);
 
 } // namespace lambent::test

@@ -10,9 +10,6 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <algorithm>
-#include <memory>
-
 namespace lambent::test {
 
 /// A closed room of 6×3×6 m. In it boxes (the first a lamp, the last one morphed), sheets (the second one morphed, the

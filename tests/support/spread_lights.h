@@ -3,8 +3,7 @@
 
 #include "engine/core/rng.h"
 #include "gi/vpl/vpl_set.h"
-
-#include <vector>
+#include "tests/support/test.h"
 
 namespace lambent::test {
 

@@ -1,9 +1,8 @@
 #include "gi/measure/front.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-namespace lambent {
-namespace {
+namespace lambent::test::front_test {
 
 using Indices = std::vector<size_t>;
 
@@ -69,5 +68,4 @@ TEST(OverScenes, NoSceneCountsMore) {
   EXPECT_DOUBLE_EQ(all.errorNoise, 0.25);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::front_test

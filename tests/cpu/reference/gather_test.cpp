@@ -1,66 +1,41 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
 // gather must agree with it, clamped alike, or with what bounds take given back.
-#include "engine/trace/embree_query.h"
 #include "gi/near/near_light.h"
-#include "gi/reference/path_tracer.h"
 #include "tests/support/effort.h"
-#include "tests/support/hand_scene.h"
+#include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
-#include "tests/support/statistics.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-
-namespace lambent {
-namespace {
+namespace lambent::test::gather_test {
 
 constexpr int kBounces = 3;
-const vec3 kSize(2, 1, 3), kAlbedo(0.6f, 0.5f, 0.4f);
+
+struct LitBox : ReferenceBox {
+  LitBox() {
+    scene.quad({0.7f, 0.99f, 1}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.material(vec3(0), vec3(4))); // faces down
+  }
+};
 
 /// A box with an emissive quad under its ceiling and a lamp in a corner.
-struct Room {
-  test::HandScene scene;
-  SceneView view;
-  std::optional<EmbreeQuery> rays;
-  LightSet lights;
+struct Room : LitBox, TracedScene {
   RayCounts counts;
 
-  Room() {
-    scene.box({0, 0, 0}, kSize, scene.material(kAlbedo), true);
-    scene.quad({0.7f, 0.99f, 1}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.material(vec3(0), vec3(4))); // faces down
-    LightView lamp;
-    lamp.position = {1.6f, 0.4f, 2.5f};
-    scene.lights.push_back(lamp);
-    scene.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
-    scene.camera.worldFromView[2] = vec4(0, 0, -1, 0);
-    scene.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
-    scene.camera.width = 24;
-    scene.camera.height = 16;
-    view = scene.view();
-    rays.emplace(scene.assets);
-    rays->update(view);
-    lights = collectLights(view);
-  }
+  Room() : TracedScene(LitBox::scene) {}
 
   /// Lights of equal areas, anywhere on the walls.
   std::vector<VirtualLight> spread(int count, uint32_t seed) {
-    std::vector<Vpl> vpls = test::spreadOverBox(kSize, kAlbedo, count, seed);
+    std::vector<Vpl> vpls = spreadOverBox(size, albedo, count, seed);
     std::vector<Vpl*> all;
     for (Vpl& v : vpls) all.push_back(&v);
-    estimateRadiance(all, *rays, lights, 16, kBounces, 1, counts);
+    estimateRadiance(all, rays, lights, 16, kBounces, 1, counts);
     VplSet set;
     set.slots = std::move(vpls);
     return lightsOf(set);
   }
 
   /// Mean irradiance of the picture by the reference, and its standard error.
-  test::Mean truth(float clamp, uint32_t samples) {
-    ReferenceSums sums(24, 16);
-    const ReferenceInputs in{*rays, lights, view.camera, kBounces, clamp, 1};
-    addSamples(sums, in, samples, counts);
-    const ReferencePicture picture = readReference(sums, in, ReferenceBuffer::Irradiance);
+  Mean truth(float clamp, uint32_t samples) {
+    const ReferencePicture picture =
+        trace({rays, lights, view.camera, kBounces, clamp, 1}, samples, ReferenceBuffer::Irradiance);
     const double mean = meanOfPixels(picture.mean.pixels);
     return {mean, mean * picture.relativeErrorOfMean};
   }
@@ -79,18 +54,16 @@ TEST(ReferenceAgainstVpls, ClampedGatherOfEvenlySpreadLights) {
   std::vector<double> means;
   for (uint32_t set = 0; set < 16; ++set)
     means.push_back(
-        Room::meanOfPixels(gatherByRays(*room.rays, room.view.camera, room.spread(2000, set), gather, room.counts)));
-  const test::Mean m = test::meanOf(means), truth = room.truth(gather.clamp, 1000);
-  EXPECT_LT(std::abs(m.mean - truth.mean), test::kDeviateLimit * std::hypot(m.error, truth.error))
-      << m.mean << " against " << truth.mean;
-  EXPECT_LT(m.error, 0.01 * truth.mean) << "too noisy to tell";
+        Room::meanOfPixels(gatherByRays(room.rays, room.view.camera, room.spread(2000, set), gather, room.counts)));
+  const Mean truth = room.truth(gather.clamp, 1000);
+  EXPECT_TRUE(agrees(meanOf(means), truth, 0.01 * truth.mean));
 }
 
 /// Few lights and wide bounds: a tenth of the light or more is near light, and all of it comes back.
 TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   Room room;
-  const test::Mean truth = room.truth(0, 4000);
+  const Mean truth = room.truth(0, 4000);
   for (const bool subsets : {false, true}) {
     GatherSettings gather;
     gather.disk = subsets ? 4 : 1;
@@ -99,9 +72,9 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
     std::vector<double> bounded, means;
     for (uint32_t set = 0; set < 400; ++set) {
       const std::vector<VirtualLight> lights = room.spread(150, set);
-      bounded.push_back(Room::meanOfPixels(gatherByRays(*room.rays, room.view.camera, lights, gather, room.counts)));
+      bounded.push_back(Room::meanOfPixels(gatherByRays(room.rays, room.view.camera, lights, gather, room.counts)));
       const NearLight near = traceNearLight({.view = room.view,
-                                             .rays = *room.rays,
+                                             .rays = room.rays,
                                              .lights = room.lights,
                                              .virtuals = lights,
                                              .gather = gather,
@@ -113,11 +86,8 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
                                             room.counts);
       means.push_back(bounded.back() + Room::meanOfPixels(near.irradiance));
     }
-    const test::Mean m = test::meanOf(means);
-    EXPECT_LT(std::abs(m.mean - truth.mean), test::kDeviateLimit * std::hypot(m.error, truth.error))
-        << m.mean << " against " << truth.mean << ", subsets " << subsets;
-    EXPECT_LT(m.error, 0.004 * truth.mean) << "too noisy to tell";
-    EXPECT_LT(test::meanOf(bounded).mean, 0.9 * truth.mean) << "or there was little to give back";
+    EXPECT_TRUE(agrees(meanOf(means), truth, 0.004 * truth.mean)) << "subsets " << subsets;
+    EXPECT_LT(meanOf(bounded).mean, 0.9 * truth.mean) << "or there was little to give back";
   }
 }
 
@@ -131,7 +101,7 @@ TEST(ReferenceAgainstVpls, NearLightKeepsToItsLimit) {
     GatherSettings gather;
     gather.nearLimit = limit;
     const NearLightInputs in{.view = room.view,
-                             .rays = *room.rays,
+                             .rays = room.rays,
                              .lights = room.lights,
                              .virtuals = lights,
                              .gather = gather,
@@ -151,5 +121,4 @@ TEST(ReferenceAgainstVpls, NearLightKeepsToItsLimit) {
   EXPECT_GT(lost, 0);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::gather_test

@@ -4,15 +4,10 @@
 #include "gi/reference/live_reference.h"
 #include "tests/support/hand_scene.h"
 
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <cmath>
-#include <cstring>
 #include <thread>
 
-namespace lambent {
-namespace {
+namespace lambent::test::live_reference_test {
 
 bool sameImage(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height &&
@@ -25,21 +20,14 @@ class LiveReferenceTest : public ::testing::Test {
   LiveReferenceTest() {
     scene_.box(vec3(-1), vec3(1), scene_.material({0.7f, 0.5f, 0.3f}), true);
     block_ = scene_.quad({-0.5f, -0.5f, -0.8f}, {1, 0, 0}, {0, 0.4f, 0}, scene_.material(vec3(0.5f)));
-    LightView lamp;
-    lamp.position = {0.2f, 0.8f, -0.1f};
-    scene_.lights.push_back(lamp);
+    scene_.lamp({0.2f, 0.8f, -0.1f});
     scene_.camera.worldFromView[3].z = 0.9f;
-    scene_.camera.width = 24;
-    scene_.camera.height = 16;
+    scene_.picture(24, 16);
     settings_.smc.bounces = 2;
   }
 
   /// As extracted; by default nothing has changed.
-  SceneView seen(SceneChanges changes = {false, false, false, false, false}) const {
-    SceneView view = scene_.view();
-    view.changes = changes;
-    return view;
-  }
+  SceneView seen(SceneChanges changes = kStill) const { return scene_.view(changes); }
 
   /// A view that has changed and then stands still. Returns what the first of the two was answered.
   std::string begin(LiveReference& live, ReferenceBuffer buffer, const SceneChanges& changes = {}) const {
@@ -72,7 +60,7 @@ class LiveReferenceTest : public ::testing::Test {
   }
 
   static constexpr uint32_t kSeed = 5;
-  test::HandScene scene_;
+  HandScene scene_;
   uint32_t block_ = 0;
   Settings settings_;
 };
@@ -116,19 +104,19 @@ TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
     expectTruth(*truth, buffer); // of the view as it is now
   };
   scene_.camera.worldFromView[3].x = 0.2f;
-  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false}, "the camera changed");
+  anew(kCameraChanged, "the camera changed");
   scene_.camera.width = 32;
-  anew({.first = false, .camera = true, .lights = false, .geometry = false, .instances = false}, "the camera changed");
+  anew(kCameraChanged, "the camera changed");
   scene_.lights[0].intensity = {1, 2, 3};
-  anew({.first = false, .camera = false, .lights = true, .geometry = false, .instances = false}, "the light changed");
+  anew(kLightsChanged, "the light changed");
   scene_.instances[block_].worldFromObject[3].x = 0.4f;
-  anew({.first = false, .camera = false, .lights = false, .geometry = true, .instances = false}, "objects moved");
+  anew(kGeometryChanged, "objects moved");
   scene_.instances.pop_back();
-  anew({.first = false, .camera = false, .lights = false, .geometry = false, .instances = true}, "objects moved");
+  anew(kInstancesChanged, "objects moved");
   settings_.smc.bounces = 1;
-  anew({false, false, false, false, false}, "smc.bounces changed");
+  anew(kStill, "smc.bounces changed");
   settings_.gather.glossy = true;
-  anew({false, false, false, false, false}, "surfaces reflect in another way");
+  anew(kStill, "surfaces reflect in another way");
   settings_.image.exposure = 3;
   settings_.smc.vpls = 64;
   EXPECT_EQ(live.follow(seen(), settings_, buffer), "") << "no sample depends on it";
@@ -137,7 +125,7 @@ TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
 TEST_F(LiveReferenceTest, ViewsInBetweenAreNotMissed) {
   LiveReference live(kSeed);
   begin(live, ReferenceBuffer::Beauty);
-  const SceneChanges moved{false, false, false, true, false}, turned{false, true, false, false, false};
+  const SceneChanges moved = kGeometryChanged, turned = kCameraChanged;
   for (int i = 0; i < 20; ++i) { // most of them are overtaken before a sample is taken
     scene_.instances[block_].worldFromObject[3].x = 0.02f * float(i);
     scene_.instances[block_].moved = true;
@@ -152,8 +140,7 @@ TEST_F(LiveReferenceTest, ViewsInBetweenAreNotMissed) {
 }
 
 TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
-  scene_.camera.width = 640;
-  scene_.camera.height = 480;
+  scene_.picture(640, 480);
   settings_.smc.bounces = 8;
   const auto start = std::chrono::steady_clock::now();
   double pass = 0;
@@ -200,5 +187,4 @@ TEST_F(LiveReferenceTest, ErrorsAreThoseOfThePicturesAndKnowTheTruthsOwn) {
   EXPECT_FALSE(againstTruth(darker, traced(buffer, 1).picture).known()) << "one sample does not know its error";
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::live_reference_test

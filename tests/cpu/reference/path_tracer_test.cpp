@@ -1,55 +1,23 @@
 // The reference against closed forms.
 #include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
-#include "gi/reference/path_tracer.h"
 #include "tests/support/effort.h"
-#include "tests/support/hand_scene.h"
-#include "tests/support/statistics.h"
+#include "tests/support/reference.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace lambent {
-namespace {
-
-CameraView cameraAt(const vec3& eye, const vec3& forward, float fovY, int width, int height) {
-  CameraView camera;
-  const vec3 back = -glm::normalize(forward);
-  const vec3 right = glm::normalize(glm::cross(std::abs(back.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1), back));
-  camera.worldFromView = mat4(mat3(right, glm::cross(back, right), back));
-  camera.worldFromView[3] = vec4(eye, 1);
-  camera.fovY = fovY;
-  camera.near = 1e-3f;
-  camera.width = width;
-  camera.height = height;
-  return camera;
-}
+namespace lambent::test::path_tracer_test {
 
 /// Camera whose pixels all look at one point: as many independent estimates of it.
-CameraView probe(const vec3& eye, const vec3& forward) { return cameraAt(eye, forward, 1e-4f, 32, 32); }
+CameraView probe(const vec3& eye, const vec3& forward) { return probeAt(eye, eye + forward); }
 
-ReferencePicture trace(const ReferenceInputs& in, uint32_t samples, ReferenceBuffer buffer) {
-  ReferenceSums sums(in.camera.width, in.camera.height);
-  RayCounts counts;
-  addSamples(sums, in, samples, counts);
-  return readReference(sums, in, buffer);
-}
-
-/// Mean of the red channel over all pixels, with the error that the pixels' scatter tells (they are independent).
-test::Mean meanRed(const Image& image) {
-  std::vector<double> values;
-  for (const vec3& p : image.pixels) values.push_back(p.x);
-  return test::meanOf(values);
+CameraView looking(const vec3& eye, const vec3& forward, int width, int height) {
+  return cameraAt(eye, eye + forward, 1.5f, width, height);
 }
 
 /// Within `bound` (relative), and no farther than chance allows.
 void expectMean(const Image& image, double expected, double bound, const std::string& what) {
-  const test::Mean m = meanRed(image);
+  const Mean m = meanOf(image, {1, 0, 0});
   EXPECT_LT(std::abs(m.mean - expected), bound * expected) << what << ": " << m.mean << " against " << expected;
-  // 1e-5: single precision of rays and offsets.
-  EXPECT_LT(std::abs(m.mean - expected), test::kDeviateLimit * m.error + 1e-5 * expected) << what;
-  EXPECT_LT(m.error, bound * expected / 2) << what << ": too noisy to tell";
+  EXPECT_TRUE(agrees(m, expected, bound * expected / 2, 1e-5 * expected))
+      << what; // single precision of rays and offsets
 }
 
 // Closed, emission 1, albedo 1/2: beauty is 1 + 1/2 + … after B bounces, everywhere.
@@ -60,7 +28,7 @@ TEST(Reference, WhiteFurnaceOfASphere) {
   sphere.addSphere({0, 0, 0}, 2, {vec3(0.5f), vec3(1), true});
   LightSet lights;
   lights.sky = vec3(1e-30f); // never met; says that cosine rays are wanted at the last vertex
-  const CameraView camera = cameraAt({0.3f, 0.2f, 0.1f}, {1, 0, 0}, 1.5f, 16, 16);
+  const CameraView camera = looking({0.3f, 0.2f, 0.1f}, {1, 0, 0}, 16, 16);
   for (int bounces = 0; bounces < 4; ++bounces) {
     const ReferencePicture p = trace({sphere, lights, camera, bounces}, 4, ReferenceBuffer::Beauty);
     for (const vec3& pixel : p.mean.pixels) EXPECT_NEAR(pixel.y, kFurnace[bounces], 1e-5);
@@ -69,15 +37,12 @@ TEST(Reference, WhiteFurnaceOfASphere) {
 
 TEST(Reference, WhiteFurnaceOfAMeshRoom) {
   // Emitters that are sampled: connections and cosine rays must share the light exactly, at every vertex.
-  test::HandScene scene;
+  HandScene scene;
   scene.box({0, 0, 0}, {2, 1, 3}, scene.material(vec3(0.5f), vec3(1)), true);
-  const SceneView view = scene.view();
-  EmbreeQuery rays(scene.assets);
-  rays.update(view);
-  const LightSet lights = collectLights(view);
-  const CameraView camera = cameraAt({0.7f, 0.5f, 0.2f}, {0.2f, -0.1f, 1}, 1.5f, 48, 48);
+  const TracedScene s(scene);
+  const CameraView camera = looking({0.7f, 0.5f, 0.2f}, {0.2f, -0.1f, 1}, 48, 48);
   for (int bounces = 0; bounces < 4; ++bounces)
-    expectMean(trace({rays, lights, camera, bounces}, 256, ReferenceBuffer::Beauty).mean, kFurnace[bounces], 1e-3,
+    expectMean(trace({s.rays, s.lights, camera, bounces}, 256, ReferenceBuffer::Beauty).mean, kFurnace[bounces], 1e-3,
                "B = " + std::to_string(bounces));
 }
 
@@ -91,7 +56,7 @@ TEST(Reference, PointLightInASphere) {
   LightSet lights;
   lights.punctual.resize(1);
   lights.punctual[0].intensity = vec3(3);
-  const CameraView camera = cameraAt({-1, 0.2f, 0.1f}, {1, 0, 0}, 1.5f, 32, 32);
+  const CameraView camera = looking({-1, 0.2f, 0.1f}, {1, 0, 0}, 32, 32);
   for (const vec3& at : {vec3(0), vec3(0.5f, 0.8f, -0.4f)}) {
     lights.punctual[0].position = at;
     double series = 0;
@@ -202,25 +167,20 @@ TEST_F(ParallelPlates, ClampedGeometryTerm) {
 
 TEST(Reference, PixelCentresAndBackground) {
   // A quad that covers the left half of the picture exactly, seen from the front.
-  test::HandScene scene;
+  HandScene scene;
   scene.quad({-10, -10, -1}, {10, 0, 0}, {0, 20, 0}, scene.material(vec3(0.5f), vec3(2)));
   scene.sky = vec3(0.25f);
-  const SceneView view = scene.view();
-  EmbreeQuery rays(scene.assets);
-  rays.update(view);
-  const LightSet lights = collectLights(view);
+  const TracedScene s(scene);
   CameraView camera = cameraAt({0, 0, 0}, {0, 0, -1}, 1, 8, 4);
-  const ReferenceInputs in{rays, lights, camera, 1};
+  const ReferenceInputs in{s.rays, s.lights, camera, 1};
   const ReferencePicture p = trace(in, 2, ReferenceBuffer::Beauty);
-  for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 8; ++x) {
-      EXPECT_EQ(p.surface[y * 8 + x], x < 4);
-      EXPECT_NEAR(p.mean.at(x, y).x, x < 4 ? 2 + 0.5 * 0.25 : 0.25, 1e-5);
-    }
+  for (const auto [x, y] : Pixels(8, 4)) {
+    EXPECT_EQ(p.surface[y * 8 + x], x < 4);
+    EXPECT_NEAR(p.mean.at(x, y).x, x < 4 ? 2 + 0.5 * 0.25 : 0.25, 1e-5);
+  }
   EXPECT_EQ(trace(in, 2, ReferenceBuffer::Indirect).mean.at(7, 0), vec3(0));
   camera.near = 1.5f; // beyond the quad, which the rasteriser would clip
-  EXPECT_EQ(trace({rays, lights, camera, 1}, 2, ReferenceBuffer::Beauty).surface[0], 0);
+  EXPECT_EQ(trace({s.rays, s.lights, camera, 1}, 2, ReferenceBuffer::Beauty).surface[0], 0);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::path_tracer_test

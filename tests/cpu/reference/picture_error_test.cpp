@@ -2,13 +2,9 @@
 #include "gi/measure/picture_error.h"
 #include "gi/measure/statistics.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <cmath>
-#include <limits>
-
-namespace lambent {
-namespace {
+namespace lambent::test::picture_error_test {
 
 TEST(PictureErrorTest, ADifferenceInOneChannelOfOnePixelCountsByItsShareOfAllValues) {
   Image truth(2, 2, vec3(2)), picture = truth;
@@ -100,5 +96,4 @@ TEST(PictureError, BlocksAreHeldToTheirOwnMean) {
   EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 0.5);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::picture_error_test

@@ -4,12 +4,9 @@
 #include "gi/measure/stability.h"
 #include "gi/measure/statistics.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::ranking_test {
 
 /// Standard normal, by Box and Muller.
 double normal(Rng& random) {
@@ -168,5 +165,4 @@ TEST(Statistics, ErrorOfAnExponentOfAnExactPowerIsNone) {
   EXPECT_TRUE(std::isnan(exponentError(std::span(x).first(2), std::span(y).first(2))));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::ranking_test

@@ -1,20 +1,13 @@
 // The reference is the same however it is run, and honest about its own error.
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/trace/embree_query.h"
 #include "gi/reference/state_file.h"
-#include "tests/support/hand_scene.h"
-#include "tests/support/statistics.h"
+#include "tests/support/reference.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
 #include <fstream>
 #include <unistd.h>
 
-namespace lambent {
-namespace {
+namespace lambent::test::repeat_test {
 
 /// A room with a lamp, a glowing panel and a window, small.
 class Room : public ::testing::Test {
@@ -26,18 +19,9 @@ class Room : public ::testing::Test {
     scene_.quad({0, 0, 3}, {0, 1, 0}, {2, 0, 0}, white);
     scene_.quad({1.5f, 0.2f, 2.9f}, {0, 0.5f, 0}, {0.3f, 0, 0}, scene_.material(vec3(0.2f), vec3(3, 4, 5), true));
     scene_.sky = vec3(0.2f, 0.3f, 0.4f);
-    LightView lamp;
-    lamp.position = {1, 0.9f, 1.5f};
-    scene_.lights.push_back(lamp);
-    scene_.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
-    scene_.camera.worldFromView[2] = vec4(0, 0, -1, 0);
-    scene_.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
-    scene_.camera.width = 24;
-    scene_.camera.height = 16;
-    view_ = scene_.view();
-    rays_ = std::make_unique<EmbreeQuery>(scene_.assets);
-    rays_->update(view_);
-    lights_ = collectLights(view_);
+    scene_.lamp({1, 0.9f, 1.5f});
+    scene_.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.5f, 3}, 1, 24, 16);
+    traced_.emplace(scene_);
     file_ = std::filesystem::temp_directory_path() / ("lambent-reference-" + std::to_string(getpid()) + ".state");
   }
   ~Room() override {
@@ -45,7 +29,9 @@ class Room : public ::testing::Test {
     std::filesystem::remove(file_);
   }
 
-  ReferenceInputs inputs(uint32_t seed = 1) const { return {*rays_, lights_, view_.camera, 3, 0, seed}; }
+  ReferenceInputs inputs(uint32_t seed = 1) const {
+    return {traced_->rays, traced_->lights, traced_->view.camera, 3, 0, seed};
+  }
 
   ReferenceSums sumsOf(std::initializer_list<uint32_t> passes, uint32_t seed = 1) const {
     ReferenceSums sums(24, 16);
@@ -66,17 +52,15 @@ class Room : public ::testing::Test {
   /// The one line that says why the file is refused.
   std::string refusal(const ReferenceInputs& in) const {
     try {
-      loadReference(file_, in, referenceKey(view_, in));
+      loadReference(file_, in, referenceKey(traced_->view, in));
     } catch (const InputError& e) {
       return e.what();
     }
     return "accepted";
   }
 
-  test::HandScene scene_;
-  SceneView view_;
-  std::unique_ptr<EmbreeQuery> rays_;
-  LightSet lights_;
+  HandScene scene_;
+  std::optional<TracedScene> traced_;
   std::filesystem::path file_;
   mutable RayCounts counts_;
 };
@@ -93,7 +77,7 @@ TEST_F(Room, PassesAndThreadsDoNotMatter) {
 }
 
 TEST_F(Room, ResumedEqualsOneRun) {
-  const uint64_t key = referenceKey(view_, inputs());
+  const uint64_t key = referenceKey(traced_->view, inputs());
   saveReference(file_, sumsOf({12}), key);
   const std::string whole = bytesOf(file_);
   saveReference(file_, sumsOf({5}), key);
@@ -106,19 +90,20 @@ TEST_F(Room, ResumedEqualsOneRun) {
 
 TEST_F(Room, StateOfAnotherPictureIsRefused) {
   const ReferenceInputs in = inputs();
-  saveReference(file_, sumsOf({2}), referenceKey(view_, in));
+  const auto& [view, rays, lights] = *traced_;
+  saveReference(file_, sumsOf({2}), referenceKey(view, in));
   EXPECT_EQ(refusal(in), "accepted");
   const auto refused = [&](const ReferenceInputs& other, const std::string& why) {
     EXPECT_NE(refusal(other).find(why), std::string::npos) << refusal(other);
   };
   refused(inputs(2), "another picture");
-  refused({*rays_, lights_, view_.camera, 2}, "another picture");
-  refused({*rays_, lights_, view_.camera, 3, 5.0f}, "another picture");
-  CameraView camera = view_.camera;
+  refused({rays, lights, view.camera, 2}, "another picture");
+  refused({rays, lights, view.camera, 3, 5.0f}, "another picture");
+  CameraView camera = view.camera;
   camera.worldFromView[3].x += 0.1f;
-  refused({*rays_, lights_, camera}, "another picture");
+  refused({rays, lights, camera}, "another picture");
   camera.width = 32;
-  refused({*rays_, lights_, camera}, "24x16");
+  refused({rays, lights, camera}, "24x16");
   scene_.lights[0].intensity.y = 2;
   refused(in, "another picture");
   scene_.lights[0].intensity.y = 1;
@@ -135,7 +120,7 @@ TEST_F(Room, StateOfAnotherPictureIsRefused) {
 
 TEST_F(Room, DamagedStateIsRefused) {
   const ReferenceInputs in = inputs();
-  saveReference(file_, sumsOf({2}), referenceKey(view_, in));
+  saveReference(file_, sumsOf({2}), referenceKey(traced_->view, in));
   const std::string whole = bytesOf(file_);
   const auto refused = [&](std::string bytes, const std::string& why) {
     std::ofstream(file_, std::ios::binary) << bytes;
@@ -166,14 +151,14 @@ TEST_F(Room, SeedsAgreeWithinTheirErrors) {
                      std::hypot(double(a.error.pixels[i].y), double(b.error.pixels[i].y));
     chi2 += z * z;
     sum += z;
-    far += std::abs(z) > test::kDeviateLimit;
+    far += std::abs(z) > kDeviateLimit;
     ++n;
   }
   ASSERT_GT(n, 200u);
   // Means of 400 samples are nearly normal, so Σz is N(0, n) and Σz² chi-square with n degrees: 6e-5 each by chance.
-  EXPECT_LT(std::abs(sum) / std::sqrt(double(n)), test::kDeviateLimit);
-  EXPECT_LT(test::chiSquareDeviate(chi2, double(n)), test::kDeviateLimit);
-  EXPECT_GT(test::chiSquareDeviate(chi2, double(n)), -test::kDeviateLimit) << "errors stated too large";
+  EXPECT_LT(std::abs(sum) / std::sqrt(double(n)), kDeviateLimit);
+  EXPECT_LT(chiSquareDeviate(chi2, double(n)), kDeviateLimit);
+  EXPECT_GT(chiSquareDeviate(chi2, double(n)), -kDeviateLimit) << "errors stated too large";
   EXPECT_LE(far, 1u) << "of " << n << " pixels; 6e-5 of them by chance, a few more for the tails of paths";
 }
 
@@ -192,7 +177,7 @@ TEST_F(Room, StatedErrorIsTheScatterOfRuns) {
     ratios.push_back(std::sqrt(squares / n) / (total / n) / p.relativeError);
   }
   // The truth's own 64/4000 adds 0.8 %.
-  EXPECT_NEAR(test::meanOf(ratios).mean, 1.008, 0.03 + test::kDeviateLimit * test::meanOf(ratios).error);
+  EXPECT_NEAR(meanOf(ratios).mean, 1.008, 0.03 + kDeviateLimit * meanOf(ratios).error);
 }
 
 TEST_F(Room, SingleSampleHasNoError) {
@@ -201,5 +186,4 @@ TEST_F(Room, SingleSampleHasNoError) {
   for (const vec3& pixel : p.mean.pixels) EXPECT_TRUE(isFinite(pixel));
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::repeat_test

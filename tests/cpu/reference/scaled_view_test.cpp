@@ -1,19 +1,11 @@
 // Views with more of one thing: as much more as was asked for, and the same light.
 #include "engine/core/parallel.h"
-#include "engine/trace/embree_query.h"
 #include "gi/measure/scaled_view.h"
-#include "gi/reference/path_tracer.h"
 #include "gi/reference/traced_picture.h"
 #include "tests/support/hand_scene.h"
+#include "tests/support/images.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
-namespace lambent {
-namespace {
-
-using test::HandScene;
+namespace lambent::test::scaled_view_test {
 
 /// A closed room with a rotated block and a bent sheet in it, one mesh each, seen from inside, with a lamp.
 class ScaledViewTest : public ::testing::Test {
@@ -21,25 +13,18 @@ class ScaledViewTest : public ::testing::Test {
   ScaledViewTest() {
     const uint32_t wall = scene.material({0.7f, 0.6f, 0.5f}), body = scene.material({0.2f, 0.6f, 0.4f}, vec3(0), true);
     scene.box(vec3(-2), vec3(2), wall, true);
-    scene.assets.meshes.push_back(test::block({0.5f, 0.3f, 0.4f}, body));
-    scene.instance(uint32_t(scene.assets.meshes.size() - 1),
-                   mat4(glm::mat4_cast(glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3))))));
+    scene.add(block({0.5f, 0.3f, 0.4f}, body), glm::mat4_cast(glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)))));
     Mesh sheet = test::sheet(3, body);
-    sheet.positions = test::waves(sheet, 0.1f, 0.3f);
+    sheet.positions = waves(sheet, 0.1f, 0.3f);
     sheet.boundsObject = {};
     for (const vec3& p : sheet.positions) sheet.boundsObject.add(p);
-    scene.assets.meshes.push_back(std::move(sheet));
     mat4 place(0.5f);
     place[3] = vec4(0.8f, -0.9f, 0.2f, 1);
-    scene.instance(uint32_t(scene.assets.meshes.size() - 1), place);
-    LightView lamp;
-    lamp.position = vec3(0.4f, 1.3f, 1.1f);
-    lamp.intensity = vec3(3, 2, 1);
-    scene.lights.push_back(lamp);
+    scene.add(std::move(sheet), place);
+    scene.lamp(vec3(0.4f, 1.3f, 1.1f), vec3(3, 2, 1));
     scene.camera.worldFromView[3] = vec4(0, 0, 1.9f, 1);
     scene.camera.fovY = 1.5f;
-    scene.camera.width = 16;
-    scene.camera.height = 12;
+    scene.picture(16, 12);
   }
 
   static Image picture(const SceneView& view) {
@@ -50,14 +35,7 @@ class ScaledViewTest : public ::testing::Test {
 
   /// The same random numbers, so the same paths wherever surfaces are the same: but where a ray meets an edge.
   static void expectSamePicture(const SceneView& a, const SceneView& b) {
-    const Image one = picture(a), other = picture(b);
-    double difference = 0, all = 0;
-    for (size_t i = 0; i < one.pixels.size(); ++i) {
-      difference += std::abs(luminance(one.pixels[i]) - luminance(other.pixels[i]));
-      all += luminance(one.pixels[i]);
-    }
-    EXPECT_GT(all, 0);
-    EXPECT_LT(difference, 0.01 * all);
+    EXPECT_LT(relativeDifference(picture(b), picture(a)), 0.01);
   }
 
   static double areaOf(const Mesh& mesh) {
@@ -177,5 +155,4 @@ TEST_F(ScaledViewTest, APictureOfAnotherSizeHasItsShape) {
   EXPECT_EQ(ResizedPicture(0.01f).of(scene.view()).camera.height, 1);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::scaled_view_test

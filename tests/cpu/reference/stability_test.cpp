@@ -1,18 +1,10 @@
 // Errors over time on series with known answers, and truth at tracked pixels.
 #include "engine/core/rng.h"
-#include "engine/trace/embree_query.h"
 #include "gi/measure/stability.h"
-#include "gi/reference/path_tracer.h"
 #include "gi/vpl/smc.h"
-#include "tests/support/hand_scene.h"
-#include "tests/support/statistics.h"
+#include "tests/support/reference.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace lambent {
-namespace {
+namespace lambent::test::stability_test {
 
 TEST(Stability, ReinhardOfExposedLuminance) {
   EXPECT_FLOAT_EQ(toneMappedLuminance(vec3(0.5f), 2), 0.5f);
@@ -142,20 +134,10 @@ TEST(Jumped, ALiftThatSteps) {
 }
 
 TEST(TrackedPixels, AgreeWithThePictureAtPixelCentres) {
-  test::HandScene scene;
-  scene.box({0, 0, 0}, {2, 1, 3}, scene.material(vec3(0.6f, 0.5f, 0.4f)), true);
-  LightView lamp;
-  lamp.position = {1.6f, 0.4f, 2.5f};
-  scene.lights.push_back(lamp);
-  scene.camera.worldFromView[0] = vec4(-1, 0, 0, 0); // looks along +Z
-  scene.camera.worldFromView[2] = vec4(0, 0, -1, 0);
-  scene.camera.worldFromView[3] = vec4(1, 0.5f, 0.1f, 1);
-  scene.camera.width = 16;
-  scene.camera.height = 8;
-  const SceneView view = scene.view();
-  EmbreeQuery rays(scene.assets);
-  rays.update(view);
-  const LightSet lights = collectLights(view);
+  ReferenceBox box;
+  box.scene.picture(16, 8);
+  const TracedScene traced(box.scene);
+  const auto& [view, rays, lights] = traced;
   constexpr uint32_t kSamples = 400;
   RayCounts counts;
   ReferenceSums picture(16, 8);
@@ -177,9 +159,8 @@ TEST(TrackedPixels, AgreeWithThePictureAtPixelCentres) {
     statistic += (a - b) * (a - b) / (va + vb);
   }
   // Squares of 128 normal deviates; their variances are estimates, which widens the tail a little.
-  EXPECT_LT(test::chiSquareDeviate(statistic, double(sums.size())), 4.5);
-  EXPECT_GT(test::chiSquareDeviate(statistic, double(sums.size())), -4.5);
+  EXPECT_LT(chiSquareDeviate(statistic, double(sums.size())), 4.5);
+  EXPECT_GT(chiSquareDeviate(statistic, double(sums.size())), -4.5);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::stability_test

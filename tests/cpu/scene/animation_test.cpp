@@ -2,12 +2,7 @@
 
 #include "tests/cpu/scene/support.h"
 
-namespace lambent {
-namespace {
-
-using testing::expectNear;
-using testing::GltfBuilder;
-using testing::TemporaryFolder;
+namespace lambent::test::animation_test {
 
 constexpr float kHalfRoot2 = 0.70710678f;
 
@@ -80,7 +75,7 @@ TEST(SampleChannel, EqualTimesJump) {
 
 TEST(Animate, ClipsLoopAndLeaveOtherPropertiesAtRest) {
   TemporaryFolder folder;
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["nodes"][0]["name"] = "mover";
   b.json["nodes"][0]["scale"] = {2, 2, 2};
   const int input = b.floats({0, 2}), output = b.floats({0, 0, 0, 2, 0, 0}, "VEC3");
@@ -119,5 +114,4 @@ TEST(Animate, ScriptedMotionSpinsAndSwingsFromWhereItStands) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::animation_test

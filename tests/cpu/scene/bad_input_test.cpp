@@ -5,16 +5,10 @@
 
 #include <limits>
 
-namespace lambent {
-namespace {
+namespace lambent::test::bad_input_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::GltfBuilder;
-using testing::hasWarning;
-using testing::inputErrorOf;
-using testing::oneTriangle;
-using testing::TemporaryFolder;
 
 class BadInput : public ::testing::Test {
  protected:
@@ -37,13 +31,13 @@ class BadInput : public ::testing::Test {
 TEST_F(BadInput, MissingEmptyAndForeignFiles) {
   expectError(folder / "none.gltf", "no such file");
   expectError(folder.path(), "is not a file");
-  testing::writeBytes(folder / "empty.gltf", "");
+  writeBytes(folder / "empty.gltf", "");
   expectError(folder / "empty.gltf", "is empty");
-  testing::writeBytes(folder / "words.gltf", "these are words");
+  writeBytes(folder / "words.gltf", "these are words");
   expectError(folder / "words.gltf", "line 1");
-  testing::writeBytes(folder / "array.gltf", "[1, 2, 3]");
+  writeBytes(folder / "array.gltf", "[1, 2, 3]");
   expectError(folder / "array.gltf", "not a JSON object");
-  testing::writeBytes(folder / "nested.gltf", std::string(100000, '['));
+  writeBytes(folder / "nested.gltf", std::string(100000, '['));
   expectError(folder / "nested.gltf", "nested");
   GltfBuilder old = oneTriangle();
   old.json["asset"]["version"] = "1.0";
@@ -52,20 +46,20 @@ TEST_F(BadInput, MissingEmptyAndForeignFiles) {
 
 TEST_F(BadInput, BinaryFilesCutOffAnywhereAreRefused) {
   oneTriangle().writeGlb(folder / "whole.glb");
-  const std::string whole = testing::readBytes(folder / "whole.glb");
+  const std::string whole = readBytes(folder / "whole.glb");
   for (size_t size = 4; size < whole.size(); size += 3) {
-    testing::writeBytes(folder / "cut.glb", whole.substr(0, size));
+    writeBytes(folder / "cut.glb", whole.substr(0, size));
     expectError(folder / "cut.glb", "cut off");
   }
   std::string longChunk = whole;
   longChunk[12] = char(0xff); // length of the JSON chunk
   longChunk[14] = char(0xff);
-  testing::writeBytes(folder / "chunk.glb", longChunk);
+  writeBytes(folder / "chunk.glb", longChunk);
   expectError(folder / "chunk.glb", "chunk 0");
   // One that claims a few bytes more than the file has after it.
   std::string lastChunk = whole;
   lastChunk[whole.size() - 36 - 8] = 40;
-  testing::writeBytes(folder / "last.glb", lastChunk);
+  writeBytes(folder / "last.glb", lastChunk);
   expectError(folder / "last.glb", "chunk 1");
 }
 
@@ -128,15 +122,15 @@ TEST_F(BadInput, TexturesAndPictures) {
     EXPECT_EQ(sampleTexture(scene.assets, scene.assets.materials.at(0).baseColorTexture, vec2(0.3f)), vec4(1));
   };
   expectWhite("cannot be read");
-  testing::writeBytes(folder / "missing.png", "no picture");
+  writeBytes(folder / "missing.png", "no picture");
   expectWhite("cannot be decoded");
   // The header of a PNG of 20000×1 and of one beyond any memory.
   const std::string header("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\0\x01\x08\x02\0\0\0\0\0\0\0", 33);
-  testing::writeBytes(folder / "missing.png", header);
+  writeBytes(folder / "missing.png", header);
   expectWhite("is 20000x1 texels");
   std::string large = header;
   large.replace(16, 8, std::string("\0\0\x40\0\0\0\x40\0", 8)); // 16384 each way
-  testing::writeBytes(folder / "missing.png", large);
+  writeBytes(folder / "missing.png", large);
   expectError(b, "needs more memory than a file of");
   b.json["images"] = {{{"bufferView", 44}, {"mimeType", "image/png"}}};
   expectError(b, "bufferView");
@@ -149,9 +143,9 @@ TEST_F(BadInput, ExternalBufferMissingOrShort) {
   GltfBuilder b = oneTriangle();
   json j = json::parse(b.text());
   j["buffers"][0]["uri"] = "data.bin";
-  testing::writeBytes(folder / "bad.gltf", j.dump());
+  writeBytes(folder / "bad.gltf", j.dump());
   expectError(folder / "bad.gltf", "data.bin");
-  testing::writeBytes(folder / "data.bin", "short");
+  writeBytes(folder / "data.bin", "short");
   expectError(folder / "bad.gltf", "data.bin");
 }
 
@@ -160,7 +154,7 @@ TEST_F(BadInput, PathsAreNotExpandedByAShell) {
   json j = json::parse(b.text());
   const fs::path trap = folder / "trap";
   j["buffers"][0]["uri"] = "$(touch " + trap.string() + ")";
-  testing::writeBytes(folder / "bad.gltf", j.dump());
+  writeBytes(folder / "bad.gltf", j.dump());
   expectError(folder / "bad.gltf", "not found");
   EXPECT_FALSE(fs::exists(trap));
 }
@@ -204,9 +198,9 @@ TEST_F(BadInput, DefectiveTrianglesAreDroppedAndCounted) {
   EXPECT_EQ(m.triangles.size(), 1u);
   EXPECT_TRUE(hasWarning(scene, "2 triangle(s) without area"));
   EXPECT_TRUE(hasWarning(scene, "3 triangle(s) with a position that is not a finite number"));
-  for (const vec3& n : m.normals) testing::expectNear(n, {0, 0, 1}); // the broken ones are made from the triangle
+  for (const vec3& n : m.normals) expectNear(n, {0, 0, 1}); // the broken ones are made from the triangle
   for (const vec3& p : m.positions) EXPECT_TRUE(isFinite(p));
-  testing::expectNear(m.boundsObject.hi, {1, 1, 0});
+  expectNear(m.boundsObject.hi, {1, 1, 0});
 }
 
 TEST_F(BadInput, NothingToShowLoadsWithAWarning) {
@@ -265,16 +259,16 @@ TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
   for (int i = 0; i < 200; ++i) morphs.addRoot({{"mesh", 0}});
   expectError(morphs, "needs more memory than a file of");
 
-  testing::writeBytes(folder / "data.bin", std::string(32 << 20, '\0'));
+  writeBytes(folder / "data.bin", std::string(32 << 20, '\0'));
   GltfBuilder again = oneTriangle();
   json j = json::parse(again.text());
   for (int i = 0; i < 90; ++i) j["buffers"].push_back({{"uri", "data.bin"}, {"byteLength", 32 << 20}});
-  testing::writeBytes(folder / "bad.gltf", j.dump());
+  writeBytes(folder / "bad.gltf", j.dump());
   expectError(folder / "bad.gltf", "read so often");
 }
 
 TEST_F(BadInput, KeysTwiceAndMatricesThatAreNotAffine) {
-  testing::writeBytes(folder / "twice.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scene": 1})");
+  writeBytes(folder / "twice.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scene": 1})");
   expectError(folder / "twice.gltf", "'scene' twice");
   GltfBuilder b = oneTriangle();
   b.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -306,9 +300,9 @@ TEST_F(BadInput, NamesCannotForgeLines) {
 TEST_F(BadInput, APlusInAUriIsAPlus) {
   json j = json::parse(oneTriangle().text());
   const std::string uri = j["buffers"][0]["uri"];
-  testing::writeBytes(folder / "a+b c.bin", std::string(size_t(j["buffers"][0]["byteLength"]), '\0'));
+  writeBytes(folder / "a+b c.bin", std::string(size_t(j["buffers"][0]["byteLength"]), '\0'));
   j["buffers"][0]["uri"] = "a+b%20c.bin";
-  testing::writeBytes(folder / "plus.gltf", j.dump());
+  writeBytes(folder / "plus.gltf", j.dump());
   EXPECT_TRUE(hasWarning(loadScene(folder / "plus.gltf"), "without area")); // of zeros, as the file holds
 }
 
@@ -378,13 +372,13 @@ TEST_F(BadInput, SingleDamagedBytesNeverCrash) {
   b.json["materials"] = {{{"name", "m"}, {"emissiveFactor", {1, 1, 1}}}};
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   b.writeGlb(folder / "whole.glb");
-  const std::string whole = testing::readBytes(folder / "whole.glb");
+  const std::string whole = readBytes(folder / "whole.glb");
   const char replacements[] = {'\0', '9', '-', char(0xff)};
   size_t refused = 0;
   for (size_t i = 0; i < whole.size(); ++i) {
     std::string damaged = whole;
     damaged[i] = replacements[i % 4];
-    testing::writeBytes(folder / "damaged.glb", damaged);
+    writeBytes(folder / "damaged.glb", damaged);
     try {
       loadScene(folder / "damaged.glb");
     } catch (const InputError&) {
@@ -394,5 +388,4 @@ TEST_F(BadInput, SingleDamagedBytesNeverCrash) {
   EXPECT_GT(refused, whole.size() / 2);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::bad_input_test

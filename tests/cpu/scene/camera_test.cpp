@@ -2,12 +2,7 @@
 
 #include "tests/cpu/scene/support.h"
 
-namespace lambent {
-namespace {
-
-using testing::expectNear;
-using testing::GltfBuilder;
-using testing::TemporaryFolder;
+namespace lambent::test::camera_test {
 
 CameraView tiltedCamera() {
   CameraView camera = lookAt({1, 2, 3}, {-4, 0.5f, 2}, 0.9f);
@@ -73,7 +68,7 @@ TEST(Camera, LookAtIsRigidAndUprightAlsoStraightDown) {
 
 TEST(Camera, FileCamerasLoseScaleAndMirroring) {
   TemporaryFolder folder;
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["cameras"] = {
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.2}}}},
       {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0.01}, {"zfar", 50}}}}};
@@ -179,5 +174,4 @@ TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {
   EXPECT_NEAR(view.position().y, 2, 1e-4f);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::camera_test

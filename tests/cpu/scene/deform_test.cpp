@@ -5,16 +5,13 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace lambent {
-namespace {
+namespace lambent::test::deform_test {
 
 using nlohmann::json;
-using testing::expectNear;
-using testing::GltfBuilder;
 
 class Deform : public ::testing::Test {
  protected:
-  testing::TemporaryFolder folder;
+  TemporaryFolder folder;
   SceneExtractor extractor;
   Scene scene;
 
@@ -278,7 +275,7 @@ class BadDeform : public Deform {
  protected:
   /// Loading gives one line that names the file and `what`.
   void expectError(const GltfBuilder& b, const std::string& what) {
-    const std::string error = testing::inputErrorOf([&] { b.load(folder); });
+    const std::string error = inputErrorOf([&] { b.load(folder); });
     EXPECT_NE(error.find("scene.gltf"), std::string::npos) << error;
     EXPECT_NE(error.find(what), std::string::npos) << error << "\nshould tell: " << what;
     EXPECT_EQ(error.find('\n'), std::string::npos);
@@ -304,8 +301,8 @@ TEST_F(BadDeform, Skins) {
   Bar rigid;
   rigid.b.json["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0");
   scene = rigid.b.load(folder);
-  EXPECT_TRUE(testing::hasWarning(scene, "joints without weights, or of weights without joints"));
-  EXPECT_TRUE(testing::hasWarning(scene, "node 0: has a skin, but no vertex of its mesh follows a joint"));
+  EXPECT_TRUE(hasWarning(scene, "joints without weights, or of weights without joints"));
+  EXPECT_TRUE(hasWarning(scene, "node 0: has a skin, but no vertex of its mesh follows a joint"));
   EXPECT_EQ(instance().deformed, nullptr);
 
   Bar broken;
@@ -316,7 +313,7 @@ TEST_F(BadDeform, Skins) {
   weights[13] = kInfinity;
   attributes["WEIGHTS_0"] = broken.b.floats(weights, "VEC4");
   scene = broken.b.load(folder);
-  EXPECT_TRUE(testing::hasWarning(scene, "3 joint weight(s) that are negative or not a number"));
+  EXPECT_TRUE(hasWarning(scene, "3 joint weight(s) that are negative or not a number"));
   extractor = {};
   expectNear(vertex(0), {0, 0, 0});
   expectNear(vertex(3), {0.5f, 1, 0});
@@ -341,11 +338,11 @@ TEST_F(BadDeform, MorphTargets) {
   uneven.b.json["meshes"][0]["primitives"].push_back(second);
   expectError(uneven.b, "mesh 0, primitive 1: has 1 morph targets, but primitive 0 has 2");
 
-  GltfBuilder plain = testing::oneTriangle();
+  GltfBuilder plain = oneTriangle();
   const int times = plain.floats({0}), output = plain.floats({1});
   plain.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
                                {"samplers", {{{"input", times}, {"output", output}}}}}};
-  EXPECT_TRUE(testing::hasWarning(plain.load(folder), "weights of nodes without morph targets"));
+  EXPECT_TRUE(hasWarning(plain.load(folder), "weights of nodes without morph targets"));
 }
 
 TEST_F(BadDeform, KeysBeyondSinglePrecisionLeaveFiniteVertices) {
@@ -359,5 +356,4 @@ TEST_F(BadDeform, KeysBeyondSinglePrecisionLeaveFiniteVertices) {
   for (const vec3& n : v.deformed->normals) EXPECT_NEAR(glm::length(n), 1, 1e-4f);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::deform_test

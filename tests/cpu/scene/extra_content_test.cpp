@@ -7,11 +7,9 @@
 #include <chrono>
 #include <cstdlib>
 
-namespace lambent {
+namespace lambent::test::extra_content_test {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 void expectSound(const Scene& scene) {
   for (const Mesh& mesh : scene.assets.meshes) {
@@ -54,8 +52,6 @@ void expectSound(const SceneView& view) {
   }
 }
 
-} // namespace
-
 TEST(ExtraContent, LoadsOrIsRefusedForARequiredExtension) {
   const char* root = std::getenv("LAMBENT_EXTRA_CONTENT");
   if (!root) GTEST_SKIP() << "LAMBENT_EXTRA_CONTENT is not set";
@@ -89,4 +85,4 @@ TEST(ExtraContent, LoadsOrIsRefusedForARequiredExtension) {
   }
 }
 
-} // namespace lambent
+} // namespace lambent::test::extra_content_test

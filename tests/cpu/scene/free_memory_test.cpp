@@ -2,14 +2,12 @@
 
 #include "engine/core/image.h"
 
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <fstream>
-#include <limits>
 #include <random>
 
-namespace lambent {
-namespace {
+namespace lambent::test::free_memory_test {
 
 class FreeMemory : public ::testing::Test {
  protected:
@@ -57,5 +55,4 @@ TEST(Leftovers, AreThoseOfThatFileAlone) {
   std::filesystem::remove_all(folder);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::free_memory_test

@@ -12,16 +12,11 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <stb/stb_image.h>
 
-namespace lambent {
-namespace {
-
-using testing::inputErrorOf;
-using testing::TemporaryFolder;
+namespace lambent::test::image_test {
 
 Image gradient(int width, int height) {
   Image image(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) image.at(x, y) = vec3(x * 0.1f, y * 1e5f, -1.0f / float(1 + x + y));
+  for (const auto [x, y] : Pixels(width, height)) image.at(x, y) = vec3(x * 0.1f, y * 1e5f, -1.0f / float(1 + x + y));
   return image;
 }
 
@@ -62,12 +57,12 @@ TEST(Exr, LayersAndShiftedWindowsAreRead) {
 TEST(Exr, BadFilesAreInputErrors) {
   TemporaryFolder folder;
   EXPECT_NE(inputErrorOf([&] { readExr(folder / "no.exr"); }).find("no such file"), std::string::npos);
-  testing::writeBytes(folder / "words.exr", "words");
+  writeBytes(folder / "words.exr", "words");
   EXPECT_NE(inputErrorOf([&] { readExr(folder / "words.exr"); }).find("words.exr: "), std::string::npos);
   writeExr(folder / "whole.exr", gradient(16, 16));
-  const std::string whole = testing::readBytes(folder / "whole.exr");
+  const std::string whole = readBytes(folder / "whole.exr");
   for (size_t size = 5; size < whole.size(); size += 97) {
-    testing::writeBytes(folder / "cut.exr", whole.substr(0, size));
+    writeBytes(folder / "cut.exr", whole.substr(0, size));
     inputErrorOf([&] { readExr(folder / "cut.exr"); });
   }
 }
@@ -95,30 +90,30 @@ TEST(Pfm, BothByteOrdersAndGreyAreRead) {
   };
   // Two rows of one pixel; the file begins with the bottom one.
   for (const bool big : {false, true}) {
-    testing::writeBytes(folder / "a.pfm",
-                        std::string("PF\n1 2\n") + (big ? "1.0" : "-1.0") + "\n" + floats({4, 5, 6, 1, 2, 3}, big));
+    writeBytes(folder / "a.pfm",
+               std::string("PF\n1 2\n") + (big ? "1.0" : "-1.0") + "\n" + floats({4, 5, 6, 1, 2, 3}, big));
     const Image image = readPfm(folder / "a.pfm");
     EXPECT_EQ(image.at(0, 0), vec3(1, 2, 3));
     EXPECT_EQ(image.at(0, 1), vec3(4, 5, 6));
   }
-  testing::writeBytes(folder / "grey.pfm", "Pf\n2 1\n-1\n" + floats({7, 8}, false));
+  writeBytes(folder / "grey.pfm", "Pf\n2 1\n-1\n" + floats({7, 8}, false));
   EXPECT_EQ(readPfm(folder / "grey.pfm").at(1, 0), vec3(8));
-  testing::writeBytes(folder / "short.pfm", "PF\n2 2\n-1\n" + floats({1, 2, 3}, false));
+  writeBytes(folder / "short.pfm", "PF\n2 2\n-1\n" + floats({1, 2, 3}, false));
   EXPECT_NE(inputErrorOf([&] { readPfm(folder / "short.pfm"); }).find("ends before"), std::string::npos);
-  testing::writeBytes(folder / "huge.pfm", "PF\n999999 999999\n-1\n");
+  writeBytes(folder / "huge.pfm", "PF\n999999 999999\n-1\n");
   EXPECT_NE(inputErrorOf([&] { readPfm(folder / "huge.pfm"); }).find("size"), std::string::npos);
 }
 
 TEST(WriteAtomically, LeavesNothingBehindOnFailureAndKeepsTheOldFile) {
   TemporaryFolder folder;
-  testing::writeBytes(folder / "old.txt", "old");
+  writeBytes(folder / "old.txt", "old");
   EXPECT_THROW(writeAtomically(folder / "old.txt",
                                [](const std::filesystem::path& temporary) {
-                                 testing::writeBytes(temporary, "half");
+                                 writeBytes(temporary, "half");
                                  throw RunError("no more paper");
                                }),
                RunError);
-  EXPECT_EQ(testing::readBytes(folder / "old.txt"), "old");
+  EXPECT_EQ(readBytes(folder / "old.txt"), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   EXPECT_THROW(writeExr(folder / "no/such/folder.exr", Image(1, 1)), RunError);
   EXPECT_THROW(writePng(folder / "no/such/folder.png", Image8{1, 1, {1, 2, 3}}), RunError);
@@ -131,11 +126,11 @@ TEST(WriteAtomically, AFullDiskIsSaidAndKeepsTheOldFile) {
 
 TEST(WriteAtomically, ALinkStaysOne) {
   TemporaryFolder folder;
-  testing::writeBytes(folder / "target.png", "old");
+  writeBytes(folder / "target.png", "old");
   std::filesystem::create_symlink("target.png", folder / "link.png");
   writePng(folder / "link.png", Image8{1, 1, {1, 2, 3}});
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.png"));
-  EXPECT_EQ(testing::readBytes(folder / "target.png").substr(1, 3), "PNG");
+  EXPECT_EQ(readBytes(folder / "target.png").substr(1, 3), "PNG");
 }
 
 TEST(Srgb, CodesAndLinearValuesAreInverse) {
@@ -201,7 +196,7 @@ TEST_F(TextureLookup, TransformSrgbAndStrangeCoordinates) {
 
 TEST(Pictures, AHeaderAloneAsksForNoMemory) {
   TemporaryFolder folder;
-  testing::writeBytes(folder / "a.pfm", "PF 32768 32768 -1\n"); // 12 GiB
+  writeBytes(folder / "a.pfm", "PF 32768 32768 -1\n"); // 12 GiB
   EXPECT_NE(inputErrorOf([&] { readPfm(folder / "a.pfm"); }).find("ends before the last"), std::string::npos);
 }
 
@@ -239,5 +234,4 @@ TEST(NearestName, FindsTyposAndRefusesToGuess) {
   EXPECT_EQ(nearestName("anything", std::vector<std::string>{}), "");
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::image_test

@@ -6,13 +6,7 @@
 
 #include <stb/stb_image_write.h>
 
-namespace lambent {
-namespace {
-
-using testing::expectNear;
-using testing::GltfBuilder;
-using testing::hasWarning;
-using testing::TemporaryFolder;
+namespace lambent::test::import_test {
 
 const std::vector<vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
@@ -49,7 +43,7 @@ vec3 areaVector(const Mesh& m) {
 }
 
 TEST_F(Import, TriangleWithoutNormalsOrIndicesGetsFlatNormals) {
-  const Mesh& m = onlyMesh(testing::oneTriangle());
+  const Mesh& m = onlyMesh(oneTriangle());
   ASSERT_EQ(m.triangles.size(), 1u);
   ASSERT_EQ(m.normals.size(), 3u);
   for (const vec3& n : m.normals) expectNear(n, {0, 0, 1});
@@ -76,7 +70,7 @@ TEST_F(Import, IndexedStripAndFanMakeTheSameSquare) {
 }
 
 TEST_F(Import, PointsAndLinesAreLeftOutWithAWarning) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   for (int mode = 0; mode < 4; ++mode)
     b.addMeshNode({{"attributes", {{"POSITION", b.positions(kSquare)}}}, {"mode", mode}});
   scene = b.load(folder);
@@ -166,7 +160,7 @@ TEST_F(Import, PrimitivesShareVerticesAndFillUpMissingAttributes) {
 }
 
 TEST_F(Import, NegativeScaleKeepsTheObjectAndMirrorsTheWorld) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["nodes"][0]["scale"] = {-2, 1, 1};
   const Mesh& m = onlyMesh(b);
   expectNear(areaVector(m), {0, 0, 0.5f}); // object space is as in the file
@@ -177,7 +171,7 @@ TEST_F(Import, NegativeScaleKeepsTheObjectAndMirrorsTheWorld) {
 }
 
 TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   const int picture = b.view(png({255, 0, 188, 255}));
   b.json["images"] = {{{"bufferView", picture}, {"mimeType", "image/png"}, {"name", "pink"}}};
@@ -216,7 +210,7 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
 }
 
 TEST_F(Import, RoughnessAndMetalnessFromFactorsAndALinearTexture) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   const int picture = b.view(png({255, 188, 51, 255}));
   b.json["images"] = {{{"bufferView", picture}, {"mimeType", "image/png"}}};
@@ -252,7 +246,7 @@ TEST_F(Import, RoughnessAndMetalnessFromFactorsAndALinearTexture) {
 }
 
 TEST_F(Import, BlendedMaterialsBecomeMaskedWithAWarning) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   b.json["materials"] = {{{"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_transmission", {{"x", 1}}}}}}};
   scene = b.load(folder);
@@ -263,7 +257,7 @@ TEST_F(Import, BlendedMaterialsBecomeMaskedWithAWarning) {
 }
 
 TEST_F(Import, DanglingImageIsWhiteAndUnreadableImageThatNothingUsesIsIgnored) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   b.json["images"] = {{{"uri", "not-there.png"}}};
   b.json["textures"] = {{{"source", 7}}};
@@ -274,7 +268,7 @@ TEST_F(Import, DanglingImageIsWhiteAndUnreadableImageThatNothingUsesIsIgnored) {
 }
 
 TEST_F(Import, LightsHaveGltfUnitsAndCones) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "spot"},
        {"color", {1, 0.5, 0}},
@@ -304,7 +298,7 @@ TEST_F(Import, LightsHaveGltfUnitsAndCones) {
 }
 
 TEST_F(Import, SceneIsChosenByNameIndexOrDefault) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.push("nodes", {{"name", "second root"}});
   b.json["scenes"][0]["name"] = "first";
   b.push("scenes", {{"name", "second"}, {"nodes", {1}}});
@@ -314,7 +308,7 @@ TEST_F(Import, SceneIsChosenByNameIndexOrDefault) {
   EXPECT_TRUE(findByName(loadScene(file), "second root"));
   EXPECT_EQ(loadScene(file, "first").registry.count<MeshInstance>(), 1u);
   EXPECT_EQ(loadScene(file, "0").registry.count<MeshInstance>(), 1u);
-  const std::string error = testing::inputErrorOf([&] { loadScene(file, "third"); });
+  const std::string error = inputErrorOf([&] { loadScene(file, "third"); });
   EXPECT_NE(error.find("it has: first, second"), std::string::npos) << error;
 }
 
@@ -334,13 +328,13 @@ TEST_F(Import, SkinnedMeshIsPlacedByItsJointsAlone) {
 }
 
 TEST_F(Import, BinaryFileIsTheSameScene) {
-  testing::oneTriangle().writeGlb(folder / "triangle.glb");
+  oneTriangle().writeGlb(folder / "triangle.glb");
   scene = loadScene(folder / "triangle.glb");
   EXPECT_EQ(scene.assets.meshes.at(0).triangles.size(), 1u);
 }
 
 TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
-  GltfBuilder b = testing::oneTriangle();
+  GltfBuilder b = oneTriangle();
   b.json["nodes"][0]["matrix"] = {0, 0, -2, 0, 0, 3, 0, 0, 1, 0, 0, 0, 5, 6, 7, 1};
   scene = b.load(folder);
   const Transform& t = scene.registry.get<Transform>(Entity(0, 0));
@@ -353,5 +347,4 @@ TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
   EXPECT_TRUE(scene.registry.get<Transform>(Entity(0, 0)).matrix);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::import_test

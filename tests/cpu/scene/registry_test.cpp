@@ -1,11 +1,8 @@
 #include "engine/ecs/registry.h"
 
-#include <set>
+#include "tests/support/test.h"
 
-#include <gtest/gtest.h>
-
-namespace lambent {
-namespace {
+namespace lambent::test::registry_test {
 
 struct Position {
   float x = 0;
@@ -19,8 +16,6 @@ std::vector<uint32_t> indicesWithPosition(const Registry& registry) {
   registry.each<Position>([&](Entity e, const Position&) { order.push_back(e.index()); });
   return order;
 }
-
-} // namespace
 
 TEST(Registry, HandlesOfDestroyedEntitiesAreInvalid) {
   Registry registry;
@@ -107,4 +102,4 @@ TEST(RegistryDeathTest, MisuseIsCaught) {
   EXPECT_DEATH(registry.get<Position>(e), "CHECK");
 }
 
-} // namespace lambent
+} // namespace lambent::test::registry_test

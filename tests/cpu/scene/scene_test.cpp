@@ -2,10 +2,7 @@
 
 #include "tests/cpu/scene/support.h"
 
-namespace lambent {
-namespace {
-
-using testing::expectNear;
+namespace lambent::test::scene_test {
 
 Entity addNode(Scene& scene, const vec3& translation, std::optional<Entity> parent = {}) {
   const Entity e = scene.registry.create();
@@ -158,5 +155,4 @@ TEST_F(SmallScene, AddedLightShinesWhereItWasToldTo) {
   expectNear(view.lights[1].intensity, l.intensity);
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::scene_test

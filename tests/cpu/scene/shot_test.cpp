@@ -3,12 +3,7 @@
 #include "engine/scene/shot.h"
 #include "tests/cpu/scene/support.h"
 
-namespace lambent {
-namespace {
-
-using testing::expectNear;
-using testing::inputErrorOf;
-using testing::TemporaryFolder;
+namespace lambent::test::shot_test {
 
 const char* kShot = R"({
   "shot": 1, "scene": "models/room.glb", "fps": 24, "seconds": 2.5,
@@ -24,7 +19,7 @@ const char* kShot = R"({
 class ShotFile : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& text) {
-    testing::writeBytes(folder / "path.json", text);
+    writeBytes(folder / "path.json", text);
     return folder / "path.json";
   }
   void expectError(const std::string& text, const std::string& reason) {
@@ -186,5 +181,4 @@ TEST(PoseShot, WhatEqualKeysHoldDoesNotMove) {
   }
 }
 
-} // namespace
-} // namespace lambent
+} // namespace lambent::test::shot_test

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace lambent::testing {
+namespace lambent::test {
 
 namespace fs = std::filesystem;
 
@@ -97,4 +97,4 @@ void expectNear(const vec3& a, const vec3& b, float tolerance) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
 }
 
-} // namespace lambent::testing
+} // namespace lambent::test

@@ -2,16 +2,13 @@
 #pragma once
 
 #include "engine/scene/scene.h"
+#include "tests/support/pixels.h"
 
-#include <cstring>
 #include <filesystem>
-#include <string>
-#include <vector>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace lambent::testing {
+namespace lambent::test {
 
 /// Exists while the test runs.
 class TemporaryFolder {
@@ -107,4 +104,4 @@ bool hasWarning(const Scene& scene, const std::string& text);
 
 void expectNear(const vec3& a, const vec3& b, float tolerance = 1e-5f);
 
-} // namespace lambent::testing
+} // namespace lambent::test
