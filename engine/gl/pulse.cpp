@@ -1,5 +1,7 @@
 #include "engine/gl/pulse.h"
 
+#include "engine/gl/state_guard.h"
+
 #include <utility>
 
 namespace lambent::gl {
@@ -17,6 +19,7 @@ void pulse() {
     std::function<void()> beat = std::exchange(beating, nullptr);
     ~Silence() { beating = std::move(beat); }
   } silence;
+  const CallOut out;
   silence.beat();
 }
 

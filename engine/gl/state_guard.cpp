@@ -1,10 +1,11 @@
 #include "engine/gl/state_guard.h"
 
-#include <epoxy/gl.h>
+#include "engine/gl/objects.h"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 namespace lambent::gl {
 
@@ -72,7 +73,7 @@ constexpr GLenum kTextureTargets[] = {
     GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY,
 };
 
-constexpr int kUnits = 10, kUniformBuffers = 4, kMostViewports = 16, kTargets = 8;
+constexpr int kMostViewports = 16, kMostTargets = 16;
 constexpr GLuint kColorAttribute = 3; // GpuScene sets it for vertices without colour
 
 GLint get(GLenum what) {
@@ -151,14 +152,15 @@ struct StateGuard::Saved {
   std::array<bool, std::size(kSwitches)> switches;
   std::array<GLint, std::size(kPixelStore)> pixelStore;
   std::array<Viewport, kMostViewports> viewports;
-  std::array<Target, kTargets> targets;
-  std::array<Unit, kUnits> units;
-  std::array<Range, kUniformBuffers> uniformBuffers;
-  Range storageBuffer; // of index 0
-  int viewportCount = 0;
+  std::array<Target, kMostTargets> targets;
+  std::array<Unit, kTextureUnits> units;
+  std::array<Range, kUniformBindings> uniformBuffers;
+  std::array<Range, kStorageBindings> storageBuffers;
+  int viewportCount = 0, targetCount = 0;
   GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
-  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, polygonMode[2] = {};
-  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffers = 0, activeUnit = 0;
+  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, spriteOrigin = 0,
+        polygonMode[2] = {};
+  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0, activeUnit = 0;
   GLint transformFeedback = 0;
   bool feedbackRuns = false;
   GLboolean depthMask = GL_FALSE;
@@ -180,7 +182,8 @@ StateGuard::Saved::Saved() {
     glGetIntegeri_v(GL_SCISSOR_BOX, GLuint(i), v.scissor);
     v.scissored = glIsEnabledi(GL_SCISSOR_TEST, GLuint(i));
   }
-  for (int i = 0; i < kTargets; ++i) {
+  targetCount = std::min(get(GL_MAX_DRAW_BUFFERS), kMostTargets);
+  for (int i = 0; i < targetCount; ++i) {
     Target& t = targets[size_t(i)];
     t.blended = glIsEnabledi(GL_BLEND, GLuint(i));
     t.source = get(GL_BLEND_SRC_RGB, i);
@@ -192,18 +195,19 @@ StateGuard::Saved::Saved() {
     glGetBooleani_v(GL_COLOR_WRITEMASK, GLuint(i), t.mask);
   }
   activeUnit = get(GL_ACTIVE_TEXTURE);
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kTextureUnits; ++i) {
     glActiveTexture(GLenum(GL_TEXTURE0 + i));
     for (size_t t = 0; t < std::size(kTextureTargets); ++t) units[size_t(i)].textures[t] = get(kTextureTargets[t]);
     units[size_t(i)].sampler = get(GL_SAMPLER_BINDING);
   }
   uniformBuffer = get(GL_UNIFORM_BUFFER_BINDING);
-  for (int i = 0; i < kUniformBuffers; ++i)
+  for (int i = 0; i < kUniformBindings; ++i)
     uniformBuffers[size_t(i)] =
         Range::of(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, i);
-  storageBuffers = get(GL_SHADER_STORAGE_BUFFER_BINDING);
-  storageBuffer =
-      Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, 0);
+  storageBuffer = get(GL_SHADER_STORAGE_BUFFER_BINDING);
+  for (int i = 0; i < kStorageBindings; ++i)
+    storageBuffers[size_t(i)] =
+        Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, i);
   program = get(GL_CURRENT_PROGRAM);
   vertexArray = get(GL_VERTEX_ARRAY_BINDING);
   drawFramebuffer = get(GL_DRAW_FRAMEBUFFER_BINDING);
@@ -213,6 +217,8 @@ StateGuard::Saved::Saved() {
   clipOrigin = get(GL_CLIP_ORIGIN);
   clipDepth = get(GL_CLIP_DEPTH_MODE);
   frontFace = get(GL_FRONT_FACE);
+  provokingVertex = get(GL_PROVOKING_VERTEX);
+  spriteOrigin = get(GL_POINT_SPRITE_COORD_ORIGIN);
   glGetIntegerv(GL_POLYGON_MODE, polygonMode);
   glGetFloatv(GL_POINT_SIZE, &pointSize);
   front = stencilOf(true);
@@ -237,7 +243,7 @@ void StateGuard::Saved::restore() const {
     glScissorIndexedv(GLuint(i), v.scissor);
     set(GL_SCISSOR_TEST, i, v.scissored);
   }
-  for (int i = 0; i < kTargets; ++i) {
+  for (int i = 0; i < targetCount; ++i) {
     const Target& t = targets[size_t(i)];
     const GLuint index = GLuint(i);
     set(GL_BLEND, i, t.blended);
@@ -246,7 +252,7 @@ void StateGuard::Saved::restore() const {
     glBlendEquationSeparatei(index, GLenum(t.equation), GLenum(t.equationAlpha));
     glColorMaski(index, t.mask[0], t.mask[1], t.mask[2], t.mask[3]);
   }
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kTextureUnits; ++i) {
     const Unit& u = units[size_t(i)];
     glBindTextureUnit(GLuint(i), 0);
     for (const GLint texture : u.textures)
@@ -254,10 +260,10 @@ void StateGuard::Saved::restore() const {
     glBindSampler(GLuint(i), GLuint(u.sampler));
   }
   glActiveTexture(GLenum(activeUnit));
-  for (int i = 0; i < kUniformBuffers; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
+  for (int i = 0; i < kUniformBindings; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
   glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniformBuffer));
-  storageBuffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffers));
+  for (int i = 0; i < kStorageBindings; ++i) storageBuffers[size_t(i)].bind(GL_SHADER_STORAGE_BUFFER, i);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffer));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawFramebuffer));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(readFramebuffer));
   glBindVertexArray(GLuint(vertexArray));
@@ -265,6 +271,8 @@ void StateGuard::Saved::restore() const {
   glDepthMask(depthMask);
   glClipControl(GLenum(clipOrigin), GLenum(clipDepth));
   glFrontFace(GLenum(frontFace));
+  glProvokingVertex(GLenum(provokingVertex));
+  glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, spriteOrigin);
   glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygonMode[0]));
   glPointSize(pointSize);
   setStencil(GL_FRONT, front);
@@ -287,13 +295,32 @@ void setConventions() {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthRange(0, 1);
   glFrontFace(GL_CCW);
+  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+  glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPointSize(1);
   glBlendEquation(GL_FUNC_ADD);
-  for (GLuint unit = 0; unit < kUnits; ++unit) glBindSampler(unit, 0);
+  for (int unit = 0; unit < kTextureUnits; ++unit) bindSampler(unit, 0);
 }
 
-StateGuard::StateGuard() : saved_(std::make_unique<Saved>()) { setConventions(); }
-StateGuard::~StateGuard() { saved_->restore(); }
+namespace {
+thread_local int guards = 0; // around what this thread does
+} // namespace
+
+StateGuard::StateGuard() {
+  if (guards == 0) {
+    saved_ = std::make_unique<Saved>();
+    setConventions();
+  }
+  ++guards;
+}
+
+StateGuard::~StateGuard() {
+  --guards;
+  if (saved_) saved_->restore();
+}
+
+CallOut::CallOut() : depth_(std::exchange(guards, 0)) {}
+CallOut::~CallOut() { guards = depth_; }
 
 } // namespace lambent::gl

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 #include "gi/direct/direct_light.h"
 #include "gi/viewer/picture.h"
@@ -80,7 +81,7 @@ struct GiFrame::Kept {
   Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan, settings.image.antiAliasing}; }
 };
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}
+GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed))) {}
 GiFrame::~GiFrame() = default;
 
 void GiFrame::restart() {
@@ -92,9 +93,10 @@ void GiFrame::restart() {
 
 // The frame -----------------------------------------------------------------------------------------------------------
 
-const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& progress,
+const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& told,
                                const HostSurfaces* host) {
   const gl::StateGuard guard;
+  const std::function<void(int, int)> progress = gl::callingOut(told);
   Kept& k = *kept_;
   const Settings& settings = k.settings;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
@@ -323,7 +325,7 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
   const ParaboloidMapInputs maps{world.gpu,         &world.rays, poses, {}, view.boundsWorld.diameter(),
                                  shadow.resolution, shadow.maker};
   return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,
-                                progress);
+                                gl::callingOut(progress));
 }
 
 std::vector<std::string> GiFrame::reloadShaders() {

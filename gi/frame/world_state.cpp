@@ -19,9 +19,9 @@ float reachOf(const SceneView& view, float before) {
 } // namespace
 
 bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
-  if (assets_ == &assets) return false;
+  if (opened_ == assets.identity.value()) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  assets_ = &assets;
+  opened_ = assets.identity.value();
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
