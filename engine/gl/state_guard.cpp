@@ -160,7 +160,8 @@ struct StateGuard::Saved {
   GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
   GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, spriteOrigin = 0,
         polygonMode[2] = {};
-  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0, activeUnit = 0;
+  GLint packBuffer = 0, unpackBuffer = 0, queryBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0,
+        activeUnit = 0;
   GLint transformFeedback = 0;
   bool feedbackRuns = false;
   GLboolean depthMask = GL_FALSE;
@@ -225,6 +226,7 @@ StateGuard::Saved::Saved() {
   back = stencilOf(false);
   packBuffer = get(GL_PIXEL_PACK_BUFFER_BINDING);
   unpackBuffer = get(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  queryBuffer = get(GL_QUERY_BUFFER_BINDING);
   indirectBuffer = get(GL_DRAW_INDIRECT_BUFFER_BINDING);
   glGetVertexAttribfv(kColorAttribute, GL_CURRENT_VERTEX_ATTRIB, color);
   transformFeedback = get(GL_TRANSFORM_FEEDBACK_BINDING);
@@ -279,6 +281,7 @@ void StateGuard::Saved::restore() const {
   setStencil(GL_BACK, back);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(packBuffer));
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(unpackBuffer));
+  glBindBuffer(GL_QUERY_BUFFER, GLuint(queryBuffer));
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirectBuffer));
   glVertexAttrib4fv(kColorAttribute, color);
   // One that was deleted while in use went for good when another took its place.
@@ -292,6 +295,7 @@ void setConventions() {
   for (const PixelStore& p : kPixelStore) glPixelStorei(p.what, p.convention);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  glBindBuffer(GL_QUERY_BUFFER, 0); // else answers go there
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthRange(0, 1);
   glFrontFace(GL_CCW);

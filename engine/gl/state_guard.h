@@ -13,12 +13,12 @@ void setConventions();
 
 /// Saves all state of the context that Lambent's passes set or depend on, sets the conventions, and puts everything
 /// back at its end: program, vertex array, framebuffers, viewports and scissors, depth, stencil, blending, masks, clip
-/// control, polygons, points, provoking vertex, multisampling, pixel store and its buffers, the texture units with
-/// their samplers, uniform and storage bindings that passes may use (engine/gl/objects.h), indirect buffer, transform
-/// feedback (paused meanwhile if it runs), and the one vertex attribute that is set. No pass touches what is missing
-/// here: image units, atomic counters, the other buffers, renderbuffer, program pipeline. What it cannot save must have
-/// ended or is lost: queries of samples passed and primitives written, conditional rendering, transform feedback of the
-/// default object, and subroutine uniforms.
+/// control, polygons, points, provoking vertex, multisampling, pixel store and its buffers, query buffer, the texture
+/// units with their samplers, uniform and storage bindings that passes may use (engine/gl/objects.h), indirect buffer,
+/// transform feedback (paused meanwhile if it runs), and the one vertex attribute that is set. No pass touches what is
+/// missing here: image units, atomic counters, the other buffers, renderbuffer, program pipeline. What it cannot save
+/// must have ended or is lost: queries of samples passed and primitives written, conditional rendering, transform
+/// feedback of the default object, and subroutine uniforms.
 ///
 /// Inside one all code keeps to the conventions, and another on the same thread does nothing: who calls a frame several
 /// times takes one around all of it.

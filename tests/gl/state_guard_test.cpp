@@ -27,9 +27,9 @@ struct FullRoom : Room {
                      .direction = glm::normalize(vec3(0.2f, -1, -0.3f)),
                      .intensity = vec3(0.5f)}};
     scene.quad(vec3(-0.2f, 0.95f, -0.2f), vec3(0.4f, 0, 0), vec3(0, 0, 0.4f), scene.material(vec3(0), vec3(3)));
-    TextureImage image{.name = "checks", .width = 2, .height = 2};
+    TextureImage& image = scene.assets.images.emplace_back();
+    image.width = image.height = 2;
     image.texels = {u8vec4(255), u8vec4(90, 200, 90, 0), u8vec4(90, 200, 90, 255), u8vec4(255)};
-    scene.assets.images.push_back(image);
     const uint32_t textured = scene.material(vec3(1));
     Material& material = scene.assets.materials[textured];
     material.baseColorTexture.image = material.roughnessMetalnessTexture.image = 0;
@@ -97,7 +97,9 @@ std::vector<Step> allSteps() {
       };
       Settings tried;
       edit(tried);
-      if (!whyNot(tried).empty() || GatherMode(g) == techniqueByName(technique).axes.gather) continue;
+      const bool tooMany = tried.vpl.source == VplSource::Isr && tried.gather.mode == GatherMode::SplatPerVpl;
+      const bool itsOwn = tried.gather.mode == techniqueByName(technique).axes.gather;
+      if (!whyNot(tried).empty() || tooMany || itsOwn) continue;
       steps.push_back({std::string(technique) + ", gather " + kGathers[g].name, edit});
     }
   const auto smc = [&](const char* name, std::function<void(Settings&)> change) {
@@ -123,6 +125,7 @@ std::vector<Step> allSteps() {
     applyTechnique(s, "ibrr");
     s.cube.sights = CubeSights::Hemicubes;
     s.cube.levels = 1;
+    s.smc.vpls = 16;
   });
   smc("a still cache", [](Settings& s) {
     s.stillCache.after = 1;
@@ -185,9 +188,10 @@ TEST_F(StateGuardTest, EveryTechniqueLeavesEveryBindingOfItsHost) {
     expectUnchanged(before, name + ": present");
     if (HasFailure()) return;
   }
+  EXPECT_TRUE(raysByGpu);
   for (const std::string& buffer : bufferNames()) {
     const Image8 image = gi.readDisplay(bufferByName(buffer));
-    if (buffer == "vpls") EXPECT_EQ(image.rgb, shown.rgb);
+    EXPECT_TRUE(buffer != "vpls" || image.rgb == shown.rgb);
     expectUnchanged(before, "readDisplay of " + buffer);
   }
   gi.takeTruth(alone.back());
