@@ -7,7 +7,7 @@
 namespace lambent::gl {
 
 namespace {
-std::function<void()> beating; // contexts are used from one thread
+thread_local std::function<void()> beating; // as its context, a thread's own
 } // namespace
 
 Pulse::Pulse(std::function<void()> beat) : before_(std::exchange(beating, std::move(beat))) {}

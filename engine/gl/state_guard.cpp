@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <iterator>
 #include <utility>
 
@@ -73,6 +74,9 @@ constexpr GLenum kTextureTargets[] = {
     GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY,
 };
 
+/// That passes ask.
+constexpr GLenum kQueries[] = {GL_SAMPLES_PASSED, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN};
+
 constexpr int kMostViewports = 16, kMostTargets = 16;
 constexpr GLuint kColorAttribute = 3; // GpuScene sets it for vertices without colour
 
@@ -84,6 +88,11 @@ GLint get(GLenum what) {
 GLint get(GLenum what, int index) {
   GLint value = 0;
   glGetIntegeri_v(what, GLuint(index), &value);
+  return value;
+}
+GLint query(GLenum target) {
+  GLint value = 0;
+  glGetQueryiv(target, GL_CURRENT_QUERY, &value);
   return value;
 }
 void set(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
@@ -154,6 +163,7 @@ struct StateGuard::Saved {
   std::array<Viewport, kMostViewports> viewports;
   std::array<Target, kMostTargets> targets;
   std::array<Unit, kTextureUnits> units;
+  std::array<GLint, std::size(kQueries)> queries;
   std::array<Range, kUniformBindings> uniformBuffers;
   std::array<Range, kStorageBindings> storageBuffers;
   int viewportCount = 0, targetCount = 0;
@@ -168,8 +178,11 @@ struct StateGuard::Saved {
   Face front, back;
   GLfloat pointSize = 1, color[4] = {};
 
+  int exceptions = std::uncaught_exceptions();
+
   Saved();
   void restore() const;
+  void endWhatWasBegun() const;
 };
 
 StateGuard::Saved::Saved() {
@@ -229,13 +242,22 @@ StateGuard::Saved::Saved() {
   queryBuffer = get(GL_QUERY_BUFFER_BINDING);
   indirectBuffer = get(GL_DRAW_INDIRECT_BUFFER_BINDING);
   glGetVertexAttribfv(kColorAttribute, GL_CURRENT_VERTEX_ATTRIB, color);
+  for (size_t i = 0; i < queries.size(); ++i) queries[i] = query(kQueries[i]);
   transformFeedback = get(GL_TRANSFORM_FEEDBACK_BINDING);
   feedbackRuns = get(GL_TRANSFORM_FEEDBACK_ACTIVE) && !get(GL_TRANSFORM_FEEDBACK_PAUSED);
   if (feedbackRuns) glPauseTransformFeedback(); // else no other program may be used
   glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
 }
 
+/// By a pass that something was thrown out of.
+void StateGuard::Saved::endWhatWasBegun() const {
+  if (get(GL_TRANSFORM_FEEDBACK_ACTIVE)) glEndTransformFeedback();
+  for (size_t i = 0; i < queries.size(); ++i)
+    if (query(kQueries[i]) != queries[i]) glEndQuery(kQueries[i]);
+}
+
 void StateGuard::Saved::restore() const {
+  if (std::uncaught_exceptions() > exceptions) endWhatWasBegun();
   for (size_t i = 0; i < switches.size(); ++i) set(kSwitches[i].what, switches[i]);
   for (size_t i = 0; i < pixelStore.size(); ++i) glPixelStorei(kPixelStore[i].what, pixelStore[i]);
   for (int i = 0; i < viewportCount; ++i) {

@@ -1,4 +1,6 @@
 // A host with settings of its own: frames inside its context find their conventions and leave its state as it was.
+#include "engine/core/error.h"
+#include "engine/gl/pulse.h"
 #include "engine/gl/state_guard.h"
 #include "gi/frame/gi_frame.h"
 #include "gl_fixture.h"
@@ -206,6 +208,31 @@ TEST_F(StateGuardTest, EveryTechniqueLeavesEveryBindingOfItsHost) {
   gi.restart();
   expectUnchanged(before, "restart");
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+/// Whatever a pass is at.
+TEST_F(StateGuardTest, WhatThrowsOutOfAFrameLeavesThemToo) {
+  HostState host;
+  host.poison();
+  const Snapshot before = snapshot();
+  for (const char* technique : {"multires-splat", "multires-gather", "isr", "lpv"}) {
+    applyTechnique(settings, technique);
+    GiFrame gi(settings);
+    for (int last = 1, beats = 0;; ++last, beats = 0) {
+      bool thrown = false;
+      try {
+        const gl::Pulse pulse([&] {
+          if (++beats == last) throw RunError("enough");
+        });
+        gi.run(room.scene.view());
+      } catch (const RunError&) {
+        thrown = true;
+      }
+      expectUnchanged(before, std::string(technique) + ", thrown at draw " + std::to_string(last));
+      if (HasFailure()) return;
+      if (!thrown) break;
+    }
+  }
 }
 
 /// A pass that goes further than guards do stops the program at once, in every build.

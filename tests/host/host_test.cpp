@@ -138,6 +138,34 @@ TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 
+/// Two scenes, each on a thread with a context of its own, at once.
+TEST_P(HostTest, FramesOnTwoThreadsDrawWhatEachDrawsAlone) {
+  LitBox boxes[2];
+  boxes[1].scene.camera.worldFromView[3].x = 0.3f;
+  const auto drawn = [&](int which, FrameStats& stats) {
+    GiFrame gi(small(), 1 + which);
+    for (int frame = 0; frame < 3; ++frame) stats = gi.run(boxes[which].scene.view());
+    return gi.read(Buffer::Beauty).pixels;
+  };
+  std::vector<vec3> alone[2], together[2];
+  FrameStats statsAlone[2], stats[2];
+  for (int i = 0; i < 2; ++i) alone[i] = drawn(i, statsAlone[i]);
+  EXPECT_NE(alone[0], alone[1]);
+  const std::unique_ptr<HostContext> contexts[] = {host->sharing(), host->sharing()};
+  std::thread threads[2];
+  for (int i = 0; i < 2; ++i)
+    threads[i] = std::thread([&, i] {
+      contexts[i]->makeCurrent();
+      together[i] = drawn(i, stats[i]);
+      contexts[i]->release();
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(together[i], alone[i]);
+    EXPECT_EQ(stats[i].draws, statsAlone[i].draws) << "each counts its own";
+  }
+}
+
 TEST_P(HostTest, WithoutACurrentContextItIsRefusedInOneLine) {
   EXPECT_EQ(refusal(), "");
   host->release();
