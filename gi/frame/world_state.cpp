@@ -21,13 +21,14 @@ float reachOf(const SceneView& view, float before) {
 bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
   if (opened_ == assets.identity.value()) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  opened_ = assets.identity.value();
+  opened_ = 0; // until it is: a pulse may throw
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
   frozen_ = false;
   lightingStale_ = surfacesStale_ = true;
   testedDraws_ = 0;
+  opened_ = assets.identity.value();
   return true;
 }
 
