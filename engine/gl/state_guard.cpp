@@ -168,8 +168,7 @@ struct StateGuard::Saved {
   std::array<Range, kStorageBindings> storageBuffers;
   int viewportCount = 0, targetCount = 0;
   GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
-  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, spriteOrigin = 0,
-        polygonMode[2] = {};
+  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, polygonMode[2] = {};
   GLint packBuffer = 0, unpackBuffer = 0, queryBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0,
         activeUnit = 0;
   GLint transformFeedback = 0;
@@ -232,7 +231,6 @@ StateGuard::Saved::Saved() {
   clipDepth = get(GL_CLIP_DEPTH_MODE);
   frontFace = get(GL_FRONT_FACE);
   provokingVertex = get(GL_PROVOKING_VERTEX);
-  spriteOrigin = get(GL_POINT_SPRITE_COORD_ORIGIN);
   glGetIntegerv(GL_POLYGON_MODE, polygonMode);
   glGetFloatv(GL_POINT_SIZE, &pointSize);
   front = stencilOf(true);
@@ -296,7 +294,6 @@ void StateGuard::Saved::restore() const {
   glClipControl(GLenum(clipOrigin), GLenum(clipDepth));
   glFrontFace(GLenum(frontFace));
   glProvokingVertex(GLenum(provokingVertex));
-  glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, spriteOrigin);
   glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygonMode[0]));
   glPointSize(pointSize);
   setStencil(GL_FRONT, front);
@@ -322,7 +319,6 @@ void setConventions() {
   glDepthRange(0, 1);
   glFrontFace(GL_CCW);
   glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
-  glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPointSize(1);
   glBlendEquation(GL_FUNC_ADD);

@@ -248,10 +248,14 @@ class HostState {
       glCreateTextures(kTextureTargets[t].target, hostUnits(), textures_.data() + t * size_t(hostUnits()));
     samplers_.resize(size_t(hostUnits()));
     glCreateSamplers(hostUnits(), samplers_.data());
-    // Filters and comparisons that would spoil every texel that a pass reads.
+    // Comparisons, wraps and filters that would spoil what a pass reads.
     for (const GLuint sampler : samplers_) {
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_NEVER);
+      for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        glSamplerParameteri(sampler, wrap, GL_MIRRORED_REPEAT);
+      glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+      glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     }
     images_.resize(size_t(hostImages()));
     glCreateTextures(GL_TEXTURE_2D_ARRAY, hostImages(), images_.data());
