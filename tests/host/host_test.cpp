@@ -38,6 +38,14 @@ Settings small() {
   return s;
 }
 
+/// Maps by rays: Mesa 22.3.6's Zink draws other maps in a context that shares objects than in one alone, run by run
+/// others; neither it in a context of its own nor llvmpipe does.
+Settings smallShared() {
+  Settings s = small();
+  s.shadow.maker = ShadowMaker::Rays;
+  return s;
+}
+
 /// As the host reads it, with its own calls.
 std::vector<float> texels(GLuint texture, int width, int height) {
   std::vector<float> values(size_t(4) * width * height);
@@ -100,7 +108,7 @@ TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
 TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
   std::vector<float> alone;
   {
-    GiFrame gi(small());
+    GiFrame gi(smallShared());
     gi.run(box.scene.view());
     alone = texels(gi.texture(Buffer::Beauty), 40, 30);
   }
@@ -119,7 +127,7 @@ TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
     }).join();
   };
   there([&] {
-    gi = std::make_unique<GiFrame>(small());
+    gi = std::make_unique<GiFrame>(smallShared());
     gi->run(box.scene.view());
     texture = gi->texture(Buffer::Beauty);
   });
@@ -129,6 +137,7 @@ TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
   glCreateTextures(GL_TEXTURE_2D, 1, &shown);
   glTextureStorage2D(shown, 1, GL_RGBA32F, 40, 30);
   glCopyImageSubData(texture, GL_TEXTURE_2D, 0, 0, 0, 0, shown, GL_TEXTURE_2D, 0, 0, 0, 0, 40, 30, 1);
+  glFinish(); // as above
   there([&] {
     const std::vector<float> values = texels(shown, 40, 30);
     EXPECT_EQ(std::memcmp(values.data(), alone.data(), values.size() * sizeof(float)), 0);
@@ -143,7 +152,7 @@ TEST_P(HostTest, FramesOnTwoThreadsDrawWhatEachDrawsAlone) {
   LitBox boxes[2];
   boxes[1].scene.camera.worldFromView[3].x = 0.3f;
   const auto drawn = [&](int which, FrameStats& stats) {
-    GiFrame gi(small(), 1 + which);
+    GiFrame gi(smallShared(), 1 + which);
     for (int frame = 0; frame < 3; ++frame) stats = gi.run(boxes[which].scene.view());
     return gi.read(Buffer::Beauty).pixels;
   };
