@@ -94,7 +94,7 @@ void Hud::end() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void Hud::draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats,
+void Hud::draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats,
                const FrameTimes& times) {
   if (model.panel) drawPanel(model, scene, gi, truth, stats);
   drawSpeed(model, times);

@@ -6,7 +6,7 @@
 #include "game/pace.h"
 #include "game/rules/body.h"
 #include "game/truth_view.h"
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 
 #include <deque>
 #include <map>
@@ -78,8 +78,8 @@ class Hud {
   // Between these two, what is to be drawn into the framebuffer that is bound at the end.
   void begin();
   void end();
-  /// Over the picture of the last GiFrame::run.
-  void draw(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats,
+  /// Over the picture of the last Viewer::run.
+  void draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats,
             const FrameTimes& times);
   void drawProgress(const std::string& scene, const std::string& at, float share);
   /// `playing`: there is a scene to go back to.
@@ -90,13 +90,13 @@ class Hud {
   void forgetPicture();
 
  private:
-  void drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats);
+  void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
   void drawDay(HudModel& model);
   void drawLights(Scene& scene);
-  void drawPicture(HudModel& model, GiFrame& gi);
+  void drawPicture(HudModel& model, Viewer& gi);
   void drawPlayer(HudModel& model);
   void drawTime(HudModel& model);
-  void drawQuality(HudModel& model, GiFrame& gi);
+  void drawQuality(HudModel& model, Viewer& gi);
   void drawPace(Pacer& pacer);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);

@@ -31,7 +31,7 @@ bool choose(const char* label, const std::vector<std::string>& names, std::strin
 
 } // namespace
 
-void Hud::drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth, const FrameStats& stats) {
+void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float width = std::min(std::clamp(0.3f * size.x, 300 * scale_, 400 * scale_), size.x - 16);
   ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
@@ -73,7 +73,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, GiFrame& gi, TruthView& truth
   ImGui::End();
 }
 
-void Hud::drawPicture(HudModel& model, GiFrame& gi) {
+void Hud::drawPicture(HudModel& model, Viewer& gi) {
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show (1 ... 0)", bufferNames(), view)) model.buffer = bufferByName(view);
   float ev = std::log2(std::max(gi.exposure(), 1e-6f));
@@ -102,7 +102,7 @@ void Hud::drawTime(HudModel& model) {
   if (model.hasPath) ImGui::Checkbox("follow the camera path (F)", &model.followPath);
 }
 
-void Hud::drawQuality(HudModel& model, GiFrame& gi) {
+void Hud::drawQuality(HudModel& model, Viewer& gi) {
   std::string technique = techniqueOf(gi.settings()).name;
   if (choose("technique", techniqueNames(), technique))
     change(gi.settings(), [&](Settings& s) { applyTechnique(s, technique); });

@@ -10,7 +10,7 @@
 #include "game/rules/player.h"
 #include "game/rules/preferences.h"
 #include "game/truth_view.h"
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "tools/launch/frame_log.h"
 
 #include <chrono>
@@ -97,7 +97,7 @@ class Play {
   Scene& scene_;
   const float diameter_; // of the scene as it starts, metres
   Player player_;
-  GiFrame gi_;
+  Viewer gi_;
   SceneExtractor extractor_;
   HudModel model_;
   FrameTimes times_;

@@ -34,7 +34,7 @@ void TruthView::set(TruthMode mode) {
   }
 }
 
-void TruthView::update(const SceneView& view, GiFrame& gi, const FrameStats& stats, Buffer shown, bool wait) {
+void TruthView::update(const SceneView& view, Viewer& gi, const FrameStats& stats, Buffer shown, bool wait) {
   countFrame(view, gi.settings(), stats);
   const std::optional<ReferenceBuffer> wanted = referenceOf(shown);
   if (!reference_) return;
@@ -78,7 +78,7 @@ double TruthView::fullErrorNow() const {
   return 10 * power;
 }
 
-void TruthView::present(const GiFrame& gi, Buffer shown, int width, int height) const {
+void TruthView::present(const Viewer& gi, Buffer shown, int width, int height) const {
   const bool known = truth_ && referenceOf(shown) == truth_->buffer;
   if (known && mode_ == TruthMode::Split)
     gi.presentBesideTruth(shown, divider, 0, width, height);

@@ -2,7 +2,7 @@
 // window or as the picture's error, with the figures that go with it.
 #pragma once
 
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/measure/against_truth.h"
 #include "gi/reference/live_reference.h"
 
@@ -33,9 +33,9 @@ class TruthView {
 
   /// To be told of every frame, on or off, after it ran. Reads the picture back where a new truth has come. With `wait`
   /// every frame waits for one: tests then see as many passes as frames. Throws what ended the tracing.
-  void update(const SceneView& view, GiFrame& gi, const FrameStats& stats, Buffer shown, bool wait);
+  void update(const SceneView& view, Viewer& gi, const FrameStats& stats, Buffer shown, bool wait);
   /// Draws the picture into the window, as the mode asks.
-  void present(const GiFrame& gi, Buffer shown, int width, int height) const;
+  void present(const Viewer& gi, Buffer shown, int width, int height) const;
 
   // Of what is shown. Null until a truth has come.
   const LiveTruth* truth() const { return truth_.get(); }

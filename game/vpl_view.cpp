@@ -1,6 +1,6 @@
 #include "game/vpl_view.h"
 
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <imgui/imgui.h>
@@ -107,7 +107,7 @@ void drawMap(const Vpl& vpl, const RayQuery& rays, float most, ImVec2 corner, fl
 
 } // namespace
 
-void drawVplAtCrosshair(const GiFrame& gi, const CameraView& camera, float scale) {
+void drawVplAtCrosshair(const Viewer& gi, const CameraView& camera, float scale) {
   const VplSet& set = gi.vpls();
   const RayQuery& rays = gi.rays();
   const ImVec2 size = ImGui::GetIO().DisplaySize, middle{0.5f * size.x, 0.5f * size.y};

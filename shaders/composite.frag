@@ -27,6 +27,7 @@ void main() {
     outRadiance = vec4(backgroundAt(pixel), 0.0);
     return;
   }
+  vec3 emitted = texelFetch(emission, min(pixel, textureSize(emission, 0) - 1), 0).rgb;
   // Textures of one texel stand for a constant (black where a stage did not run).
   vec3 irradiance = texelFetch(direct, min(pixel, textureSize(direct, 0) - 1), 0).rgb +
                     texelFetch(indirect, min(pixel, textureSize(indirect, 0) - 1), 0).rgb;
@@ -38,5 +39,5 @@ void main() {
 #else
   vec3 reflected = texelFetch(albedo, pixel, 0).rgb * kInversePi * irradiance;
 #endif
-  outRadiance = vec4(texelFetch(emission, pixel, 0).rgb + reflected, 1.0);
+  outRadiance = vec4(emitted + reflected, 1.0);
 }

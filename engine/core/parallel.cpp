@@ -27,22 +27,22 @@ void setThreadCount(int threads) {
 
 int threadCount() { return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)); }
 
-void parallelFor(size_t n, size_t rayEpsilon, const std::function<void(size_t, size_t)>& body) {
-  // Not blocked_range(0, n, rayEpsilon): it halves until a block is small enough, so two blocks may begin within one rayEpsilon,
-  // and bodies that count into element begin / rayEpsilon would write to the same one.
-  const size_t blocks = (n + rayEpsilon - 1) / rayEpsilon;
+void parallelFor(size_t n, size_t grain, const std::function<void(size_t, size_t)>& body) {
+  // Not blocked_range(0, n, grain): it halves until a block is small enough, so two blocks may begin within one grain,
+  // and bodies that count into element begin / grain would write to the same one.
+  const size_t blocks = (n + grain - 1) / grain;
 #ifdef __SANITIZE_THREAD__ // which does not see when TBB's threads wait for each other
   std::atomic<size_t> next = 0;
   std::vector<std::jthread> threads;
   for (size_t t = 0; t < std::min<size_t>(blocks, 4); ++t)
     threads.emplace_back([&] {
-      for (size_t i = next++; i < blocks; i = next++) body(i * rayEpsilon, std::min(n, (i + 1) * rayEpsilon));
+      for (size_t i = next++; i < blocks; i = next++) body(i * grain, std::min(n, (i + 1) * grain));
     });
 #else
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, blocks, 1),
       [&](const tbb::blocked_range<size_t>& r) {
-        for (size_t i = r.begin(); i < r.end(); ++i) body(i * rayEpsilon, std::min(n, (i + 1) * rayEpsilon));
+        for (size_t i = r.begin(); i < r.end(); ++i) body(i * grain, std::min(n, (i + 1) * grain));
       },
       tbb::simple_partitioner());
 #endif

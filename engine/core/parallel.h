@@ -11,8 +11,8 @@ namespace lambent {
 void setThreadCount(int threads);
 int threadCount();
 
-/// Calls body(begin, end) over disjoint blocks that cover [0, n): block i begins at i · rayEpsilon, all but the last have
-/// `rayEpsilon` indices.
-void parallelFor(size_t n, size_t rayEpsilon, const std::function<void(size_t, size_t)>& body);
+/// Calls body(begin, end) over disjoint blocks that cover [0, n): block i begins at i · grain, all but the last have
+/// `grain` indices.
+void parallelFor(size_t n, size_t grain, const std::function<void(size_t, size_t)>& body);
 
 } // namespace lambent

@@ -24,6 +24,15 @@ struct Counts {
 };
 const Counts& counts();
 
+/// Draws since it was made.
+class DrawCount {
+ public:
+  uint64_t operator()() const { return counts().draws - before_; }
+
+ private:
+  uint64_t before_ = counts().draws;
+};
+
 namespace detail {
 Counts& countsSoFar(); // contexts are used from one thread
 } // namespace detail

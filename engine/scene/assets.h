@@ -92,10 +92,10 @@ struct Mesh {
   std::vector<MorphTarget> morphTargets;
 };
 
-/// Which contents an object holds: a number that no other of this process ever had. A copy, and what is moved or assigned
-/// to, hold others, for whatever was made of them keeps pointers to the first. Who keeps something made of an object
-/// knows by it whether that object is still there, though another may have taken its place in memory. Says nothing else,
-/// and so may not enter a result.
+/// Which contents an object holds: a number that no other of this process ever had. A copy, and what is moved or
+/// assigned to, hold others, for whatever was made of them keeps pointers to the first. Who keeps something made of an
+/// object knows by it whether that object is still there, though another may have taken its place in memory. Says
+/// nothing else, and so may not enter a result.
 class Identity {
  public:
   Identity() = default;

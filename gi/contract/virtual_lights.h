@@ -61,9 +61,9 @@ struct ParaboloidMaps {
   float farDistance = 1; // metres
 };
 
-/// Lights with what tells where they reach.
+/// Lights, and the maps of who sees them.
 struct ShadowedLights {
-  const VirtualLights& lights;
+  const VirtualLights& list;
   const ParaboloidMaps* maps = nullptr; // null: everywhere
 };
 

@@ -4,7 +4,6 @@
 #include "gi/gather/draw_gather.h"
 #include "gi/lighting/area_lobe.h"
 
-#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 
@@ -47,7 +46,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   readSurfaces(surfaces, pyramid);
   const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
   const RayQuery& rays = tracerFor(world, seen, settings.area);
-  stats.areaTracer = tracer_;
+  stats.areaTracer = tracer_.report();
   std::vector<AreaLights> groups;
   {
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
@@ -81,37 +80,34 @@ void AreaLightPass::collect(const World& world) {
   triangles_ = now;
 }
 
-/// Embree or the GPU. Their answers differ for rays that graze an edge, so the GPU has to be twice as fast to be taken.
+/// Embree or the GPU.
 const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfaces& surfaces,
                                          const AreaSettings& settings) {
-  const bool measures = settings.tracer == AreaTracer::Auto && !gpuIsFaster_;
-  const bool gpu = settings.tracer == AreaTracer::Gpu || (settings.tracer == AreaTracer::Auto && gpuIsFaster_ == true);
+  const bool automatic = settings.tracer == AreaTracer::Auto, measures = automatic && !tracer_.measured();
+  const bool gpu = settings.tracer == AreaTracer::Gpu || (automatic && tracer_.gpu());
+  if (!automatic) tracer_.take(gpu);
   if (!gpu && !measures) {
     gpuRays_.reset();
-    if (settings.tracer == AreaTracer::Cpu) tracer_ = "cpu";
     return world.rays;
   }
   if (!gpuRays_ || world.view.changes.first)
     gpuRays_ = std::make_unique<GpuRays>(context_.programs, *world.view.assets);
   gpuRays_->update(world.view);
-  if (settings.tracer == AreaTracer::Gpu) tracer_ = "gpu";
   if (!measures) return *gpuRays_;
   const std::vector<glm::ivec2> pixels = surfaces.some(256); // with 64 rays each
-  const auto millionsPerSecond = [&](const RayQuery& rays) {
+  const auto msPerMillion = [&](const RayQuery& rays) {
     uint64_t count = 0;
     const double seconds = gl::secondsOf([&] {
       for (const AreaSeen& seen : AreaVisibility(rays, lights_, surfaces, 16).ofPixels(pixels, true))
         count += seen.rays;
     });
-    return double(count) / std::max(seconds, 1e-9) * 1e-6;
+    return count > 0 ? seconds * 1e9 / double(count) : 0;
   };
-  millionsPerSecond(*gpuRays_); // compiles
-  const double onGpu = millionsPerSecond(*gpuRays_), onCpu = millionsPerSecond(world.rays);
-  if (onCpu == 0) return world.rays; // no light reaches the picture: another frame tells
-  gpuIsFaster_ = onGpu > 2 * onCpu;
-  tracer_ = fmt::format("{} ({:.1f} million rays a second, {} {:.1f})", *gpuIsFaster_ ? "gpu" : "cpu",
-                        *gpuIsFaster_ ? onGpu : onCpu, *gpuIsFaster_ ? "cpu" : "gpu", *gpuIsFaster_ ? onCpu : onGpu);
-  if (*gpuIsFaster_) return *gpuRays_;
+  msPerMillion(*gpuRays_); // compiles
+  const double onGpu = msPerMillion(*gpuRays_), onCpu = msPerMillion(world.rays);
+  if (onCpu == 0) return world.rays; // no light reaches the frame: another one tells
+  tracer_.measure(onCpu, onGpu, "a million rays");
+  if (tracer_.gpu()) return *gpuRays_;
   gpuRays_.reset();
   return world.rays;
 }

@@ -2,6 +2,7 @@
 // closed form at every pixel, times the share of it that rays from patches find open.
 #pragma once
 
+#include "gi/contract/faster_of.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
@@ -13,7 +14,6 @@
 #include "engine/gpu_trace/gpu_rays.h"
 
 #include <memory>
-#include <optional>
 
 namespace lambent {
 
@@ -43,8 +43,7 @@ class AreaLightPass {
   AreaLights lights_;
   std::vector<EmitterTriangle> triangles_; // that they are of
   std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
-  std::optional<bool> gpuIsFaster_;        // once measured
-  std::string tracer_;
+  FasterOf tracer_{"cpu", "gpu"};
   std::vector<float> depth_;
   std::vector<vec4> normal_;
   std::vector<FragmentLevel> levels_;

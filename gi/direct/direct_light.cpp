@@ -72,8 +72,8 @@ DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
       doubts_(std::min(mostDoubts, gl::mostBufferTexels())), depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
-SurfaceLighting DirectLight::run(const DirectInputs& in, FrameStats& stats) {
-  if (in.keep) return target_.light();
+SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
+  if (!in.plan.seenChanges() && !stale_) return target_.light();
   lightByMaps(in, stats);
   if (byPatches(in)) {
     areas_.add(in.world, in.surfaces, in.patches, in.settings, target_, stats);
@@ -82,16 +82,17 @@ SurfaceLighting DirectLight::run(const DirectInputs& in, FrameStats& stats) {
   } else {
     areas_.forget();
   }
+  stale_ = false;
   return target_.light();
 }
 
 /// Whether emissive surfaces light patches. As one sample they are as good as points.
-bool DirectLight::byPatches(const DirectInputs& in) {
+bool DirectLight::byPatches(const Frame& in) {
   return in.settings.shadow.emitters == EmitterShadows::Patches && in.plan.on(EffectId::Emissive) &&
          in.plan.on(EffectId::SoftShadows);
 }
 
-void DirectLight::lightByMaps(const DirectInputs& in, FrameStats& stats) {
+void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
   const bool allowed = in.settings.shadow.rays && in.surfaces.depth->holdsSinglePrecision();
   const std::vector<LightBlock> blocks = shadowed(in, allowed, stats);
   const bool rays = allowed && !blocks.empty();
@@ -124,7 +125,7 @@ void DirectLight::lightByMaps(const DirectInputs& in, FrameStats& stats) {
 }
 
 /// Asks rays about what was noted, and adds the light that they let through. False where the list had not room enough.
-bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blocks, FrameStats& stats) {
+bool DirectLight::answer(const Frame& in, std::span<const LightBlock> blocks, FrameStats& stats) {
   {
     if (!doubts_.collect()) return false; // waits for the GPU
     const CpuScope scope(stats.stages, key(StageId::ShadowRays));
@@ -156,13 +157,14 @@ bool DirectLight::answer(const DirectInputs& in, std::span<const LightBlock> blo
 }
 
 /// All lights, with maps that are up to date. Without `rays` those of suns cover all that is seen.
-std::vector<LightBlock> DirectLight::shadowed(const DirectInputs& in, bool rays, FrameStats& stats) {
+std::vector<LightBlock> DirectLight::shadowed(const Frame& in, bool rays, FrameStats& stats) {
   const World& world = in.world;
   const ShadowSettings shadow = resolved(in.settings.shadow, world.view.camera.width);
   fitReceivers(in, stats);
+  if (stale_) emitters_.forget();
   std::vector<LightBlock> blocks =
       shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
-                    rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first,
+                    rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first || stale_,
                     world.moved.boxes(), shadow});
   stats.lightMapsDrawn = shadows_.mapsDrawn();
   stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
@@ -237,7 +239,7 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
 }
 
 /// Nothing needs the boxes where no map is fitted to them.
-void DirectLight::fitReceivers(const DirectInputs& in, FrameStats& stats) {
+void DirectLight::fitReceivers(const Frame& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
   const bool fitted =
       in.plan.on(EffectId::Sky) || std::any_of(view.lights.begin(), view.lights.end(),
@@ -246,7 +248,7 @@ void DirectLight::fitReceivers(const DirectInputs& in, FrameStats& stats) {
     receivers_ = mostReceivers_ = {};
     return;
   }
-  if (receivers_.empty() || view.changes.camera || view.changes.geometry || view.changes.instances) {
+  if (receivers_.empty() || stale_ || view.changes.camera || view.changes.geometry || view.changes.instances) {
     const std::vector<vec3> places = visiblePlaces(in.world, stats.raysPoints);
     receivers_ = boxOf(places, view.boundsWorld);
     mostReceivers_ = boxOf(withoutOutliers(places), view.boundsWorld);

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/surface_lighting.h"
-#include "gi/contract/world.h"
+#include "gi/contract/light_provider.h"
 #include "gi/direct/area_light_pass.h"
 #include "gi/direct/emitter_shadows.h"
 #include "gi/direct/light_shadows.h"
@@ -12,19 +11,13 @@
 
 namespace lambent {
 
-struct DirectInputs {
-  const World& world;
-  const GBuffer& surfaces;
-  const EffectPlan& plan;
-  const Settings& settings;
-  Patches& patches;  // of the surfaces
-  bool keep = false; // all of it is that of the last run
-};
-
-class DirectLight {
+class DirectLight : public LightProvider {
  public:
   explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowRayPass::kMost);
-  SurfaceLighting run(const DirectInputs& in, FrameStats& stats);
+  /// The light of the last run where neither surfaces nor light can have changed.
+  SurfaceLighting run(const Frame& frame, FrameStats& stats) override;
+  /// Also where it is not asked for a while: what changes meanwhile is not told.
+  void forget() override { stale_ = true; }
 
   struct Area {
     int x = 0, y = 0, width = 0, height = 0; // pixels, from the lower left
@@ -34,14 +27,14 @@ class DirectLight {
   /// Whether doubts are noted, and light is drawn.
   enum class Noting { Off, AlsoLight, Only };
 
-  static bool byPatches(const DirectInputs& in);
-  void lightByMaps(const DirectInputs& in, FrameStats& stats);
-  void fitReceivers(const DirectInputs& in, FrameStats& stats);
-  std::vector<LightBlock> shadowed(const DirectInputs& in, bool rays, FrameStats& stats);
+  static bool byPatches(const Frame& in);
+  void lightByMaps(const Frame& in, FrameStats& stats);
+  void fitReceivers(const Frame& in, FrameStats& stats);
+  std::vector<LightBlock> shadowed(const Frame& in, bool rays, FrameStats& stats);
   const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
                                 const char* variant) const;
   void drawBlock(const GBuffer& surfaces, const LightBlock& block, const Area& area, Noting noting) const;
-  bool answer(const DirectInputs& in, std::span<const LightBlock> blocks, FrameStats& stats);
+  bool answer(const Frame& in, std::span<const LightBlock> blocks, FrameStats& stats);
   void drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks);
 
   PassContext context_;
@@ -52,6 +45,7 @@ class DirectLight {
   Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
+  bool stale_ = true; // nothing of the last run may be used
   LightTarget target_{"direct"};
 };
 

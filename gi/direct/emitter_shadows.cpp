@@ -38,7 +38,7 @@ std::vector<LightBlock> EmitterShadowPass::run(const World& world, const ShadowS
       jobsAtOnce(poses, poses_, lights, world.moved.boxes(), world.view.changes.first, shadow.emitterResolution);
   poses_ = std::move(poses);
   const ParaboloidMaps maps =
-      maps_.run({world.gpu, &world.rays, poses_, jobs, world.reach, shadow.emitterResolution, shadow.maker});
+      maps_.run({world.gpu, &world.rays, poses_, jobs, world.farDistance, shadow.emitterResolution, shadow.maker});
   stats.mapsDrawn += maps_.mapsDrawn();
 
   const gl::PassScope scope = context_.scope(StageId::Emitters);

@@ -1,43 +1,24 @@
 #include "gi/frame/gi_frame.h"
 
 #include "engine/core/error.h"
-#include "engine/core/text.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
+#include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
-#include "gi/viewer/picture.h"
+#include "gi/frame/make_technique.h"
 #include "gi/frame/world_state.h"
-#include "gi/gather/stages.h"
-#include "gi/cube/draw/still_cache.h"
-#include "gi/sources/light_source.h"
 #include "gi/surfaces/surfaces.h"
-#include "gi/visibility/shadow_map_cache.h"
+#include "gi/visibility/paraboloid_maps.h"
 
 #include <chrono>
 
 namespace lambent {
 
 namespace {
-
 using Clock = std::chrono::steady_clock;
+}
 
-/// GL draws since it was made.
-class DrawCount {
- public:
-  uint64_t operator()() const { return gl::counts().draws - before_; }
-
- private:
-  uint64_t before_ = gl::counts().draws;
-};
-
-/// Before and after what mixes it over pixels and pictures.
-struct Indirect {
-  SurfaceLighting gathered, light;
-};
-
-} // namespace
-
-/// The stages, in data-flow order. What one of them keeps from frame to frame is its own.
+/// What one stage keeps from frame to frame is its own.
 struct GiFrame::Kept {
   Settings settings;
   uint32_t seed;
@@ -49,39 +30,21 @@ struct GiFrame::Kept {
   SurfacePass surfaces{context};
   PatchPass patches{context, StageId::Patches};
   DirectLight direct{context};
-  ShadowMapCache keeper{context};
-  IndirectStages indirectStages{context};
-  StillCache stillCache{context};
-  HistoryPass history{context};
-  FilterPass filter{context};
-  CompositePass composite{context};
-  DisplayPass display{context};
-  TruthDisplay truth{context};
-  std::unique_ptr<LightSource> source; // below the world, which its update reads
-  VplSource sourceOf = VplSource::None;
+  std::unique_ptr<LightProvider> indirect; // below the world, which its update reads
+  const Technique* indirectOf = nullptr;
 
-  int averaged = 0; // pictures in the history since anything changed
-  float exposure = 0;
-  FrameResults results;
+  FrameOutputs outputs;
   FrameStats stats;
 
   Kept(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
 
+  LightProvider& technique();
   void begin(const SceneView& given);
   void end(Clock::time_point begin, const gl::Counts& before);
-  LightSource* sourceFor(VplSource wanted);
-  Indirect lightIndirectly(const World& given, const EffectPlan& plan, const VirtualLights& lights,
-                           const GBuffer& surfaces, Patches& patches, const std::function<void(int, int)>& progress);
-  /// Light is averaged over pictures. (Forced, it has nothing to do.)
-  bool averages(const EffectPlan& plan) const {
-    return plan.on(EffectId::History) && plan.calledFor(EffectId::History);
-  }
-  FilterSettings filterFor(const EffectPlan& plan) const;
-  void expose(const Picture& picture);
-  Look look() const { return {exposure, settings.image.toneMapper, settings.debug.nan, settings.image.antiAliasing}; }
 };
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed))) {}
+GiFrame::GiFrame(const Settings& settings, uint32_t seed)
+    : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed))) {}
 GiFrame::~GiFrame() = default;
 
 void GiFrame::restart() {
@@ -99,57 +62,81 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const std::function<void(int, int)> progress = gl::callingOut(told);
   Kept& k = *kept_;
   const Settings& settings = k.settings;
+  FrameStats& stats = k.stats;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   if (host) checkHost(*host, given.camera);
   const Clock::time_point begin = Clock::now();
   const gl::Counts before = gl::counts();
-  LightSource* source = k.sourceFor(settings.vpl.source);
-  if (source) source->wait();
+
+  LightProvider& indirect = k.technique();
+  indirect.wait();
   k.begin(given);
-  FrameStats& stats = k.stats;
-  k.stillCache.watch(given, settings);
-  const EffectPlan plan = k.world.plan(given, settings,
-                                       {.first = !k.results.picture.radiance,
-                                        .host = host != nullptr,
-                                        .settled = source && source->settled(),
-                                        .mapsWaiting = k.keeper.waiting(),
-                                        .averaged = k.averaged,
-                                        .lightArrived = source && source->arrived(),
-                                        .storedAlone = k.stillCache.alone(),
-                                        .storing = k.stillCache.busy()});
+  k.world.take(given, settings);
+  indirect.begin(k.world.view(), settings);
+  const Needs needs = needsOf(settings);
+  const EffectPlan plan = k.world.plan(settings, {.first = !k.outputs.surfaces.depth,
+                                                  .host = host != nullptr,
+                                                  .needs = needs,
+                                                  .status = indirect.status()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
-  if (!k.averages(plan) || k.world.gatherChanged()) k.history.forget();
-
-  VirtualLights lights;
-  const bool gathers = plan.on(EffectId::Gather) || rowOf(settings.vpl.source).sampled;
-  if (source && plan.on(EffectId::Indirect) && gathers)
-    lights = source->run({world, plan, settings, k.seed, k.world.settingsChanged(), progress}, stats);
-  stats.vplsAlive = lights.alive;
+  const FrameWorld now{.world = world,
+                       .plan = plan,
+                       .settings = settings,
+                       .seed = k.seed,
+                       .settingsChanged = k.world.settingsChanged(),
+                       .gatherChanged = k.world.gatherChanged(),
+                       .progress = progress};
+  indirect.update(now, stats);
 
   if (plan.on(EffectId::Redraw)) {
-    const DrawCount draws;
-    k.results = {};
+    const gl::DrawCount draws;
+    k.outputs = {};
+    k.outputs.sky = world.view.sky;
+    k.outputs.farDistance = world.farDistance;
     const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
-    const bool keep = !plan.seenChanges();
-    const GBuffer surfaces = k.surfaces.run({world.gpu, world.view.camera, glossy, host, keep});
+    const GBuffer surfaces = k.surfaces.run({.scene = world.gpu,
+                                             .camera = world.view.camera,
+                                             .glossy = glossy,
+                                             .host = host,
+                                             .keep = !plan.seenChanges(),
+                                             .previous = needs.previousSurfaces});
     Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
-    const SurfaceLighting direct = k.direct.run({world, surfaces, plan, settings, patches, keep}, stats);
-    const Indirect indirect = k.lightIndirectly(world, plan, lights, surfaces, patches, progress);
-    const Picture picture = k.composite.run({surfaces, direct, indirect.light, world.view.sky});
+    const int bounces = plan.on(EffectId::Bounces) && needs.bounces ? settings.smc.bounces : 1;
+    const Frame frame{now, surfaces, patches, k.surfaces.previous(), bounces};
+    k.outputs.surfaces = surfaces;
+    if (settings.direct.on)
+      k.outputs.direct = k.direct.run(frame, stats);
+    else
+      k.direct.forget();
+    if (plan.on(EffectId::Indirect)) {
+      const gl::DrawCount ofIndirect;
+      k.outputs.indirect = indirect.run(frame, stats);
+      stats.of(EffectId::Indirect) += ofIndirect();
+    }
+    k.outputs.patches = patches.made();
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
-    k.expose(picture);
-    k.results = {surfaces,       direct,          indirect.gathered, indirect.light,
-                 picture,        k.keeper.maps(), patches.made(),    source ? source->set() : nullptr,
-                 world.view.sky, world.reach};
   }
-
+  k.outputs.inside = indirect.inside();
   k.end(begin, before);
   return stats;
 }
 
-/// New figures; the first time, how GPU times are taken; all anew for another scene.
+/// The provider of the technique that the settings choose. One of another technique is given up with all that it keeps.
+LightProvider& GiFrame::Kept::technique() {
+  if (!indirect || indirectOf != settings.own) {
+    if (indirect) indirect->wait();
+    outputs.indirect = {};
+    outputs.inside = {};
+    indirect = nullptr; // not both in memory
+    indirect = makeTechnique(settings, context);
+    indirectOf = settings.own;
+  }
+  return *indirect;
+}
+
+/// New figures; the first time, how GPU times are taken; everything from scratch for another scene.
 void GiFrame::Kept::begin(const SceneView& given) {
   CHECK(given.assets != nullptr);
   const bool first = stats.timing.empty();
@@ -164,54 +151,9 @@ void GiFrame::Kept::begin(const SceneView& given) {
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
   if (!world.open(*given.assets, stats)) return;
-  if (source) source->forget();
-  keeper.forget();
-  stillCache.forget();
-  history.forget();
-  results = {};
-}
-
-/// Light that virtual lights bring to the surfaces: seen, gathered, averaged and mixed.
-Indirect GiFrame::Kept::lightIndirectly(const World& given, const EffectPlan& plan, const VirtualLights& lights,
-                                        const GBuffer& surfaces, Patches& patches,
-                                        const std::function<void(int, int)>& progress) {
-  Indirect out;
-  if (!plan.on(EffectId::Indirect)) {
-    stillCache.forget();
-    return out;
-  }
-  const DrawCount draws;
-  const bool more = plan.on(EffectId::Bounces) && rowOf(settings.vpl.source).sampled;
-  const int bounces = more ? settings.smc.bounces : 1;
-  if (plan.on(EffectId::Gather) || rowOf(settings.gather.mode).stored) {
-    const DrawCount gatherDraws;
-    const ShadowedLights seen = keeper.see({given, lights, settings, seed}, plan, stats);
-    const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
-    if (averaging) history.fit(surfaces);
-    out.gathered = indirectStages.of(settings).run(
-        {given, surfaces, patches, seen, settings, bounces, seed, averaging ? history.picture() : 0, averaging, changes,
-         averaging && !changes && !given.view.changes.camera && !history.follows(), plan.on(EffectId::Gather), ~0u,
-         progress},
-        stats);
-    if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = gatherDraws();
-    const FilterSettings filtering = filterFor(plan);
-    SurfaceLighting mean = out.gathered;
-    if (averaging) {
-      const DrawCount historyDraws;
-      mean = history.run(
-          {surfaces, out.gathered, given.view.changes.camera, plan.lightChanges(), settings.history, filtering});
-      stats.of(EffectId::History) = historyDraws();
-      averaged = plan.changed() ? 1 : averaged + 1;
-    }
-    const DrawCount filterDraws;
-    out.light = filter.run({surfaces, mean, filtering, !averaging});
-    if (filtering.on) stats.of(EffectId::Filter) = filterDraws();
-  } else {
-    history.forget(); // it would be of another place
-  }
-  out.light = stillCache.run({given, surfaces, patches, plan, settings, seed, bounces}, out.light, stats);
-  stats.of(EffectId::Indirect) += draws();
-  return out;
+  indirect->forget();
+  direct.forget();
+  outputs = {};
 }
 
 /// What was asked of the GPU, and how long the frame took.
@@ -225,106 +167,33 @@ void GiFrame::Kept::end(Clock::time_point begin, const gl::Counts& before) {
   stats.wallMs = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Sources of another kind are given up with all that they keep.
-LightSource* GiFrame::Kept::sourceFor(VplSource wanted) {
-  if (!sameKind(wanted, sourceOf)) {
-    results.vpls = nullptr;
-    source = makeSource(wanted, context);
-  }
-  sourceOf = wanted;
-  return source.get();
-}
-
-FilterSettings GiFrame::Kept::filterFor(const EffectPlan& plan) const {
-  FilterSettings filter = settings.filter;
-  filter.on = filter.on && plan.on(EffectId::Filter);
-  return filter;
-}
-
-void GiFrame::Kept::expose(const Picture& picture) {
-  if (settings.image.exposure > 0)
-    exposure = settings.image.exposure;
-  else if (exposure <= 0)
-    exposure = measureExposure(picture);
-}
-
-// Looking at it -------------------------------------------------------------------------------------------------------
+// What it gives -------------------------------------------------------------------------------------------------------
 
 namespace {
-const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect", "irradiance", "albedo",
-                                               "normal",      "depth",   "emission", "unfiltered", "vpls",
-                                               "shadow-maps", "patches", "nan"};
-}
+uint32_t nameOf(const gl::Texture* texture) { return texture ? texture->name() : 0; }
+} // namespace
 
-const std::vector<std::string>& bufferNames() { return kBufferNames; }
-
-Buffer bufferByName(const std::string& name) {
-  for (size_t i = 0; i < kBufferNames.size(); ++i)
-    if (kBufferNames[i] == name) return Buffer(i);
-  const std::string near = nearestName(name, kBufferNames);
-  std::string all;
-  for (const std::string& n : kBufferNames) all += (all.empty() ? "" : ", ") + n;
-  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
-}
-
-Image GiFrame::read(Buffer buffer) const {
-  const gl::StateGuard guard;
-  return readBuffer(buffer, kept_->results);
-}
-
-Image8 GiFrame::readDisplay(Buffer buffer) const {
-  const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls && kept_->source) kept_->source->wait(); // an update takes the set away
-  kept_->display.run(buffer, kept_->results, kept_->look());
-  return kept_->display.read();
-}
-
-void GiFrame::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
-  const gl::StateGuard guard;
-  if (buffer == Buffer::Vpls && kept_->source) kept_->source->wait(); // an update takes the set away
-  kept_->display.run(buffer, kept_->results, kept_->look());
-  kept_->display.present(framebuffer, width, height);
-}
-
-void GiFrame::takeTruth(const Image& truth) {
-  const gl::StateGuard guard;
-  kept_->truth.take(truth, kept_->results);
-}
-
-void GiFrame::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const {
-  const gl::StateGuard guard;
-  const gl::Texture& truth = kept_->truth.run(buffer, kept_->results, kept_->look());
-  kept_->display.run(buffer, kept_->results, kept_->look());
-  kept_->display.present(framebuffer, width, height, &truth, divider);
-}
-
-void GiFrame::presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const {
-  const gl::StateGuard guard;
-  kept_->display.run(buffer, kept_->results, kept_->look(), {&kept_->truth.linear(), full});
-  kept_->display.present(framebuffer, width, height);
-}
-
-uint32_t GiFrame::texture(Buffer buffer) const {
-  const FrameResults& r = kept_->results;
-  const gl::Texture* texture = buffer == Buffer::Beauty       ? r.picture.radiance
-                               : buffer == Buffer::Direct     ? r.direct.irradiance
-                               : buffer == Buffer::Irradiance ? r.indirect.irradiance
-                                                              : nullptr;
-  return texture ? texture->name() : 0;
-}
+uint32_t GiFrame::directIrradiance() const { return nameOf(kept_->outputs.direct.irradiance); }
+uint32_t GiFrame::indirectIrradiance() const { return nameOf(kept_->outputs.indirect.irradiance); }
+const FrameOutputs& GiFrame::outputs() const { return kept_->outputs; }
+PassContext GiFrame::context() const { return kept_->context; }
 
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {
   const gl::StateGuard guard;
   Kept& k = *kept_;
   const std::vector<VirtualLight> lights = lightsOf(vpls());
-  const ShadowSettings& shadow = k.settings.shadow;
-  const World world = k.world.again();
+  const World world = k.world.current();
   std::vector<MapPose> poses;
   for (const VirtualLight& light : lights) poses.push_back(light.pose(world.rays.rayEpsilon()));
-  const ParaboloidMapInputs maps{world.gpu,         &world.rays, poses, {}, view.boundsWorld.diameter(),
-                                 shadow.resolution, shadow.maker};
-  return measureShadowAgreement(k.keeper.pass(), maps, world.rays, view.camera, lights, k.settings, slots, points,
+  const ParaboloidMapInputs maps{.scene = world.gpu,
+                                 .rays = &world.rays,
+                                 .poses = poses,
+                                 .farDistance = view.boundsWorld.diameter(),
+                                 .resolution = k.settings.shadow.resolution,
+                                 .maker = k.settings.shadow.maker};
+  ParaboloidMapPass pass(k.context, StageId::VplMaps);
+  return measureShadowAgreement(pass, maps, world.rays, view.camera, lights, k.settings, slots, points,
                                 gl::callingOut(progress));
 }
 
@@ -335,14 +204,15 @@ std::vector<std::string> GiFrame::reloadShaders() {
 }
 
 Settings& GiFrame::settings() { return kept_->settings; }
+const Settings& GiFrame::settings() const { return kept_->settings; }
 const FrameStats& GiFrame::stats() const { return kept_->stats; }
 const VplSet& GiFrame::vpls() const {
   static const VplSet none;
-  if (kept_->source) kept_->source->wait();
-  const VplSet* set = kept_->source ? kept_->source->set() : nullptr;
+  if (!kept_->indirect) return none;
+  kept_->indirect->wait();
+  const VplSet* set = kept_->indirect->inside().vpls;
   return set ? *set : none;
 }
-const RayQuery& GiFrame::rays() const { return kept_->world.again().rays; }
-float GiFrame::exposure() const { return kept_->exposure; }
+const RayQuery& GiFrame::rays() const { return kept_->world.current().rays; }
 
 } // namespace lambent

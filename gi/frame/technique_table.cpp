@@ -1,5 +1,9 @@
 #include "gi/plan/techniques.h"
 
+#include "gi/cube/draw/still_cache.h"
+#include "gi/frame/composed_technique.h"
+#include "gi/frame/make_technique.h"
+
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 
@@ -62,8 +66,13 @@ const Technique& techniqueByName(const std::string& name) {
                    "no such technique (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
 }
 
+std::unique_ptr<LightProvider> makeTechnique(const Settings& settings, PassContext context) {
+  if (settings.own) return settings.own->make(context);
+  return std::make_unique<StillCache>(context, std::make_unique<ComposedTechnique>(context));
+}
+
 void applyTechnique(Settings& settings, const Technique& technique) {
-  if (!sharesGather(axesOf(settings)) || !sharesGather(technique.axes)) {
+  if (!needsOf(axesOf(settings)).freeGather || !needsOf(technique.axes).freeGather) {
     settings.vpl.visibility = technique.axes.visibility;
     settings.gather.mode = technique.axes.gather;
   }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr SceneChanges kAllChanged{true, true, true, true, true};
 
-/// All maps are drawn anew when their reach changes, so it leaves room to grow.
-float reachOf(const SceneView& view, float before) {
+/// All maps are drawn anew when their far distance changes, so it leaves room to grow.
+float farDistanceOf(const SceneView& view, float before) {
   const float wanted = std::max(view.boundsWorld.diameter(), 1e-20f); // all in one place, as far as floats tell
   if (wanted <= before && wanted >= 0.5f * before) return before;
   return view.changes.geometry && before > 0 ? 1.25f * wanted : wanted;
@@ -32,7 +32,14 @@ bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
   return true;
 }
 
-EffectPlan WorldState::plan(const SceneView& given, const Settings& settings, const PlanInputs& in) {
+void WorldState::take(const SceneView& given, const Settings& settings) {
+  const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !view_.view().instances.empty();
+  view_.take(given, freeze);
+  if (frozen_ && !freeze) lightingStale_ = surfacesStale_ = true;
+  frozen_ = freeze;
+}
+
+EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
   const bool anew = before_.effects != settings.effects || in.first;
   lightingStale_ |= anew;
   surfacesStale_ |= anew;
@@ -45,24 +52,16 @@ EffectPlan WorldState::plan(const SceneView& given, const Settings& settings, co
   gatherChanged_ = before_ != gather || shadersChanged_;
   const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
   settingsChanged_ =
-      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects || in.first;
+      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects ||
+      before_.own != settings.own || before_.ownValues != settings.ownValues || in.first;
   before_ = settings;
   shadersChanged_ = false;
   hosted_ = in.host;
-  const bool freeze = settings.effects[EffectId::Motion] == EffectMode::Off && !view_.view().instances.empty();
-  view_.take(given, freeze);
-  if (frozen_ && !freeze) lightingStale_ = surfacesStale_ = true;
-  frozen_ = freeze;
-
   const FrameFacts facts{.first = in.first,
                          .settingsChanged = settingsChanged_,
                          .drawingChanged = drawingChanged,
-                         .settled = in.settled,
-                         .mapsWaiting = in.mapsWaiting,
-                         .averaged = in.averaged,
-                         .lightArrived = in.lightArrived,
-                         .storedAlone = in.storedAlone,
-                         .storing = in.storing};
+                         .needs = in.needs,
+                         .status = in.status};
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
   const auto everything = [&] {
@@ -98,8 +97,8 @@ World WorldState::place(const EffectPlan& plan, FrameStats& stats) {
     lights_.tree = LightTree(lights_);
   }
   if (!plan.on(Sky)) lights_.sky = {};
-  if (plan.on(Redraw)) reach_ = reachOf(view, reach_);
-  return again();
+  if (plan.on(Redraw)) farDistance_ = farDistanceOf(view, farDistance_);
+  return current();
 }
 
 void WorldState::countWork(FrameStats& stats) {

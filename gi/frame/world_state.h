@@ -15,14 +15,10 @@ namespace lambent {
 
 /// What a plan depends on besides the view and the settings.
 struct PlanInputs {
-  bool first = true;         // there is no picture yet
-  bool host = false;         // the surfaces are a host's, who may have drawn them anew
-  bool settled = false;      // the virtual lights have
-  uint32_t mapsWaiting = 0;  // of virtual lights
-  int averaged = 0;          // as FrameFacts
-  bool lightArrived = false; // that no picture shows yet
-  bool storedAlone = false;  // as FrameFacts
-  bool storing = false;
+  bool first = true; // there is no frame yet
+  bool host = false; // the surfaces are a host's, who may have drawn them again
+  Needs needs;       // of the technique
+  ProviderStatus status;
 };
 
 class WorldState {
@@ -31,9 +27,11 @@ class WorldState {
 
   /// Makes ready for another scene. Says whether it is one.
   bool open(const SceneAssets& assets, FrameStats& stats);
-  /// Takes the view over and decides what is done in this frame. What no stage was told of stays a change until all
-  /// hear of it.
-  EffectPlan plan(const SceneView& given, const Settings& settings, const PlanInputs& in);
+  /// Takes the view over.
+  void take(const SceneView& given, const Settings& settings);
+  const SceneView& view() const { return view_.view(); }
+  /// Decides what is done in this frame. What no stage was told of stays a change until all hear of it.
+  EffectPlan plan(const Settings& settings, const PlanInputs& in);
   /// The view as the plan lets it be; valid until the next plan.
   World place(const EffectPlan& plan, FrameStats& stats);
   /// Figures of what rays and draws met since the last call.
@@ -43,7 +41,7 @@ class WorldState {
   bool gatherChanged() const { return gatherChanged_; }     // settings or shaders: pixels gather other light
   void shadersChanged() { shadersChanged_ = true; }
   /// As last placed.
-  World again() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, reach_}; }
+  World current() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, farDistance_}; }
 
  private:
   gl::ProgramCache& programs_;
@@ -54,7 +52,7 @@ class WorldState {
   DirtyRegion moved_;
   LightSet lights_;
   Settings before_;
-  float reach_ = 0;
+  float farDistance_ = 0;
   uint64_t testedDraws_ = 0; // the scene's count when last asked
   bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
   bool hosted_ = false; // the last surfaces were a host's

@@ -52,9 +52,9 @@ void setShading(const gl::Program& program, const GatherDraw& draw) {
   program.set("largestG", draw.bounds.clamp > 0 ? draw.bounds.clamp : kInfinity);
   program.set("spread", draw.bounds.spread);
   program.set("finestPatch", draw.finestPatch);
-  if (!draw.seen.maps) return;
-  program.set("farDistance", draw.seen.maps->farDistance);
-  program.set("mapResolution", float(draw.seen.maps->resolution));
+  if (!draw.lights.maps) return;
+  program.set("farDistance", draw.lights.maps->farDistance);
+  program.set("mapResolution", float(draw.lights.maps->resolution));
   program.set("biasTexels", draw.biasTexels);
 }
 
@@ -73,12 +73,12 @@ void drawArea(const gl::Program& program, const GatherArea& area, bool patches, 
 }
 
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
-  if (in.seen.lights.trees) {
+  if (in.lights.list.trees) {
     drawTreeGather(programs, target, in);
     return;
   }
-  const PackedLights& packed = in.seen.lights.packed;
-  const ParaboloidMaps* maps = in.seen.maps;
+  const PackedLights& packed = in.lights.list.packed;
+  const ParaboloidMaps* maps = in.lights.maps;
   gl::ProgramDesc desc{.fragment = "gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");
   if (maps) desc.defines.push_back("SHADOWS");

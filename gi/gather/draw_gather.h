@@ -18,7 +18,7 @@ struct GatherArea {
 
 struct GatherDraw {
   const GBuffer& surfaces;
-  ShadowedLights seen;
+  ShadowedLights lights;
   std::span<const GatherArea> areas = {};
   int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
   bool patches = false;     // fragments are patches; only those that the stencil marks are drawn

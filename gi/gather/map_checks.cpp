@@ -32,12 +32,12 @@ float cellOf(std::span<const VirtualLight> lights) {
 
 } // namespace
 
-std::span<const gl::Framebuffer> MapChecks::begin(const IndirectInputs& in, const LightTarget& target, bool subsets) {
+std::span<const gl::Framebuffer> MapChecks::begin(const GatherInputs& in, const LightTarget& target, bool subsets) {
   framebuffers_.clear();
-  const bool known = in.seen.maps && !in.seen.lights.slots.empty() && in.surfaces.depth->holdsSinglePrecision();
-  if (!in.settings.gather.checks || !subsets || !in.stands || !known) return {};
+  const bool known = in.lights.maps && !in.lights.list.slots.empty() && in.frame.surfaces.depth->holdsSinglePrecision();
+  if (!in.frame.settings.gather.checks || !subsets || !in.stands || !known) return {};
   const glm::ivec2 size = target.size();
-  const size_t chunks = (in.seen.lights.packed.count + kLightsPerChunk - 1) / kLightsPerChunk;
+  const size_t chunks = (in.lights.list.packed.count + kLightsPerChunk - 1) / kLightsPerChunk;
   if (chunks == 0) return {};
   if (drawn_.size() != chunks || drawn_[0].width() != size.x || drawn_[0].height() != size.y) {
     drawn_.clear();
@@ -51,21 +51,21 @@ std::span<const gl::Framebuffer> MapChecks::begin(const IndirectInputs& in, cons
   return framebuffers_;
 }
 
-void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameStats& stats) {
-  const CameraView& camera = in.world.view.camera;
-  const RayQuery& rays = in.world.rays;
+void MapChecks::add(const GatherInputs& in, const LightTarget& target, FrameStats& stats) {
+  const CameraView& camera = in.frame.world.view.camera;
+  const RayQuery& rays = in.frame.world.rays;
   const vec3 forward = -vec3(camera.worldFromView[2]);
-  const glm::ivec2 tile = tileSize(in.surfaces), size = target.size();
-  const size_t pixels = size_t(camera.width) * camera.height, rayEpsilon = 512;
+  const glm::ivec2 tile = tileSize(in.frame.surfaces), size = target.size();
+  const size_t pixels = size_t(camera.width) * camera.height, grain = 512;
   std::vector<vec3> differences(pixels, vec3(0)), positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0));
   std::vector<std::vector<DrawnPair>> drawn(drawn_.size(), std::vector<DrawnPair>(size_t(size.x) * size.y));
   for (size_t chunk = 0; chunk < drawn.size(); ++chunk) // waits for the GPU
     drawn_[chunk].read(std::span(drawn[chunk]), GL_RGBA_INTEGER, GL_UNSIGNED_INT);
-  std::vector<uint64_t> countOf((pixels + rayEpsilon - 1) / rayEpsilon);
+  std::vector<uint64_t> countOf((pixels + grain - 1) / grain);
   {
     const CpuScope scope(stats.stages, key(StageId::MapChecks));
     for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
-      parallelFor(pixels, rayEpsilon, [&](size_t begin, size_t end) {
+      parallelFor(pixels, grain, [&](size_t begin, size_t end) {
         struct Asked {
           size_t pixel;
           vec3 light; // irradiance; negative where the map says shadowed
@@ -84,25 +84,25 @@ void MapChecks::add(const IndirectInputs& in, const LightTarget& target, FrameSt
               towards.origin + towards.direction * (pair.viewDistance / glm::dot(towards.direction, forward));
           normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
           if (pair.gain == 0 || !std::isfinite(pair.gain)) continue;
-          const VirtualLight& light = in.seen.lights.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
+          const VirtualLight& light = in.lights.list.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
           segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.rayEpsilon()),
                                      offsetPoint(light.position, light.geometricNormal, rays.rayEpsilon())));
           asked.push_back({i, light.radiance * (light.area * pair.gain), pair.gain > 0});
         }
         std::vector<uint8_t> blocked(segments.size());
         rays.occluded(segments, blocked);
-        countOf[begin / rayEpsilon] += segments.size();
+        countOf[begin / grain] += segments.size();
         for (size_t j = 0; j < asked.size(); ++j)
           if (asked[j].lit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
       });
     }
-    mixPixels(differences, {positions, normals, camera.width, cellOf(in.seen.lights.slots)});
+    mixPixels(differences, {positions, normals, camera.width, cellOf(in.lights.list.slots)});
   }
   uint64_t count = 0;
   for (const uint64_t c : countOf) count += c;
   stats.raysChecks.occlusion += count;
   stats.of(EffectId::Indirect) += count;
-  differences_.add(differences, {}, in.surfaces, target, 4);
+  differences_.add(differences, {}, in.frame.surfaces, target, 4);
 }
 
 } // namespace lambent

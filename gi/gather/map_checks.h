@@ -10,7 +10,7 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/indirect_stage.h"
+#include "gi/contract/gather.h"
 #include "gi/gather/add_pixels.h"
 
 namespace lambent {
@@ -20,10 +20,10 @@ class MapChecks {
   explicit MapChecks(PassContext context) : differences_(context, StageId::MapChecks) {}
   /// What the gather is to draw into instead of the target: for each 2048 lights the target with a place for what its
   /// pixels draw. Empty where nothing is to be checked.
-  std::span<const gl::Framebuffer> begin(const IndirectInputs& in, const LightTarget& target, bool subsets);
+  std::span<const gl::Framebuffer> begin(const GatherInputs& in, const LightTarget& target, bool subsets);
   /// Traces what was drawn and adds the differences in irradiance to the target, of subsets. Glossy light stays the
   /// maps': drawn for its irradiance, a light in a lobe would be a bright dot.
-  void add(const IndirectInputs& in, const LightTarget& target, FrameStats& stats);
+  void add(const GatherInputs& in, const LightTarget& target, FrameStats& stats);
 
  private:
   std::vector<gl::Texture> drawn_; // RGBA32UI: DrawnPair

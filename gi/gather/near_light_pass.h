@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/indirect_stage.h"
+#include "gi/contract/gather.h"
 #include "gi/gather/add_pixels.h"
 
 namespace lambent {
@@ -11,7 +11,7 @@ class NearLightPass {
  public:
   explicit NearLightPass(PassContext context) : traced_(context, StageId::NearLight) {}
   /// `grid`: sub-images per axis of the target, 4 or 1.
-  void add(const IndirectInputs& in, const LightTarget& target, int grid, FrameStats& stats);
+  void add(const GatherInputs& in, const LightTarget& target, int grid, FrameStats& stats);
 
  private:
   PixelAdder traced_;

@@ -2,7 +2,7 @@
 // there to pixels.
 #pragma once
 
-#include "gi/contract/indirect_stage.h"
+#include "gi/contract/gather.h"
 #include "gi/gather/draw_gather.h"
 
 namespace lambent {

@@ -6,25 +6,25 @@
 #include "engine/gl/query_ring.h"
 #include "gi/gather/near_light_pass.h"
 #include "gi/gather/patch_atlas.h"
-#include "gi/gather/stages.h"
+#include "gi/gather/gathers.h"
 #include "shaders/shared/patches.h"
 
 namespace lambent {
 
 namespace {
 
-class PatchGather : public IndirectStage {
+class PatchGather : public Gather {
  public:
-  explicit PatchGather(PassContext context) : context_(context) {}
+  PatchGather(PassContext context, bool subsets) : context_(context), subsets_(subsets) {}
 
-  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
-    const PatchPyramid& patches = in.patches.pyramid();
-    atlas_.fit(in.surfaces, patches, rowOf(in.settings.gather.mode).subsets);
-    mark(in.surfaces, patches);
+  SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
+    const PatchPyramid& patches = in.frame.patches.pyramid();
+    atlas_.fit(in.frame.surfaces, patches, subsets_);
+    mark(in.frame.surfaces, patches);
     gather(in);
     {
       const gl::PassScope scope = context_.scope(StageId::Upsample);
-      atlas_.upsample(in.surfaces, in.settings);
+      atlas_.upsample(in.frame.surfaces, in.frame.settings);
     }
     near_.add(in, atlas_.target(), atlas_.shape().grid, stats);
     stats.patches = marks_.latest().value_or(0);
@@ -62,7 +62,7 @@ class PatchGather : public IndirectStage {
     marks_.end();
   }
 
-  void gather(const IndirectInputs& in) {
+  void gather(const GatherInputs& in) {
     const gl::PassScope scope = context_.scope(StageId::Gather);
     const AtlasShape& shape = atlas_.shape();
     atlas_.clear();
@@ -74,23 +74,24 @@ class PatchGather : public IndirectStage {
         areas.push_back({.origin = atlasOrigin(shape.base, level) + subset * sub,
                          .size = sub,
                          .subset = subset,
-                         .lightClass = shape.grid > 1 ? lightClassOf(subset, in.picture) : 0,
+                         .lightClass = shape.grid > 1 ? lightClassOf(subset, in.sample) : 0,
                          .level = level});
       }
     }
     drawGather(context_.programs, atlas_.framebuffer(),
-               {.surfaces = in.surfaces,
-                .seen = in.seen,
+               {.surfaces = in.frame.surfaces,
+                .lights = in.lights,
                 .areas = areas,
                 .grid = shape.grid,
                 .patches = true,
                 .finestPatch = shape.finest,
                 .addToTarget = true,
-                .biasTexels = in.settings.shadow.bias,
-                .bounds = in.settings.gather});
+                .biasTexels = in.frame.settings.shadow.bias,
+                .bounds = in.frame.settings.gather});
   }
 
   PassContext context_;
+  bool subsets_;
   PatchAtlas atlas_{context_};
   NearLightPass near_{context_};
   gl::Framebuffer stencilFramebuffer_;
@@ -100,6 +101,8 @@ class PatchGather : public IndirectStage {
 
 } // namespace
 
-std::unique_ptr<IndirectStage> makePatchGather(PassContext context) { return std::make_unique<PatchGather>(context); }
+std::unique_ptr<Gather> makePatchGather(PassContext context, bool subsets) {
+  return std::make_unique<PatchGather>(context, subsets);
+}
 
 } // namespace lambent

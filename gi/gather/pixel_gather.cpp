@@ -2,42 +2,42 @@
 #include "gi/gather/draw_gather.h"
 #include "gi/gather/map_checks.h"
 #include "gi/gather/near_light_pass.h"
-#include "gi/gather/stages.h"
+#include "gi/gather/gathers.h"
 
 namespace lambent {
 
 namespace {
 
-class PixelGather : public IndirectStage {
+class PixelGather : public Gather {
  public:
-  explicit PixelGather(PassContext context) : context_(context) {}
+  PixelGather(PassContext context, bool subsets) : context_(context), grid_(subsets ? 4 : 1) {}
 
-  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
-    const int grid = rowOf(in.settings.gather.mode).subsets ? 4 : 1;
-    const std::span<const gl::Framebuffer> checks = gather(in, grid);
+  SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
+    const std::span<const gl::Framebuffer> checks = gather(in);
     if (!checks.empty()) checks_.add(in, target_, stats);
-    near_.add(in, target_, grid, stats);
-    return target_.light(grid > 1);
+    near_.add(in, target_, grid_, stats);
+    return target_.light(grid_ > 1);
   }
 
  private:
-  std::span<const gl::Framebuffer> gather(const IndirectInputs& in, int grid) {
+  std::span<const gl::Framebuffer> gather(const GatherInputs& in) {
     const gl::PassScope scope = context_.scope(StageId::Gather);
-    target_.fit(in.surfaces, grid > 1 ? 4 * tileSize(in.surfaces) : glm::ivec2(in.surfaces.width, in.surfaces.height));
-    const std::span<const gl::Framebuffer> checks = checks_.begin(in, target_, grid > 1);
+    target_.fit(in.frame.surfaces, grid_ > 1 ? 4 * tileSize(in.frame.surfaces) : glm::ivec2(in.frame.surfaces.width, in.frame.surfaces.height));
+    const std::span<const gl::Framebuffer> checks = checks_.begin(in, target_, grid_ > 1);
     drawGather(context_.programs, target_.framebuffer(),
-               {.surfaces = in.surfaces,
-                .seen = in.seen,
-                .areas = gatherAreas(in.surfaces, grid, in.picture),
-                .grid = grid,
-                .biasTexels = in.settings.shadow.bias,
+               {.surfaces = in.frame.surfaces,
+                .lights = in.lights,
+                .areas = gatherAreas(in.frame.surfaces, grid_, in.sample),
+                .grid = grid_,
+                .biasTexels = in.frame.settings.shadow.bias,
                 .checks = checks,
-                .picture = in.picture,
-                .bounds = in.settings.gather});
+                .picture = in.sample,
+                .bounds = in.frame.settings.gather});
     return checks;
   }
 
   PassContext context_;
+  int grid_; // sub-images per axis
   MapChecks checks_{context_};
   NearLightPass near_{context_};
   LightTarget target_{"gather"};
@@ -45,6 +45,8 @@ class PixelGather : public IndirectStage {
 
 } // namespace
 
-std::unique_ptr<IndirectStage> makePixelGather(PassContext context) { return std::make_unique<PixelGather>(context); }
+std::unique_ptr<Gather> makePixelGather(PassContext context, bool subsets) {
+  return std::make_unique<PixelGather>(context, subsets);
+}
 
 } // namespace lambent

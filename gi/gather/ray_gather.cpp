@@ -1,32 +1,32 @@
 // Gather on the CPU with a ray for every pixel and light: the measure of shadow maps and subsets (paper 1, fig. 8).
 #include "gi/gather/near_light_pass.h"
-#include "gi/gather/stages.h"
+#include "gi/gather/gathers.h"
 #include "gi/vpl/smc.h"
 
 namespace lambent {
 
 namespace {
 
-class RayGather : public IndirectStage {
+class RayGather : public Gather {
  public:
   explicit RayGather(PassContext context) : context_(context) {}
 
-  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
-    const CameraView& camera = in.world.view.camera;
-    GlossyGather glossy{in.world.view, {}};
-    const bool lobes = in.surfaces.roughnessMetalness != nullptr;
+  SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
+    const CameraView& camera = in.frame.world.view.camera;
+    GlossyGather glossy{in.frame.world.view, {}};
+    const bool lobes = in.frame.surfaces.roughnessMetalness != nullptr;
     std::vector<vec3> irradiance;
     {
       CpuScope scope(stats.stages, key(StageId::GatherByRays));
-      irradiance = gatherByRays(in.world.rays, camera, in.seen.lights.slots, in.settings.gather, stats.raysGather,
+      irradiance = gatherByRays(in.frame.world.rays, camera, in.lights.list.slots, in.frame.settings.gather, stats.raysGather,
                                 lobes ? &glossy : nullptr);
     }
     {
       const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);
-      target_.fit(in.surfaces);
+      target_.fit(in.frame.surfaces);
       const SurfaceLighting light = target_.light();
-      uploadPixels(*light.irradiance, irradiance, in.surfaces, 1);
-      if (lobes) uploadPixels(*light.glossy, glossy.radiance, in.surfaces, 1);
+      uploadPixels(*light.irradiance, irradiance, in.frame.surfaces, 1);
+      if (lobes) uploadPixels(*light.glossy, glossy.radiance, in.frame.surfaces, 1);
     }
     near_.add(in, target_, 1, stats);
     return target_.light();
@@ -40,6 +40,6 @@ class RayGather : public IndirectStage {
 
 } // namespace
 
-std::unique_ptr<IndirectStage> makeRayGather(PassContext context) { return std::make_unique<RayGather>(context); }
+std::unique_ptr<Gather> makeRayGather(PassContext context) { return std::make_unique<RayGather>(context); }
 
 } // namespace lambent

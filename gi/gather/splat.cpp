@@ -15,7 +15,7 @@ constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeo
 /// Variant of vpl_shading.glsl, and its textures and numbers.
 std::vector<std::string> shadingDefines(const GatherDraw& draw) {
   std::vector<std::string> defines = bindSurfaces(draw.surfaces);
-  if (draw.seen.maps) defines.push_back("SHADOWS");
+  if (draw.lights.maps) defines.push_back("SHADOWS");
   return defines;
 }
 
@@ -32,10 +32,10 @@ struct LightPlace {
 };
 
 void bindLights(const GatherDraw& draw, uint32_t chunk, int block) {
-  draw.seen.lights.packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
-  if (!draw.seen.maps) return;
-  CHECK_LT(chunk, draw.seen.maps->arrays.size());
-  draw.seen.maps->arrays[chunk].bind(2);
+  draw.lights.list.packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);
+  if (!draw.lights.maps) return;
+  CHECK_LT(chunk, draw.lights.maps->arrays.size());
+  draw.lights.maps->arrays[chunk].bind(2);
 }
 
 } // namespace
@@ -118,7 +118,7 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
 
 void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
   const gl::PassScope scope = context_.scope(StageId::Splat);
-  const uint32_t count = in.draw.seen.lights.packed.count;
+  const uint32_t count = in.draw.lights.list.packed.count;
   for (uint32_t chunk = 0; chunk * kLightsPerChunk < count; ++chunk) {
     const int perClass =
         int(std::min(kLightsPerChunk, count - chunk * kLightsPerChunk) + kLightClasses - 1) / kLightClasses;
@@ -129,7 +129,7 @@ void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
 
 void SplatPass::splatOne(const SplatInputs& in, const gl::Framebuffer& atlas, uint32_t slot) {
   const LightPlace place(slot);
-  const int perClass = int(std::min(kLightsPerChunk, in.draw.seen.lights.packed.count - place.chunk * kLightsPerChunk) +
+  const int perClass = int(std::min(kLightsPerChunk, in.draw.lights.list.packed.count - place.chunk * kLightsPerChunk) +
                            kLightClasses - 1) /
                        kLightClasses;
   const int index = place.light / kLightsPerClass * perClass + place.light % kLightsPerClass;
@@ -144,7 +144,7 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   const glm::ivec2 size = atlasSize(in.shape.base, in.shape.coarsest);
   program.set("base", in.shape.base);
   program.set("inverseSize", 1.0f / vec2(size));
-  program.set("perClass", int(std::min(kLightsPerChunk, in.draw.seen.lights.packed.count - chunk * kLightsPerChunk) +
+  program.set("perClass", int(std::min(kLightsPerChunk, in.draw.lights.list.packed.count - chunk * kLightsPerChunk) +
                               kLightClasses - 1) /
                               kLightClasses);
   program.set("firstLight", firstLight);

@@ -1,26 +1,26 @@
 // Lights splatted into patches (paper 2), all into the same, or each into patches of its own.
 #include "gi/gather/near_light_pass.h"
 #include "gi/gather/splat.h"
-#include "gi/gather/stages.h"
+#include "gi/gather/gathers.h"
 
 namespace lambent {
 
 namespace {
 
-class SplatGather : public IndirectStage {
+class SplatGather : public Gather {
  public:
-  explicit SplatGather(PassContext context) : context_(context) {}
+  SplatGather(PassContext context, bool perLight) : context_(context), perLight_(perLight) {}
 
-  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
-    const PatchPyramid& patches = in.patches.pyramid();
-    atlas_.fit(in.surfaces, patches, false);
-    const GatherDraw draw{.surfaces = in.surfaces,
-                          .seen = in.seen,
+  SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
+    const PatchPyramid& patches = in.frame.patches.pyramid();
+    atlas_.fit(in.frame.surfaces, patches, false);
+    const GatherDraw draw{.surfaces = in.frame.surfaces,
+                          .lights = in.lights,
                           .finestPatch = atlas_.shape().finest,
-                          .biasTexels = in.settings.shadow.bias,
-                          .bounds = in.settings.gather};
-    const SplatInputs splats{draw, patches, atlas_.shape(), in.settings.multires.light};
-    if (in.settings.gather.mode == GatherMode::SplatPerVpl)
+                          .biasTexels = in.frame.settings.shadow.bias,
+                          .bounds = in.frame.settings.gather};
+    const SplatInputs splats{draw, patches, atlas_.shape(), in.frame.settings.multires.light};
+    if (perLight_)
       splatEach(in, splats);
     else
       splatAll(in, splats);
@@ -29,27 +29,28 @@ class SplatGather : public IndirectStage {
   }
 
  private:
-  void splatAll(const IndirectInputs& in, const SplatInputs& splats) {
+  void splatAll(const GatherInputs& in, const SplatInputs& splats) {
     splat_.refine(splats);
     atlas_.clear();
     splat_.splat(splats, atlas_.framebuffer());
     const gl::PassScope scope = context_.scope(StageId::Upsample);
-    atlas_.upsample(in.surfaces, in.settings);
+    atlas_.upsample(in.frame.surfaces, in.frame.settings);
   }
 
   /// Each light has patches of its own, so each is upsampled by itself before the next is added.
-  void splatEach(const IndirectInputs& in, const SplatInputs& splats) {
+  void splatEach(const GatherInputs& in, const SplatInputs& splats) {
     const gl::PassScope scope = context_.scope(StageId::SplatPerVpl);
     atlas_.clearLight();
-    for (uint32_t slot = 0; slot < in.seen.lights.packed.count; ++slot) {
+    for (uint32_t slot = 0; slot < in.lights.list.packed.count; ++slot) {
       splat_.refineFor(splats, slot);
       atlas_.clear();
       splat_.splatOne(splats, atlas_.framebuffer(), slot);
-      atlas_.upsample(in.surfaces, in.settings, true);
+      atlas_.upsample(in.frame.surfaces, in.frame.settings, true);
     }
   }
 
   PassContext context_;
+  bool perLight_;
   PatchAtlas atlas_{context_};
   NearLightPass near_{context_};
   SplatPass splat_{context_};
@@ -57,6 +58,8 @@ class SplatGather : public IndirectStage {
 
 } // namespace
 
-std::unique_ptr<IndirectStage> makeSplatGather(PassContext context) { return std::make_unique<SplatGather>(context); }
+std::unique_ptr<Gather> makeSplatGather(PassContext context, bool perLight) {
+  return std::make_unique<SplatGather>(context, perLight);
+}
 
 } // namespace lambent

@@ -29,13 +29,13 @@ int stepsFor(int count, int perStep) { return (count + perStep - 1) / perStep; }
 } // namespace
 
 void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in) {
-  const ReflectiveMaps& sheet = in.seen.lights.trees->maps;
-  const RsmSettings& rsm = in.seen.lights.trees->rsm;
+  const ReflectiveMaps& sheet = in.lights.list.trees->maps;
+  const RsmSettings& rsm = in.lights.list.trees->rsm;
   const int coarsest = sheet.levels - 1, finest = std::min(sheet.levelOf(rsm.finest), coarsest);
   const int side = sheet.resolution >> coarsest, roots = side * side;
   const int leaves = 1 << (2 * (coarsest - finest)); // of a root
   const int subsets = in.grid * in.grid;             // each takes one root in so many
-  const TreeDraws draws = treeDraws(coarsest - finest, in.seen.lights.trees->mostTurns);
+  const TreeDraws draws = treeDraws(coarsest - finest, in.lights.list.trees->mostTurns);
 
   gl::ProgramDesc desc{.fragment = "tree_gather.frag", .defines = bindSurfaces(in.surfaces)};
   if (in.patches) desc.defines.push_back("PATCHES");

@@ -37,7 +37,7 @@ LightSet byParts(const LightSet& lights) {
     const std::span of = std::span(lights.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);
     Aabb box;
     for (const EmitterTriangle& t : of) box.add(t.p0), box.add(t.p0 + t.e1), box.add(t.p0 + t.e2);
-    const float rayEpsilon = std::max(1e-5f * maxComponent(box.size()), 1e-30f);
+    const float step = std::max(1e-5f * maxComponent(box.size()), 1e-30f);
     std::vector<uint32_t> part(of.size()); // another triangle of the same part, or itself
     std::iota(part.begin(), part.end(), 0u);
     const auto root = [&](uint32_t i) {
@@ -47,7 +47,7 @@ LightSet byParts(const LightSet& lights) {
     std::map<std::array<int, 3>, uint32_t> at;
     for (uint32_t i = 0; i < of.size(); ++i)
       for (const vec3& c : {of[i].p0, of[i].p0 + of[i].e1, of[i].p0 + of[i].e2}) {
-        const vec3 place = glm::round((c - box.lo) / rayEpsilon);
+        const vec3 place = glm::round((c - box.lo) / step);
         const auto [known, anew] = at.try_emplace({int(place.x), int(place.y), int(place.z)}, i);
         if (!anew) part[root(i)] = root(known->second);
       }

@@ -220,10 +220,10 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   update.bounces = in.bounces;
   update.seed = in.seed;
 
-  const size_t rayEpsilon = size_t(std::clamp(4096 * int(stride) / perBlock, 16, 512)); // pixels
-  std::vector<RayCounts> countsOf((pixels + rayEpsilon - 1) / rayEpsilon);
-  parallelFor(pixels, rayEpsilon, [&](size_t begin, size_t end) {
-    RayCounts& count = countsOf[begin / rayEpsilon];
+  const size_t grain = size_t(std::clamp(4096 * int(stride) / perBlock, 16, 512)); // pixels
+  std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
+  parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+    RayCounts& count = countsOf[begin / grain];
     // Pixels that cast, the first path of each; where blocks are mixed, those too that take from their neighbours.
     std::vector<uint32_t> asked, paths;
     std::vector<vec2> centres;

@@ -107,8 +107,9 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                         : std::move(answer.second);
     return e.on;
   };
-  const SourceRow& source = rowOf(settings.vpl.source);
-  const bool reflective = source.reflective;
+  const Needs& needs = facts.needs;
+  const ProviderStatus& status = facts.status;
+  const bool reflective = needs.lights == LightSupply::Reflective;
   const auto whyNoIndirect = [&](bool light) -> Answer {
     if (smc.bounces < 1) return {false, "smc.bounces is 0"};
     if (reflective && scene.punctual == 0) return {false, "no punctual light, so no reflective shadow map"};
@@ -129,16 +130,17 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                               : "no material has an alpha mask"});
   const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
   const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
-  const bool lights = indirect && (source.sampled || reflective);
+  const bool lights = indirect && needs.lights != LightSupply::None;
   const Answer none{false, indirect ? "the technique has no virtual lights" : "no indirect light"};
-  const Answer oneBounce{false, "reflective shadow maps show one bounce"};
-  decide(EffectId::Bounces, !lights           ? none
-                            : reflective      ? oneBounce
+  const Answer oneBounce{false,
+                         reflective ? "reflective shadow maps show one bounce" : "the technique shows one bounce"};
+  decide(EffectId::Bounces, !indirect         ? none
+                            : !needs.bounces  ? oneBounce
                             : smc.bounces < 2 ? Answer{false, "smc.bounces is " + std::to_string(smc.bounces)}
                             : !seeOneAnother  ? Answer{false, "all that reflects lies in one plane"}
                                               : Answer{true, "smc.bounces is " + std::to_string(smc.bounces)});
-  decide(EffectId::Textures, !lights              ? none
-                             : reflective         ? Answer{false, "no light path is traced"}
+  decide(EffectId::Textures, !indirect            ? none
+                             : !needs.textures    ? Answer{false, "the technique traces no light path"}
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
   decide(EffectId::SoftShadows,
@@ -146,18 +148,16 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
          : settings.shadow.emitterSamples > 1 || settings.shadow.emitters == EmitterShadows::Patches
              ? Answer{true, count(scene.emissive, "lamp")}
              : Answer{false, "shadow.emitterSamples is 1"});
-  decide(EffectId::Filter, !lights                                          ? none
-                           : settings.vpl.visibility == VplVisibility::Rays ? Answer{false, "gathered by rays"}
-                           : !rowOf(settings.gather.mode).subsets           ? Answer{false, "every pixel sees all VPLs"}
-                           : !settings.filter.on                            ? Answer{false, "filter.on is off"}
+  decide(EffectId::Filter, !lights               ? none
+                           : !needs.subsets      ? Answer{false, "every pixel sees all VPLs"}
+                           : !settings.filter.on ? Answer{false, "filter.on is off"}
                                                  : Answer{true, "the gather is interleaved"});
 
-  const bool sixteenths = rowOf(settings.gather.mode).subsets && settings.vpl.visibility != VplVisibility::Rays;
-  const bool bounded = source.sampled && !rowOf(settings.gather.mode).volume && !rowOf(settings.gather.mode).stored &&
-                       settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
+  const bool bounded =
+      needs.nearRays && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
   decide(EffectId::History, !lights                       ? none
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
-                            : sixteenths                  ? Answer{true, "the gather is interleaved"}
+                            : needs.subsets               ? Answer{true, "the gather is interleaved"}
                             : bounded                     ? Answer{true, "near light is traced"}
                                                           : Answer{false, "every picture gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
@@ -172,16 +172,16 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool motion =
       decide(EffectId::Motion, changes.first ? Answer{true, "the scene is new"} : Answer{geometry, movers});
   const bool moved = geometry && motion;
-  decide(EffectId::MapRefresh, !lights                 ? none
-                               : reflective            ? Answer{false, "maps are drawn with the VPLs"}
-                               : moved                 ? Answer{true, movers}
-                               : facts.mapsWaiting > 0 ? Answer{true, count(facts.mapsWaiting, "map") + " waiting"}
-                                                       : Answer{false, "nothing moved"});
+  decide(EffectId::MapRefresh, !lights                  ? none
+                               : reflective             ? Answer{false, "maps are drawn with the VPLs"}
+                               : moved                  ? Answer{true, movers}
+                               : status.mapsWaiting > 0 ? Answer{true, count(status.mapsWaiting, "map") + " waiting"}
+                                                        : Answer{false, "nothing moved"});
   const bool sameLight = !changes.first && !changes.lights && !moved && !facts.settingsChanged;
-  const bool alone = facts.storedAlone && sameLight;
+  const bool alone = status.stored && sameLight;
   // By photons or chains; photons take the same ways as long as nothing is in another place.
-  const bool sameWays = source.anyView && sameLight;
-  const bool placedAnew = source.sampled && !source.persistent;
+  const bool sameWays = needs.anyView && sameLight;
+  const bool placedAnew = needs.lights == LightSupply::PerFrame;
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
   decide(EffectId::Relight, !lights                  ? none
@@ -192,40 +192,39 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : changes.lights         ? Answer{true, "lights changed"}
                             : moved                  ? Answer{true, movers}
                             : facts.settingsChanged  ? Answer{true, "settings changed"}
-                            : !smc.cache && !(still && facts.settled)
+                            : !smc.cache && !(still && status.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
-  decide(EffectId::Replace, !lights        ? none
-                            : source.fixed ? Answer{false, "the samples stay on their surfaces"}
-                            : alone        ? Answer{false, "nothing has changed for long: a cube holds all light"}
-                            : reflective   ? fromMaps
+  decide(EffectId::Replace, !lights                              ? none
+                            : needs.lights == LightSupply::Fixed ? Answer{false, "the samples stay on their surfaces"}
+                            : alone      ? Answer{false, "nothing has changed for long: a cube holds all light"}
+                            : reflective ? fromMaps
                             : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
                             : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
-                            : still && facts.settled ? Answer{false, "nothing changed and the VPLs have settled"}
-                            : still                  ? Answer{true, "the VPLs have not settled yet"}
-                                                     : Answer{true, "the view or the scene changed"});
-  const bool stored = rowOf(settings.gather.mode).stored;
-  decide(EffectId::Gather, !indirect ? Answer{false, "no indirect light"}
-                           : alone   ? Answer{false, "nothing has changed for long: a cube holds all light"}
-                           : stored  ? sameLight && !facts.drawingChanged && !facts.lightArrived
-                                           ? Answer{false, "the cube holds the light of what there is"}
-                                           : Answer{true, "the cube follows lights and objects"}
-                                     : Answer{true, "every picture gathers its light"});
+                            : still && status.settled ? Answer{false, "nothing changed and the VPLs have settled"}
+                            : still                   ? Answer{true, "the VPLs have not settled yet"}
+                                                      : Answer{true, "the view or the scene changed"});
+  decide(EffectId::Gather, !indirect      ? Answer{false, "no indirect light"}
+                           : alone        ? Answer{false, "nothing has changed for long: a cube holds all light"}
+                           : needs.stored ? sameLight && !facts.drawingChanged && !status.lightArrived
+                                                ? Answer{false, "the cube holds the light of what there is"}
+                                                : Answer{true, "the cube follows lights and objects"}
+                                          : Answer{true, "every picture gathers its light"});
   const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History);
   const int historyFrames = averages ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
-  const bool newLight = indirect && ((replace.on && replace.calledFor) || facts.lightArrived);
-  const bool waiting = indirect && facts.mapsWaiting > 0;
+  const bool newLight = indirect && ((replace.on && replace.calledFor) || status.lightArrived);
+  const bool waiting = indirect && status.mapsWaiting > 0;
   plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
   plan.seenChanges_ = !still || facts.drawingChanged || facts.first;
   plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
-  decide(EffectId::Redraw, !still                 ? Answer{true, "the view, the scene or settings changed"}
-                           : facts.drawingChanged ? Answer{true, "settings or shaders changed"}
-                           : newLight             ? Answer{true, "VPLs change"}
-                           : waiting              ? Answer{true, "shadow maps are waiting"}
-                           : facts.storing        ? Answer{true, "a cube takes the place of the gather"}
-                           : facts.averaged < historyFrames && !alone ? Answer{true, "light is averaged over pictures"}
-                                                                      : Answer{false, "nothing changed"});
+  decide(EffectId::Redraw, !still                    ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged    ? Answer{true, "settings or shaders changed"}
+                           : newLight                ? Answer{true, "VPLs change"}
+                           : waiting                 ? Answer{true, "shadow maps are waiting"}
+                           : !status.pending.empty() ? Answer{true, status.pending}
+                           : status.averaged < historyFrames && !alone ? Answer{true, "light is averaged over frames"}
+                                                                       : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no picture yet";

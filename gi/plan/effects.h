@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/scene/scene_view.h"
+#include "gi/plan/needs.h"
 #include "gi/plan/settings.h"
 
 #include <array>
@@ -29,15 +30,11 @@ struct Effect {
 
 /// What a plan depends on besides the scene and the settings.
 struct FrameFacts {
-  bool first = true;           // no picture was drawn yet
+  bool first = true;           // no frame was drawn yet
   bool settingsChanged = true; // of VPLs or effects
   bool drawingChanged = true;  // other settings, or the shaders
-  bool settled = false;        // no better set of VPLs is in reach, see gi/vpl/settling.h
-  uint32_t mapsWaiting = 0;    // maps that show where a moved object was
-  int averaged = 0;            // pictures in the history since anything last changed
-  bool lightArrived = false;   // VPLs were updated beside the last picture and are not in it
-  bool storedAlone = false;    // a layered depth cube shows all indirect light (cube.after)
-  bool storing = false;        // one is built beside the technique, or comes or goes
+  Needs needs;                 // of the technique that runs
+  ProviderStatus status;       // of its provider, after the last frame
 };
 
 class EffectPlan {

@@ -1,5 +1,7 @@
 #include "gi/plan/governor.h"
 
+#include "gi/plan/needs.h"
+
 #include "engine/core/error.h"
 
 #include <algorithm>
@@ -36,7 +38,7 @@ std::optional<double> timeOf(const Settings& settings) {
     applyPreset(same, preset.name);
     if (same == settings) return preset.time;
   }
-  const bool ownGather = !sharesGather(axesOf(settings));
+  const bool ownGather = !needsOf(settings).freeGather;
   for (const auto& [name, value] : presetTable().front().set) {
     const SettingRow& row = settingRow(name);
     if (row.get(settings) != row.standard && !(ownGather && name == "gather.mode")) return {};

@@ -1,6 +1,7 @@
 #include "gi/plan/presets.h"
 
 #include "engine/core/error.h"
+#include "gi/plan/needs.h"
 
 #include <algorithm>
 
@@ -43,7 +44,7 @@ void applyPreset(Settings& settings, const std::string& name) {
     throw InputError("preset " + name, "no such preset (" + known + ")");
   }
   for (const auto& [setting, value] : found->set) // techniques from reflective maps have a gather of their own
-    if (setting != "gather.mode" || sharesGather(axesOf(settings))) applySetting(settings, setting, value);
+    if (setting != "gather.mode" || needsOf(settings).freeGather) applySetting(settings, setting, value);
 }
 
 } // namespace lambent

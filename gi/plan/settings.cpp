@@ -91,6 +91,8 @@ class Table {
         "shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
         "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
         "from patches of the picture, split where the answers differ (paper 4)");
+    flag("direct.on", &Settings::direct, &DirectSettings::on, Nothing,
+         "direct light; off: indirect light alone, for a host that lights its surfaces itself");
     choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"counts", "sub-fragments", "neighbours"},
            Nothing,
            "what splits these patches: how many rays their quarters and those beside them find open, which rays their "
@@ -187,8 +189,8 @@ class Table {
         "cube.after", &Settings::stillCache, &StillCacheSettings::after, {0, 1000000, "frames"}, Nothing,
         "frames in which neither lights nor objects change until a layered depth cube takes the place of the gather; "
         "0 = never");
-    number("cube.perFrame", &Settings::stillCache, &StillCacheSettings::perFrame, {1, 65536, "lights", PowersOfTwo}, Nothing,
-           "cube.after: lights put into that cube in a frame");
+    number("cube.perFrame", &Settings::stillCache, &StillCacheSettings::perFrame, {1, 65536, "lights", PowersOfTwo},
+           Nothing, "cube.after: lights put into that cube in a frame");
     choice("cube.maker", &Settings::hemicubes, &HemicubeSettings::maker, {"auto", "raster", "rays"}, Nothing,
            "who makes these images: the GPU, rays on the CPU, or whoever is faster on the first of them");
     number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
@@ -334,12 +336,40 @@ const std::vector<SettingRow>& settingsTable() {
   return table.rows;
 }
 
-const SettingRow& settingRow(std::string_view name) {
+double OwnSetting::operator()(const Settings& settings) const {
+  const auto found = settings.ownValues.find(name);
+  return found == settings.ownValues.end() ? standard : found->second;
+}
+
+SettingRow rowOf(const OwnSetting& setting) {
+  const OwnSetting own = setting;
+  return {.name = own.name,
+          .help = own.help,
+          .kind = own.whole ? SettingKind::Whole : SettingKind::Real,
+          .low = own.low,
+          .high = own.high,
+          .standard = own.standard,
+          .unit = own.unit,
+          .change = Light,
+          .get = own,
+          .set = [own](Settings& s, double v) {
+            if (v == own.standard)
+              s.ownValues.erase(own.name);
+            else
+              s.ownValues[own.name] = v;
+          }};
+}
+
+SettingRow settingRow(std::string_view name, const Settings& settings) {
   if (name == "gather") name = "gather.mode"; // the short form that the papers' variants are named by: gather=full
   std::vector<std::string> names;
   for (const SettingRow& row : settingsTable()) {
     if (row.name == name) return row;
     names.push_back(row.name);
+  }
+  for (const OwnSetting& setting : settings.own ? settings.own->settings : std::span<const OwnSetting>()) {
+    if (setting.name == name) return rowOf(setting);
+    names.push_back(setting.name);
   }
   const std::string near = nearestName(name, names);
   throw InputError("setting " + std::string(name),
@@ -348,31 +378,29 @@ const SettingRow& settingRow(std::string_view name) {
 }
 
 void applySetting(Settings& settings, std::string_view name, std::string_view value) {
-  const SettingRow& row = settingRow(name);
+  const SettingRow row = settingRow(name, settings);
   const std::optional<double> v = valueOf(row, value);
   if (!v) throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + row.range() + ")");
   row.set(settings, *v);
 }
 
 std::string settingText(const Settings& settings, std::string_view name) {
-  const SettingRow& row = settingRow(name);
+  const SettingRow row = settingRow(name, settings);
   return row.text(row.get(settings));
 }
 
 Axes axesOf(const Settings& s) {
-  const GatherRow& gather = rowOf(s.gather.mode);
-  const bool filtered = gather.subsets && s.filter.on;
-  return {s.vpl.source, s.vpl.visibility, s.gather.mode,
-          gather.patches ? (filtered ? Reconstruction::UpsampleFilter : Reconstruction::Upsample)
-                         : (filtered ? Reconstruction::Filter : Reconstruction::None)};
+  return {s.vpl.source, s.vpl.visibility, s.gather.mode, reconstructionOf(s.gather.mode, s.filter.on)};
 }
+
+Needs needsOf(const Settings& settings) { return settings.own ? settings.own->needs : needsOf(axesOf(settings)); }
 
 std::string whyNot(const Settings& settings) {
   if (!settings.own && settings.gather.mode == GatherMode::Own)
-    return "gather.mode own: no technique with a stage of its own is chosen (--technique)";
+    return "gather.mode own: no technique with a provider of its own is chosen (--technique)";
   if (settings.own && settings.gather.mode != GatherMode::Own)
     return "gather.mode " + settingText(settings, "gather.mode") + ": technique " + settings.own->name +
-           " has a stage of its own (own)";
+           " has a provider of its own (own)";
   if (settings.own && settings.vpl.source != settings.own->axes.source)
     return "vpl.source " + settingText(settings, "vpl.source") + ": technique " + settings.own->name + " takes " +
            rowOf(settings.own->axes.source).name;

@@ -6,6 +6,7 @@
 #include "gi/plan/axes.h"
 
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -104,6 +105,12 @@ struct ShadowSettings {
   int skyMaps = 32;                                  // directions that stand for the sky in direct light
   int skyResolution = 256;
   bool operator==(const ShadowSettings&) const = default;
+};
+
+/// Light that comes straight from lamps, suns, emissive surfaces and the sky.
+struct DirectSettings {
+  bool on = true;
+  bool operator==(const DirectSettings&) const = default;
 };
 
 /// Direct light of emissive surfaces by patches of the picture (paper 4).
@@ -222,13 +229,28 @@ struct DebugSettings {
   bool operator==(const DebugSettings&) const = default;
 };
 
+struct Settings;
 struct Technique; // gi/plan/techniques.h
 
+/// A number that a technique with a provider of its own reads: declared next to the provider, listed by its row, set
+/// like every other setting.
+struct OwnSetting {
+  const char* name; // "group.name", the group being the technique's
+  const char* help; // meaning and cost, one line
+  double standard, low, high;
+  bool whole = true;
+  const char* unit = "";
+
+  double operator()(const Settings& settings) const;
+};
+
 struct Settings {
-  const Technique* own = nullptr; // a technique whose stage is its own; null: the axes below say everything
+  const Technique* own = nullptr; // a technique with a provider of its own; null: the axes below say everything
+  std::map<std::string, double, std::less<>> ownValues; // of OwnSettings that differ from their standard, by name
   VplSettings vpl;
   SmcSettings smc;
   ShadowSettings shadow;
+  DirectSettings direct;
   AreaSettings area;
   GatherSettings gather;
   MultiresSettings multires;
@@ -275,8 +297,10 @@ struct SettingRow {
   std::string range() const;            // "1..65536", "maps|rays|none"
 };
 const std::vector<SettingRow>& settingsTable();
-/// Throws InputError with the nearest name.
-const SettingRow& settingRow(std::string_view name);
+/// The row of a setting that one technique owns.
+SettingRow rowOf(const OwnSetting& setting);
+/// Of the table, or of those that the chosen technique owns. Throws InputError with the nearest name.
+SettingRow settingRow(std::string_view name, const Settings& settings = {});
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);

@@ -1,8 +1,8 @@
-// Techniques: a row each, with a value on all four axes. Whoever offers techniques (command line, panel,
-// measurements) reads the table, gi/frame/technique_table.cpp, which names the stages that rows make; the frame reads
-// the axes, and the stage of a row that has its own.
+// Techniques: a row each. Whoever offers techniques (command line, panel, measurements) reads the table, which stands
+// with those who make them (gi/frame/technique_table.cpp).
 #pragma once
 
+#include "gi/plan/needs.h"
 #include "gi/plan/settings.h"
 
 #include <memory>
@@ -10,24 +10,27 @@
 
 namespace lambent {
 
-class IndirectStage; // gi/contract/indirect_stage.h
+class LightProvider; // gi/contract/light_provider.h
 struct PassContext;
 
 struct Technique {
   const char* name;
-  const char* help; // one line
-  Axes axes;
+  const char* help;                                  // one line
+  Axes axes;                                         // of one that is composed of them
   EmitterShadows emitters = EmitterShadows::Samples; // direct light of emissive surfaces, which goes with any axes
   const char* waits = nullptr;                       // what a frame waits for or reads back from the GPU; null: nothing
-  /// Of a technique without virtual lights (GatherMode::Own): its stage, which takes surfaces and gives light on them.
-  std::unique_ptr<IndirectStage> (*make)(PassContext) = nullptr;
+  /// A provider of its own, in place of the axes (VplSource::None, GatherMode::Own): it takes a frame and gives light
+  /// on its surfaces.
+  std::unique_ptr<LightProvider> (*make)(PassContext) = nullptr;
+  Needs needs = {};                          // of its own provider
+  std::span<const OwnSetting> settings = {}; // that its own provider reads
 };
 std::span<const Technique> techniqueTable();
 /// Throws InputError that gives the nearest name, or all of them.
 const Technique& techniqueByName(const std::string& name);
 std::vector<std::string> techniqueNames();
 
-/// Sets the axes. Techniques that sample lights for the picture share visibility and gather: between two of these, both
+/// Sets the axes. Techniques that sample lights for the frame share visibility and gather: between two of these, both
 /// stay as they are (a preset or a person chose them).
 void applyTechnique(Settings& settings, const Technique& technique);
 void applyTechnique(Settings& settings, const std::string& name);

@@ -3,7 +3,7 @@
 // default it goes along rows, then columns: a bilateral kernel is not quite separable, so the whole one stays as a
 // setting (costs and errors of both: gi/README.md).
 #include "gi/gather/draw_gather.h"
-#include "gi/gather/stages.h"
+#include "gi/reconstruct/reconstruct.h"
 
 namespace lambent {
 

@@ -7,7 +7,7 @@
 // that half of a coarse change is shown in its first picture and nine tenths within three. Tiles of the picture whose
 // light changes by much more than its noise begin anew (history_follow.frag). Numbers: docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
-#include "gi/gather/stages.h"
+#include "gi/reconstruct/reconstruct.h"
 
 #include <algorithm>
 #include <cstring>

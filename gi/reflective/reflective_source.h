@@ -1,7 +1,7 @@
 // Lights of reflective shadow maps (papers 2 and 3), drawn on the GPU.
 #pragma once
 
-#include "gi/sources/light_source.h"
+#include "gi/contract/light_source.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/reflective/reflective_maps.h"
 
@@ -9,14 +9,18 @@
 
 namespace lambent {
 
+/// A grid over the maps (rsm), their smooth patches (isr), or trees over them (hisr).
+enum class ReflectiveLights { Grid, Clusters, Trees };
+
 class ReflectiveSource : public LightSource {
  public:
-  explicit ReflectiveSource(PassContext context) : mapPass_(context), lightPass_(context) {}
+  ReflectiveSource(PassContext context, ReflectiveLights kind) : kind_(kind), mapPass_(context), lightPass_(context) {}
 
-  VirtualLights run(const SourceInputs& in, FrameStats& stats) override;
+  VirtualLights run(const FrameWorld& in, const Needs& needs, FrameStats& stats) override;
   void forget() override { old_ = true; }
 
  private:
+  ReflectiveLights kind_;
   ReflectiveMapPass mapPass_;
   ReflectiveLightPass lightPass_;
   ReflectiveMaps sheet_;

@@ -2,6 +2,7 @@
 #include "gi/sources/sampled_source.h"
 
 #include "engine/scene/view_copy.h"
+#include "gi/contract/figures.h"
 
 #include <algorithm>
 #include <chrono>
@@ -20,7 +21,7 @@ struct UpdateTask {
   uint32_t seed = 1;
 };
 
-UpdateTask taskOf(const SourceInputs& in) {
+UpdateTask taskOf(const FrameWorld& in) {
   using enum EffectId;
   UpdateTask task{in.settings.smc, in.settings.vpl, {}, in.settingsChanged, in.seed};
   if (!in.plan.on(Bounces)) task.smc.bounces = std::min(task.smc.bounces, 1);
@@ -54,11 +55,11 @@ VplWork updated(VplWork work, const UpdateTask& task, const SceneView& view, con
 
 } // namespace
 
-VirtualLights SampledSource::run(const SourceInputs& in, FrameStats& stats) {
+VirtualLights SampledSource::run(const FrameWorld& in, const Needs& needs, FrameStats& stats) {
   using enum EffectId;
   const World& world = in.world;
   const auto called = [&](EffectId id) { return in.plan.on(id) && in.plan.calledFor(id); };
-  const bool persistent = rowOf(in.settings.vpl.source).persistent;
+  const bool persistent = needs.persistent();
   const bool needed = kept_.set.slots.empty() || called(Replace) || (persistent && (called(Relight) || called(Motion)));
   // Forced by settings though nothing calls for it: done on a copy that is thrown away.
   const bool onACopy = !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
@@ -73,7 +74,7 @@ VirtualLights SampledSource::run(const SourceInputs& in, FrameStats& stats) {
   }
   report(in.plan, stats);
   VirtualLights lights;
-  if (in.plan.on(Redraw)) lights = show(in, overlapped, carried);
+  if (in.plan.on(Redraw)) lights = show(overlapped, carried, needs.lightsOnGpu);
   lights.alive = kept_.changes.alive;
   if (overlapped)
     running_ = std::async(std::launch::async, [work = std::move(kept_), task = taskOf(in), copy = ViewCopy(world.view),
@@ -124,7 +125,7 @@ void SampledSource::report(const EffectPlan& plan, FrameStats& stats) {
 }
 
 /// With `overlapped` the set is still that of the last update; the `carried` slots stand where their objects are now.
-VirtualLights SampledSource::show(const SourceInputs& in, bool overlapped, const std::vector<uint32_t>& carried) {
+VirtualLights SampledSource::show(bool overlapped, const std::vector<uint32_t>& carried, bool onGpu) {
   VplChanges& changes = kept_.changes;
   VirtualLights lights;
   // Those that were carried by the update of the frame before stand where that frame had put them.
@@ -140,7 +141,7 @@ VirtualLights SampledSource::show(const SourceInputs& in, bool overlapped, const
   lights.slots = shown_;
   lights.direct = kept_.set.direct;
   lights.mayWait = true;
-  if (in.settings.vpl.visibility != VplVisibility::Rays) lights.packed = buffer_.run(shown_);
+  if (onGpu) lights.packed = buffer_.run(shown_);
   return lights;
 }
 

@@ -1,7 +1,8 @@
 // Lights that gi/vpl samples on the CPU: the sequential Monte Carlo set and the samplers it is compared with.
 #pragma once
 
-#include "gi/sources/light_source.h"
+#include "gi/contract/light_source.h"
+#include "gi/contract/pass_context.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/vpl/sources.h"
 
@@ -20,7 +21,7 @@ class SampledSource : public LightSource {
  public:
   explicit SampledSource(PassContext context) : buffer_(context, StageId::Vpls) {}
 
-  VirtualLights run(const SourceInputs& in, FrameStats& stats) override;
+  VirtualLights run(const FrameWorld& in, const Needs& needs, FrameStats& stats) override;
   void wait() override;
   bool arrived() const override { return arrived_; }
   bool settled() const override { return kept_.set.settling.settled(); }
@@ -29,7 +30,7 @@ class SampledSource : public LightSource {
 
  private:
   void report(const EffectPlan& plan, FrameStats& stats);
-  VirtualLights show(const SourceInputs& in, bool overlapped, const std::vector<uint32_t>& carried);
+  VirtualLights show(bool overlapped, const std::vector<uint32_t>& carried, bool onGpu);
 
   PackedLightBuffer buffer_;
   std::vector<VirtualLight> shown_;

@@ -40,12 +40,16 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
   camera_ = cameras_.write(sizeof block, &block);
   camera_.bindUniform(0);
+  if (!in.previous || in.host) before_ = {};
   if (in.host) {
     GBuffer adopted = adopt(in);
     adopted.block = block;
     return adopted;
   }
-  if (!depth_ || depth_.width() != width || depth_.height() != height || in.glossy != bool(roughnessMetalness_)) {
+  const bool fits = depth_ && depth_.width() == width && depth_.height() == height;
+  if (in.previous && !in.keep) keepPrevious(fits);
+  block_ = block;
+  if (!fits || in.glossy != bool(roughnessMetalness_)) {
     const auto make = [&](const char* label, GLenum format) {
       return gl::Texture(label, {.format = format, .width = width, .height = height});
     };
@@ -67,6 +71,20 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.draw(in.glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
   return out;
+}
+
+void SurfacePass::keepPrevious(bool any) {
+  before_ = {};
+  if (!any) return;
+  const int width = depth_.width(), height = depth_.height();
+  if (!depthBefore_ || depthBefore_.width() != width || depthBefore_.height() != height) {
+    depthBefore_ = gl::Texture("g-buffer/depth before",
+                               {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+    normalBefore_ = gl::Texture("g-buffer/normal before", {.format = GL_RGBA16F, .width = width, .height = height});
+  }
+  for (const auto& [from, to] : {std::pair(&depth_, &depthBefore_), std::pair(&normal_, &normalBefore_)})
+    glCopyImageSubData(from->name(), GL_TEXTURE_2D, 0, 0, 0, 0, to->name(), GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
+  before_ = {.depth = &depthBefore_, .normal = &normalBefore_, .block = block_, .width = width, .height = height};
 }
 
 void checkHost(const HostSurfaces& host, const CameraView& camera) {

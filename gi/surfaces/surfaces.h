@@ -19,6 +19,7 @@ struct SurfaceInputs {
   bool glossy = false;                // with `roughnessMetalness`: the passes that follow then add glossy reflection
   const HostSurfaces* host = nullptr; // taken over instead of drawing
   bool keep = false;                  // they are those of the last run
+  bool previous = false;              // those of the last run stay too
 };
 
 /// Throws InputError when a host's texture is missing or has not the camera's size.
@@ -28,9 +29,13 @@ class SurfacePass {
  public:
   explicit SurfacePass(PassContext context) : context_(context) {}
   GBuffer run(const SurfaceInputs& in);
+  /// Depth, normals and camera of the run before, where the last one was asked for it; null the first time, at another size,
+  /// and of a host's surfaces.
+  const GBuffer* previous() const { return before_.depth ? &before_ : nullptr; }
 
  private:
   GBuffer adopt(const SurfaceInputs& in);
+  void keepPrevious(bool any);
 
   PassContext context_;
   gl::Texture depth_, normal_, albedo_, emission_, roughnessMetalness_;
@@ -39,6 +44,9 @@ class SurfacePass {
   gl::Framebuffer framebuffer_;
   gl::Ring cameras_{"g-buffer/camera"};
   gl::BufferSlice camera_; // of the last run
+  gl::Texture depthBefore_, normalBefore_;
+  GBuffer before_;
+  CameraBlock block_; // of the last run that drew
 };
 
 struct PatchInputs {

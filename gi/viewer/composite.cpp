@@ -23,7 +23,7 @@ Picture CompositePass::run(const CompositeInputs& in) {
   program.use();
   setBackground(program, in.sky, in.surfaces);
   in.surfaces.albedo->bind(2);
-  in.surfaces.emission->bind(3);
+  (in.emission ? in.surfaces.emission : &black_)->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);
   (in.indirect.irradiance ? in.indirect.irradiance : &black_)->bind(5);
   (in.direct.glossy ? in.direct.glossy : &black_)->bind(8);

@@ -1,5 +1,5 @@
 // Every buffer as a display shows it, and the views that exist only for looking.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/viewer/picture.h"
 #include "gi/gather/draw_gather.h"
 
@@ -28,16 +28,16 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   case Buffer::Irradiance:
     return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Unfiltered:
-    if (frame.gathered.deinterleaved && frame.gathered.irradiance)
-      return {{"MODE 0", "DEINTERLEAVED"}, frame.gathered.irradiance, exposure / kPi};
+    if (frame.inside.gathered.deinterleaved && frame.inside.gathered.irradiance)
+      return {{"MODE 0", "DEINTERLEAVED"}, frame.inside.gathered.irradiance, exposure / kPi};
     return {
-        {"MODE 0"}, frame.gathered.irradiance ? frame.gathered.irradiance : frame.indirect.irradiance, exposure / kPi};
+        {"MODE 0"}, frame.inside.gathered.irradiance ? frame.inside.gathered.irradiance : frame.indirect.irradiance, exposure / kPi};
   case Buffer::Albedo:
     return {{"MODE 1"}, frame.surfaces.albedo, 1};
   case Buffer::Normal:
     return {{"MODE 2"}, frame.surfaces.normal, 1};
   case Buffer::Depth:
-    return {{"MODE 3"}, frame.surfaces.depth, 0.5f * frame.sceneDiameter};
+    return {{"MODE 3"}, frame.surfaces.depth, 0.5f * frame.farDistance};
   case Buffer::Emission:
     return {{"MODE 0"}, frame.surfaces.emission, exposure};
   case Buffer::Patches:
@@ -109,14 +109,14 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   gl::PipelineState{.width = width, .height = height}.apply();
   frame.surfaces.depth->bind(0);
 
-  if (buffer == Buffer::ShadowMaps && !frame.vplMaps.arrays.empty()) {
+  if (buffer == Buffer::ShadowMaps && !frame.inside.maps.arrays.empty()) {
     const int rows = 8, columns = std::max(1, rows * width / height); // square cells
     const gl::Program& program = context_.programs.get({.fragment = "map_sheet.frag"});
     program.use();
     program.set("grid", glm::ivec2(columns, rows));
     program.set("cellPixels", float(height) / float(rows));
-    program.set("count", std::min(columns * rows, frame.vplMaps.arrays[0].desc().layers));
-    frame.vplMaps.arrays[0].bind(0);
+    program.set("count", std::min(columns * rows, frame.inside.maps.arrays[0].desc().layers));
+    frame.inside.maps.arrays[0].bind(0);
     gl::drawFullscreen();
     return;
   }
@@ -140,7 +140,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   program.set("markNan", look.markNan || buffer == Buffer::Nan ? 1 : 0);
   if (frame.patches && frame.patches->normalLo) {
     program.set("patchLevels", frame.patches->levels);
-    program.set("finestPatch", frame.gathered.deinterleaved ? 2 : 0);
+    program.set("finestPatch", frame.inside.gathered.deinterleaved ? 2 : 0);
     frame.patches->normalLo->bind(5);
   }
   if (error.truth) {
@@ -151,7 +151,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   frame.surfaces.albedo->bind(3);
   frame.surfaces.emission->bind(4);
   gl::drawFullscreen();
-  if (buffer == Buffer::Vpls && frame.vpls) drawVpls(frame);
+  if (buffer == Buffer::Vpls && frame.inside.vpls) drawVpls(frame);
 }
 
 void DisplayPass::antiAlias() {
@@ -170,7 +170,7 @@ void DisplayPass::antiAlias() {
 }
 
 void DisplayPass::drawVpls(const FrameResults& frame) {
-  const std::vector<Sprite> sprites = spritesOf(*frame.vpls);
+  const std::vector<Sprite> sprites = spritesOf(*frame.inside.vpls);
   if (sprites.empty()) return;
   if (!spriteArray_) {
     spriteArray_ = gl::VertexArray("display/vpls");

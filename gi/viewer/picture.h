@@ -3,13 +3,9 @@
 
 #include "engine/core/image.h"
 #include "engine/scene/sky.h"
-#include "gi/contract/surface_lighting.h"
+#include "gi/contract/frame_outputs.h"
 #include "gi/contract/pass_context.h"
-#include "gi/contract/patches.h"
-#include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
-
-#include <optional>
 
 namespace lambent {
 
@@ -18,8 +14,7 @@ namespace lambent {
 std::vector<std::string> backgroundVariants(const Sky& sky);
 void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& surfaces);
 
-enum class Buffer : int; // gi/frame/gi_frame.h
-struct VplSet;
+enum class Buffer : int; // gi/viewer/viewer.h
 
 /// Radiance towards the camera, W/(m² sr).
 struct Picture {
@@ -28,9 +23,9 @@ struct Picture {
 
 struct CompositeInputs {
   const GBuffer& surfaces;
-  const SurfaceLighting& direct;
-  const SurfaceLighting& indirect;
+  SurfaceLighting direct, indirect;
   Sky sky;
+  bool emission = true; // of surfaces
 };
 
 class CompositePass {
@@ -51,18 +46,9 @@ float measureExposure(const Picture& picture);
 
 // Looking at it ----------------------------------------------------------------------------------------------------
 
-/// Everything a frame made, for read-back and views. Null where a stage did not run.
-struct FrameResults {
-  GBuffer surfaces;
-  SurfaceLighting direct;
-  SurfaceLighting gathered; // indirect, before the filter
-  SurfaceLighting indirect;
+/// Everything a frame made, for read-back and views.
+struct FrameResults : FrameOutputs {
   Picture picture;
-  ParaboloidMaps vplMaps;
-  std::optional<PatchPyramid> patches; // where somebody asked for them
-  const VplSet* vpls = nullptr;
-  Sky sky;
-  float sceneDiameter = 1; // metres; scales the depth view
 };
 
 struct Look {

@@ -1,5 +1,5 @@
 // Buffers as linear values on the CPU.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/viewer/picture.h"
 #include "gi/gather/draw_gather.h"
 #include "shaders/shared/ggx.h"
@@ -22,10 +22,10 @@ Image rgbOf(const gl::Texture* texture, int width, int height) {
 }
 
 Image rawOf(const FrameResults& frame, int width, int height) {
-  if (!frame.gathered.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
-  if (!frame.gathered.deinterleaved) return rgbOf(frame.gathered.irradiance, width, height);
+  if (!frame.inside.gathered.irradiance) return rgbOf(frame.indirect.irradiance, width, height);
+  if (!frame.inside.gathered.deinterleaved) return rgbOf(frame.inside.gathered.irradiance, width, height);
   const glm::ivec2 tile = tileSize(frame.surfaces);
-  const Image tiles = rgbOf(frame.gathered.irradiance, 4 * tile.x, 4 * tile.y);
+  const Image tiles = rgbOf(frame.inside.gathered.irradiance, 4 * tile.x, 4 * tile.y);
   Image image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) { // y counts from the bottom here, as in the tiles

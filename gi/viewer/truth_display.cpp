@@ -1,4 +1,4 @@
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/viewer/picture.h"
 #include "gi/gather/add_pixels.h"
 

@@ -6,7 +6,6 @@
 #include "engine/gl/profiler.h"
 #include "engine/gl/pulse.h"
 
-#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 
@@ -26,17 +25,11 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   }
   for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
 
-  ShadowMaker maker = in.rays ? in.maker : ShadowMaker::Raster;
-  if (maker == ShadowMaker::Auto && !measuredMaker_ && !jobs.empty()) measureMakers(in, jobs);
-  if (maker == ShadowMaker::Auto)
-    maker = measuredMaker_.value_or(ShadowMaker::Rays);
-  else if (!jobs.empty())
-    makerReport_ = maker == ShadowMaker::Rays ? "rays" : "raster";
-
-  if (maker == ShadowMaker::Rays)
-    drawRays(in, jobs);
-  else
-    drawRaster(in, jobs);
+  const ShadowMaker asked = in.rays ? in.maker : ShadowMaker::Raster;
+  if (asked != ShadowMaker::Auto && !jobs.empty()) maker_.take(asked == ShadowMaker::Raster);
+  if (asked == ShadowMaker::Auto && !maker_.measured() && !jobs.empty()) measureMakers(in, jobs);
+  const bool raster = asked == ShadowMaker::Raster || (asked == ShadowMaker::Auto && maker_.gpu());
+  raster ? drawRaster(in, jobs) : drawRays(in, jobs);
   mapsDrawn_ = uint32_t(jobs.size());
   return {arrays_, resolution_, in.farDistance};
 }
@@ -82,13 +75,7 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
   constexpr double kHopeless = 4;
   double rasterMs = msOfEach(one, raster);
   if (rasterMs < kHopeless * raysMs) rasterMs = msOfEach(sample, raster);
-  // Rays unless raster is twice as fast: the two differ in a few texels, so a machine's noise must not decide which
-  // picture it is. Software Mesa is 2 to 12 times on the one side; a GPU with a slow CPU beside it is as far on the
-  // other.
-  measuredMaker_ = 2 * rasterMs < raysMs ? ShadowMaker::Raster : ShadowMaker::Rays;
-  makerReport_ = measuredMaker_ == ShadowMaker::Rays
-                     ? fmt::format("rays ({:.2f} ms a map, raster {:.2f} ms)", raysMs, rasterMs)
-                     : fmt::format("raster ({:.2f} ms a map, rays {:.2f} ms)", rasterMs, raysMs);
+  maker_.measure(raysMs, rasterMs, "a map");
 }
 
 std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {

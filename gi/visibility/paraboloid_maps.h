@@ -1,12 +1,14 @@
 // Distance maps of virtual lights and of emissive samples: kept, and drawn by the faster of two makers.
 #pragma once
 
+#include "gi/contract/faster_of.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
 #include "gi/surfaces/gpu_scene.h"
 
-#include <optional>
+#include <string>
+#include <vector>
 
 namespace lambent {
 
@@ -16,7 +18,7 @@ struct ParaboloidMapInputs {
   const GpuScene& scene;
   const RayQuery* rays = nullptr; // null: raster only
   std::span<const MapPose> poses; // all slots
-  std::span<const MapJob> jobs;   // what to draw anew; the rest keeps its texels. By slot, one each
+  std::span<const MapJob> jobs = {}; // what to draw anew; the rest keeps its texels. By slot, one each
   float farDistance = 1;          // scene diameter, metres
   int resolution = 128;           // every slot is drawn anew when it, farDistance or the number of slots changes
   ShadowMaker maker = ShadowMaker::Auto;
@@ -38,8 +40,8 @@ class ParaboloidMapPass {
   bool drawsAllAnew(const ParaboloidMapInputs& in) const;
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
-  /// Who draws, and how it was chosen: "rays (2.1 ms a map, raster 14.0 ms)". Empty before the first map.
-  const std::string& makerReport() const { return makerReport_; }
+  /// Who draws, and how it was chosen. Empty before the first map.
+  const FasterOf& maker() const { return maker_; }
   /// The stored map of a slot, as distances in metres (kInfinity where nothing is met).
   std::vector<float> readLayer(uint32_t slot) const;
   /// Draws one pose with both makers into scratch maps, for the measure of their agreement. Requires in.rays.
@@ -54,14 +56,14 @@ class ParaboloidMapPass {
 
   PassContext context_;
   StageId stage_;
-  std::string name_, makerReport_;
+  std::string name_;
+  FasterOf maker_{"rays", "raster"};
   std::vector<gl::Texture> arrays_;
   gl::Texture faces_;
   gl::Framebuffer facesFramebuffer_, layerFramebuffer_;
   int resolution_ = 0;
   size_t slots_ = 0;
   float farDistance_ = 0;
-  std::optional<ShadowMaker> measuredMaker_;
   uint32_t mapsDrawn_ = 0;
 };
 

@@ -7,47 +7,50 @@
 
 namespace lambent {
 
-ShadowedLights ShadowMapCache::see(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats) {
+ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& stats) {
+  const World& world = in.frame.world;
+  const ShadowSettings& shadow = in.frame.settings.shadow;
   maps_ = {};
   if (!in.lights.mayWait) schedule_.clear();
-  if (in.settings.vpl.visibility != VplVisibility::Maps || in.lights.trees) {
+  if (!in.maps) {
     old_ = true;
     return {in.lights};
   }
   std::vector<MapPose> poses;
   poses.reserve(in.lights.slots.size());
-  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose(in.world.rays.rayEpsilon()));
+  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose(world.rays.rayEpsilon()));
   std::swap(poses_, poses); // `poses` are those before
-  ParaboloidMapInputs maps{in.world.gpu,
-                           &in.world.rays,
-                           poses_,
-                           {},
-                           in.world.reach,
-                           in.settings.shadow.resolution,
-                           in.settings.shadow.maker};
+  ParaboloidMapInputs maps{.scene = world.gpu,
+                           .rays = &world.rays,
+                           .poses = poses_,
+                           .farDistance = world.farDistance,
+                           .resolution = shadow.resolution,
+                           .maker = shadow.maker};
   std::vector<MapJob> jobs;
   if (!in.lights.mayWait) {
-    jobs = jobsAtOnce(poses_, poses, in.lights.slots, in.world.moved.boxes(), in.world.view.changes.first || old_,
-                      in.settings.shadow.resolution);
+    jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(), world.view.changes.first || old_,
+                      shadow.resolution);
   } else if (pass_.drawsAllAnew(maps)) {
     schedule_.clear();
   } else {
-    jobs = inTurn(in, plan, stats);
+    jobs = inTurn(in, stats);
   }
   old_ = false;
   maps.jobs = jobs;
   maps_ = pass_.run(maps);
   stats.mapsDrawn += pass_.mapsDrawn();
   stats.of(EffectId::Indirect) += pass_.mapsDrawn();
-  stats.makerTimes = pass_.makerReport();
-  stats.shadowMaker = stats.makerTimes.substr(0, stats.makerTimes.find(' '));
+  stats.makerTimes = pass_.maker().report();
+  stats.shadowMaker = pass_.maker().maker();
   return {in.lights, &maps_};
 }
 
 /// Maps of lights that stand elsewhere, and as far as the budget goes of those that see where objects moved.
-std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats) {
-  const SceneView& view = in.world.view;
-  const ShadowSettings& shadow = in.settings.shadow;
+std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, FrameStats& stats) {
+  const World& world = in.frame.world;
+  const SceneView& view = world.view;
+  const EffectPlan& plan = in.frame.plan;
+  const ShadowSettings& shadow = in.frame.settings.shadow;
   const int resolution = shadow.resolution;
   std::vector<float> brightness;
   for (const VirtualLight& light : in.lights.slots) {
@@ -63,7 +66,7 @@ std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, const Effe
   } else if (plan.idle(EffectId::MapRefresh)) {
     schedule_.invalidateInTurn(poses_.size(), size_t(shadow.refresh), resolution);
   } else if (view.changes.geometry || view.changes.instances) {
-    schedule_.invalidate(poses_, brightness, in.world.moved, in.world.rays, resolution, shadow.motionRays, in.seed,
+    schedule_.invalidate(poses_, brightness, world.moved, world.rays, resolution, shadow.motionRays, in.frame.seed,
                       stats.frame, stats.raysMapTests);
   }
   // A map goes where its light goes: what rides along is seen right, the rest as late as other maps in motion.

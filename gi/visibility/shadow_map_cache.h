@@ -3,26 +3,24 @@
 #pragma once
 
 #include "gi/contract/figures.h"
-#include "gi/contract/world.h"
+#include "gi/contract/light_provider.h"
 #include "gi/visibility/map_schedule.h"
 #include "gi/visibility/paraboloid_maps.h"
 
 namespace lambent {
 
 struct ShadowMapInputs {
-  const World& world;
+  const FrameWorld& frame; // its seed is that of the rays that look for moved objects
   const VirtualLights& lights;
-  const Settings& settings;
-  uint32_t seed = 1; // of the rays that look for moved objects
+  bool maps = true; // they have any
 };
 
 class ShadowMapCache {
  public:
   explicit ShadowMapCache(PassContext context) : pass_(context, StageId::VplMaps) {}
 
-  /// The lights with what their visibility setting asks for: maps brought up to date, or nothing. Lights that may wait
-  /// have theirs redrawn as far as `shadow.refresh` goes, others at once.
-  ShadowedLights see(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats);
+  /// Brings the lights' maps up to date: of lights that may wait as far as `shadow.refresh` goes, of others at once.
+  ShadowedLights update(const ShadowMapInputs& in, FrameStats& stats);
 
   /// The scene is another.
   void forget() {
@@ -32,12 +30,11 @@ class ShadowMapCache {
   }
   /// Maps that show where something was.
   uint32_t waiting() const { return uint32_t(schedule_.waiting()); }
-  /// Of the last `see`; empty where its lights had none.
+  /// Of the last update; empty where its lights had none.
   const ParaboloidMaps& maps() const { return maps_; }
-  ParaboloidMapPass& pass() { return pass_; }
 
  private:
-  std::vector<MapJob> inTurn(const ShadowMapInputs& in, const EffectPlan& plan, FrameStats& stats);
+  std::vector<MapJob> inTurn(const ShadowMapInputs& in, FrameStats& stats);
 
   ParaboloidMapPass pass_;
   MapSchedule schedule_;

@@ -8,7 +8,11 @@
 #include "gi/contract/virtual_lights.h"
 #include "gi/volume/volume_visibility.h"
 
+#include <memory>
+
 namespace lambent {
+
+class Gather; // gi/contract/gather.h
 
 struct VolumeInputs {
   const World& world;
@@ -52,5 +56,8 @@ class LightVolume {
   std::vector<vec4> deposited_;
   int steps_ = -1;
 };
+
+/// Light of pixels from such a volume (`lpv`).
+std::unique_ptr<Gather> makeVolumeGather(PassContext context);
 
 } // namespace lambent

@@ -35,7 +35,7 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
   case VplSource::Isr:
   case VplSource::Hisr:
   case VplSource::None:
-    CHECK(!"not sampled: gi/sources/light_source.h");
+    CHECK(!"not sampled: gi/contract/light_source.h");
   }
   return updateVpls(set, in, log, progress);
 }

@@ -8,7 +8,7 @@
 namespace lambent {
 namespace {
 
-/// Bodies keep figures of their block in element begin / rayEpsilon: two blocks there at once lost counts.
+/// Bodies keep figures of their block in element begin / grain: two blocks there at once lost counts.
 TEST(Parallel, BlocksBeginAtMultiplesOfTheGrain) {
   for (const size_t n : {1, 31, 32, 33, 100, 1000, 1023}) {
     std::vector<std::atomic<int>> calls((n + 31) / 32), covered(n);

@@ -270,7 +270,7 @@ TEST_F(AntiAliasTest, FramesAreShownSmoothAndReadAsTheyAre) {
   Settings settings;
   settings.effects[EffectId::Indirect] = EffectMode::Off;
   settings.image.exposure = 1;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   const Image8 on = gi.readDisplay(Buffer::Beauty), normals = gi.readDisplay(Buffer::Normal);
   const Image radiance = gi.read(Buffer::Beauty);

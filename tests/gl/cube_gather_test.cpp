@@ -40,7 +40,7 @@ class CubeGatherTest : public GlTest {
 
 /// The same lights, with a ray for every pixel and light.
 TEST_F(CubeGatherTest, GivesThePicturesOfItsLights) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   const Image cube = gi.read(Buffer::Irradiance);
   Settings every = settings;
@@ -48,7 +48,7 @@ TEST_F(CubeGatherTest, GivesThePicturesOfItsLights) {
   every.vpl.visibility = VplVisibility::Rays;
   every.filter.on = false;
   every.history.frames = 0;
-  GiFrame truth(every);
+  Viewer truth(every);
   truth.run(room.scene.view());
   const Image rays = truth.read(Buffer::Irradiance);
   const double difference = differenceOf(cube, rays);
@@ -67,7 +67,7 @@ TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
   every.vpl.visibility = VplVisibility::Rays;
   every.filter.on = false;
   every.history.frames = 0;
-  GiFrame truth(every);
+  Viewer truth(every);
   truth.run(room.scene.view());
   const Image rays = truth.read(Buffer::Irradiance);
   struct Kind {
@@ -79,7 +79,7 @@ TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
   for (int k = 0; k < 3; ++k) {
     settings.cube.resolution = kKinds[k].resolution;
     settings.cube.levels = kKinds[k].levels;
-    GiFrame gi(settings);
+    Viewer gi(settings);
     entries[k] = gi.run(room.scene.view()).cubeEntries;
     differences[k] = differenceOf(gi.read(Buffer::Irradiance), rays);
     std::printf("%d texels, %d levels: %.2f %%, %llu entries\n", kKinds[k].resolution, kKinds[k].levels,
@@ -91,7 +91,7 @@ TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
 
 /// While nothing but the camera moves a frame draws surfaces and looks up.
 TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int frame = 0; frame < 3; ++frame) {
     room.scene.camera.worldFromView[3].x += 0.02f;
@@ -102,7 +102,7 @@ TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
     EXPECT_FALSE(stats.plan.on(EffectId::Replace)) << stats.plan[EffectId::Replace].reason;
     EXPECT_FALSE(stats.plan.on(EffectId::Relight));
     EXPECT_TRUE(stats.plan.on(EffectId::Redraw));
-    GiFrame anew(settings);
+    Viewer anew(settings);
     anew.run(room.scene.view());
     EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, anew.read(Buffer::Irradiance).pixels) << frame;
   }
@@ -110,7 +110,7 @@ TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
 
 /// After a lamp and the block moved the picture is that of a cube built there.
 TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   room.scene.lights[0].position.x = -0.3f;
   SceneView view = still();
@@ -129,11 +129,11 @@ TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
   view.changes.geometry = true;
   const FrameStats& stats = gi.run(view);
   EXPECT_GT(stats.raysCube.occlusion, 0u);
-  GiFrame anew(settings);
+  Viewer anew(settings);
   anew.run(room.scene.view());
   const Image kept = gi.read(Buffer::Irradiance), fresh = anew.read(Buffer::Irradiance);
   EXPECT_LT(differenceOf(kept, fresh), 1e-3);
-  GiFrame before(settings);
+  Viewer before(settings);
   Room other;
   other.scene.lights = room.scene.lights;
   before.run(other.scene.view());
@@ -149,7 +149,7 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   settings.cube.resolution = 64;
   settings.stillCache.after = 20;
   settings.stillCache.perFrame = 64;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   double mean = 0, most = 0;
   const auto step = [&](bool counts) {
@@ -170,7 +170,7 @@ TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
   const Image cube = gi.read(Buffer::Irradiance);
   Settings own = settings;
   applyTechnique(own, "ibrr");
-  GiFrame stored(own);
+  Viewer stored(own);
   stored.run(room.scene.view());
   EXPECT_EQ(cube.pixels, stored.read(Buffer::Irradiance).pixels) << "the light of ibrr";
   EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw)) << "and then nothing is done";
@@ -212,7 +212,7 @@ TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
   settings.cube.resolution = 32;
   settings.stillCache.after = 4;
   settings.stillCache.perFrame = 256;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   const auto untilAlone = [&] {
     for (int f = 0; f < 200; ++f)
@@ -222,7 +222,7 @@ TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
   const auto isThatOfNow = [&](const char* when) {
     Settings own = gi.settings();
     applyTechnique(own, "ibrr");
-    GiFrame stored(own);
+    Viewer stored(own);
     stored.run(room.scene.view());
     EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, stored.read(Buffer::Irradiance).pixels) << when;
   };
@@ -255,7 +255,7 @@ TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
     double lit = 0;
     for (const float side : {-1.0f, 1.0f}) {
       scene.camera = cameraAt(vec3(side * 0.9f, 0, -side * 0.8f), vec3(side * 1.5f, -0.2f, side * 2), 1.7f);
-      GiFrame gi(settings);
+      Viewer gi(settings);
       gi.run(scene.view());
       const double mean = meanLuminance(gi.read(Buffer::Irradiance));
       if (side < 0) lit = mean;
@@ -273,7 +273,7 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   Settings plainSettings;
   Image first;
   for (int run = 0; run < 2; ++run) {
-    GiFrame gi(settings);
+    Viewer gi(settings);
     const FrameStats& stats = gi.run(room.scene.view());
     EXPECT_EQ(stats.raysCube.occlusion > 0, run == 0);
     if (run == 0)
@@ -283,7 +283,7 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   }
   // Another lamp: the file's lights are not shown.
   room.scene.lights[0].position.x = -0.5f;
-  GiFrame moved(settings), plain((settings.cubeFile.clear(), settings));
+  Viewer moved(settings), plain((settings.cubeFile.clear(), settings));
   moved.run(room.scene.view());
   plain.run(room.scene.view());
   EXPECT_LT(differenceOf(moved.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)), 1e-3);
@@ -297,19 +297,19 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
     } else {
       room.scene.instances.pop_back();
     }
-    GiFrame anew(settings), without((plainSettings = settings, plainSettings.cubeFile.clear(), plainSettings));
+    Viewer anew(settings), without((plainSettings = settings, plainSettings.cubeFile.clear(), plainSettings));
     const std::string warning = anew.run(room.scene.view()).warning;
     EXPECT_NE(warning.find(damaged ? "damaged" : "another scene"), std::string::npos) << warning;
     without.run(room.scene.view());
     EXPECT_EQ(anew.read(Buffer::Irradiance).pixels, without.read(Buffer::Irradiance).pixels);
-    GiFrame again(settings);
+    Viewer again(settings);
     const FrameStats& stats = again.run(room.scene.view());
     EXPECT_EQ(stats.warning, "");
     EXPECT_EQ(stats.raysCube.occlusion, 0u);
   }
   // What is no cube is not touched.
   std::ofstream(file, std::ios::trunc) << "{\"asset\": {\"version\": \"2.0\"}}";
-  EXPECT_NE(GiFrame(settings).run(room.scene.view()).warning, "");
+  EXPECT_NE(Viewer(settings).run(room.scene.view()).warning, "");
   EXPECT_EQ(std::filesystem::file_size(file), 29u);
   std::filesystem::remove(file);
 }

@@ -1,6 +1,6 @@
 // The effect plan. For each effect: a scene without it, where its work is not done at all (counted) and the picture is,
 // byte for byte, the one with everything forced on; and a scene with it, where leaving it out changes the picture.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -119,7 +119,7 @@ class EffectsTest : public GlTest {
   void withoutIt(EffectId id, Settings settings, const Views& viewsOf, int skip = 0, bool hollow = false) {
     Settings forced = settings;
     for (size_t i = 0; i < kEffects; ++i) forced.effects[EffectId(i)] = EffectMode::On;
-    GiFrame plain(settings), all(forced);
+    Viewer plain(settings), all(forced);
     World a, b;
     uint64_t forcedWork = 0;
     for (int frame = 0;; ++frame) {
@@ -143,7 +143,7 @@ class EffectsTest : public GlTest {
   template <class Views> double lossWithout(EffectId id, const Settings& settings, const Views& viewsOf) {
     Settings off = settings;
     off.effects[id] = EffectMode::Off;
-    GiFrame plain(settings), without(off);
+    Viewer plain(settings), without(off);
     World a, b;
     uint64_t work = 0;
     for (int frame = 0;; ++frame) {
@@ -289,7 +289,7 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
     w.scene.assets.meshes[w.scene.instances[0].mesh].primitives[0].material = floor;
   });
   World w;
-  GiFrame lambert(quick());
+  Viewer lambert(quick());
   EXPECT_FALSE(lambert.run(*varnished(w, 0)).plan.on(Indirect));
   EXPECT_GT(lossWithout(Indirect, glossy, varnished), 1e-3);
 }
@@ -298,7 +298,7 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
 // ---------------------------------------------------------------------------------------------------------
 
 /// Frames until nothing is done any more.
-int framesToSettle(GiFrame& gi, const SceneView& still, int most) {
+int framesToSettle(Viewer& gi, const SceneView& still, int most) {
   int frames = 0;
   while (frames < most && gi.run(still).plan.on(Redraw)) ++frames;
   return frames;
@@ -306,7 +306,7 @@ int framesToSettle(GiFrame& gi, const SceneView& still, int most) {
 
 TEST_F(EffectsTest, AStillWorldSettlesAndSleeps) {
   World w;
-  GiFrame gi(quick());
+  Viewer gi(quick());
   gi.run(w.first());
   const int frames = framesToSettle(gi, w.still(), 2000);
   std::printf("settled after %d frames, %u strong candidates\n", frames, gi.run(w.still()).vplsStrong);
@@ -326,7 +326,7 @@ TEST_F(EffectsTest, AStillWorldSettlesAndSleeps) {
   // Whatever is forced on works and changes nothing.
   for (size_t i = 0; i < kEffects; ++i) gi.settings().effects[EffectId(i)] = EffectMode::On;
   gi.run(w.still()); // a change of settings wakes
-  GiFrame settled(quick()), forced(withAll(EffectMode::On));
+  Viewer settled(quick()), forced(withAll(EffectMode::On));
   World a, b;
   settled.run(a.first()), forced.run(b.first());
   for (int i = 0; i < frames + 10; ++i) {
@@ -346,7 +346,7 @@ TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
     World w;
     Settings settings = quick();
     settings.smc.moves = 0; // settles at once
-    GiFrame gi(settings);
+    Viewer gi(settings);
     gi.run(w.first());
     ASSERT_LT(framesToSettle(gi, w.still(), 20), 20) << what;
     const Image before = gi.read(Buffer::Beauty);
@@ -354,24 +354,24 @@ TEST_F(EffectsTest, WakesInTheFrameInWhichAnythingChanges) {
     EXPECT_TRUE(gi.run(view).plan.on(Redraw)) << what;
     EXPECT_FALSE(same(gi.read(Buffer::Beauty), before)) << what;
   };
-  wakes("camera", [](World& w, GiFrame&) {
+  wakes("camera", [](World& w, Viewer&) {
     w.scene.camera.worldFromView[3].x += 0.1f;
     return w.view({false, true, false, false, false});
   });
-  wakes("size", [](World& w, GiFrame&) {
+  wakes("size", [](World& w, Viewer&) {
     w.scene.camera.width = 80;
     return w.view({false, true, false, false, false});
   });
-  wakes("light", [](World& w, GiFrame&) {
+  wakes("light", [](World& w, Viewer&) {
     w.scene.lights[0].intensity *= 2;
     return w.view({false, false, true, false, false});
   });
-  wakes("object", [](World& w, GiFrame&) { return w.moveBlock({0.2f, 0, 0}); });
-  wakes("setting of drawing", [](World& w, GiFrame& gi) {
+  wakes("object", [](World& w, Viewer&) { return w.moveBlock({0.2f, 0, 0}); });
+  wakes("setting of drawing", [](World& w, Viewer& gi) {
     gi.settings().gather.disk = 0;
     return w.still();
   });
-  wakes("setting of light", [](World& w, GiFrame& gi) {
+  wakes("setting of light", [](World& w, Viewer& gi) {
     gi.settings().smc.bounces = 1;
     return w.still();
   });
@@ -405,7 +405,7 @@ TEST_F(EffectsTest, ReplaceAndRedrawNeedAChange) {
 TEST_F(EffectsTest, OverlapGivesTheSameVplsOneFrameLater) {
   Settings beside = quick();
   beside.frame.overlap = true;
-  GiFrame plain(quick()), overlapped(beside);
+  Viewer plain(quick()), overlapped(beside);
   World a, b;
   const auto viewOf = [](World& w, int frame) {
     if (frame == 0) return w.first();
@@ -446,7 +446,7 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
     Settings settings;
     applyTechnique(settings, technique);
     settings.image.exposure = 1;
-    GiFrame gi(settings);
+    Viewer gi(settings);
     const FrameStats first = gi.run(world.first());
     EXPECT_TRUE(first.plan.on(Indirect)) << technique;
     EXPECT_FALSE(first.plan.on(Bounces)) << technique;
@@ -457,7 +457,7 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
     const FrameStats moved = gi.run(world.view({false, false, true, false, false}));
     EXPECT_GT(moved.work[size_t(Redraw)], 0u) << technique;
     EXPECT_NE(gi.read(Buffer::Indirect).pixels, before.pixels) << technique;
-    GiFrame anew(settings);
+    Viewer anew(settings);
     anew.run(world.first());
     EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels) << technique;
     world.scene.lights.clear();
@@ -476,14 +476,14 @@ TEST_F(EffectsTest, ReflectiveMapsComeBackUpToDate) {
   settings.smc.warmup = 2;
   settings.image.exposure = 1;
   applyTechnique(settings, "isr");
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(world.first());
   applyTechnique(gi.settings(), "smc");
   gi.run(world.still());
   gi.run(world.moveBlock({0.3f, 0, 0.2f}));
   applyTechnique(gi.settings(), "isr");
   gi.run(world.still());
-  GiFrame anew(settings);
+  Viewer anew(settings);
   anew.run(world.first());
   EXPECT_EQ(gi.read(Buffer::Indirect).pixels, anew.read(Buffer::Indirect).pixels);
 }
@@ -498,7 +498,7 @@ TEST_F(EffectsTest, VplsOfReflectiveMapsMayHaveShadows) {
   settings.image.exposure = 1;
   const auto mean = [&](VplVisibility visibility) {
     settings.vpl.visibility = visibility;
-    GiFrame gi(settings);
+    Viewer gi(settings);
     gi.run(world.first());
     double sum = 0;
     for (const vec3& p : gi.read(Buffer::Irradiance).pixels) sum += p.x;

@@ -1,5 +1,5 @@
 // The frame as a whole, through the interface that programs use.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -48,7 +48,7 @@ TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
   furnish(scene);
   Settings settings = quick();
   settings.history.frames = 0;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(scene.view());
   const Image interleaved = gi.read(Buffer::Irradiance);
   gi.settings().smc.moves = 0; // the same lights for all three
@@ -84,7 +84,7 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
       settings.gather.mode = mode;
       if (!whyNot(settings).empty()) continue;
       settings.shadow.rays = false;
-      GiFrame gi(settings);
+      Viewer gi(settings);
       const FrameStats first = gi.run(scene.view());
       EXPECT_EQ(first.readBacks, 1u);
       for (const bool rays : {false, true}) {
@@ -102,7 +102,7 @@ TEST_F(FrameTest, TheSameTwice) {
   furnish(scene);
   std::vector<Image> pictures;
   for (int run = 0; run < 2; ++run) {
-    GiFrame gi(quick());
+    Viewer gi(quick());
     gi.run(scene.view());
     gi.run(still(scene));
     pictures.push_back(gi.read(Buffer::Beauty));
@@ -119,7 +119,7 @@ TEST_F(FrameTest, ACameraCutIsLitInItsFirstFrame) {
   lamp.position = {10, 2, 0};
   lamp.intensity = vec3(4);
   scene.lights.push_back(lamp);
-  GiFrame gi(quick());
+  Viewer gi(quick());
   gi.run(scene.view());
   scene.camera.worldFromView[3].x += 10;
   SceneView cut = still(scene);
@@ -135,7 +135,7 @@ TEST_F(FrameTest, StagesThatTheSceneDoesNotCallForDoNotRun) {
   HandScene scene;
   furnish(scene);
   scene.lights.clear();
-  GiFrame gi(quick());
+  Viewer gi(quick());
   const FrameStats& dark = gi.run(scene.view());
   EXPECT_EQ(dark.raysRadiosity.closest + dark.raysRadiosity.occlusion + dark.raysCandidates.closest, 0u);
   EXPECT_EQ(dark.mapsDrawn, 0u);
@@ -149,7 +149,7 @@ TEST_F(FrameTest, MovingObjectsAndLightsStayFinite) {
   Settings settings = quick();
   settings.smc.vpls = 256;
   settings.smc.points = 256;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(scene.view());
   for (int frame = 0; frame < 60; ++frame) {
     for (InstanceView& i : scene.instances) i.moved = false;

@@ -150,7 +150,7 @@ class GatherTest : public GlTest {
                     const SurfaceLighting& indirect = {}) {
     FrameResults results;
     results.surfaces = gbuffer;
-    results.gathered = gathered;
+    results.inside.gathered = gathered;
     results.indirect = indirect;
     return readBuffer(buffer, results);
   }

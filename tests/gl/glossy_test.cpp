@@ -261,7 +261,7 @@ class GlossyFrameTest : public GlossyTest {
 TEST_F(GlossyFrameTest, MapsAgreeWithARayForEveryPair) {
   const auto radianceOf = [&](VplVisibility visibility) {
     settings.vpl.visibility = visibility;
-    GiFrame gi(settings);
+    Viewer gi(settings);
     gi.run(room.scene.view());
     return gi.read(Buffer::Indirect);
   };
@@ -272,7 +272,7 @@ TEST_F(GlossyFrameTest, BuffersAddUpAndSwitchingOffGoesBack) {
   settings.gather.mode = GatherMode::Interleaved;
   settings.smc.moves = 0;
   settings.history.frames = 0;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), indirect = gi.read(Buffer::Indirect);
   for (size_t i = 0; i < beauty.pixels.size(); ++i)

@@ -1,6 +1,6 @@
 // The governor over real frames: its clock counts work (pixels, virtual lights, punctual lights), so that it says the
 // same on every machine; the pictures are real.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/plan/governor.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
@@ -31,7 +31,7 @@ TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   Governed g;
   g.settings = settings;
   g.choosesPreset = false;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   const CameraView first = room.scene.camera;
   double load = 1, largest = 0;
   int changes = 0;

@@ -226,7 +226,7 @@ class HemicubeFrameTest : public HemicubeTest {
   };
   Result run(CubeMaker maker) {
     settings.hemicubes.maker = maker;
-    GiFrame gi(settings);
+    Viewer gi(settings);
     const FrameStats& stats = gi.run(room.scene.view());
     return {gi.read(Buffer::Irradiance), stats};
   }
@@ -258,7 +258,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
 
 /// Both are measured once; who makes them may be changed while frames run, and the cube stays.
 TEST_F(HemicubeFrameTest, AutoMeasuresBothMakersOnce) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   const std::string report = gi.run(room.scene.view()).cubeMakerTimes;
   room.scene.lights[0].position.x = -0.3f;
   SceneView view = room.scene.view();

@@ -22,14 +22,14 @@ class HistoryTest : public StillRoomTest {
   }
   /// Every light at every pixel.
   Image allLights() const {
-    GiFrame gi(with(settings, GatherMode::Full, 0));
+    Viewer gi(with(settings, GatherMode::Full, 0));
     gi.run(room.scene.view());
     return gi.read(Buffer::Irradiance);
   }
 };
 
 TEST_F(HistoryTest, AStillViewComesToHoldEveryLightAndSleeps) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   const Image all = allLights();
   const double first = relativeRmse(gi.read(Buffer::Irradiance), all);
@@ -53,7 +53,7 @@ TEST_F(HistoryTest, NearLightIsAveragedToo) {
   settings.history.frames = 64;
   Settings many = with(settings, GatherMode::Full, 0);
   many.gather.near = 256;
-  GiFrame truth(many), one(with(settings, GatherMode::Interleaved, 0)), gi(settings);
+  Viewer truth(many), one(with(settings, GatherMode::Interleaved, 0)), gi(settings);
   truth.run(room.scene.view());
   one.run(room.scene.view());
   gi.run(room.scene.view());
@@ -65,7 +65,7 @@ TEST_F(HistoryTest, NearLightIsAveragedToo) {
 }
 
 TEST_F(HistoryTest, FollowsTheCamera) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int i = 0; i < 24; ++i) { // past the block, one to two pixels a picture, and turning
     mat4& pose = room.scene.camera.worldFromView;
@@ -93,7 +93,7 @@ TEST_F(HistoryTest, TakesNoLightFromOtherSurfaces) {
     const float x = -0.9f + 0.3f * float(i);
     room.scene.box({x, -1, 0.2f}, {x + 0.06f, 1, 0.26f}, white, false);
   }
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int i = 0; i < 12; ++i) {
     room.scene.camera.worldFromView[3].x += 0.02f;
@@ -106,7 +106,7 @@ TEST_F(HistoryTest, TakesNoLightFromOtherSurfaces) {
 }
 
 TEST_F(HistoryTest, FollowsLightThatChanges) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int i = 1; i < 20; ++i) gi.run(still());
   for (const float intensity : {4.0f, 0.25f, 0.3f}) { // twice at once, then by a fifth
@@ -123,13 +123,13 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
 
 /// The governor changes the picture's size while frames run: what is kept is looked up at the size that it has.
 TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int i = 1; i < 16; ++i) gi.run(still());
   for (const int width : {64, 48, 96}) {
     room.scene.camera.width = width;
     room.scene.camera.height = width * 3 / 4;
-    GiFrame fresh(settings);
+    Viewer fresh(settings);
     fresh.run(room.scene.view());
     const Image all = allLights(), one = fresh.read(Buffer::Irradiance);
     for (int i = 0; i < 3; ++i) { // the first of this size, and two that look up one of it
@@ -144,12 +144,12 @@ TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
 
 /// After other settings or another scene the next picture is that of a frame that begins.
 TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
-  const auto asNew = [&](GiFrame& gi, const Room& shown, const char* what) {
-    GiFrame fresh(gi.settings());
+  const auto asNew = [&](Viewer& gi, const Room& shown, const char* what) {
+    Viewer fresh(gi.settings());
     fresh.run(shown.scene.view());
     EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, fresh.read(Buffer::Irradiance).pixels) << what;
   };
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   for (int i = 1; i < 5; ++i) gi.run(still());
   gi.settings().image.exposure = 2;
@@ -168,7 +168,7 @@ TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
 }
 
 TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   room.scene.lights[0].intensity = vec3(kInfinity);
   gi.run(view({false, false, true, false, false}));
@@ -230,13 +230,13 @@ TEST_F(HistoryPassTest, WhatIsNoNumberCountsForOnePicture) {
 TEST_F(HistoryTest, IsAnEffectOfThePlan) {
   settings.effects[EffectId::History] = EffectMode::On;
   settings.gather.mode = GatherMode::Full;
-  GiFrame full(settings);
+  Viewer full(settings);
   full.run(room.scene.view());
   EXPECT_EQ(full.run(still()).work[size_t(EffectId::History)], 0u);
   EXPECT_FALSE(full.run(still()).plan.on(EffectId::Redraw)) << "it sleeps";
   settings.effects[EffectId::History] = EffectMode::Off;
   settings.gather.mode = GatherMode::Interleaved;
-  GiFrame off(settings), none(with(settings, GatherMode::Interleaved, 0));
+  Viewer off(settings), none(with(settings, GatherMode::Interleaved, 0));
   off.run(room.scene.view());
   none.run(room.scene.view());
   EXPECT_EQ(off.read(Buffer::Irradiance).pixels, none.read(Buffer::Irradiance).pixels);
@@ -256,7 +256,7 @@ TEST_F(HistoryTest, TurnsTheClassesOfEveryGather) {
     part.gather.mode =
         technique == std::string("multires-gather") ? GatherMode::MultiresInterleaved : GatherMode::Interleaved;
     part.history.frames = 16;
-    GiFrame whole(all), turned(part);
+    Viewer whole(all), turned(part);
     whole.run(room.scene.view());
     turned.run(room.scene.view());
     for (int i = 1; i < 16; ++i) turned.run(still());

@@ -146,7 +146,7 @@ TEST_F(LightVolumeTest, ADarkRoomBesideALitOneStaysDark) {
     double lit = 0;
     for (const float side : {-1.0f, 1.0f}) {
       scene.camera = cameraAt(vec3(side * 0.9f, 0, -side * 0.8f), vec3(side * 1.5f, -0.2f, side * 2), 1.7f);
-      GiFrame gi(settings);
+      Viewer gi(settings);
       gi.run(scene.view());
       const double mean = meanLuminance(gi.read(Buffer::Irradiance));
       if (side < 0) lit = mean;
@@ -227,7 +227,7 @@ TEST_F(LightVolumeTest, IsMadeAnewOnlyForWhatChanges) {
   room.scene.lights.push_back({.type = LightType::Point, .position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
   applyTechnique(settings, "lpv");
   settings.smc.vpls = 256;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   SceneView view = room.scene.view();
   gi.run(view);
   const Image first = gi.read(Buffer::Irradiance);

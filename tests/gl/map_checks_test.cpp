@@ -17,7 +17,7 @@ class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface
   Image averaged(bool checks) const {
     Settings s = settings;
     s.gather.checks = checks;
-    GiFrame gi(s);
+    Viewer gi(s);
     gi.run(room.scene.view());
     for (int i = 1; i < 64; ++i) gi.run(still());
     return gi.read(Buffer::Irradiance);
@@ -32,7 +32,7 @@ TEST_P(MapChecksTest, ComeToARayForEveryPair) {
   settings.gather.glossy = GetParam() == 512; // another place among the gather's targets
   Settings byRays = settings;
   byRays.vpl.visibility = VplVisibility::Rays;
-  GiFrame truth(byRays);
+  Viewer truth(byRays);
   truth.run(room.scene.view());
   const Image expected = truth.read(Buffer::Irradiance), checked = averaged(true), believed = averaged(false);
   EXPECT_LT(relativeRmse(checked, expected), 0.45 * relativeRmse(believed, expected));
@@ -42,7 +42,7 @@ TEST_P(MapChecksTest, ComeToARayForEveryPair) {
 }
 
 TEST_F(MapChecksTest, OnlyWhileTheViewStands) {
-  GiFrame gi(settings);
+  Viewer gi(settings);
   EXPECT_EQ(gi.run(room.scene.view()).raysChecks.occlusion, 0u);
   const uint64_t rays = gi.run(still()).raysChecks.occlusion;
   EXPECT_GT(rays, 3500u);

@@ -461,7 +461,7 @@ TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   settings.shadow.resolution = 32;
   settings.shadow.refresh = 4;
   settings.shadow.maker = ShadowMaker::Rays;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room.scene.view());
   uint64_t most = 0;
   for (int frame = 0; frame < 4; ++frame) {

@@ -89,7 +89,7 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   ParaboloidMapPass pass(passes, StageId::VplMaps);
   pass.run(in);
   EXPECT_EQ(pass.mapsDrawn(), 20u) << "a new array starts with all of its maps";
-  const std::string report = pass.makerReport();
+  const std::string report = pass.maker().report();
   EXPECT_NE(report.find("rays"), std::string::npos);
   EXPECT_NE(report.find("raster"), std::string::npos);
   jobs = {{3, TexelRect::whole(64)}, {4, {10, 20, 30, 25}}};
@@ -97,7 +97,7 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   again.jobs = jobs;
   pass.run(again);
   EXPECT_EQ(pass.mapsDrawn(), 2u);
-  EXPECT_EQ(pass.makerReport(), report);
+  EXPECT_EQ(pass.maker().report(), report);
 }
 
 TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {

@@ -1,5 +1,5 @@
 // Every preset draws.
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/plan/presets.h"
 #include "gl_fixture.h"
 
@@ -41,7 +41,7 @@ TEST_F(PresetTest, EveryPresetDrawsARoomAndSetsOnlyWhatItIsAbout) {
     Settings settings = odd;
     applyPreset(settings, name);
     EXPECT_EQ(differing(settings, odd), about);
-    GiFrame gi(settings);
+    Viewer gi(settings);
     gi.run(room.scene.view());
     const Image indirect = gi.read(Buffer::Indirect);
     ASSERT_EQ(indirect.pixels.size(), 48u * 32);

@@ -15,7 +15,7 @@ class PulseTest : public StillRoomTest {
 };
 
 TEST_F(PulseTest, WhatDrawsBetweenDrawsChangesNothing) {
-  GiFrame plain(settings), beating(settings);
+  Viewer plain(settings), beating(settings);
   plain.run(still());
   const gl::Texture target("pulse/target", {.format = GL_RGBA8, .width = 4, .height = 4});
   const gl::Framebuffer framebuffer("pulse", {&target});
@@ -43,10 +43,10 @@ TEST_F(PulseTest, WhatDrawsBetweenDrawsChangesNothing) {
 }
 
 TEST_F(PulseTest, WhatThrowsEndsTheFrameAndOthersGoOn) {
-  GiFrame plain(settings);
+  Viewer plain(settings);
   plain.run(still());
   for (const int last : {1, 7, 20}) {
-    GiFrame ended(settings);
+    Viewer ended(settings);
     int beats = 0;
     const auto run = [&] {
       const gl::Pulse pulse([&] {
@@ -57,7 +57,7 @@ TEST_F(PulseTest, WhatThrowsEndsTheFrameAndOthersGoOn) {
     EXPECT_THROW(run(), RunError);
     EXPECT_EQ(beats, last);
   }
-  GiFrame again(settings);
+  Viewer again(settings);
   again.run(still());
   EXPECT_EQ(again.read(Buffer::Beauty).pixels, plain.read(Buffer::Beauty).pixels);
 }

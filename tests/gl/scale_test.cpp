@@ -40,7 +40,7 @@ class ScaleTest : public GlTest {
     settings.shadow.maker = ShadowMaker::Rays;
     settings.image.exposure = 1;
     applyTechnique(settings, technique);
-    GiFrame gi(settings);
+    Viewer gi(settings);
     std::vector<Image> images;
     SceneView view = scene.view();
     view.changes = {true, true, true, true, true};

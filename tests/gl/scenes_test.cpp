@@ -1,4 +1,5 @@
 // More scenes than one: beside each other in one context, and one where another was.
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/images.h"
 
@@ -45,7 +46,7 @@ Settings small() {
 class ScenesTest : public GlTest {
  protected:
   /// The n-th frame of a world: its lamp moves.
-  static Image frame(GiFrame& gi, LitRoom& room, int n) {
+  static Image frame(Viewer& gi, LitRoom& room, int n) {
     LightView& lamp = room.scene.lights.front();
     lamp.position.x = 0.3f - 0.1f * float(n);
     lamp.changed = n > 0;
@@ -67,10 +68,10 @@ TEST_F(ScenesTest, TwoInOneContextDrawWhatEachDrawsAlone) {
     LitRoom rooms[2] = {LitRoom(false), LitRoom(true)};
     std::vector<Image> alone[2];
     for (int s = 0; s < 2; ++s) {
-      GiFrame gi(settings[s], 1 + s);
+      Viewer gi(settings[s], 1 + s);
       for (int n = 0; n < kFrames; ++n) alone[s].push_back(frame(gi, rooms[s], n));
     }
-    GiFrame frames[2] = {GiFrame(settings[0], 1), GiFrame(settings[1], 2)};
+    Viewer frames[2] = {Viewer(settings[0], 1), Viewer(settings[1], 2)};
     for (int n = 0; n < kFrames; ++n)
       for (int s = 0; s < 2; ++s)
         EXPECT_TRUE(sameBits(frame(frames[s], rooms[s], n), alone[s][size_t(n)]))
@@ -85,16 +86,16 @@ TEST_F(ScenesTest, TwoViewsOfOneSceneDrawWhatEachDrawsAlone) {
   const LitRoom room;
   SceneView views[2] = {room.scene.view(), room.scene.view()};
   views[1].camera = cameraAt(vec3(-0.6f, 0.5f, 0.8f), vec3(0.2f, -0.6f, -0.5f), 1.1f, 40, 30);
-  const auto run = [&](GiFrame& gi, int v) {
+  const auto run = [&](Viewer& gi, int v) {
     gi.run(views[v]);
     return gi.read(Buffer::Beauty);
   };
   Image alone[2];
   for (int v = 0; v < 2; ++v) {
-    GiFrame gi(small());
+    Viewer gi(small());
     run(gi, v), alone[v] = run(gi, v);
   }
-  GiFrame frames[2] = {GiFrame(small()), GiFrame(small())};
+  Viewer frames[2] = {Viewer(small()), Viewer(small())};
   for (int n = 0; n < 2; ++n)
     for (int v = 0; v < 2; ++v) {
       const Image image = run(frames[v], v);
@@ -108,11 +109,11 @@ TEST_F(ScenesTest, OneWhereAnotherWasIsDrawn) {
     Settings settings = small();
     applyTechnique(settings, technique);
     const LitRoom second(true);
-    GiFrame fresh(settings);
+    Viewer fresh(settings);
     fresh.run(second.scene.view());
     const Image expected = fresh.read(Buffer::Beauty);
 
-    GiFrame gi(settings);
+    Viewer gi(settings);
     std::optional<LitRoom> room(std::in_place, false);
     const SceneAssets* const place = &room->scene.assets;
     gi.run(room->scene.view());
@@ -132,7 +133,7 @@ TEST_F(ScenesTest, OneWhereAnotherWasIsDrawn) {
 /// Assigned in place, and moved elsewhere: its meshes lie somewhere else then.
 TEST_F(ScenesTest, OneThatIsAssignedOrMovedIsOpenedAgain) {
   LitRoom room(false), other(true);
-  GiFrame gi(small());
+  Viewer gi(small());
   gi.run(room.scene.view());
   room.scene.assets = other.scene.assets;
   room.scene.instances = other.scene.instances;

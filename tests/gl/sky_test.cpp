@@ -51,7 +51,7 @@ TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
         Settings settings;
         settings.gather.glossy = glossy;
         settings.effects[EffectId::Indirect] = EffectMode::Off;
-        GiFrame gi(settings);
+        Viewer gi(settings);
         gi.run(scene.view());
         const Image beauty = gi.read(Buffer::Beauty), direct = gi.read(Buffer::Direct), depth = gi.read(Buffer::Depth);
         int seen = 0;
@@ -76,7 +76,7 @@ TEST_F(SkyTest, DisplayShowsItToo) {
   scene.camera = cameraAt(vec3(0), vec3(0, 0.3f, -1), 1.9f);
   Settings settings;
   settings.image.exposure = 1;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(scene.view());
   const Image8 beauty = gi.readDisplay(Buffer::Beauty), direct = gi.readDisplay(Buffer::Direct);
   for (size_t i = 0; i < beauty.rgb.size(); ++i) ASSERT_NEAR(beauty.rgb[i], direct.rgb[i], 1) << i;
@@ -111,7 +111,7 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   Floor floor;
   floor.scene.sky = Sky::daylight(directionAt(60, 0), 3);
   Settings settings;
-  GiFrame gi(settings);
+  Viewer gi(settings);
   SceneView view = floor.scene.view();
   view.changes = {true, true, true, true, true};
   gi.run(view);
@@ -121,7 +121,7 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   view.changes = {false, false, true, false, false};
   gi.run(view);
   const Image after = gi.read(Buffer::Beauty);
-  GiFrame other(settings);
+  Viewer other(settings);
   view.changes = {true, true, true, true, true};
   other.run(view);
   const Image anew = other.read(Buffer::Beauty);

@@ -2,7 +2,7 @@
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
 #include "engine/gl/state_guard.h"
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/host_state.h"
 #include "tests/support/images.h"
@@ -155,7 +155,7 @@ class StateGuardTest : public GlTest {
 
 TEST_F(StateGuardTest, EveryTechniqueLeavesEveryBindingOfItsHost) {
   const std::vector<Step> steps = allSteps();
-  GiFrame gi(settings);
+  Viewer gi(settings);
   const auto frame = [&](const Step& step) -> const FrameStats& {
     step.edit(gi.settings());
     SceneView view = room.scene.view();
@@ -212,6 +212,12 @@ TEST_F(StateGuardTest, EveryTechniqueLeavesEveryBindingOfItsHost) {
   expectUnchanged(before, "presentError");
   gi.compareShadowMaps(room.scene.view(), 2, 16);
   expectUnchanged(before, "compareShadowMaps");
+  for (const Technique& t : techniqueTable()) { // without a viewer, whose guard was around that of the frame
+    gi.settings() = smallest();
+    applyTechnique(gi.settings(), t);
+    gi.gi().run(room.scene.view());
+    expectUnchanged(before, std::string(t.name) + " without a viewer");
+  }
   gi.reloadShaders();
   gi.restart();
   expectUnchanged(before, "restart");
@@ -225,7 +231,7 @@ TEST_F(StateGuardTest, WhatThrowsOutOfAFrameLeavesThemToo) {
   const Snapshot before = snapshot();
   for (const char* technique : {"multires-splat", "multires-gather", "isr", "lpv"}) {
     applyTechnique(settings, technique);
-    GiFrame gi(settings);
+    Viewer gi(settings);
     for (int last = 1, beats = 0;; ++last, beats = 0) {
       bool thrown = false;
       try {
@@ -261,7 +267,7 @@ TEST_F(StateGuardTest, TransformFeedbackThatRunsIsPausedMeanwhile) {
   const gl::Program& program = programs.get(
       {.vertex = "splat_refine.vert", .defines = {"FIRST"}, .geometry = "splat_refine.geom", .captured = {"patchOut"}});
   applyTechnique(settings, "isr");
-  GiFrame gi(settings);
+  Viewer gi(settings);
   program.use();
   feedback.bind();
   glBeginTransformFeedback(GL_POINTS);
@@ -311,7 +317,7 @@ TEST_F(StateGuardTest, OneInsideAnotherDoesNothingAndCallsOutAreHostsAgain) {
 
 /// A host that draws while it is told of progress, and wraps itself in a guard: the frame goes on as if it had not.
 TEST_F(StateGuardTest, AHostMayDrawWhileItIsToldOfProgress) {
-  GiFrame plain(settings), told(settings);
+  Viewer plain(settings), told(settings);
   plain.run(room.scene.view());
   int times = 0;
   HostState host;

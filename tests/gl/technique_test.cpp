@@ -43,7 +43,7 @@ TEST_F(TechniqueTest, EveryRowHasItsAxesAndDraws) {
     EXPECT_EQ(axes.gather, t.axes.gather) << t.name;
     EXPECT_EQ(axes.reconstruction, t.axes.reconstruction) << t.name;
     EXPECT_EQ(std::string(techniqueOf(s).name), t.name);
-    GiFrame gi(s);
+    Viewer gi(s);
     const FrameStats& stats = gi.run(room.scene.view());
     const Image image = gi.read(Buffer::Irradiance);
     EXPECT_GT(meanLuminance(image), 0.01) << t.name;
@@ -57,7 +57,7 @@ TEST_F(TechniqueTest, EveryRowHasItsAxesAndDraws) {
 TEST_F(TechniqueTest, ATechniqueOfOnesOwnIsAFileAndARow) {
   applyTechnique(settings, kAmbient);
   EXPECT_EQ(&techniqueOf(settings), &kAmbient);
-  GiFrame gi(settings);
+  Viewer gi(settings);
   const FrameStats& stats = gi.run(room.scene.view());
   for (const vec3& e : gi.read(Buffer::Irradiance).pixels) ASSERT_EQ(e, vec3(1));
   EXPECT_EQ(stats.vplsAlive, 0u);
@@ -79,7 +79,7 @@ TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
   const auto refused = [&](const std::function<void(Settings&)>& edit) -> std::string {
     Settings s = settings;
     edit(s);
-    GiFrame gi(s);
+    Viewer gi(s);
     try {
       gi.run(room.scene.view());
     } catch (const InputError& e) {
@@ -124,7 +124,7 @@ TEST_F(TechniqueTest, AHostsSurfacesGiveTheSamePicture) {
   HostSurfaces host{drawn.depth->name(), drawn.normal->name(), drawn.albedo->name(), drawn.emission->name()};
   for (const char* technique : {"smc", "multires-gather"}) {
     applyTechnique(settings, technique);
-    GiFrame ours(settings), theirs(settings);
+    Viewer ours(settings), theirs(settings);
     ours.run(view);
     theirs.run(view, {}, &host);
     EXPECT_EQ(ours.read(Buffer::Beauty).pixels, theirs.read(Buffer::Beauty).pixels) << technique;
@@ -132,7 +132,7 @@ TEST_F(TechniqueTest, AHostsSurfacesGiveTheSamePicture) {
     EXPECT_NE(theirs.texture(Buffer::Irradiance), 0u);
   }
   EXPECT_TRUE(glIsTexture(host.depth)) << "a host's texture stays the host's";
-  GiFrame gi(settings);
+  Viewer gi(settings);
   host.emission = 0;
   gi.run(view, {}, &host);
   for (const vec3& e : gi.read(Buffer::Emission).pixels) ASSERT_EQ(e, vec3(0));
@@ -176,7 +176,7 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
     if (row.name.starts_with("rsm."))
       applyTechnique(s, row.name == "rsm.vpls" ? "rsm" : row.name == "rsm.tau" ? "hisr" : "isr");
     if (row.name.starts_with("multires.")) applyTechnique(s, "multires-gather");
-    GiFrame gi(s);
+    Viewer gi(s);
     gi.run(room.scene.view());
     const double now = row.get(gi.settings());
     double other = row.choices.empty() ? (now > 0 ? now / 2 : 2) : (now == 0 ? 1 : 0);

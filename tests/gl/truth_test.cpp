@@ -153,7 +153,7 @@ TEST_F(TruthTest, AFrameShowsTheTruthItWasGiven) {
   LightView lamp;
   lamp.position = {0, 0.8f, 0};
   room_.scene.lights.push_back(lamp);
-  GiFrame gi(settings);
+  Viewer gi(settings);
   gi.run(room_.scene.view());
   const auto buffer = Buffer::Indirect;
   const Image8 own = gi.readDisplay(buffer);

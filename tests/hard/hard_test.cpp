@@ -44,7 +44,7 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
     ASSERT_STRNE(technique, "smc") << why;
     return;
   }
-  GiFrame gi(w.settings);
+  Viewer gi(w.settings);
   Image last, before;
   for (int frame = 0; frame < w.frames; ++frame) {
     w.addedOrRemoved.clear();
@@ -145,7 +145,7 @@ TEST_F(WalkIn, GivesTheLightOfAFreshStart) {
   w.settings.smc.moves = 64;
   const CameraView there = lookAt({0.1f, 0, -3}, {0, -0.1f, -6}, 1.2f);
   const auto meanAfter = [&](bool walks, uint32_t seed) {
-    GiFrame gi(w.settings, seed);
+    Viewer gi(w.settings, seed);
     double mean = 0;
     for (int frame = 0; frame < 60; ++frame) {
       const float way = walks ? std::min(1.0f, float(frame) / 30) : 1;

@@ -3,7 +3,7 @@
 // engine/platform in it.
 #include "contexts.h"
 #include "engine/core/error.h"
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/host_state.h"
 
@@ -79,7 +79,7 @@ class HostTest : public ::testing::TestWithParam<std::unique_ptr<HostContext> (*
 TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
   std::vector<float> alone;
   {
-    GiFrame gi(small());
+    Viewer gi(small());
     gi.run(box.scene.view());
     alone = texels(gi.texture(Buffer::Beauty), 40, 30);
   }
@@ -88,6 +88,14 @@ TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
   const Snapshot before = snapshot();
   {
     GiFrame gi(small());
+    expectUnchanged(before, "the construction of a frame");
+    gi.run(box.scene.view());
+    expectUnchanged(before, "a frame");
+    EXPECT_TRUE(glIsTexture(gi.directIrradiance()));
+    EXPECT_TRUE(glIsTexture(gi.indirectIrradiance()));
+  }
+  {
+    Viewer gi(small());
     expectUnchanged(before, "its construction");
     gi.run(box.scene.view());
     expectUnchanged(before, "run");
@@ -108,7 +116,7 @@ TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
 TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
   std::vector<float> alone;
   {
-    GiFrame gi(smallShared());
+    Viewer gi(smallShared());
     gi.run(box.scene.view());
     alone = texels(gi.texture(Buffer::Beauty), 40, 30);
   }
@@ -116,7 +124,7 @@ TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
   state.poison();
   const Snapshot before = snapshot();
   const std::unique_ptr<HostContext> second = host->sharing();
-  std::unique_ptr<GiFrame> gi;
+  std::unique_ptr<Viewer> gi;
   GLuint texture = 0;
   const auto there = [&](const std::function<void()>& work) {
     std::thread([&] {
@@ -127,7 +135,7 @@ TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
     }).join();
   };
   there([&] {
-    gi = std::make_unique<GiFrame>(smallShared());
+    gi = std::make_unique<Viewer>(smallShared());
     gi->run(box.scene.view());
     texture = gi->texture(Buffer::Beauty);
   });
@@ -152,7 +160,7 @@ TEST_P(HostTest, FramesOnTwoThreadsDrawWhatEachDrawsAlone) {
   LitBox boxes[2];
   boxes[1].scene.camera.worldFromView[3].x = 0.3f;
   const auto drawn = [&](int which, FrameStats& stats) {
-    GiFrame gi(smallShared(), 1 + which);
+    Viewer gi(smallShared(), 1 + which);
     for (int frame = 0; frame < 3; ++frame) stats = gi.run(boxes[which].scene.view());
     return gi.read(Buffer::Beauty).pixels;
   };

@@ -19,7 +19,7 @@ void accuracy(const AccuracyOptions& options) {
   const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
-  GiFrame gi(stage->settings, stage->seed);
+  Viewer gi(stage->settings, stage->seed);
   const SceneView view = stage->at(0);
   {
     Progress progress("placing virtual lights", options.output.quiet);

@@ -87,10 +87,10 @@ void addRows(const BenchOptions& options, const std::string& file, nlohmann::jso
   for (const InstanceView& i : still.instances) triangles += still.assets->meshes[i.mesh].triangles.size();
   const std::vector<CubeVariant> variants = variantsOf(*stage, options.quick);
   const int frames = options.quick ? 2 : 16, settle = options.quick ? 1 : 64;
-  std::unique_ptr<GiFrame> beside; // of the settings' technique, frame by frame in turn with each cube
+  std::unique_ptr<Viewer> beside; // of the settings' technique, frame by frame in turn with each cube
   for (const CubeVariant& variant : variants) {
     const bool own = &variant == &variants.front();
-    auto gi = std::make_unique<GiFrame>(variant.settings, stage->seed);
+    auto gi = std::make_unique<Viewer>(variant.settings, stage->seed);
     SceneView view = still;
     const FrameStats first = gi->run(view);
     view.changes = {false, false, false, false, false};

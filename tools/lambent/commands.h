@@ -45,7 +45,7 @@ void sayWarning(const FrameStats& stats);
 void writeJson(const std::string& file, const nlohmann::json& figures);
 /// What to write for a buffer by the file's extension: .exr linear, .png as a display shows it. Throws InputError for
 /// others. A .png is brought to this size where one is given.
-void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer, int width = 0, int height = 0);
+void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer, int width = 0, int height = 0);
 /// Checks before long work that `file` has an extension that can be written, and a folder that takes it.
 void checkPictureName(const std::string& file);
 nlohmann::json figuresOf(const FrameStats& stats);

@@ -29,7 +29,7 @@ void doctor(const OutputOptions& output) {
   launch.size = "64x64";
   launch.set = {"smc.vpls=256", "smc.warmup=10"};
   const auto stage = openLaunch(launch);
-  GiFrame gi(stage->settings);
+  Viewer gi(stage->settings);
   gi.run(stage->at(0));
   const FrameStats stats = gi.run(stage->at(0));
   double indirect = 0;

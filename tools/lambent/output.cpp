@@ -51,7 +51,7 @@ void checkPictureName(const std::string& file) {
   checkWritable(file);
 }
 
-void writeBuffer(const std::string& file, const GiFrame& gi, Buffer buffer, int width, int height) {
+void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer, int width, int height) {
   checkPictureName(file);
   if (std::filesystem::path(file).extension() == ".exr") return writeExr(file, gi.read(buffer));
   const Image8 picture = gi.readDisplay(buffer);

@@ -76,7 +76,7 @@ double peakMemoryMiB() {
 /// One technique that is recorded: alone, or one of two beside each other.
 struct Side {
   std::string technique;
-  std::unique_ptr<GiFrame> gi;
+  std::unique_ptr<Viewer> gi;
   FrameLog log = {};
   const FrameStats* stats = nullptr; // of the last frame
   std::string logName = "frames.csv";
@@ -183,9 +183,9 @@ void record(const RecordOptions& options) {
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
-  for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<GiFrame>(s, stage->seed)});
+  for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, stage->seed)});
   if (sides.size() > 1) sides[1].logName = "frames-" + options.beside + ".csv";
-  GiFrame& gi = *sides[0].gi;
+  Viewer& gi = *sides[0].gi;
   const CameraView whole = stage->camera;
   const int small = std::min(whole.width, kSheetWidth), smallHeight = std::max(1, whole.height * small / whole.width);
   ContactSheet sheet(options.sheet, total, small * int(sides.size()), smallHeight);

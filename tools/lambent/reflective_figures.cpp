@@ -342,7 +342,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
   }
   for (const Named& n : figure.pictures) {
     if (n.buffer == Buffer::Indirect) continue;
-    GiFrame gi(variantOf(*stage, n.technique, n.assignments).settings, stage->seed);
+    Viewer gi(variantOf(*stage, n.technique, n.assignments).settings, stage->seed);
     gi.run(stage->at(0));
     writeBuffer(folder / (std::string(n.name) + ".png"), gi, n.buffer);
   }

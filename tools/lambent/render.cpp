@@ -36,7 +36,7 @@ void render(const RenderOptions& options) {
   const auto stage = openLaunch(options.launch);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();
-  GiFrame gi(stage->settings, stage->seed);
+  Viewer gi(stage->settings, stage->seed);
   Progress progress("placing virtual lights", options.output.quiet);
   const auto begin = std::chrono::steady_clock::now();
   const FrameStats* stats = nullptr;

@@ -136,7 +136,7 @@ void soak(const SoakOptions& options) {
   say(*stage, options.output.quiet);
   needPunctualLight(*stage);
   GlContext context = GlContext::headless();
-  GiFrame gi(stage->settings, stage->seed);
+  Viewer gi(stage->settings, stage->seed);
   Edits edits(*stage, stage->seed);
   Growth program, openGl;
   int frame = 0;

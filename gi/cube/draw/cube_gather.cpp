@@ -2,10 +2,10 @@
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 #include "engine/gl/ring.h"
+#include "gi/cube/draw/cube_gather.h"
 #include "gi/cube/cube_file.h"
 #include "gi/gather/draw_gather.h"
 #include "gi/cube/draw/hemicube_pass.h"
-#include "gi/gather/stages.h"
 #include "gi/near/near_light.h"
 #include "shaders/shared/layered_cube.h"
 #include "shaders/shared/octahedral.h"
@@ -19,13 +19,13 @@ namespace lambent {
 
 namespace {
 
-class CubeGather : public IndirectStage {
+class CubeGather : public Gather {
   using Clock = std::chrono::steady_clock;
 
  public:
   explicit CubeGather(PassContext context) : context_(context) {}
 
-  SurfaceLighting run(const IndirectInputs& in, FrameStats& stats) override {
+  SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
     if (in.stores && update(in, stats)) nearDone_ = 0;
     if (in.stores && cube_.pending() == 0 && nearDone_ < kAllNear && traceNear(in, stats)) upload();
     if (nearDone_ != kAllNear) return {};
@@ -34,9 +34,9 @@ class CubeGather : public IndirectStage {
     stats.cubeBytes = entries_.buffer.bytes() + firsts_.buffer.bytes() + nodes_.buffer.bytes();
     stats.cubeKeptBytes = cube_.bytesKept() + near_.size() * sizeof(vec3);
     const gl::PassScope scope = context_.scope(StageId::Gather);
-    target_.fit(in.surfaces);
+    target_.fit(in.frame.surfaces);
     const gl::Program& program =
-        context_.programs.get({.fragment = "cube_gather.frag", .defines = bindSurfaces(in.surfaces)});
+        context_.programs.get({.fragment = "cube_gather.frag", .defines = bindSurfaces(in.frame.surfaces)});
     program.use();
     program.set("resolution", cube_.surfaces().cubes().front().resolution);
     program.set("brightest", brightest_);
@@ -50,36 +50,36 @@ class CubeGather : public IndirectStage {
   }
 
  private:
-  bool update(const IndirectInputs& in, FrameStats& stats) {
+  bool update(const GatherInputs& in, FrameStats& stats) {
     constexpr uint32_t kAtOnce = 64; // lights, between two reports
     const CpuScope scope(stats.stages, key(StageId::Cube));
-    const VirtualLights& lights = in.seen.lights;
+    const VirtualLights& lights = in.lights.list;
     bool changed = false, first = true;
     // This build goes to the file, now and then while it lasts.
-    const bool stored = in.world.view.changes.first && !in.settings.cubeFile.empty() && open(in, stats);
+    const bool stored = in.frame.world.view.changes.first && !in.frame.settings.cubeFile.empty() && open(in, stats);
     Clock::time_point saved = Clock::now();
     Clock::duration saveAfter = std::chrono::seconds(5);
-    hemicubes_.prepare(in.world, in.settings.hemicubes.maker);
+    hemicubes_.prepare(in.frame.world, in.frame.settings.hemicubes.maker);
     for (uint32_t total = 0, put = 0;; first = false) {
       const CubeWork work =
-          cube_.update({in.world.view.boundsWorld, in.world.rays, first && !opened_ ? in.world.moved : kNothingMoved,
-                        first && in.world.view.changes.first && !opened_, lights.slots, lights.direct, in.settings.cube,
-                        in.settings.gather, &hemicubes_},
+          cube_.update({in.frame.world.view.boundsWorld, in.frame.world.rays, first && !opened_ ? in.frame.world.moved : kNothingMoved,
+                        first && in.frame.world.view.changes.first && !opened_, lights.slots, lights.direct, in.frame.settings.cube,
+                        in.frame.settings.gather, &hemicubes_},
                        std::min(kAtOnce, in.most));
       stats.raysCube += work.rays;
       hemicubes_.tell(stats);
       changed |= work.changed;
       if (first) total = work.lightsIn + cube_.pending();
       try {
-        if (in.progress && total > kAtOnce) in.progress(int(total - cube_.pending()), int(total));
+        if (in.frame.progress && total > kAtOnce) in.frame.progress(int(total - cube_.pending()), int(total));
       } catch (...) { // somebody stops it: another run goes on from here
-        if (stored) saveCube(in.settings.cubeFile, cube_, keyOf(in));
+        if (stored) saveCube(in.frame.settings.cubeFile, cube_, keyOf(in));
         throw;
       }
       const bool done = cube_.pending() == 0;
       if (stored && changed && (done || Clock::now() - saved > saveAfter)) {
         const Clock::time_point begin = Clock::now();
-        saveCube(in.settings.cubeFile, cube_, keyOf(in));
+        saveCube(in.frame.settings.cubeFile, cube_, keyOf(in));
         saved = Clock::now();
         saveAfter = std::max(saveAfter, 20 * (saved - begin));
       }
@@ -88,14 +88,14 @@ class CubeGather : public IndirectStage {
   }
 
   /// Masks that are not cut out make other surfaces.
-  static uint64_t keyOf(const IndirectInputs& in) {
-    return cubeKey(in.world.view) + (in.settings.effects[EffectId::Alpha] == EffectMode::Off ? 1 : 0);
+  static uint64_t keyOf(const GatherInputs& in) {
+    return cubeKey(in.frame.world.view) + (in.frame.settings.effects[EffectId::Alpha] == EffectMode::Off ? 1 : 0);
   }
 
   /// Takes over what is in the file of the settings. A cube that does not fit is built anew; what is no cube at all
   /// stays as it is. Whether the file is to be written.
-  bool open(const IndirectInputs& in, FrameStats& stats) {
-    const std::filesystem::path file = in.settings.cubeFile;
+  bool open(const GatherInputs& in, FrameStats& stats) {
+    const std::filesystem::path file = in.frame.settings.cubeFile;
     removeLeftovers(file);
     if (!std::filesystem::exists(file)) {
       checkWritable(file);
@@ -115,10 +115,10 @@ class CubeGather : public IndirectStage {
 
   /// What bounds take from near lights, at entries that light reaches: all, or in pictures that put few lights at once
   /// the next few. Whether it is done.
-  bool traceNear(const IndirectInputs& in, FrameStats& stats) {
+  bool traceNear(const GatherInputs& in, FrameStats& stats) {
     constexpr size_t kPerLight = 2048; // entries
     const size_t entries = cube_.surfaces().entries().size();
-    const GatherSettings& gather = in.settings.gather;
+    const GatherSettings& gather = in.frame.settings.gather;
     if (nearDone_ == 0) near_.assign(entries, vec3(0));
     if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) {
       nearDone_ = kAllNear;
@@ -139,14 +139,14 @@ class CubeGather : public IndirectStage {
     }
     constexpr int kRays = 4; // times gather.near: nothing is mixed between entries
     const std::vector<vec3> light = traceNearLightAt(places,
-                                                     {.view = in.world.view,
-                                                      .rays = in.world.rays,
-                                                      .lights = in.world.lights,
-                                                      .virtuals = in.seen.lights.slots,
+                                                     {.view = in.frame.world.view,
+                                                      .rays = in.frame.world.rays,
+                                                      .lights = in.frame.world.lights,
+                                                      .virtuals = in.lights.list.slots,
                                                       .gather = gather,
                                                       .casts = kRays * gather.near,
-                                                      .bounces = in.bounces,
-                                                      .seed = in.seed},
+                                                      .bounces = in.frame.bounces,
+                                                      .seed = in.frame.seed},
                                                      stats.raysNear);
     for (size_t i = 0; i < of.size(); ++i) near_[of[i]] = light[i];
     nearDone_ = end < entries ? end : kAllNear;
@@ -172,7 +172,7 @@ class CubeGather : public IndirectStage {
       for (const bool side : {false, true}) {
         for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
           const CubeEntry& entry = surfaces.entries()[e];
-          if (entry.normal[at.axis] > 0 != side) continue;
+          if ((entry.normal[at.axis] > 0) != side) continue;
           if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
           const vec3 x = entry.position - grid.corner;
           const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
@@ -224,6 +224,6 @@ class CubeGather : public IndirectStage {
 
 } // namespace
 
-std::unique_ptr<IndirectStage> makeCubeGather(PassContext context) { return std::make_unique<CubeGather>(context); }
+std::unique_ptr<Gather> makeCubeGather(PassContext context) { return std::make_unique<CubeGather>(context); }
 
 } // namespace lambent

@@ -4,8 +4,6 @@
 #include "engine/trace/ray_query.h"
 #include "gi/surfaces/gpu_scene.h"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 
 namespace lambent {
@@ -23,25 +21,19 @@ void HemicubePass::prepare(const World& world, CubeMaker maker) {
 
 void HemicubePass::make(std::span<Hemicube> hemicubes) {
   if (hemicubes.empty()) return;
-  CubeMaker maker = maker_;
-  if (maker == CubeMaker::Auto) {
-    if (!measured_) measureMakers(hemicubes);
-    maker = *measured_;
-  } else {
-    report_ = maker == CubeMaker::Rays ? "rays" : "raster";
-  }
-  maker == CubeMaker::Rays ? cast(hemicubes) : draw(hemicubes);
+  if (maker_ != CubeMaker::Auto) faster_.take(maker_ == CubeMaker::Raster);
+  if (maker_ == CubeMaker::Auto && !faster_.measured()) measureMakers(hemicubes);
+  maker_ == CubeMaker::Raster || (maker_ == CubeMaker::Auto && faster_.gpu()) ? draw(hemicubes) : cast(hemicubes);
 }
 
 void HemicubePass::tell(FrameStats& stats) {
   stats.raysCube += std::exchange(counts_, {});
-  stats.cubeMakerTimes = report_;
-  stats.cubeMaker = report_.substr(0, report_.find(' '));
+  stats.cubeMakerTimes = faster_.report();
+  stats.cubeMaker = faster_.maker();
 }
 
 void HemicubePass::measureMakers(std::span<const Hemicube> hemicubes) {
-  // As ParaboloidMapPass does: the first of each pays for shaders and caches, eight more are timed, and the GPU has to
-  // be twice as fast, so that a machine's noise does not decide which texels it is along edges.
+  // As ParaboloidMapPass does: the first of each pays for shaders and caches, eight more are timed.
   const size_t count = std::min<size_t>(8, hemicubes.size());
   std::vector<Hemicube> sample;
   for (size_t i = 0; i < count; ++i) sample.push_back(hemicubes[i * hemicubes.size() / count]);
@@ -49,10 +41,7 @@ void HemicubePass::measureMakers(std::span<const Hemicube> hemicubes) {
   cast(std::span(sample).first(1));
   const double rasterMs = gl::secondsOf([&] { draw(sample); }) * 1e3 / double(count);
   const double raysMs = gl::secondsOf([&] { cast(sample); }) * 1e3 / double(count);
-  measured_ = 2 * rasterMs < raysMs ? CubeMaker::Raster : CubeMaker::Rays;
-  report_ = measured_ == CubeMaker::Rays
-                ? fmt::format("rays ({:.2f} ms a hemicube, raster {:.2f} ms)", raysMs, rasterMs)
-                : fmt::format("raster ({:.2f} ms a hemicube, rays {:.2f} ms)", rasterMs, raysMs);
+  faster_.measure(raysMs, rasterMs, "a hemicube");
 }
 
 void HemicubePass::cast(std::span<Hemicube> hemicubes) {

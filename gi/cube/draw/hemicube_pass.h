@@ -1,13 +1,12 @@
 // Hemicubes of virtual lights (gi/cube/hemicube.h), drawn by the GPU or cast on the CPU, whichever is faster here.
 #pragma once
 
+#include "gi/contract/faster_of.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/world.h"
 #include "gi/cube/hemicube.h"
 #include "gi/plan/settings.h"
-
-#include <optional>
 
 namespace lambent {
 
@@ -33,8 +32,7 @@ class HemicubePass : public HemicubeMaker {
   const RayQuery* rays_ = nullptr;
   float near_ = 0; // metres
   CubeMaker maker_ = CubeMaker::Auto;
-  std::optional<CubeMaker> measured_;
-  std::string report_;
+  FasterOf faster_{"rays", "raster"};
   RayCounts counts_;
   gl::Texture texels_; // a layer is a hemicube, as in Hemicube::texels
   gl::Texture depth_;

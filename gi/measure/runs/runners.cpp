@@ -28,7 +28,7 @@ class WholeFrames final : public Runner {
   }
 
  private:
-  GiFrame gi_;
+  Viewer gi_;
   const Buffer watched_;
 };
 

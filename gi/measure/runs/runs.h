@@ -5,7 +5,7 @@
 //   Variant → Runner (runners.cpp) → measure (measure.cpp) → Measured
 #pragma once
 
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 #include "gi/measure/statistics.h"
 #include "gi/measure/watched.h"
 
@@ -33,7 +33,7 @@ class Runner {
 struct Variant;
 using MakeRunner = std::function<std::unique_ptr<Runner>(const Variant&)>;
 
-/// Whole frames by GiFrame, in the current GL context; values at points are those of the indirect or the direct buffer. Passes are
+/// Whole frames by Viewer, in the current GL context; values at points are those of the indirect or the direct buffer. Passes are
 /// finished one by one unless the settings choose a timing: timer queries that lag would give one variant's times to
 /// another.
 std::unique_ptr<Runner> wholeFrames(const Variant& variant);

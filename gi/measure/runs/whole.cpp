@@ -15,7 +15,7 @@ bool isShare(const vec3& v) { return isLight(v) && v.x <= 1 && v.y <= 1 && v.z <
 
 } // namespace
 
-std::string defectOf(const GiFrame& gi, const Settings& settings) {
+std::string defectOf(const Viewer& gi, const Settings& settings) {
   constexpr Buffer kLight[] = {Buffer::Beauty, Buffer::Direct, Buffer::Emission};
   const auto look = [&](Buffer buffer, bool (*holds)(const vec3&)) -> std::string {
     const Image image = gi.read(buffer);

@@ -1,7 +1,7 @@
 // What must hold after every frame, whatever the scene is.
 #pragma once
 
-#include "gi/frame/gi_frame.h"
+#include "gi/viewer/viewer.h"
 
 #include <string>
 
@@ -11,6 +11,6 @@ namespace lambent {
 /// normals and depths finite. Indirect light by itself is an estimate with differences that rays add
 /// (gi/gather/map_checks.h), and may be less than nothing. Virtual lights are no more than there
 /// may be, and each that is alive has a place, a unit normal, and finite radiance and area that are not negative.
-std::string defectOf(const GiFrame& gi, const Settings& settings);
+std::string defectOf(const Viewer& gi, const Settings& settings);
 
 } // namespace lambent

@@ -1,47 +1,15 @@
-// Gathers of virtual lights, as stages of indirect light, and what puts their light together. Contents of this folder
-// in data-flow order:
-//   draw_gather     the draw that all of them share
-//   pixel_gather    at pixels: every light at each, or the 4×4 subsets of interleaved sampling
-//   ray_gather      at pixels, on the CPU, with a ray for every pair
-//   add_pixels      what the CPU found at pixels, added to what was gathered
-//   patch_atlas     the multiresolution buffer of papers 2 and 3, flattened; from its patches to pixels
-//   patch_gather    at the patches that it marks
-//   splat, splat_gather  lights into patches
-//   light_volume, volume_gather  lights into a grid, through it, and from there to pixels
-//   hemicube_pass   what these lights see, drawn or cast
-//   cube_gather     lights into a layered depth cube (gi/cube), and from there to pixels
-//   tree_gather     the draw of light trees
-//   map_checks      rays that check what maps say at pixels
-//   near_light_pass what bounds take from near lights, added to any of these
-//   history         what pixels gathered, averaged over pictures
-//   filter          the subsets mixed
+// How gathered light becomes the frame's. Contents of this folder in data-flow order:
+//   history  what pixels gathered, averaged over frames
+//   filter   the subsets mixed
+// From patches to pixels: gi/gather/patch_atlas.h.
 #pragma once
 
-#include "gi/contract/figures.h"
-#include "gi/contract/indirect_stage.h"
+#include "engine/gl/ring.h"
 #include "gi/contract/pass_context.h"
+#include "gi/contract/surface_lighting.h"
+#include "gi/plan/settings.h"
 
 namespace lambent {
-
-std::unique_ptr<IndirectStage> makePixelGather(PassContext context);
-std::unique_ptr<IndirectStage> makeRayGather(PassContext context);
-std::unique_ptr<IndirectStage> makePatchGather(PassContext context);
-std::unique_ptr<IndirectStage> makeSplatGather(PassContext context);
-std::unique_ptr<IndirectStage> makeVolumeGather(PassContext context);
-std::unique_ptr<IndirectStage> makeCubeGather(PassContext context);
-
-/// The stages, each made when it is first asked for and kept.
-class IndirectStages {
- public:
-  explicit IndirectStages(PassContext context) : context_(context) {}
-  /// The stage that the settings' axes ask for.
-  IndirectStage& of(const Settings& settings);
-
- private:
-  using Make = std::unique_ptr<IndirectStage> (*)(PassContext);
-  PassContext context_;
-  std::vector<std::pair<Make, std::unique_ptr<IndirectStage>>> made_;
-};
 
 struct FilterInputs {
   const GBuffer& surfaces;
@@ -82,8 +50,8 @@ class HistoryPass {
   void forget() { pictures_ = 0, following_ = 0; }
   /// Whether the next picture of a still view follows light that changed before.
   bool follows() const { return following_ > 0; }
-  /// Pictures in it: which of those that are averaged the next one is.
-  uint32_t picture() const { return pictures_; }
+  /// Frames in it: which of those that are averaged the next one is.
+  uint32_t sample() const { return pictures_; }
 
  private:
   /// A picture's light, and the surfaces that it fell on.

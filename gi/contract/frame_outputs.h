@@ -1,0 +1,21 @@
+// What a frame made: light on surfaces, the surfaces, and what led to them, for viewers, hosts and tests.
+#pragma once
+
+#include "engine/scene/sky.h"
+#include "gi/contract/light_provider.h"
+
+#include <optional>
+
+namespace lambent {
+
+/// Valid until the next run. Null where a stage did not run.
+struct FrameOutputs {
+  GBuffer surfaces;
+  SurfaceLighting direct, indirect;
+  ProviderInside inside;               // of the technique
+  std::optional<PatchPyramid> patches; // where somebody asked for them
+  Sky sky;
+  float farDistance = 1; // metres; the scene's size, with room to grow
+};
+
+} // namespace lambent

@@ -1,0 +1,26 @@
+// What gives light of virtual lights on surfaces: the part of a composed technique between lights and reconstruction.
+#pragma once
+
+#include "gi/contract/light_provider.h"
+
+namespace lambent {
+
+struct GatherInputs {
+  const Frame& frame;
+  ShadowedLights lights;
+  uint32_t sample = 0;   // of those that are averaged: each takes other rays, and pixels another part of the lights
+  bool averaged = false; // there are such samples
+  bool changes = false;  // light does; means are short then
+  bool stands = false;   // neither light nor camera changes, and means follow no change before
+  bool stores = true;    // what outlives frames follows the lights; else it stays as it is
+  uint32_t most = ~0u;   // lights that are put into it at once: there is no light before all are
+};
+
+class Gather {
+ public:
+  virtual ~Gather() = default;
+  /// Irradiance at the surfaces, valid until the next run. Adds its rays and counts to the figures.
+  virtual SurfaceLighting run(const GatherInputs& in, FrameStats& stats) = 0;
+};
+
+} // namespace lambent

@@ -1,0 +1,104 @@
+#include "gi/frame/composed_technique.h"
+
+#include "engine/gl/counts.h"
+#include "gi/contract/figures.h"
+
+namespace lambent {
+
+namespace {
+
+/// Light is averaged over frames. (Forced, it has nothing to do.)
+bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
+
+} // namespace
+
+void ComposedTechnique::wait() {
+  if (source_) source_->wait();
+}
+
+/// A part of another kind is given up with all that it keeps.
+void ComposedTechnique::begin(const SceneView&, const Settings& settings) {
+  const Axes axes = axesOf(settings);
+  if (!sameSource(axes, axes_)) source_ = makeSource(axes, context_);
+  if (!gather_ || !sameGather(axes, axes_)) {
+    gathered_ = {};
+    gather_ = nullptr; // not both in memory
+    gather_ = makeGather(axes, context_);
+  }
+  axes_ = axes;
+  needs_ = needsOf(axes);
+}
+
+void ComposedTechnique::forget() {
+  if (source_) source_->forget();
+  maps_.forget();
+  history_.forget();
+  gathered_ = {};
+}
+
+ProviderStatus ComposedTechnique::status() const {
+  return {.settled = source_ && source_->settled(),
+          .lightArrived = source_ && source_->arrived(),
+          .mapsWaiting = maps_.waiting(),
+          .averaged = averaged_};
+}
+
+ProviderInside ComposedTechnique::inside() const {
+  return {gathered_, maps_.maps(), source_ ? source_->set() : nullptr};
+}
+
+void ComposedTechnique::update(const FrameWorld& in, FrameStats& stats) {
+  if (!averages(in.plan) || in.gatherChanged) history_.forget();
+  lights_ = {};
+  const bool gathers = in.plan.on(EffectId::Gather) || needs_.sampled();
+  if (source_ && in.plan.on(EffectId::Indirect) && gathers) lights_ = source_->run(in, needs_, stats);
+  stats.vplsAlive = lights_.alive;
+}
+
+SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
+  gathered_ = {};
+  if (!frame.plan.on(EffectId::Gather) && !needs_.stored) {
+    history_.forget(); // it would be of another place
+    return {};
+  }
+  const gl::DrawCount draws;
+  const EffectPlan& plan = frame.plan;
+  const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
+  const ShadowedLights lights = maps_.update({frame, lights_, needs_.maps}, stats);
+  if (averaging) history_.fit(frame.surfaces);
+  gathered_ = gather_->run({.frame = frame,
+                            .lights = lights,
+                            .sample = averaging ? history_.sample() : 0,
+                            .averaged = averaging,
+                            .changes = changes,
+                            .stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows(),
+                            .stores = plan.on(EffectId::Gather)},
+                           stats);
+  if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = draws();
+  return reconstruct(frame, stats);
+}
+
+SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, FrameStats& stats) {
+  const EffectPlan& plan = frame.plan;
+  const bool averaging = averages(plan);
+  FilterSettings filter = frame.settings.filter;
+  filter.on = filter.on && plan.on(EffectId::Filter);
+  SurfaceLighting mean = gathered_;
+  if (averaging) {
+    const gl::DrawCount draws;
+    mean = history_.run({.surfaces = frame.surfaces,
+                         .gathered = gathered_,
+                         .cameraMoved = frame.world.view.changes.camera,
+                         .lightChanges = plan.lightChanges(),
+                         .settings = frame.settings.history,
+                         .filter = filter});
+    stats.of(EffectId::History) = draws();
+    averaged_ = plan.changed() ? 1 : averaged_ + 1;
+  }
+  const gl::DrawCount draws;
+  const SurfaceLighting light = filter_.run({frame.surfaces, mean, filter, !averaging});
+  if (filter.on) stats.of(EffectId::Filter) = draws();
+  return light;
+}
+
+} // namespace lambent

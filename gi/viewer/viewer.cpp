@@ -1,0 +1,162 @@
+#include "gi/viewer/viewer.h"
+
+#include "engine/core/error.h"
+#include "engine/core/text.h"
+#include "engine/gl/state_guard.h"
+#include "gi/viewer/picture.h"
+
+#include <chrono>
+
+namespace lambent {
+
+struct Viewer::Passes {
+  explicit Passes(PassContext c) : context(c) {}
+
+  PassContext context;
+  CompositePass composite{context}, part{context}; // part: direct or indirect light by itself
+  DisplayPass display{context};
+  TruthDisplay truth{context};
+  FrameResults results;
+  FrameStats stats;
+};
+
+Viewer::Viewer(const Settings& settings, uint32_t seed)
+    : gi_(settings, seed), passes_(std::make_unique<Passes>(gi_.context())) {}
+Viewer::~Viewer() = default;
+
+void Viewer::restart() {
+  passes_.reset(); // before the programs that it draws with
+  gi_.restart();
+  passes_ = std::make_unique<Passes>(gi_.context());
+  exposure_ = 0;
+}
+
+const FrameStats& Viewer::run(const SceneView& view, const std::function<void(int, int)>& progress,
+                              const HostSurfaces* host) {
+  const gl::StateGuard guard;
+  FrameResults& results = passes_->results;
+  FrameStats& stats = passes_->stats;
+  stats = gi_.run(view, progress, host);
+  const auto begin = std::chrono::steady_clock::now();
+  const gl::Counts before = gl::counts();
+  const Picture last = results.picture;
+  results = {gi_.outputs(), last};
+  if (stats.plan.on(EffectId::Redraw)) {
+    results.picture = passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
+    const float asked = settings().image.exposure;
+    if (asked > 0)
+      exposure_ = asked;
+    else if (exposure_ <= 0)
+      exposure_ = measureExposure(results.picture);
+  }
+  for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
+  const gl::Counts asked = gl::counts() - before;
+  stats.draws += asked.draws;
+  stats.waits += asked.waits;
+  stats.readBacks += asked.readBacks;
+  stats.of(EffectId::Redraw) += asked.draws;
+  if (results.surfaces.roughnessMetalness) stats.of(EffectId::Glossy) += asked.draws;
+  stats.wallMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return stats;
+}
+
+const FrameStats& Viewer::stats() const { return passes_->stats; }
+
+// Looking at it -------------------------------------------------------------------------------------------------------
+
+namespace {
+const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect", "irradiance", "albedo",
+                                               "normal",      "depth",   "emission", "unfiltered", "vpls",
+                                               "shadow-maps", "patches", "nan"};
+}
+
+const std::vector<std::string>& bufferNames() { return kBufferNames; }
+
+Buffer bufferByName(const std::string& name) {
+  for (size_t i = 0; i < kBufferNames.size(); ++i)
+    if (kBufferNames[i] == name) return Buffer(i);
+  const std::string near = nearestName(name, kBufferNames);
+  std::string all;
+  for (const std::string& n : kBufferNames) all += (all.empty() ? "" : ", ") + n;
+  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
+}
+
+Image Viewer::read(Buffer buffer) const {
+  const gl::StateGuard guard;
+  return readBuffer(buffer, passes_->results);
+}
+
+uint32_t Viewer::texture(Buffer buffer) const {
+  const FrameResults& r = passes_->results;
+  const auto name = [](const gl::Texture* texture) { return texture ? texture->name() : 0; };
+  if (!r.picture.radiance) return 0;
+  switch (buffer) {
+  case Buffer::Beauty:
+    return name(r.picture.radiance);
+  case Buffer::Irradiance:
+    return name(r.indirect.irradiance);
+  case Buffer::Albedo:
+    return name(r.surfaces.albedo);
+  case Buffer::Normal:
+    return name(r.surfaces.normal);
+  case Buffer::Emission:
+    return name(r.surfaces.emission);
+  case Buffer::Direct:
+  case Buffer::Indirect: {
+    const gl::StateGuard guard;
+    const bool direct = buffer == Buffer::Direct;
+    return name(passes_->part
+                    .run({.surfaces = r.surfaces,
+                          .direct = direct ? r.direct : SurfaceLighting{},
+                          .indirect = direct ? SurfaceLighting{} : r.indirect,
+                          .sky = direct ? r.sky : Sky{},
+                          .emission = direct})
+                    .radiance);
+  }
+  default:
+    return 0;
+  }
+}
+
+/// Draws the buffer as a display shows it.
+void Viewer::show(Buffer buffer) const {
+  if (buffer == Buffer::Vpls) gi_.vpls(); // an update takes the set away
+  passes_->display.run(buffer, passes_->results, look());
+}
+
+Image8 Viewer::readDisplay(Buffer buffer) const {
+  const gl::StateGuard guard;
+  show(buffer);
+  return passes_->display.read();
+}
+
+void Viewer::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
+  show(buffer);
+  passes_->display.present(framebuffer, width, height);
+}
+
+void Viewer::takeTruth(const Image& truth) {
+  const gl::StateGuard guard;
+  passes_->truth.take(truth, passes_->results);
+}
+
+void Viewer::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
+  const gl::Texture& truth = passes_->truth.run(buffer, passes_->results, look());
+  show(buffer);
+  passes_->display.present(framebuffer, width, height, &truth, divider);
+}
+
+void Viewer::presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const {
+  const gl::StateGuard guard;
+  passes_->display.run(buffer, passes_->results, look(), {&passes_->truth.linear(), full});
+  passes_->display.present(framebuffer, width, height);
+}
+
+Look Viewer::look() const {
+  const Settings& s = gi_.settings();
+  return {exposure_, s.image.toneMapper, s.debug.nan, s.image.antiAliasing};
+}
+
+} // namespace lambent

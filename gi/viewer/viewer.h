@@ -1,0 +1,91 @@
+// Looking at global illumination: the frame (gi/frame/gi_frame.h), the image that comes of it, and every buffer on the way.
+// For the walkthrough, tools and tests; an engine that composes its own image does without. Needs no OpenGL header.
+#pragma once
+
+#include "engine/core/image.h"
+#include "gi/frame/gi_frame.h"
+
+namespace lambent {
+
+struct Look; // gi/viewer/picture.h
+
+/// What may be shown or read back. The first seven are meant for users; the others are debug views.
+enum class Buffer : int {
+  Beauty,
+  Direct,
+  Indirect,
+  Irradiance,
+  Albedo,
+  Normal,
+  Depth,
+  Emission,   // radiance the visible surfaces emit
+  Unfiltered, // irradiance before the cross-bilateral filter: shows the 4×4 subsets
+  Vpls,       // beauty with the VPLs drawn in: colour = intensity, ring = age
+  ShadowMaps, // the first paraboloid maps as a contact sheet
+  Patches, // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
+  Nan,     // NaN magenta, infinity cyan, else grey beauty
+};
+/// Throws InputError with the nearest name.
+Buffer bufferByName(const std::string& name);
+const std::vector<std::string>& bufferNames();
+
+/// A GiFrame with a view on it. Not copyable; destroy while the context is current.
+class Viewer {
+ public:
+  explicit Viewer(const Settings& settings, uint32_t seed = 1);
+  ~Viewer();
+
+  /// GiFrame::run, then the image. The figures are those of both.
+  const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
+                        const HostSurfaces* host = nullptr);
+  /// As a new one with the present settings: nothing is known of frames before.
+  void restart();
+  const FrameStats& stats() const; // of the last frame
+
+  // As those of GiFrame.
+  GiFrame& gi() { return gi_; }
+  Settings& settings() { return gi_.settings(); }
+  const VplSet& vpls() const { return gi_.vpls(); }
+  const RayQuery& rays() const { return gi_.rays(); }
+  std::vector<std::string> reloadShaders() { return gi_.reloadShaders(); }
+  ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
+                                    const std::function<void(int, int)>& progress = {}) {
+    return gi_.compareShadowMaps(view, slots, points, progress);
+  }
+
+  /// Factor on radiance before tone mapping: image.exposure, or what the first frame asked for.
+  float exposure() const { return exposure_; }
+
+  /// The last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world normal,
+  /// depth in metres along the view direction.
+  Image read(Buffer buffer) const;
+  /// Name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next run. 0 for depth
+  /// (GBuffer::depth holds it reversed) and debug views, and before the first frame.
+  uint32_t texture(Buffer buffer) const;
+  /// The last frame as shown on a display: exposure, tone mapper, sRGB (albedo, normal, depth mapped to visible
+  /// ranges).
+  Image8 readDisplay(Buffer buffer) const;
+  /// Draws it into the framebuffer named `framebuffer`, scaled to its size.
+  void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
+
+  // A truth of the last frame's view next to the image. Of beauty, direct, indirect or irradiance only.
+
+  /// Takes it over: linear, of the image's size, as read() gives the buffer.
+  void takeTruth(const Image& truth);
+  /// present; right of `divider`, a share of the width, the truth of the buffer, shown alike.
+  void presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const;
+  /// Draws how far the buffer is from its truth (shaders/shared/error_color.h); `full`: the error that has the full
+  /// colour, in the buffer's unit.
+  void presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const;
+
+ private:
+  struct Passes;
+  void show(Buffer buffer) const;
+  Look look() const;
+
+  GiFrame gi_;
+  std::unique_ptr<Passes> passes_;
+  float exposure_ = 0;
+};
+
+} // namespace lambent
