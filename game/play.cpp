@@ -191,7 +191,9 @@ void Play::keepChanges(const Settings& before, const std::string& presetBefore) 
 
 /// All as it would be if the person had never changed anything.
 void Play::forgetChanges() {
-  preferences_ = Preferences{.window = preferences_.window};
+  const auto window = preferences_.window;
+  preferences_ = {};
+  preferences_.window = window;
   gi_.settings() = stage_->settings;
   if (stage_->settings.image.exposure <= 0) gi_.settings().image.exposure = ownExposure_;
   const LaunchOptions& launch = options_.launch;

@@ -49,6 +49,8 @@ constexpr Technique kTechniques[] = {
 
 std::span<const Technique> techniqueTable() { return kTechniques; }
 
+Needs needsOf(const Technique& technique) { return technique.make ? technique.needs : needsOf(technique.axes); }
+
 std::vector<std::string> techniqueNames() {
   std::vector<std::string> names;
   for (const Technique& t : kTechniques) names.push_back(t.name);
@@ -72,7 +74,7 @@ std::unique_ptr<LightProvider> makeTechnique(const Settings& settings, PassConte
 }
 
 void applyTechnique(Settings& settings, const Technique& technique) {
-  if (!needsOf(axesOf(settings)).freeGather || !needsOf(technique.axes).freeGather) {
+  if (!needsOf(settings).freeGather || !needsOf(technique).freeGather) {
     settings.vpl.visibility = technique.axes.visibility;
     settings.gather.mode = technique.axes.gather;
   }

@@ -44,6 +44,7 @@ struct Needs {
   bool sampled() const {
     return lights == LightSupply::Kept || lights == LightSupply::Fixed || lights == LightSupply::PerFrame;
   }
+  bool reflective() const { return lights == LightSupply::Reflective; }
   /// Its lights live from frame to frame.
   bool persistent() const { return lights == LightSupply::Kept || lights == LightSupply::Fixed; }
 };

@@ -26,6 +26,7 @@ struct Technique {
   std::span<const OwnSetting> settings = {}; // that its own provider reads
 };
 std::span<const Technique> techniqueTable();
+Needs needsOf(const Technique& technique);
 /// Throws InputError that gives the nearest name, or all of them.
 const Technique& techniqueByName(const std::string& name);
 std::vector<std::string> techniqueNames();

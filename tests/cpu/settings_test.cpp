@@ -81,16 +81,22 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
                           Reconstruction(reconstruction)};
           const std::string reason = whyNot(axes);
           (reason.empty() ? fine : refused)++;
-          const GatherRow& g = rowOf(axes.gather);
+          using enum GatherMode;
+          const auto is = [&](std::initializer_list<GatherMode> modes) {
+            return std::ranges::find(modes, axes.gather) != modes.end();
+          };
+          const bool patches = is({Multires, MultiresInterleaved, Splat, SplatPerVpl});
+          const bool subsets = is({Interleaved, MultiresInterleaved});
+          const bool splats = is({Splat, SplatPerVpl}), volume = is({Volume}), stored = is({Cube});
           const bool upsampled = reconstruction >= int(Reconstruction::Upsample);
           const bool filtered = reconstruction % 2 == 1;
           const bool lights = axes.source != VplSource::None;
-          bool sense = upsampled == g.patches && (!filtered || g.subsets) &&
-                       (lights || (axes.gather == GatherMode::Own && axes.visibility == VplVisibility::None));
-          if (axes.source == VplSource::Hisr) sense = sense && !g.splats && !g.volume;
+          bool sense = upsampled == patches && (!filtered || subsets) &&
+                       (lights || (axes.gather == Own && axes.visibility == VplVisibility::None));
+          if (axes.source == VplSource::Hisr) sense = sense && !splats && !volume;
           const bool anyView = axes.source == VplSource::Ir || axes.source == VplSource::Poisson;
-          if (g.stored) sense = sense && anyView && axes.visibility == VplVisibility::None;
-          if (axes.source == VplSource::Hisr || g.volume) sense = sense && axes.visibility == VplVisibility::None;
+          if (stored) sense = sense && anyView && axes.visibility == VplVisibility::None;
+          if (axes.source == VplSource::Hisr || volume) sense = sense && axes.visibility == VplVisibility::None;
           EXPECT_EQ(reason.empty(), sense) << source << visibility << gather << reconstruction << ' ' << reason;
         }
   EXPECT_GT(fine, 100);

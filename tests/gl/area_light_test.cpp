@@ -26,7 +26,7 @@ class AreaLightTest : public GlTest {
     results.surfaces = surfacePass.run({world.gpu, world.view.camera});
     Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
     results.indirect =
-        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, patches}, stats);
+        lightOf(direct, world, results.surfaces, patches, settings, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 
@@ -76,7 +76,7 @@ class AreaLightTest : public GlTest {
     results.surfaces = surfacePass.run({world.gpu, world.view.camera, true});
     Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
     results.direct =
-        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, patches}, stats);
+        lightOf(direct, world, results.surfaces, patches, settings, stats);
     return readBuffer(Buffer::Direct, results);
   }
 

@@ -34,7 +34,7 @@ class DirectTest : public GlTest {
     // reads as irradiance, without albedo
     PatchPass patchPass(passes, StageId::Patches);
     Patches patches([&] { return patchPass.run(results.surfaces, all.multires); });
-    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all, patches}, stats);
+    results.indirect = lightOf(direct, world, results.surfaces, patches, all, stats);
     return readBuffer(Buffer::Irradiance, results);
   }
 

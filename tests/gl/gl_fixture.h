@@ -7,13 +7,11 @@
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
 #include "engine/trace/embree_query.h"
-#include "gi/frame/gi_frame.h"
-#include "gi/viewer/picture.h"
-#include "gi/gather/stages.h"
-#include "gi/sources/packed_lights.h"
-#include "gi/surfaces/surfaces.h"
+#include "gi/frame/composed_technique.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
+#include "gi/sources/packed_lights.h"
+#include "gi/surfaces/surfaces.h"
 #include "shaders/shared/paraboloid.h"
 #include "tests/support/hand_scene.h"
 
@@ -122,6 +120,33 @@ class PlacedScene {
   LightSet lights_;
 };
 
+/// Light of a provider on surfaces, as in the first frame of the world.
+inline SurfaceLighting lightOf(LightProvider& provider, const World& world, const GBuffer& surfaces, Patches& patches,
+                               const Settings& settings, FrameStats& stats) {
+  const EffectPlan plan = planEffects(world.view, settings, {.needs = needsOf(settings)});
+  return provider.run({{.world = world, .plan = plan, .settings = settings}, surfaces, patches}, stats);
+}
+
+/// The gathers that settings ask for, each made when it is first asked for.
+class Gathers {
+ public:
+  explicit Gathers(PassContext context) : context_(context) {}
+
+  SurfaceLighting run(const World& world, const GBuffer& surfaces, Patches& patches, const ShadowedLights& lights,
+                      const Settings& settings, FrameStats& stats) {
+    const Axes axes = axesOf(settings);
+    auto made = std::ranges::find_if(made_, [&](const auto& m) { return sameGather(m.first, axes); });
+    if (made == made_.end()) made = made_.insert(made, {axes, makeGather(axes, context_)});
+    static const EffectPlan plan;
+    const Frame frame{{.world = world, .plan = plan, .settings = settings}, surfaces, patches};
+    return made->second->run({.frame = frame, .lights = lights}, stats);
+  }
+
+ private:
+  PassContext context_;
+  std::vector<std::pair<Axes, std::unique_ptr<Gather>>> made_;
+};
+
 /// Surfaces of a scene, and light gathered on them from virtual lights by the stage that settings ask for.
 class GatherTest : public GlTest {
  protected:
@@ -132,8 +157,7 @@ class GatherTest : public GlTest {
   SurfaceLighting gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
                            const ParaboloidMaps* maps = nullptr) {
     Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-    const SurfaceLighting light =
-        stages.of(settings).run({placed->world(), gbuffer, pyramid, {lights, maps}, settings}, stats);
+    const SurfaceLighting light = gathers.run(placed->world(), gbuffer, pyramid, {lights, maps}, settings, stats);
     patches = pyramid.made();
     return light;
   }
@@ -159,7 +183,7 @@ class GatherTest : public GlTest {
   SurfacePass surfacePass{passes};
   PackedLightBuffer lightBuffer{passes, StageId::Vpls};
   PatchPass patchPass{passes, StageId::Patches};
-  IndirectStages stages{passes};
+  Gathers gathers{passes};
   FilterPass filterPass{passes};
   FrameStats stats;
   std::optional<PatchPyramid> patches; // of the last gather

@@ -149,7 +149,7 @@ TEST_F(GlossyTest, PunctualLightsAndEmissiveSamples) {
     DirectLight direct(passes);
     Patches none;
     results.direct =
-        direct.run({world, results.surfaces, planEffects(world.view, settings, {}), settings, none}, stats);
+        lightOf(direct, world, results.surfaces, none, settings, stats);
     const Image image = readBuffer(Buffer::Direct, results);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {

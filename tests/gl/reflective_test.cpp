@@ -57,7 +57,7 @@ class TurnCounter {
     int whole = 0;                 // of one pixel, over all draws
     bool tooManyInOneDraw = false; // more than 4096
   };
-  explicit TurnCounter(gl::GpuProfiler& profiler) : stages_{PassContext{programs_, profiler}} {
+  explicit TurnCounter(gl::GpuProfiler& profiler) : gathers_{PassContext{programs_, profiler}} {
     shaders_.replace("tree_gather.frag", "while (m < end) {", "while (m < end) {\n      ++turns;");
     shaders_.replace("tree_gather.frag", "for (int root", "int turns = 0;\n  for (int root");
     shaders_.replace("tree_gather.frag", "vec4(irradiance * float(rootStep), 1.0)",
@@ -69,7 +69,7 @@ class TurnCounter {
     Patches none;
     FrameStats stats;
     const SurfaceLighting light =
-        stages_.of(settings).run({world, gbuffer, none, {{.trees = &trees}}, settings}, stats);
+        gathers_.run(world, gbuffer, none, {{.trees = &trees}}, settings, stats);
     std::vector<Turns> turns;
     for (const vec4& texel : readTexture(*light.irradiance)) turns.push_back({int(texel.y), texel.x > 0});
     return turns;
@@ -78,7 +78,7 @@ class TurnCounter {
  private:
   ShaderCopy shaders_;
   gl::ProgramCache programs_{shaders_.path};
-  IndirectStages stages_;
+  Gathers gathers_;
 };
 
 LightView pointLight(const vec3& position, const vec3& intensity) {

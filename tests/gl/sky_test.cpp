@@ -21,7 +21,7 @@ class SkyTest : public GlTest {
     FrameResults results;
     results.surfaces = surfaces.run({world.gpu, world.view.camera});
     Patches patches;
-    results.indirect = direct.run({world, results.surfaces, planEffects(world.view, all, {}), all, patches}, stats);
+    results.indirect = lightOf(direct, world, results.surfaces, patches, all, stats);
     return readBuffer(Buffer::Irradiance, results); // reads without albedo
   }
   /// Irradiance of a lone plate in the middle of the picture.

@@ -64,12 +64,12 @@ class StrictFetchTest : public GlTest {
           settings.multires.finest = mode == GatherMode::Multires ? 4 : 1;
           settings.multires.upsample =
               mode == GatherMode::MultiresInterleaved ? PatchUpsample::Bilinear : PatchUpsample::Bilateral;
-          IndirectStages stages{context};
+          Gathers gathers{context};
           PatchPass patchPass{context, StageId::Patches};
           FilterPass filterPass{context};
           FrameStats stats;
           Patches pyramid([&] { return patchPass.run(gbuffer, settings.multires); });
-          const SurfaceLighting raw = stages.of(settings).run({world, gbuffer, pyramid, {vpls}, settings}, stats);
+          const SurfaceLighting raw = gathers.run(world, gbuffer, pyramid, {vpls}, settings, stats);
           images.push_back(readTexture(*filterPass.run({gbuffer, raw, FilterSettings{}}).irradiance));
         }
       }

@@ -2,7 +2,9 @@
 // needs a file and a row, and a host may bring its surfaces.
 #include "ambient.h"
 #include "engine/core/error.h"
+#include "gi/measure/picture_error.h"
 #include "gl_fixture.h"
+#include "progressive.h"
 #include "tests/support/images.h"
 
 namespace lambent::test {
@@ -49,7 +51,7 @@ TEST_F(TechniqueTest, EveryRowHasItsAxesAndDraws) {
     EXPECT_GT(meanLuminance(image), 0.01) << t.name;
     for (const vec3& e : image.pixels) ASSERT_TRUE(isFinite(e)) << t.name;
     EXPECT_EQ(stats.raysRadiosity.closest > 0,
-              rowOf(t.axes.source).sampled && t.axes.source != VplSource::Tcas && t.axes.source != VplSource::Ir)
+              needsOf(t).sampled() && t.axes.source != VplSource::Tcas && t.axes.source != VplSource::Ir)
         << t.name;
   }
 }
@@ -73,6 +75,62 @@ TEST_F(TechniqueTest, ATechniqueOfOnesOwnIsAFileAndARow) {
   gi.run(still());
   for (const vec3& e : gi.read(Buffer::Irradiance).pixels) ASSERT_EQ(e, vec3(1));
   EXPECT_NE(smc.pixels[0], vec3(1));
+}
+
+/// A path tracer is one file and one row: it converges in a still view, follows its own settings, and begins again
+/// where something changes.
+TEST_F(TechniqueTest, AProgressivePathTracerIsAFileAndARow) {
+  room.scene.assets.materials[0].baseColor = vec4(0.8f, 0.5f, 0.2f, 1);
+  applyTechnique(settings, kProgressive);
+  EXPECT_EQ(settingText(settings, "progressive.paths"), "16");
+  applySetting(settings, "progressive.paths", "64");
+  EXPECT_THROW(applySetting(settings, "progressive.paths", "0"), InputError);
+  EXPECT_THROW(applySetting(settings, "progressive.path", "1"), InputError);
+  Settings other;
+  EXPECT_THROW(applySetting(other, "progressive.paths", "1"), InputError) << "of this technique alone";
+  Viewer gi(settings);
+  const FrameStats* stats = &gi.run(room.scene.view());
+  EXPECT_TRUE(stats->plan.on(EffectId::Bounces));
+  EXPECT_FALSE(stats->plan.on(EffectId::History));
+  const Image first = gi.read(Buffer::Irradiance);
+  int frames = 1;
+  while (stats->plan.on(EffectId::Redraw) && frames < 100) {
+    stats = &gi.run(still());
+    if (stats->plan.on(EffectId::Redraw)) {
+      EXPECT_NE(stats->plan[EffectId::Redraw].reason.find("of 64 paths"), std::string::npos);
+      ++frames;
+    }
+  }
+  EXPECT_EQ(frames, 16) << "64 paths, 4 a frame, then it rests";
+  // Two independent halves of the truth: it is as near to it as they are to each other.
+  const SceneView view = room.scene.view();
+  EmbreeQuery rays(room.scene.assets);
+  rays.update(view);
+  const LightSet lights = collectLights(view);
+  const auto truthOf = [&](uint32_t seed) {
+    ReferenceSums sums(view.camera.width, view.camera.height);
+    RayCounts counts;
+    const ReferenceInputs in{.rays = rays, .lights = lights, .camera = view.camera, .bounces = 2, .seed = seed};
+    addSamples(sums, in, 64, counts);
+    return readReference(sums, in, ReferenceBuffer::Irradiance).mean;
+  };
+  const Image truth = truthOf(7), half = truthOf(8), converged = gi.read(Buffer::Irradiance);
+  const double noise = pictureError(half, truth).rmse;
+  EXPECT_LT(pictureError(converged, truth).rmse, 1.1 * noise);
+  EXPECT_GT(pictureError(first, truth).rmse, 1.5 * noise) << "the first frame has a sixteenth of the paths";
+
+  SceneView dimmed = room.scene.view();
+  for (LightView& light : room.scene.lights) light.intensity *= 0.5f;
+  dimmed = room.scene.view();
+  dimmed.changes = {false, false, true, false, false};
+  stats = &gi.run(dimmed);
+  EXPECT_TRUE(stats->plan.on(EffectId::Redraw));
+  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), 0.5 * meanLuminance(converged),
+              0.05 * meanLuminance(converged))
+      << "nothing of before is left";
+  applySetting(gi.settings(), "progressive.paths", "4");
+  gi.run(still());
+  EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw));
 }
 
 TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
@@ -100,7 +158,7 @@ TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
   EXPECT_NE(refused([](Settings& s) {
               applyTechnique(s, kAmbient);
               s.gather.mode = GatherMode::Full;
-            }).find("ambient has a stage of its own"),
+            }).find("ambient has a provider of its own"),
             std::string::npos);
   EXPECT_NE(refused([](Settings& s) {
               applyTechnique(s, kAmbient);

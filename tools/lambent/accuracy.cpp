@@ -124,7 +124,7 @@ void declareAccuracy(CLI::App& app) {
       if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
       if (std::ranges::count(reflectiveFigureNames(), o.figure) > 0)
         throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
-      if (!rowOf(techniqueByName(technique).axes.source).sampled)
+      if (!needsOf(techniqueByName(technique)).sampled())
         throw InputError("--technique " + technique, "has no sampled lights (smc, ir, mir and tcas have)");
     }
     if (!o.curve.empty()) return accuracyCurve(o);

@@ -131,7 +131,7 @@ void bench(const BenchOptions& options) {
     throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
   const auto stage = openLaunch(options.launch);
   const std::vector<Variant> variants = sidesOf(options, *stage);
-  if (std::ranges::any_of(variants, [](const Variant& v) { return rowOf(v.settings.vpl.source).reflective; }))
+  if (std::ranges::any_of(variants, [](const Variant& v) { return needsOf(v.settings).reflective(); }))
     needPunctualLight(*stage);
   say(*stage, options.output.quiet);
   GlContext context = GlContext::headless();

@@ -184,7 +184,7 @@ std::string csvOf(const nlohmann::json& sweeps) {
 
 void benchGrowth(const BenchOptions& options) {
   const auto stage = openLaunch(options.launch);
-  if (!rowOf(stage->settings.vpl.source).sampled)
+  if (!needsOf(stage->settings).sampled())
     throw InputError("--technique " + options.launch.technique, "has no sampled lights (smc, ir, mir and tcas have)");
   say(*stage, options.output.quiet);
   const fs::path folder = reportFolder(options.output.out, "out/bench");

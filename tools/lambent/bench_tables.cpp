@@ -113,7 +113,7 @@ nlohmann::json rowOf(const BenchOptions& options, const std::string& file) {
   launch.scene = file;
   const auto stage = openLaunch(launch);
   if (!stage->shot) throw InputError(file, "not a shot (a .json file)");
-  if (!rowOf(stage->settings.vpl.source).sampled)
+  if (!needsOf(stage->settings).sampled())
     throw InputError("--technique " + launch.technique, "has no sampled lights (smc, ir, mir and tcas have)");
   if (stage->settings.frame.overlap)
     throw InputError("setting frame.overlap", "cannot be on here (what runs beside a frame is no part of its time)");

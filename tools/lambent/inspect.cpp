@@ -64,7 +64,11 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   // Of a frame some time after the start, so that what moves by itself shows.
   const EffectPlan plan =
       planEffects(stage->at(1.0 / 30), stage->settings,
-                  {.first = false, .settingsChanged = false, .drawingChanged = false, .settled = true});
+                  {.first = false,
+                   .settingsChanged = false,
+                   .drawingChanged = false,
+                   .needs = needsOf(stage->settings),
+                   .status = {.settled = true}});
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = plan[EffectId(i)];
     j["effects"].push_back({{"name", effectRow(EffectId(i)).name}, {"on", e.on}, {"reason", e.reason}});

@@ -21,12 +21,12 @@ struct RenderOptions {
 /// What brought the indirect light of a frame that was drawn.
 std::string lightsText(const FrameStats& stats, const Settings& settings) {
   if (!stats.plan.on(EffectId::Indirect)) return "direct light only";
-  const SourceRow& source = rowOf(settings.vpl.source);
-  if (source.tree) return "virtual lights in trees";
-  if (settings.vpl.source == VplSource::None) return "no virtual lights";
+  const Needs needs = needsOf(settings);
+  if (needs.tree) return "virtual lights in trees";
+  if (needs.lights == LightSupply::None) return "no virtual lights";
   const std::string count = std::to_string(stats.vplsAlive);
-  if (source.fixed) return count + " samples of surfaces";
-  return count + (source.sampled ? " of " + std::to_string(settings.smc.vpls) : "") + " virtual lights";
+  if (needs.lights == LightSupply::Fixed) return count + " samples of surfaces";
+  return count + (needs.sampled() ? " of " + std::to_string(settings.smc.vpls) : "") + " virtual lights";
 }
 
 void render(const RenderOptions& options) {

@@ -68,8 +68,7 @@ constexpr int kPicturePaths = 32; // per pixel of the picture that shows where t
 constexpr int kStillFrames = 6;   // to measure each time at which a shot stands still
 
 bool drawsWholeFrames(const Settings& settings) {
-  return settings.own || watchesDirect(settings) || rowOf(settings.vpl.source).reflective ||
-         settings.vpl.visibility == VplVisibility::Maps;
+  return settings.own || watchesDirect(settings) || needsOf(settings).reflective() || needsOf(settings).maps;
 }
 
 /// The truth first, path traced in two halves, then each technique with each seed.
@@ -193,7 +192,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   for (const Measured& m : std::span(runs).subspan(truths)) {
     TechniqueRun run;
     run.name = m.variant.name;
-    run.vpls = rowOf(m.variant.settings.vpl.source).reflective
+    run.vpls = needsOf(m.variant.settings).reflective()
                    ? uint32_t(m.of([](const FrameStats& s) { return s.vplsAlive; }).most)
                    : uint32_t(m.variant.settings.smc.vpls);
     run.series = toneMapped(m.series);

@@ -24,7 +24,7 @@ const std::map<std::string, double> kPublished{
 const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
   Settings settings;
   applyTechnique(settings, t.name);
-  const TechniqueRun* simplest = shot.technique(rowOf(settings.vpl.source).reflective ? "rsm" : "ir");
+  const TechniqueRun* simplest = shot.technique(needsOf(settings).reflective() ? "rsm" : "ir");
   return simplest && simplest->grid.change > 0 ? simplest : nullptr;
 }
 

@@ -94,7 +94,7 @@ class SceneSweep {
     RunLog log(folder_ / ("runs-" + name_ + ".jsonl"), conditions_);
     std::vector<SweepPoint> points;
     for (SweepPoint& p : sweepPoints(options_.sweepPart())) {
-      if (!p.technique.empty() && rowOf(techniqueByName(p.technique).axes.source).reflective && !punctual_)
+      if (!p.technique.empty() && needsOf(techniqueByName(p.technique)).reflective() && !punctual_)
         out_.leftOut.push_back(p.technique + ": no punctual light to draw reflective maps from");
       else
         points.push_back(std::move(p));

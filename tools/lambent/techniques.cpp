@@ -24,11 +24,7 @@ template <class Visit> void forAllCombinations(const Visit& visit) {
   for (size_t s = 0; s < std::size(kSources); ++s)
     for (size_t v = 0; v < std::size(kVisibilities); ++v)
       for (size_t g = 0; g < std::size(kGathers); ++g) {
-        const GatherRow& gather = kGathers[g];
-        const Reconstruction r = gather.patches
-                                     ? (gather.subsets ? Reconstruction::UpsampleFilter : Reconstruction::Upsample)
-                                     : (gather.subsets ? Reconstruction::Filter : Reconstruction::None);
-        const Axes axes{VplSource(s), VplVisibility(v), GatherMode(g), r};
+        const Axes axes{VplSource(s), VplVisibility(v), GatherMode(g), reconstructionOf(GatherMode(g), true)};
         visit(axes, whyNot(axes));
       }
 }

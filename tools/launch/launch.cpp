@@ -345,7 +345,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
 }
 
 void tellWhatIsLeftOut(LaunchContext& stage, const Settings& settings) {
-  if (!rowOf(settings.vpl.source).reflective) return;
+  if (!needsOf(settings).reflective()) return;
   SceneExtractor probe;
   const SceneView view = probe.extract(stage.scene, stage.camera, 0);
   const std::string technique = "technique " + std::string(techniqueOf(settings).name);

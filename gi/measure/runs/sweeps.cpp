@@ -173,13 +173,12 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
   for (const Assignments& set : jointDesign(quick))
     if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
   for (const Technique& technique : techniqueTable()) {
-    if (technique.name == std::string("smc") || technique.axes.source == VplSource::None) continue;
+    if (technique.name == std::string("smc") || needsOf(technique).lights == LightSupply::None) continue;
     if (part == SweepPart::Joint || (quick && technique.name != std::string("rsm"))) continue;
-    const SourceRow& source = rowOf(technique.axes.source);
     add({.name = technique.name,
          .kind = Named,
          .technique = technique.name,
-         .slow = source.sampled && !source.persistent}); // every map anew in every frame
+         .slow = needsOf(technique).lights == LightSupply::PerFrame}); // every map anew in every frame
   }
   return points;
 }
