@@ -20,10 +20,9 @@ void setConventions();
 /// must have ended or is lost: queries of samples passed and primitives written, conditional rendering, transform
 /// feedback of the default object, and subroutine uniforms.
 ///
-/// Costs 13 µs, 21 µs where every binding point is taken, and 0.004 µs inside another one: llvmpipe, Mesa 22.3.6, 2
-/// cores with other work on them, StateGuardTest.CostsLittle, 2026-11-25 (on Zink 20 and 25 µs). So everything is kept
-/// at once; to keep each binding at its first use would make every bind dearer and save less than a thousandth of a
-/// frame.
+/// Costs 6 µs, 9 µs where every binding point is taken, and 0.004 µs inside another one: llvmpipe, Mesa 22.3.6, 2 cores,
+/// StateGuardTest.CostsLittle, 2026-11-25 (twice that with other work on the machine, and on Zink). So everything is kept
+/// at once: to keep each binding at its first use would make every bind dearer and save a thousandth of a frame.
 ///
 /// Inside one all code keeps to the conventions, and another on the same thread does nothing: who calls a frame several
 /// times takes one around all of it.

@@ -12,6 +12,8 @@
 #include "gi/lighting/light_set.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/surfaces/surfaces.h"
+#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer.h"
 #include "shaders/shared/paraboloid.h"
 #include "tests/support/hand_scene.h"
 
