@@ -19,15 +19,16 @@ float farDistanceOf(const SceneView& view, float before) {
 } // namespace
 
 bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
-  if (assets_ == &assets) return false;
+  if (opened_ == assets.identity.value()) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  assets_ = &assets;
+  opened_ = 0; // until it is: a pulse may throw
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
   frozen_ = false;
   lightingStale_ = surfacesStale_ = true;
   testedDraws_ = 0;
+  opened_ = assets.identity.value();
   return true;
 }
 

@@ -45,7 +45,7 @@ class WorldState {
 
  private:
   gl::ProgramCache& programs_;
-  const SceneAssets* assets_ = nullptr;
+  uint64_t opened_ = 0; // identity of its assets
   std::unique_ptr<GpuScene> gpu_;
   std::unique_ptr<EmbreeQuery> rays_;
   ViewCopy view_;
