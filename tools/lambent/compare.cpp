@@ -2,7 +2,7 @@
 #include "engine/core/error.h"
 #include "gi/measure/picture_error.h"
 #include "tools/lambent/commands.h"
-#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/picture.h"
 
 #include <cstdio>
 
@@ -15,11 +15,11 @@ struct CompareOptions {
   std::string a, b, layer, mask, difference;
 };
 
+std::string sizeText(const Image& image) { return std::to_string(image.width) + "x" + std::to_string(image.height); }
+
 void checkSize(const std::string& file, const Image& image, const std::string& like, const Image& wanted) {
   if (image.width != wanted.width || image.height != wanted.height)
-    throw InputError(file, std::to_string(image.width) + "x" + std::to_string(image.height) + ", while " + like +
-                               " is " + std::to_string(wanted.width) + "x" + std::to_string(wanted.height) +
-                               " (sizes must agree)");
+    throw InputError(file, sizeText(image) + ", while " + like + " is " + sizeText(wanted) + " (sizes must agree)");
 }
 
 void compare(const CompareOptions& options) {
@@ -40,13 +40,13 @@ void compare(const CompareOptions& options) {
       if (!(maxComponent(mask.pixels[i]) > 0)) difference.pixels[i] = vec3(0);
     writePicture(options.difference, difference, midGreyAt(e.meanTruth));
   }
-  writeJson(options.output.json, {{"rmse", e.rmse},
-                                  {"rel_mse", e.relMse},
-                                  {"bias", e.bias},
-                                  {"max", e.largest},
-                                  {"mean_b", e.meanTruth},
-                                  {"pixels", e.pixels},
-                                  {"not_finite_pixels", e.notFinite}});
+  writeJson(options.output.json, Value::of({{"rmse", e.rmse},
+                                            {"rel_mse", e.relMse},
+                                            {"bias", e.bias},
+                                            {"max", e.largest},
+                                            {"mean_b", e.meanTruth},
+                                            {"pixels", e.pixels},
+                                            {"not_finite_pixels", e.notFinite}}));
   const auto refuse = [&] { // figures of the others are right, but this is no picture to be content with
     if (e.notFinite > 0)
       throw RunError(options.a + " or " + options.b + ": " + std::to_string(e.notFinite) +
@@ -63,14 +63,14 @@ void compare(const CompareOptions& options) {
 
 void declareCompare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = app.add_subcommand("compare", "errors of picture A against B (linear .exr or .pfm)");
-  command->add_option("A", options->a, "picture to judge")->required();
-  command->add_option("B", options->b, "picture to hold it to")->required();
-  command->add_option("--layer", options->layer, "layer of B to take, where it is an .exr with several");
-  command->add_option("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
-  command->add_option("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");
-  addOutputOptions(*command, options->output, "");
-  command->callback([options] { compare(*options); });
+  Command command(app, "compare", "errors of picture A against B (linear .exr or .pfm)");
+  command.scene(options->a, "A", "picture to judge");
+  command.scene(options->b, "B", "picture to hold it to");
+  command.text("--layer", options->layer, "layer of B to take, where it is an .exr with several");
+  command.text("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
+  command.text("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");
+  command.output(options->output, "");
+  command.run([options] { compare(*options); });
 }
 
 } // namespace lambent

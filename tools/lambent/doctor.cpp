@@ -15,7 +15,7 @@ namespace {
 
 void doctor(const OutputOptions& output) {
   GlContext context = GlContext::headless();
-  nlohmann::json j;
+  Value j;
   std::vector<std::pair<std::string, std::string>> rows = context.info();
   const std::vector<DeviceDescription> devices = GlContext::devices();
   for (size_t i = 0; i < devices.size(); ++i) rows.emplace_back("device " + std::to_string(i), devices[i].name);
@@ -28,10 +28,10 @@ void doctor(const OutputOptions& output) {
   launch.scene = (findContentFolder() / "cornell/cornell.gltf").string();
   launch.size = "64x64";
   launch.set = {"smc.vpls=256", "smc.warmup=10"};
-  const auto stage = openLaunch(launch);
-  GiFrame gi(stage->settings);
-  gi.run(stage->at(0));
-  const FrameStats stats = gi.run(stage->at(0));
+  const auto opened = openLaunch(launch);
+  GiFrame gi(opened->settings);
+  gi.run(opened->at(0));
+  const FrameStats stats = gi.run(opened->at(0));
   double indirect = 0;
   bool finite = true;
   const Image image = gi.read(Buffer::Indirect);
@@ -61,9 +61,9 @@ void doctor(const OutputOptions& output) {
 
 void declareDoctor(CLI::App& app) {
   auto output = std::make_shared<OutputOptions>();
-  CLI::App* command = app.add_subcommand("doctor", "what this machine offers, and whether the pipeline runs on it");
-  addOutputOptions(*command, *output, "");
-  command->callback([output] { doctor(*output); });
+  Command command(app, "doctor", "what this machine offers, and whether the pipeline runs on it");
+  command.output(*output, "");
+  command.run([output] { doctor(*output); });
 }
 
 } // namespace lambent

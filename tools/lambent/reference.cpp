@@ -1,15 +1,11 @@
 // lambent reference SCENE|SHOT: path-traced truth, progressive and resumable.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "engine/core/text.h"
-#include "gi/measure/runs/runs.h"
-#include "gi/reference/traced_picture.h"
-#include "tools/lambent/commands.h"
-#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/picture.h"
+#include "tools/lambent/study.h"
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <sstream>
 
 namespace lambent {
@@ -35,10 +31,8 @@ ReferenceBuffer referenceBufferByName(const std::string& name) {
   const std::vector<std::string> names = {"beauty", "direct", "indirect", "irradiance"};
   for (size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return ReferenceBuffer(i);
-  const std::string near = nearestName(name, names);
-  throw InputError("--buffer " + name,
-                   "no such buffer of the reference (" +
-                       (near.empty() ? "beauty, direct, indirect, irradiance" : "did you mean " + near + "?") + ")");
+  throw InputError("--buffer " + name, "no such buffer of the reference (" +
+                                           guessText(name, names, "beauty, direct, indirect, irradiance") + ")");
 }
 
 void checkClamp(const ReferenceOptions& options, const Settings& settings) {
@@ -50,28 +44,20 @@ void checkClamp(const ReferenceOptions& options, const Settings& settings) {
 void trackPixels(const ReferenceOptions& options) {
   if (fs::path(options.pixels).extension() != ".csv") throw InputError(options.pixels, "not a table (.csv)");
   checkWritable(options.pixels);
-  const auto stage = openLaunch(options.launch);
-  say(*stage, options.output.quiet);
-  if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
-  const Settings& settings = stage->settings;
+  const auto opened = openAndSay(options.launch, options.output.quiet);
+  if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
+  const Settings& settings = opened->settings;
   checkClamp(options, settings);
   refuseGlossy(settings);
-  const TrackedPixels tracked = trackedPixels(*stage->shot, options.grid);
+  const TrackedPixels tracked = trackedPixels(*opened->shot, options.grid);
   const uint32_t samples = uint32_t(options.samples.value_or(kDefaultSamples));
   WatchedScene watched(tracked.points);
-  std::vector<std::vector<TrackedValue>> series;
-  {
-    Progress progress("tracing paths", options.output.quiet);
-    RunPlan plan = planOf(*stage, progress, 0);
-    plan.view = [&, shown = plan.view](int frame) {
-      const SceneView view = shown(frame);
-      watched.update(view);
-      return view;
-    };
-    plan.points = tracked.points;
-    series =
-        measure({{"truth", settings, stage->seed, pathsAtPoints(watched, samples, options.clamped)}}, plan)[0].series;
-  }
+  RunPlan plan = planOf(*opened, 0);
+  plan.view = watchedBy(watched, plan.view);
+  plan.points = tracked.points;
+  const auto series = run({{"truth", settings, opened->seed, pathsAtPoints(watched, samples, options.clamped)}}, plan,
+                          "tracing paths", options.output.quiet)[0]
+                          .series;
   std::ostringstream rows;
   for (size_t f = 0; f < series.size(); ++f)
     for (size_t i = 0; i < series[f].size(); ++i) {
@@ -82,11 +68,7 @@ void trackPixels(const ReferenceOptions& options) {
         for (int c = 0; c < 3; ++c) rows << ',' << value[c];
       rows << '\n';
     }
-  writeAtomically(options.pixels, [&](const fs::path& temporary) {
-    std::ofstream out(temporary);
-    out << "frame,pixel,marked,u,v,surface,r,g,b,error_r,error_g,error_b\n" << rows.str();
-    if (!out.flush()) throw RunError(options.pixels + ": cannot be written");
-  });
+  writeText(options.pixels, "frame,pixel,marked,u,v,surface,r,g,b,error_r,error_g,error_b\n" + rows.str());
   if (!options.output.quiet)
     std::printf("%s: indirect radiance at %zu pixels (%zu marked) in %zu frames, %u samples each\n",
                 options.pixels.c_str(), tracked.points.size(), tracked.marked, series.size(), samples);
@@ -102,25 +84,19 @@ void reference(const ReferenceOptions& options) {
     checkWritable(options.state);
     removeLeftovers(options.state);
   }
-  const auto stage = openLaunch(options.launch);
-  say(*stage, options.output.quiet);
-  const Settings& settings = stage->settings;
+  const auto opened = openAndSay(options.launch, options.output.quiet);
+  const Settings& settings = opened->settings;
   checkClamp(options, settings);
   const auto begin = std::chrono::steady_clock::now();
-  TracedPicture traced;
-  {
-    Progress progress("tracing paths", options.output.quiet);
-    traced = tracePicture(
-        stage->at(options.time), settings,
-        {.buffer = buffer,
-         .samples = uint32_t(options.samples.value_or(options.error > 0 ? kLargestSamples : kDefaultSamples)),
-         .error = options.error,
-         .clamped = options.clamped,
-         .seed = stage->seed,
-         .state = options.state,
-         .cancelled = [] { return interrupted.load(); },
-         .progress = [&](int done, int total) { progress.update(done, total); }});
-  }
+  const TracedPicture traced =
+      trace(opened->at(options.time), settings,
+            {.buffer = buffer,
+             .samples = uint32_t(options.samples.value_or(options.error > 0 ? kLargestSamples : kDefaultSamples)),
+             .error = options.error,
+             .clamped = options.clamped,
+             .seed = opened->seed,
+             .state = options.state},
+            "tracing paths", options.output.quiet);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   if (traced.samples > 0) {
@@ -128,17 +104,18 @@ void reference(const ReferenceOptions& options) {
     const float factor = buffer == ReferenceBuffer::Irradiance ? traced.exposure / kPi : traced.exposure;
     writePicture(out, picture.mean, factor, settings.image.toneMapper);
     if (!options.errors.empty()) writePicture(options.errors, picture.error, factor);
-    writeJson(options.output.json,
-              {{"picture", out},
-               {"buffer", options.buffer},
-               {"bounces", traced.bounces},
-               {"clamp", traced.clamp},
-               {"spp", traced.samples},
-               {"relative_error", picture.relativeError},
-               {"relative_error_of_mean", picture.relativeErrorOfMean},
-               {"exposure", traced.exposure},
-               {"seconds", seconds},
-               {"rays", {{"closest", traced.rays.closest}, {"occlusion", traced.rays.occlusion}}}});
+    writeJson(
+        options.output.json,
+        Value::of({{"picture", out},
+                   {"buffer", options.buffer},
+                   {"bounces", traced.bounces},
+                   {"clamp", traced.clamp},
+                   {"spp", traced.samples},
+                   {"relative_error", picture.relativeError},
+                   {"relative_error_of_mean", picture.relativeErrorOfMean},
+                   {"exposure", traced.exposure},
+                   {"seconds", seconds},
+                   {"rays", Value::of({{"closest", traced.rays.closest}, {"occlusion", traced.rays.occlusion}})}}));
     if (!options.output.quiet)
       std::printf("%s: %dx%d %s, %d bounces, %u samples per pixel, standard error %.3g %% per pixel (RMS over mean), "
                   "%.2g %% of the mean, %.1f s\n",
@@ -154,27 +131,24 @@ void reference(const ReferenceOptions& options) {
 
 void declareReference(CLI::App& app) {
   auto options = std::make_shared<ReferenceOptions>();
-  CLI::App* command = app.add_subcommand("reference", "path-traced truth of one view; can be continued");
-  command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
-  addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "picture, linear .exr or .png (default reference.exr)");
-  command->add_option("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
-  command->add_option("--spp", options->samples, "samples per pixel in all (default 64; with --error no bound)")
-      ->check(CLI::Range(1, kLargestSamples));
-  command
-      ->add_option("--error", options->error,
-                   "stop at this standard error per pixel: its RMS over pixels and channels, over the picture's mean")
-      ->check(CLI::Range(1e-6, 1e6));
-  command->add_option("--time", options->time, "seconds into the shot or the scene's animation");
-  command->add_option("--state", options->state, "keep the sums in this file, and go on from it when it is there");
-  command->add_option("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
-  command->add_option("--pixels", options->pixels,
-                      "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
-  command->add_option("--grid", options->grid, "grid of so many by so many pixels (default 16)")
-      ->check(CLI::Range(0, 256));
-  command->add_flag("--clamped", options->clamped,
-                    "bound the geometry term between picture and first bounce as gather.clamp bounds virtual lights");
-  command->callback([options] { reference(*options); });
+  Command command(app, "reference", "path-traced truth of one view; can be continued");
+  command.scene(options->launch.scene, "SCENE", "glTF or shot file");
+  command.launch(options->launch);
+  command.output(options->output, "picture, linear .exr or .png (default reference.exr)");
+  command.text("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
+  command.number("--spp", options->samples, 1, kLargestSamples,
+                 "samples per pixel in all (default 64; with --error no bound)");
+  command.number("--error", options->error, 1e-6, 1e6,
+                 "stop at this standard error per pixel: its RMS over pixels and channels, over the picture's mean");
+  command.number("--time", options->time, "seconds into the shot or the scene's animation");
+  command.text("--state", options->state, "keep the sums in this file, and go on from it when it is there");
+  command.text("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
+  command.text("--pixels", options->pixels,
+               "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
+  command.number("--grid", options->grid, 0, 256, "grid of so many by so many pixels (default 16)");
+  command.flag("--clamped", options->clamped,
+               "bound the geometry term between picture and first bounce as gather.clamp bounds virtual lights");
+  command.run([options] { reference(*options); });
 }
 
 } // namespace lambent
