@@ -117,18 +117,12 @@ void addVerdicts(Value& rows, const Knob& knob, const std::vector<KnobCurve>& cu
   const std::string standard = setting.text(setting.standard);
   for (const KnobCurve& curve : curves) {
     const KnobVerdict v = knobVerdict(curve.points);
+    const char* buys = v.buys ? "less error" : v.costs ? "nothing here" : "nothing, and costs nothing";
     const bool meant = v.buys || !v.costs || standard == curve.values.front();
-    rows.add(Value::of({{"knob", knob.setting},
-                        {"scene", curve.scene},
-                        {"state", titleOf(state)},
-                        {"values", curve.values.front() + " to " + curve.values.back()},
-                        {"dearer", v.dearer},
-                        {"nearer", v.nearer},
-                        {"buys", v.buys    ? "less error"
-                                 : v.costs ? "nothing here"
-                                           : "nothing, and costs nothing"},
-                        {"default", standard + (meant ? "" : ", not the cheap end")},
-                        {"monotone", v.monotone ? "yes" : "no"}}));
+    rows.add(Value::of("knob", knob.setting, "scene", curve.scene, "state", titleOf(state), "values",
+                       curve.values.front() + " to " + curve.values.back(), "dearer", v.dearer, "nearer", v.nearer,
+                       "buys", buys, "default", standard + (meant ? "" : ", not the cheap end"), "monotone",
+                       v.monotone ? "yes" : "no"));
   }
 }
 
@@ -170,7 +164,7 @@ std::string frontStages(const Figures& figures) {
   for (const std::string& name : frontNames(indirectPoints(figures, State::Moving))) {
     const Value& row = figures.at(name).row;
     const double all = row["moving_ms"].number();
-    Value& times = rows.add(Value::of({{"number", rows.size() + 1}, {"point", name}, {"moving_ms", all}}));
+    Value& times = rows.add(Value::of("number", rows.size() + 1, "point", name, "moving_ms", all));
     for (const char* stage : kStageNames) {
       const double ms = row.numberOr(std::string("ms_") + stage, 0);
       times[stage] = ms;
@@ -184,8 +178,7 @@ Value frontRows(const Figures& figures, State state, bool relative) {
   Value rows;
   for (const std::string& name : frontNames(indirectPoints(figures, state))) {
     const CostError p = of(figures.at(name), state);
-    Value& row =
-        rows.add(relative ? Value::of({{"point", name}, {"time", p.cost}, {"error", p.error}}) : figures.at(name).row);
+    Value& row = rows.add(relative ? Value::of("point", name, "time", p.cost, "error", p.error) : figures.at(name).row);
     row["number"] = rows.size();
   }
   return rows;
@@ -196,7 +189,7 @@ Value pathRow(const SweptScene& scene, const Figures& figures, State state) {
   const CostError p = of(figures.at(sweepPoints(SweepPart::Quick)[0].name), state);
   const Value& truth = scene.truth["indirect"];
   const double ofTruth = truth["rel_mse"].number(); // was taken off
-  Value row = Value::of({{"scene", scene.name}, {"state", titleOf(state)}, {"ms", p.cost}, {"rel_mse", p.error}});
+  Value row = Value::of("scene", scene.name, "state", titleOf(state), "ms", p.cost, "rel_mse", p.error);
   const std::optional<double> ms =
       pathTracingMs(p.error + ofTruth, ofTruth, truth["sample_ms"].number() * truth["spp"].number());
   row["holds"] = "the truth is too noisy";
@@ -225,7 +218,7 @@ const std::vector<TableColumn> kLadderColumns{{"preset", "preset"},
 
 Value pointRow(const Choice& choice, size_t i, const char* noPreset) {
   const CostError& p = choice.points[i];
-  Value row = Value::of({{"point", choice.names[i]}, {"time", p.cost}, {"error", p.error}});
+  Value row = Value::of("point", choice.names[i], "time", p.cost, "error", p.error);
   if (noPreset) row["preset"] = noPreset;
   for (const Preset& preset : presetTable())
     if (presetPoint(preset) == choice.names[i]) row["preset"] = preset.name;
@@ -238,7 +231,7 @@ Value ladderRows(const Choice& choice) {
   for (size_t i : ladderOf(choice.points)) {
     const CostError& p = choice.points[i];
     Value& row = rows.add(pointRow(choice, i, "(none is this)"));
-    if (below) row.update(Value::of({{"step_time", p.cost / below->cost}, {"step_error", p.error / below->error}}));
+    if (below) row.update(Value::of("step_time", p.cost / below->cost, "step_error", p.error / below->error));
     below = &p;
   }
   return rows;
@@ -249,9 +242,8 @@ Value presetRows(const Choice& choice) {
   Value rows;
   for (size_t i = 0; i < choice.points.size(); ++i)
     rows.add(pointRow(choice, i, nullptr))
-        .update(Value::of({{"time_noise", choice.points[i].costNoise},
-                           {"error_noise", choice.points[i].errorNoise},
-                           {"off_front", offFront(choice.points, i) ? 1 : 0}}));
+        .update(Value::of("time_noise", choice.points[i].costNoise, "error_noise", choice.points[i].errorNoise,
+                          "off_front", offFront(choice.points, i) ? 1 : 0));
   return rows;
 }
 
@@ -383,13 +375,10 @@ void accuracyReport(const AccuracyOptions& options) {
   writeText(folder / "points.csv", csvText(points));
   writeText(folder / "knobs.csv", csvText(verdicts));
   writeText(folder / "presets.csv", csvText(presetRows(presets)));
-  writeJson(options.output.json, Value::of({{"points", points},
-                                            {"knobs", verdicts},
-                                            {"ladder", ladderRows(presets)},
-                                            {"presets", presetRows(presets)},
-                                            {"paths", paths},
-                                            {"front_moving", frontRows(r.all, State::Moving, true)},
-                                            {"front_still", frontRows(r.all, State::Still, true)}}));
+  writeJson(options.output.json,
+            Value::of("points", points, "knobs", verdicts, "ladder", ladderRows(presets), "presets",
+                      presetRows(presets), "paths", paths, "front_moving", frontRows(r.all, State::Moving, true),
+                      "front_still", frontRows(r.all, State::Still, true)));
   if (options.output.quiet) return;
   std::printf("%s\n%s\nreport: %s\n", tableText(kLadderColumns, ladderRows(presets)).c_str(),
               tableText(kPathColumns, paths).c_str(), (folder / "index.html").c_str());

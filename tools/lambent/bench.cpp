@@ -57,10 +57,10 @@ double mostWaiting(const Measured& m) {
 }
 
 Value figuresOf(const Measured& m, const std::vector<Line>& times, const std::vector<Line>& counts) {
-  Value figures = Value::of({{"settings", m.variant.name}});
+  Value figures = Value::of("settings", m.variant.name);
   for (const Line& line : times)
     if (const Spread s = line.of(m); s.count > 0) addSpread(figures, line.name, s);
-  const auto of = [](const Spread& s) { return Value::of({{"median", s.median}, {"most", s.most}}); };
+  const auto of = [](const Spread& s) { return Value::of("median", s.median, "most", s.most); };
   for (const Line& line : counts) figures["counts"][line.name] = of(line.of(m));
   for (const Share& share : kShares) figures[share.key] = of(spreadOf(share, m));
   figures["most_maps_waiting"] = uint64_t(mostWaiting(m));
@@ -117,7 +117,7 @@ void benchSides(const BenchOptions& options) {
   GlContext context = GlContext::headless();
   const std::vector<Measured> sides = run(variants, benchPlan(options, *opened), "measuring", options.output.quiet);
   const std::vector<Line> times = timeLines(sides), counts = countLines();
-  Value figures = Value::of({{"scene", options.launch.scene}, {"frames", sides[0].frames.size()}});
+  Value figures = Value::of("scene", options.launch.scene, "frames", sides[0].frames.size());
   for (const Measured& m : sides) figures["sides"].add(figuresOf(m, times, counts));
   writeJson(options.output.json, figures);
 
@@ -203,9 +203,9 @@ void declareBench(CLI::App& app) {
                  "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube");
   command.launch(o->launch);
   command.output(o->output, "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");
-  command.number("--frames", o->frames, 1, 1000000,
+  command.number("--frames", &o->frames, 1, 1000000,
                  "only the first so many (60 of a scene; --growth 32; not with --equal-error)");
-  command.number("--skip", o->skip, 1, 1000000, "frames at the start that do not count (default 2)");
+  command.number("--skip", &o->skip, 1, 1000000, "frames at the start that do not count (default 2)");
   const auto form = [&](const char* name, void (*form)(const BenchOptions&), const char* help) {
     command.flag(
         name, [o, form] { o->form = form; }, help);
@@ -234,10 +234,10 @@ void declareBench(CLI::App& app) {
   command.endForms();
   command.list("--along", o->along, "--growth: comma-separated, only these",
                {"vpls", "pixels", "lights", "instances", "triangles"});
-  command.number("--seeds", o->seeds, 1, 1000, "--equal-error: so many (default 3)");
-  command.number("--spp", o->samples, 2, 1 << 24,
+  command.number("--seeds", &o->seeds, 1, 1000, "--equal-error: so many (default 3)");
+  command.number("--spp", &o->samples, 2, 1 << 24,
                  "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)");
-  command.number("--frame", o->frame, 1, 1000000, "--equal-error: of a shot in motion (default 30, or the last)");
+  command.number("--frame", &o->frame, 1, 1000000, "--equal-error: of a shot in motion (default 30, or the last)");
   command.flag("--quick", o->quick, "a few small frames, to try whether it runs");
   command.run([o] { bench(*o); });
 }

@@ -40,11 +40,9 @@ Value presetRow(std::span<const Measured> seeds, const TracedPicture& truth) {
     }
   }
   const bool known = values["paths_ms"].size() == seeds.size();
-  Value row = Value::of({{"preset", seeds[0].variant.name},
-                         {"seeds", seeds.size()},
-                         {"pictures", seeds[0].frames.size()},
-                         {"truth_rel_mse", expectedRelMse(truth.picture.mean, truth.picture.error)},
-                         {"holds", known ? holdsBar(meanOver(values["times"])) : "truth too noisy"}});
+  Value row = Value::of("preset", seeds[0].variant.name, "seeds", seeds.size(), "pictures", seeds[0].frames.size(),
+                        "truth_rel_mse", expectedRelMse(truth.picture.mean, truth.picture.error), "holds",
+                        known ? holdsBar(meanOver(values["times"])) : "truth too noisy");
   for (const auto& [key, own] : values) {
     if (own.size() < seeds.size()) continue;
     const UncertainValue mean = meanOver(own);
@@ -141,17 +139,10 @@ void benchEqualError(const BenchOptions& options) {
       "Still: after as many pictures as are averaged; \"times all pictures\" counts the time of each of them, the "
       "first "
       "with all that it makes.\n";
-  const std::string table = equalErrorText(rows);
-  writeJson(
-      options.output.json,
-      Value::of(
-          {{"rows", rows}, {"bar", kPathTracingTimes}, {"preset", judged}, {"holds", otherwise.empty() && views > 0}}));
-  writeText(folder / "equal-error.md",
-            escaped("# Path tracing's time to the same error\n\n" + conditions + "\n" + table + "\n" + verdict));
-  writeText(folder / "equal-error.csv", csvText(rows));
-  if (!options.output.quiet)
-    std::printf("%s%s%sreport: %s\n", conditions.c_str(), table.c_str(), verdict.c_str(),
-                (folder / "equal-error.md").c_str());
+  writeReport(
+      options.output, folder, "equal-error", "Path tracing's time to the same error",
+      conditions + "\n" + equalErrorText(rows) + "\n" + verdict, csvText(rows),
+      Value::of("rows", rows, "bar", kPathTracingTimes, "preset", judged, "holds", otherwise.empty() && views > 0));
 }
 
 } // namespace lambent

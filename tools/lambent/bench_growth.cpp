@@ -33,42 +33,42 @@ class OnScaledView final : public Runner {
   std::shared_ptr<ScaledView> scaled_;
 };
 
+template <class Scaled> std::shared_ptr<ScaledView> scaledBy(float factor, const SceneAssets& assets) {
+  if constexpr (std::is_constructible_v<Scaled, const SceneAssets&, uint32_t>)
+    return std::make_shared<Scaled>(assets, uint32_t(factor));
+  else
+    return std::make_shared<Scaled>(std::conditional_t<std::is_same_v<Scaled, SplitLights>, uint32_t, float>(factor));
+}
+
 /// One thing, of which a view has more by a factor, and all else the same.
 struct Growing {
   const char *name, *title;
   std::vector<float> factors;
-  std::shared_ptr<ScaledView> (*scaled)(float factor, const SceneAssets& assets); // null: by the settings
-  double (*count)(const SceneView&);
+  std::shared_ptr<ScaledView> (*scaled)(float, const SceneAssets&) = nullptr; // null: by the settings
+  double (*count)(const SceneView&) = nullptr;
 };
-constexpr float kHalfSqrt = 0.70710678f;
-const Growing kGrowing[] = {
-    {"vpls", "virtual lights, N", {0.25f, 0.5f, 1, 2}, nullptr, nullptr},
-    {"pixels",
-     "pixels",
-     {0.5f, kHalfSqrt, 1, 2 * kHalfSqrt, 2},
-     [](float f, const SceneAssets&) -> std::shared_ptr<ScaledView> { return std::make_shared<ResizedPicture>(f); },
-     [](const SceneView& v) { return double(v.camera.width) * v.camera.height; }},
-    {"lights",
-     "punctual lights, of the same intensity in all",
-     {1, 2, 4, 8},
-     [](float f, const SceneAssets&) -> std::shared_ptr<ScaledView> {
-       return std::make_shared<SplitLights>(uint32_t(f));
-     },
-     [](const SceneView& v) { return double(v.lights.size()); }},
-    {"instances",
-     "instances, of the same triangles in all",
-     {1, 2, 4, 8},
-     [](float f, const SceneAssets& a) -> std::shared_ptr<ScaledView> {
-       return std::make_shared<SplitInstances>(a, uint32_t(f));
-     },
-     [](const SceneView& v) { return double(v.instances.size()); }},
-    {"triangles",
-     "triangles, of the same surface in all",
-     {1, 2, 3, 4},
-     [](float f, const SceneAssets& a) -> std::shared_ptr<ScaledView> {
-       return std::make_shared<SplitTriangles>(a, uint32_t(f));
-     },
-     [](const SceneView& v) { return double(trianglesOf(v)); }}};
+constexpr float kRoot = 1.41421356f;
+const Growing kGrowing[] = {{"vpls", "virtual lights, N", {0.25f, 0.5f, 1, 2}},
+                            {"pixels",
+                             "pixels",
+                             {0.5f, kRoot / 2, 1, kRoot, 2},
+                             scaledBy<ResizedPicture>,
+                             [](const SceneView& v) { return double(v.camera.width) * v.camera.height; }},
+                            {"lights",
+                             "punctual lights, of the same intensity in all",
+                             {1, 2, 4, 8},
+                             scaledBy<SplitLights>,
+                             [](const SceneView& v) { return double(v.lights.size()); }},
+                            {"instances",
+                             "instances, of the same triangles in all",
+                             {1, 2, 4, 8},
+                             scaledBy<SplitInstances>,
+                             [](const SceneView& v) { return double(v.instances.size()); }},
+                            {"triangles",
+                             "triangles, of the same surface in all",
+                             {1, 2, 3, 4},
+                             scaledBy<SplitTriangles>,
+                             [](const SceneView& v) { return double(trianglesOf(v)); }}};
 
 /// The camera a two-hundredth of the scene aside and back, in eight steps.
 SceneView swayed(SceneView view, int frame) {
@@ -103,7 +103,7 @@ Value rowsOf(const std::vector<double>& values, const std::vector<Measured>& run
   Value rows = Value::list();
   for (const Line& line : timeLines(runs)) {
     std::vector<double> medians;
-    Value& row = rows.add(Value::of({{"stage", line.name}}));
+    Value& row = rows.add(Value::of("stage", line.name));
     for (const Measured& m : runs) {
       const Spread s = line.of(m);
       medians.push_back(s.median);
@@ -147,7 +147,7 @@ std::string tableOf(const Growing& growing, const std::vector<double>& values, c
   columns.push_back({"grows", "exponent"});
   Value lines = Value::list();
   for (const Value& row : rows.items()) {
-    Value& line = lines.add(Value::of({{"stage", row["stage"]}}));
+    Value& line = lines.add(Value::of("stage", row["stage"]));
     for (size_t i = 0; i < keys.size(); ++i)
       line[keys[i]] = spreadText(row["median_ms"].items()[i].number(), row["quartiles_ms"].items()[i]);
     line["grows"] = row.has("exponent")
@@ -162,12 +162,10 @@ std::string growthCsv(const Value& sweeps) {
   for (const Value& sweep : sweeps.items())
     for (const Value& row : sweep["rows"].items())
       for (size_t i = 0; i < sweep["values"].size(); ++i)
-        flat.add(Value::of({{"over", sweep["over"]},
-                            {"value", sweep["values"].items()[i]},
-                            {"stage", row["stage"]},
-                            {"median_ms", row["median_ms"].items()[i]},
-                            {"quarter_ms", row["quartiles_ms"].items()[i].items()[0]},
-                            {"three_quarters_ms", row["quartiles_ms"].items()[i].items()[1]}}));
+        flat.add(Value::of("over", sweep["over"], "value", sweep["values"].items()[i], "stage", row["stage"],
+                           "median_ms", row["median_ms"].items()[i], "quarter_ms",
+                           row["quartiles_ms"].items()[i].items()[0], "three_quarters_ms",
+                           row["quartiles_ms"].items()[i].items()[1]));
   return csvText(flat);
 }
 
@@ -198,8 +196,7 @@ void benchGrowth(const BenchOptions& options) {
     };
     const auto runs = run(variants, plan, std::string("over ") + growing.name, options.output.quiet);
     const Value rows = rowsOf(values, runs);
-    sweeps.add(
-        Value::of({{"over", growing.name}, {"values", values}, {"frames", runs[0].frames.size()}, {"rows", rows}}));
+    sweeps.add(Value::of("over", growing.name, "values", values, "frames", runs[0].frames.size(), "rows", rows));
     plots.push_back(plotOf(growing, values, rows));
     tables += tableOf(growing, values, rows) + "\n";
   };
@@ -207,25 +204,19 @@ void benchGrowth(const BenchOptions& options) {
     if (options.along.empty() && (lit || growing.name != std::string("lights"))) measureAlong(growing);
   for (const std::string& name : options.along)
     measureAlong(*std::ranges::find(kGrowing, name, [](const Growing& g) { return std::string(g.name); }));
-  const std::string machine = machineText(study.context);
   const CameraView& camera = opened.camera;
-  writeJson(options.output.json, Value::of({{"scene", options.launch.scene},
-                                            {"size", std::vector<size_t>{size_t(camera.width), size_t(camera.height)}},
-                                            {"machine", machine},
-                                            {"shortest_ms", kShortestMs},
-                                            {"sweeps", sweeps}}));
+  const std::string machine = machineText(study.context);
   const std::string conditions =
       options.launch.scene + format(", %d x %d, ", camera.width, camera.height) + machine + "; " +
       (opened.shot ? "the camera follows the shot, punctual lights waver" : "camera and punctual lights waver") +
       format(". Time grows as value^exponent: slope of least squares of the logarithms of medians, ± its standard "
-             "error; stages below %g ms at some value are too short to fit.\n",
+             "error; stages below %g ms at some value are too short to fit.\n\n",
              kShortestMs);
   writeText(folder / "growth.svg", svgOf(plots, 2));
-  writeText(folder / "growth.csv", growthCsv(sweeps));
-  writeText(folder / "growth.md",
-            escaped("# How cost grows\n\n" + conditions + "\n" + tables + "![Median times over each](growth.svg)\n"));
-  if (!options.output.quiet)
-    std::printf("%s\n%sreport: %s\n", conditions.c_str(), tables.c_str(), (folder / "growth.md").c_str());
+  writeReport(options.output, folder, "growth", "How cost grows",
+              conditions + tables + "![Median times over each](growth.svg)\n", growthCsv(sweeps),
+              Value::of("scene", options.launch.scene, "size", std::vector{camera.width, camera.height}, "machine",
+                        machine, "shortest_ms", kShortestMs, "sweeps", sweeps));
 }
 
 } // namespace lambent

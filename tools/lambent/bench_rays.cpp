@@ -114,12 +114,10 @@ void benchRays(const BenchOptions& options) {
     if (blockedA[i] != blockedB[i]) ++blockedOnly[blockedB[i]];
   }
   const double count = double(rays.size());
-  Value figures = Value::of({{"scene", options.launch.scene},
-                             {"rays", rays.size()},
-                             {"machine", machine},
-                             {"blocked_only", Value::of({{"Embree", blockedOnly[0]}, {"GPU", blockedOnly[1]}})}});
+  Value figures = Value::of("scene", options.launch.scene, "rays", rays.size(), "machine", machine, "blocked_only",
+                            Value::of("Embree", blockedOnly[0], "GPU", blockedOnly[1]));
   for (const Row& r : rows)
-    figures["rays_per_second"][r.name] = Value::of({{"closest", count / r.closest}, {"any", count / r.any}});
+    figures["rays_per_second"][r.name] = Value::of("closest", count / r.closest, "any", count / r.any);
   for (size_t i = 0; i < counts.size(); ++i) figures["differences"][kDifferences[i]] = counts[i];
   writeJson(options.output.json, figures);
   if (options.output.quiet) return;

@@ -22,7 +22,7 @@ Value relMseLessNoise(const Outcome& o) {
 }
 
 void tell(const BenchOptions& options, const std::vector<Column>& columns, const Value& rows) {
-  writeJson(options.output.json, Value::of({{"rows", rows}}));
+  writeJson(options.output.json, Value::of("rows", rows));
   if (!options.output.quiet) std::printf("%s", tableText(columns, rows).c_str());
 }
 

@@ -105,22 +105,19 @@ Value rowOf(const BenchOptions& options, const std::string& file, std::string& m
   };
   const std::string name = nameOf(file);
   const Measured m = run({study.variant(name)}, plan, name, options.output.quiet)[0];
-  Value row = Value::of({{"shot", name},
-                         {"triangles", triangles},
-                         {"vpls", opened.settings.smc.vpls},
-                         {"size", std::vector<size_t>{size_t(opened.camera.width), size_t(opened.camera.height)}},
-                         {"frames", m.frames.size()}});
+  Value row = Value::of("shot", name, "triangles", triangles, "vpls", opened.settings.smc.vpls, "size",
+                        std::vector{opened.camera.width, opened.camera.height}, "frames", m.frames.size());
   for (const Timed& column : timedColumns()) addSpread(row, column.key, m.of(column.ms));
   const Published* paper = publishedOf(name);
   if (!paper) return row;
-  row["paper_1"] = Value::of({{"triangles", paper->triangles}, {"vpls", paper->vpls}});
+  row["paper_1"] = Value::of("triangles", paper->triangles, "vpls", paper->vpls);
   for (size_t i = 0; i < std::size(paper->ms); ++i) row["paper_1"]["median_ms"][timedColumns()[i].key] = paper->ms[i];
   return row;
 }
 
 /// What is shown of a row, ours or the paper's.
 Value cellsOf(const std::string& name, const Value& row) {
-  Value cells = Value::of({{"shot", name}, {"triangles", row["triangles"]}, {"vpls", row["vpls"]}});
+  Value cells = Value::of("shot", name, "triangles", row["triangles"], "vpls", row["vpls"]);
   for (const auto& [key, median] : row["median_ms"].fields())
     cells[key] = row.has("quartiles_ms") ? spreadText(median.number(), row["quartiles_ms"][key])
                                          : format("%.1f", median.number());
@@ -142,7 +139,7 @@ std::string table2Text(const Value& rows) {
 std::string table2Csv(const Value& rows) {
   Value flat = Value::list();
   for (const Value& row : rows.items()) {
-    Value& line = flat.add(Value::of({{"shot", row["shot"]}, {"triangles", row["triangles"]}, {"vpls", row["vpls"]}}));
+    Value& line = flat.add(Value::of("shot", row["shot"], "triangles", row["triangles"], "vpls", row["vpls"]));
     for (const auto& [key, median] : row["median_ms"].fields()) {
       line[key + "_ms"] = median;
       line[key + "_ms_quarter"] = row["quartiles_ms"][key].items()[0];
@@ -192,12 +189,9 @@ Value columnOf(const BenchOptions& options, const std::string& file) {
           nameOf(file), options.output.quiet);
   const CameraView& camera = study.opened->camera;
   const FrameStats& gathered = halves[0].frames.back();
-  Value column = Value::of({{"scene", file},
-                            {"size", std::vector<size_t>{size_t(camera.width), size_t(camera.height)}},
-                            {"frames", halves[0].frames.size()},
-                            {"vpls", gathered.vplsAlive},
-                            {"patches", gathered.patches}, // that gathered, in the last frame
-                            {"rmse_share", pictureError(halves[1].picture, halves[0].picture).rmseShare()}});
+  Value column = Value::of("scene", file, "size", std::vector{camera.width, camera.height}, "frames",
+                           halves[0].frames.size(), "vpls", gathered.vplsAlive, "patches", gathered.patches,
+                           "rmse_share", pictureError(halves[1].picture, halves[0].picture).rmseShare());
   for (const Measured& half : halves) {
     Value& ms = column["median_ms"][half.variant.name];
     for (const Step& step : kMultires)
@@ -234,24 +228,20 @@ void benchTable2(const BenchOptions& options) {
   Value rows;
   std::string machine;
   for (const std::string& file : options.scenes) rows.add(rowOf(options, file, machine));
-  writeJson(options.output.json, Value::of({{"machine", machine}, {"rows", rows}}));
   const Value& first = rows.items()[0];
-  const std::string conditions =
-      sizeText(first) + format(", %.0f frames of the first shot, ", first["frames"].number()) + machine +
-      "; medians (quartiles) in ms; medians of totals are not totals of medians. Paper 1: 1920 x 1080, GTX Titan X.\n" +
-      mappingText() + "\n";
-  const std::string table = table2Text(rows);
-  writeText(folder / "table2.md", escaped("# Where the time of sequences goes\n\n" + conditions + "\n" + table));
-  writeText(folder / "table2.csv", table2Csv(rows));
-  if (!options.output.quiet)
-    std::printf("%s%sreport: %s\n", conditions.c_str(), table.c_str(), (folder / "table2.md").c_str());
+  writeReport(options.output, folder, "table2", "Where the time of sequences goes",
+              sizeText(first) + format(", %.0f frames of the first shot, ", first["frames"].number()) + machine +
+                  "; medians (quartiles) in ms; medians of totals are not totals of medians. Paper 1: 1920 x 1080, GTX "
+                  "Titan X.\n" +
+                  mappingText() + "\n\n" + table2Text(rows),
+              table2Csv(rows), Value::of("machine", machine, "rows", rows));
 }
 
 void benchMultires(const BenchOptions& options) {
   refuseTechnique(options, "cannot be chosen with --multires, which measures multires-gather and multires-splat");
   Value columns;
   for (const std::string& file : options.scenes) columns.add(columnOf(options, file));
-  writeJson(options.output.json, Value::of({{"scenes", columns}}));
+  writeJson(options.output.json, Value::of("scenes", columns));
   if (options.output.quiet) return;
   std::printf("%s, medians in ms; lights waver by a ten-thousandth of the scene, so every stage runs in every frame\n",
               sizeText(columns.items()[0]).c_str());

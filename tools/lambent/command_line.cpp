@@ -148,24 +148,14 @@ void Command::list(const std::string& name, std::vector<std::string>& values, co
   CLI::Option* option = to_->add_option(name, values, help)->delimiter(',');
   if (!of.empty()) option->check(CLI::IsMember(of));
 }
-void Command::number(const std::string& name, int& value, int least, int most, const std::string& help) {
-  to_->add_option(name, value, help)->check(CLI::Range(least, most));
-}
-void Command::number(const std::string& name, std::optional<int>& value, int least, int most, const std::string& help) {
-  to_->add_option(name, value, help)->check(CLI::Range(least, most));
-}
-void Command::number(const std::string& name, double& value, const std::string& help) {
-  to_->add_option(name, value, help);
-}
-void Command::number(const std::string& name, double& value, double least, double most, const std::string& help) {
-  to_->add_option(name, value, help)->check(CLI::Range(least, most));
-}
-void Command::number(const std::string& name, std::optional<double>& value, const std::string& help) {
-  to_->add_option(name, value, help);
-}
-void Command::number(const std::string& name, std::optional<double>& value, double least, double most,
-                     const std::string& help) {
-  to_->add_option(name, value, help)->check(CLI::Range(least, most));
+void Command::number(const std::string& name, Number value, double least, double most, const std::string& help) {
+  std::visit(
+      [&](auto* to) {
+        CLI::Option* option = to_->add_option(name, *to, help);
+        const bool whole = std::is_same_v<decltype(to), int*> || std::is_same_v<decltype(to), std::optional<int>*>;
+        if (least < most) option->check(whole ? CLI::Range(int(least), int(most)) : CLI::Range(least, most));
+      },
+      value);
 }
 void Command::flag(const std::string& name, bool& value, const std::string& help) { to_->add_flag(name, value, help); }
 void Command::flag(const std::string& name, const std::function<void()>& given, const std::string& help) {

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace lambent {
@@ -39,13 +40,9 @@ class Command {
   /// Comma-separated; of these alone, where there are any.
   void list(const std::string& name, std::vector<std::string>& values, const std::string& help,
             const std::vector<std::string>& of = {});
-  void number(const std::string& name, int& value, int least, int most, const std::string& help);
-  void number(const std::string& name, std::optional<int>& value, int least, int most, const std::string& help);
-  void number(const std::string& name, double& value, const std::string& help);
-  void number(const std::string& name, double& value, double least, double most, const std::string& help);
-  void number(const std::string& name, std::optional<double>& value, const std::string& help);
-  void number(const std::string& name, std::optional<double>& value, double least, double most,
-              const std::string& help);
+  /// From the least to the most; any where these are the same.
+  using Number = std::variant<int*, double*, std::optional<int>*, std::optional<double>*>;
+  void number(const std::string& name, Number value, double least, double most, const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
   /// A flag that does something when it is given.
   void flag(const std::string& name, const std::function<void()>& given, const std::string& help);

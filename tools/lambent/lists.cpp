@@ -41,11 +41,11 @@ std::vector<const SettingRow*> chosenRows(const std::vector<std::string>& words)
 
 /// Numbers with their range, choices with the list of them.
 Value valueOf(const SettingRow& row) {
-  Value j = Value::of({{"name", row.name}, {"unit", row.unit}, {"help", row.help}, {"changed", costText(row.change)}});
+  Value j = Value::of("name", row.name, "unit", row.unit, "help", row.help, "changed", costText(row.change));
   if (row.choices.empty())
-    j.update(Value::of({{"default", row.standard}, {"low", row.low}, {"high", row.high}}));
+    j.update(Value::of("default", row.standard, "low", row.low, "high", row.high));
   else
-    j.update(Value::of({{"default", row.text(row.standard)}, {"choices", row.choices}}));
+    j.update(Value::of("default", row.text(row.standard), "choices", row.choices));
   return j;
 }
 
@@ -62,13 +62,9 @@ void listSettings(const std::vector<std::string>& words, const OutputOptions& ou
 }
 
 Value valueOf(const Technique& t) {
-  return Value::of({{"name", t.name},
-                    {"help", t.help},
-                    {"source", rowOf(t.axes.source).name},
-                    {"visibility", rowOf(t.axes.visibility).name},
-                    {"gather", rowOf(t.axes.gather).name},
-                    {"reconstruction", kReconstructions[int(t.axes.reconstruction)]},
-                    {"waits", t.waits ? t.waits : ""}});
+  return Value::of("name", t.name, "help", t.help, "source", rowOf(t.axes.source).name, "visibility",
+                   rowOf(t.axes.visibility).name, "gather", rowOf(t.axes.gather).name, "reconstruction",
+                   kReconstructions[int(t.axes.reconstruction)], "waits", t.waits ? t.waits : "");
 }
 
 /// Every combination of the first three axes, the light put together as the gather wants it.
@@ -91,10 +87,8 @@ void listTechniques(const OutputOptions& output) {
   std::map<std::string, int> reasons;
   int together = 0;
   forAllCombinations([&](const Axes& axes, const std::string& reason) {
-    j["combinations"].add(Value::of({{"source", rowOf(axes.source).name},
-                                     {"visibility", rowOf(axes.visibility).name},
-                                     {"gather", rowOf(axes.gather).name},
-                                     {"why_not", reason}}));
+    j["combinations"].add(Value::of("source", rowOf(axes.source).name, "visibility", rowOf(axes.visibility).name,
+                                    "gather", rowOf(axes.gather).name, "why_not", reason));
     if (reason.empty())
       ++together;
     else
@@ -141,8 +135,7 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
   Value j = Value::list();
   for (const ContentRecipe* r : chosen) {
     const GeneratedScene made = r->write(base / r->name);
-    j.add(Value::of(
-        {{"name", r->name}, {"file", made.file.string()}, {"triangles", made.triangles}, {"bytes", made.bytes}}));
+    j.add(Value::of("name", r->name, "file", made.file.string(), "triangles", made.triangles, "bytes", made.bytes));
     if (!output.quiet)
       std::printf("%s: %llu triangles, %.1f KiB\n", made.file.c_str(), (unsigned long long)made.triangles,
                   double(made.bytes) / 1024);

@@ -18,7 +18,7 @@ struct FigureValue {
   Value operator()(bool on) const { return on; }
   Value operator()(double ms) const { return ms; }
   Value operator()(const std::string& text) const { return text; }
-  Value operator()(const RayCounts& c) const { return Value::of({{"closest", c.closest}, {"occlusion", c.occlusion}}); }
+  Value operator()(const RayCounts& c) const { return Value::of("closest", c.closest, "occlusion", c.occlusion); }
 };
 
 uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
@@ -94,11 +94,11 @@ Value figuresOf(const FrameStats& s) {
   figures["area_tracer"] = s.areaTracer;
   figures["cube"]["maker_times"] = s.cubeMakerTimes;
   for (const StageTime& t : s.stages)
-    figures["stages"].add(Value::of({{"name", t.stage.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}}));
+    figures["stages"].add(Value::of("name", t.stage.name, "cpu_ms", t.cpuMs, "gpu_ms", t.gpuMs));
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = s.plan[EffectId(i)];
     const EffectRow& row = effectRow(EffectId(i));
-    figures["effects"].add(Value::of({{"name", row.name}, {"on", e.on}, {"reason", e.reason}, {row.work, s.work[i]}}));
+    figures["effects"].add(Value::of("name", row.name, "on", e.on, "reason", e.reason, row.work, s.work[i]));
   }
   return figures;
 }

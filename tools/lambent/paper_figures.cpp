@@ -1,4 +1,4 @@
-#include "tools/lambent/paper_figures.h"
+#include "tools/lambent/accuracy.h"
 
 namespace lambent {
 

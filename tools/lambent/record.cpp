@@ -49,7 +49,7 @@ class RecordingMark {
   }
 
   void write(int frames) const {
-    writeText(file_, Value::of({{"conditions", conditions_}, {"frames", frames}}).json(-1) + "\n");
+    writeText(file_, Value::of("conditions", conditions_, "frames", frames).json(-1) + "\n");
   }
 
  private:
@@ -172,16 +172,12 @@ void checkOptions(const RecordOptions& o) {
 void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs::path& folder, int done, int total,
           bool filmed) {
   const std::string video = filmed ? (folder / "video.mp4").string() : "";
-  Value figures = Value::of({{"folder", folder.string()},
-                             {"frames", done},
-                             {"frames_per_second", sides[0].log.framesPerSecond()},
-                             {"peak_memory_mib", peakMemoryMiB()},
-                             {"exposure", sides[0].gi->exposure()},
-                             {"video", video}});
+  Value figures =
+      Value::of("folder", folder.string(), "frames", done, "frames_per_second", sides[0].log.framesPerSecond(),
+                "peak_memory_mib", peakMemoryMiB(), "exposure", sides[0].gi->exposure(), "video", video);
   for (const Side& side : sides)
-    figures["sides"].add(Value::of({{"technique", side.technique},
-                                    {"log", (folder / side.logName).string()},
-                                    {"frames_per_second", side.log.framesPerSecond()}}));
+    figures["sides"].add(Value::of("technique", side.technique, "log", (folder / side.logName).string(),
+                                   "frames_per_second", side.log.framesPerSecond()));
   writeJson(options.output.json, figures);
   if (options.output.quiet) return;
   for (const Side& side : sides)
@@ -269,18 +265,18 @@ void declareRecord(CLI::App& app) {
   command.output(options->output, "folder (default out/NAME)");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "record"));
   command.text("--format", options->format, "png, exr or none (default png)");
-  command.number("--frames", options->frames, 1, 1000000, "only the first so many");
+  command.number("--frames", &options->frames, 1, 1000000, "only the first so many");
   command.flag("--video", options->video, "also make video.mp4, where ffmpeg is installed");
   command.flag("--captions", options->captions, "burn technique, frame and milliseconds into the pictures");
   command.text("--beside", options->beside,
                "a second technique: both see the same frames, and stand side by side in one picture; its log is "
                "frames-NAME.csv");
-  command.number("--contact-sheet", options->sheet, 1, 1000,
+  command.number("--contact-sheet", &options->sheet, 1, 1000,
                  "also make contact-sheet.png of so many frames, evenly spaced");
   command.flag("--resume", options->resume,
                "go on where the same command was interrupted: pictures that are there stay, frames before them "
                "are computed but not written");
-  command.number("--target-ms", options->targetMs, 1.0, 10000.0,
+  command.number("--target-ms", &options->targetMs, 1.0, 10000.0,
                  "choose the preset (where none is given) that fits this time of a frame, and hold it by the scale at "
                  "which pictures are computed; frames.csv tells both");
   command.run([options] { record(*options); });

@@ -5,7 +5,6 @@
 #include "gi/measure/scaled_view.h"
 #include "gi/plan/techniques.h"
 #include "tools/lambent/accuracy.h"
-#include "tools/lambent/paper_figures.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/plot.h"
 
@@ -176,7 +175,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
   Value report = Value::list(), printed = report; // over time a line each is printed, of medians
   for (size_t i = 0; i < runs.size(); ++i) {
     const Row& row = rows[i];
-    Value own = Value::of({{"technique", row.technique}});
+    Value own = Value::of("technique", row.technique);
     if (!row.picture.empty()) own["picture"] = row.picture;
     if (!row.series.empty()) own["series"] = row.series;
     if (!row.x.empty()) own["x"] = std::stod(row.x);
@@ -202,7 +201,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
   writeText(folder / "figure.csv", csvText(report));
   const std::vector<Plot> plots = plotsOf(figure, report);
   if (!plots.empty()) writeText(folder / "figure.svg", svgOf(plots, 3));
-  writeJson(options.output.json, Value::of({{"figure", figure.name}, {"rows", report}}));
+  writeJson(options.output.json, Value::of("figure", figure.name, "rows", report));
   if (!options.output.quiet)
     std::printf("%s, %d x %d\n\n%s\nreport (differences times 8): %s\n", figure.title, opened.camera.width,
                 opened.camera.height, tableOf(figure, printed).c_str(), folder.c_str());
@@ -259,12 +258,9 @@ void accuracyCurve(const AccuracyOptions& options) {
     Value points;
     for (size_t i = 0; i < runs.size(); ++i) {
       const bool used = sweep.values[i] == inUse;
-      Value& point = points.add(Value::of({{"technique", sweep.technique},
-                                           {"setting", sweep.setting},
-                                           {"value", sweep.values[i]},
-                                           {"in_use", used},
-                                           {"gather_ms", runs[i].ms(StageId::Gather).median},
-                                           {"vpls", runs[i].frames.back().vplsAlive}})); // 0: clusters of its own
+      Value& point = points.add(Value::of(
+          "technique", sweep.technique, "setting", sweep.setting, "value", sweep.values[i], "in_use", used, "gather_ms",
+          runs[i].ms(StageId::Gather).median, "vpls", runs[i].frames.back().vplsAlive)); // 0: clusters of its own
       const Image shown = addErrors(point, runs[i].picture, baseline);                   // for each fragment
       rmse.y.push_back(100 * point["rmse_share"].number());
       shownRms.y.push_back(100 * point["rms_shown"].number());
@@ -287,7 +283,7 @@ void accuracyCurve(const AccuracyOptions& options) {
   }
   writeText(folder / (kind + ".csv"), csvText(all));
   writeText(folder / (kind + ".svg"), svgOf(plots, 4));
-  writeJson(options.output.json, Value::of({{"points", all}}));
+  writeJson(options.output.json, Value::of("points", all));
   if (!options.output.quiet)
     std::printf("%s, %d x %d\n\n%splot, table and pictures (differences times 8): %s\n",
                 patches ? "light gathered at patches of the picture, against the same VPLs gathered at every pixel"

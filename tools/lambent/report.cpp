@@ -2,10 +2,12 @@
 
 #include "engine/core/error.h"
 #include "engine/platform/gl_context.h"
+#include "tools/lambent/command_line.h"
 #include "tools/lambent/picture.h"
 
 #include <cmath>
 #include <cstdarg>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <iterator>
@@ -158,6 +160,15 @@ void writeJson(const std::string& file, const Value& figures) {
 std::string readText(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void writeReport(const OutputOptions& output, const fs::path& folder, const std::string& name,
+                 const std::string& heading, const std::string& text, const std::string& csv, const Value& figures) {
+  writeJson(output.json, figures);
+  writeText(folder / (name + ".csv"), csv);
+  const fs::path page = folder / (name + ".md");
+  writeText(page, escaped("# " + heading + "\n\n" + text)); // names of files may look like HTML
+  if (!output.quiet) std::printf("%s\nreport: %s\n", text.c_str(), page.c_str());
 }
 
 fs::path reportFolder(const std::string& out, const std::string& unnamed) {

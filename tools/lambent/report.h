@@ -11,6 +11,7 @@
 namespace lambent {
 
 class GlContext;
+struct OutputOptions;
 
 /// As printf, up to 255 characters.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
@@ -48,6 +49,11 @@ void writeText(const std::filesystem::path& file, const std::string& text);
 void writeJson(const std::string& file, const Value& figures);
 /// Everything in a file; empty where there is none.
 std::string readText(const std::filesystem::path& file);
+
+/// NAME.md with the heading and the text, NAME.csv, and the figures for programs, all in the folder; the text is
+/// printed too, unless quiet.
+void writeReport(const OutputOptions& output, const std::filesystem::path& folder, const std::string& name,
+                 const std::string& heading, const std::string& text, const std::string& csv, const Value& figures);
 
 /// The folder that a report goes to: `out`, or `unnamed` where that is empty; made where it lacks. Throws RunError.
 std::filesystem::path reportFolder(const std::string& out, const std::string& unnamed);

@@ -154,9 +154,8 @@ void soak(const SoakOptions& options) {
       progress.update(frame + 1, options.frames);
     }
   }
-  writeJson(options.output.json, Value::of({{"frames", frame},
-                                            {"program_mib", std::vector{program.early, program.late}},
-                                            {"opengl_mib", std::vector{openGl.early, openGl.late}}}));
+  writeJson(options.output.json, Value::of("frames", frame, "program_mib", std::vector{program.early, program.late},
+                                           "opengl_mib", std::vector{openGl.early, openGl.late}));
   if (!options.output.quiet)
     std::printf(
         "%d frames whole; largest in the second and in the last quarter: program %.0f and %.0f MiB, OpenGL %.1f "
@@ -175,7 +174,7 @@ void declareSoak(CLI::App& app) {
   command.scene(options->launch.scene, "SCENE", "glTF or shot file");
   command.launch(options->launch);
   command.output(options->output, "");
-  command.number("--frames", options->frames, 1, 100000000, "so many (2000)");
+  command.number("--frames", &options->frames, 1, 100000000, "so many (2000)");
   command.run([options] { soak(*options); });
 }
 

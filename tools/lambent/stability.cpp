@@ -218,12 +218,7 @@ void stability(const StabilityOptions& options) {
   conditions += format(". %d grid pixels, %zu frames of the first shot", options.grid * options.grid,
                        shots.front().truth.size()) +
                 (options.seeds > 1 ? format(", means over %d seeds.", options.seeds) : ".");
-  const Value figures = stabilityFigures(shots);
-  writeStabilityReport(folder, shots, figures, conditions);
-  writeJson(options.output.json, figures);
-  if (!options.output.quiet)
-    std::printf("%s%s\n%sreport: %s\n", stabilityTable(figures).c_str(), conditions.c_str(),
-                stabilityRankings(shots).c_str(), (folder / "stability.md").c_str());
+  writeStabilityReport(options.output, folder, shots, conditions);
 }
 
 } // namespace
@@ -238,13 +233,13 @@ void declareStability(CLI::App& app) {
   command.choice("--truth", options->truth, {"path", "reflective"},
                  "path: path tracing (default); reflective: every texel of the reflective shadow maps at every pixel, "
                  "which rsm, isr, hisr and the multires techniques approximate");
-  command.number("--spp", options->samples, 4, 1 << 24, // two halves, of two or more each
+  command.number("--spp", &options->samples, 4, 1 << 24, // two halves, of two or more each
                  "paths per pixel and frame of the truth (default 1024)");
-  command.number("--frames", options->frames, 1, 1000000, "only the first so many of each shot");
-  command.number("--grid", options->grid, 1, 256, "grid of so many by so many pixels besides the marked (default 16)");
-  command.number("--still", options->still, 0, 1000,
+  command.number("--frames", &options->frames, 1, 1000000, "only the first so many of each shot");
+  command.number("--grid", &options->grid, 1, 256, "grid of so many by so many pixels besides the marked (default 16)");
+  command.number("--still", &options->still, 0, 1000,
                  "also at so many times at which the shot stands still, for |E| over still");
-  command.number("--seeds", options->seeds, 1, 1000,
+  command.number("--seeds", &options->seeds, 1, 1000,
                  "errors are means over so many seeds (default 1; two or more tell how well they are known, and rank)");
   command.flag("--quick", options->quick, "few pixels, frames and paths, to try whether it runs");
   command.run([options] {

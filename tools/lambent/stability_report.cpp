@@ -48,24 +48,12 @@ std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& stati
 
 Value figuresOf(const ShotRun& s, size_t index) {
   const TechniqueRun& t = s.techniques[index];
-  Value row = Value::of({{"shot", s.name},
-                         {"technique", t.name},
-                         {"vpls", t.vpls},
-                         {"frames", s.truth.size()},
-                         {"pixels_marked", s.marked},
-                         {"pixels_grid", s.truth.front().size() - s.marked},
-                         {"steps", s.steps},
-                         {"error_marked", t.marked.mean.error},
-                         {"change_marked", t.marked.mean.change},
-                         {"error_grid", t.grid.mean.error},
-                         {"change_grid", t.grid.mean.change},
-                         {"bias_grid", t.grid.mean.bias},
-                         {"l90_median", t.latency.median},
-                         {"l90_worst_tenth", t.latency.worstTenth},
-                         {"l90_followed", t.latency.followed},
-                         {"l90_count", t.latency.count},
-                         {"place_ms", t.placeMs},
-                         {"truth_error", s.truthError}});
+  Value row = Value::of("shot", s.name, "technique", t.name, "vpls", t.vpls, "frames", s.truth.size(), "pixels_marked",
+                        s.marked, "pixels_grid", s.truth.front().size() - s.marked, "steps", s.steps, "error_marked",
+                        t.marked.mean.error, "change_marked", t.marked.mean.change, "error_grid", t.grid.mean.error,
+                        "change_grid", t.grid.mean.change, "bias_grid", t.grid.mean.bias, "l90_median",
+                        t.latency.median, "l90_worst_tenth", t.latency.worstTenth, "l90_followed", t.latency.followed,
+                        "l90_count", t.latency.count, "place_ms", t.placeMs, "truth_error", s.truthError);
   for (const Statistic& statistic : kStatistics)
     if (const auto estimates = estimatesOf(s, statistic); !estimates.empty() && !std::isnan(estimates[index].error))
       row[std::string(statistic.key) + "_se"] = estimates[index].error;
@@ -127,8 +115,7 @@ std::vector<Plot> plotsOf(const ShotRun& s) {
   return plots;
 }
 
-} // namespace
-
+/// A row for each technique of each shot, for programs and for the tables.
 Value stabilityFigures(const std::vector<ShotRun>& shots) {
   Value figures = Value::list();
   for (const ShotRun& s : shots)
@@ -136,6 +123,7 @@ Value stabilityFigures(const std::vector<ShotRun>& shots) {
   return figures;
 }
 
+/// The rows as Markdown.
 std::string stabilityTable(const Value& figures) {
   Value rows = figures;
   for (Value& row : rows.items())
@@ -145,6 +133,7 @@ std::string stabilityTable(const Value& figures) {
   return tableText(kColumns, rows);
 }
 
+/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
 std::string stabilityRankings(const std::vector<ShotRun>& shots) {
   std::string text;
   for (const ShotRun& s : shots)
@@ -161,10 +150,12 @@ std::string stabilityRankings(const std::vector<ShotRun>& shots) {
          text;
 }
 
-void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const Value& figures,
+} // namespace
+
+void writeStabilityReport(const OutputOptions& output, const fs::path& folder, const std::vector<ShotRun>& shots,
                           const std::string& conditions) {
-  writeText(folder / "stability.csv", csvText(figures));
-  std::string page = "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures);
+  const Value figures = stabilityFigures(shots);
+  std::string page = conditions + "\n\n" + stabilityTable(figures);
   if (const std::string rankings = stabilityRankings(shots); !rankings.empty()) page += "\n" + rankings;
   for (const ShotRun& s : shots) {
     writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
@@ -174,7 +165,7 @@ void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& sh
     writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
     page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
   }
-  writeText(folder / "stability.md", escaped(page)); // names of files may look like HTML
+  writeReport(output, folder, "stability", "Temporal stability", page, csvText(figures), figures);
 }
 
 } // namespace lambent

@@ -38,15 +38,9 @@ struct ShotRun {
   std::vector<TechniqueRun> techniques;
 };
 
-/// A row for each technique of each shot, for programs and for the tables.
-Value stabilityFigures(const std::vector<ShotRun>& shots);
-/// The rows as Markdown.
-std::string stabilityTable(const Value& figures);
-/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
-std::string stabilityRankings(const std::vector<ShotRun>& shots);
-/// stability.csv, stability.md and of each shot series-SHOT.csv and of its marked pixels a picture and plots, each in
-/// one step.
-void writeStabilityReport(const std::filesystem::path& folder, const std::vector<ShotRun>& shots, const Value& figures,
-                          const std::string& conditions);
+/// stability.csv, stability.md (tables, rankings) and of each shot series-SHOT.csv and of its marked pixels a picture
+/// and plots, each in one step.
+void writeStabilityReport(const OutputOptions& output, const std::filesystem::path& folder,
+                          const std::vector<ShotRun>& shots, const std::string& conditions);
 
 } // namespace lambent

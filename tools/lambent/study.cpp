@@ -93,8 +93,7 @@ double frameMs(const Measured& run) {
 
 std::string tableText(const std::vector<Column>& columns, const Value& rows) {
   std::vector<TableColumn> shown;
-  for (const Column& c : columns)
-    if (c.shown.title) shown.push_back(c.shown);
+  for (const Column& c : columns) shown.push_back(c.shown);
   return tableText(shown, rows);
 }
 
@@ -160,7 +159,10 @@ Outcome Study::outcome(const Measured& run) const {
 
 Value Study::row(const std::vector<Column>& columns, const Measured& run) const {
   const Outcome from = outcome(run);
-  Value row = Value::of({});
+  const PictureError& e = from.error;
+  Value row = Value::of();
+  if (!truth.pixels.empty())
+    row = Value::of("rmse", e.rmse, "rmse_share", e.rmseShare(), "rel_mse", e.relMse, "bias", e.bias);
   for (const Column& c : columns) {
     Value value = c.of ? c.of(from) : Value();
     if (!value.isNothing()) row[c.shown.key] = std::move(value);
@@ -178,10 +180,9 @@ void Study::report(const std::vector<Column>& columns, const Value& rows, Value 
   figures["scene"] = launch.scene;
   figures["rows"] = rows;
   if (traced)
-    figures["truth"] = Value::of({{"spp", traced->samples},
-                                  {"clamp", traced->clamp},
-                                  {"relative_error", traced->picture.relativeError},
-                                  {"relative_error_of_mean", traced->picture.relativeErrorOfMean}});
+    figures["truth"] =
+        Value::of("spp", traced->samples, "clamp", traced->clamp, "relative_error", traced->picture.relativeError,
+                  "relative_error_of_mean", traced->picture.relativeErrorOfMean);
   writeJson(options_.output.json, figures);
   if (options_.output.quiet) return;
   if (traced)

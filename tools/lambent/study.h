@@ -63,18 +63,15 @@ struct Outcome {
   const Measured& run;
   PictureError error; // against the study's truth, where it has one
 };
-/// A value of each row, for programs, and for people where it has a title.
+/// A value of each row.
 struct Column {
   TableColumn shown;
   Value (*of)(const Outcome&) = nullptr; // nothing: this row has none; null: what makes the rows sets it
 };
 inline Value variantName(const Outcome& o) { return o.run.variant.name; }
-inline constexpr Column kRmse{{"rmse", nullptr}, [](const Outcome&o) -> Value { return o.error.rmse; }},
-    kRmseShare{{"rmse_share", "RMSE over mean", "%.2f %%", 100},
-               [](const Outcome&o) -> Value { return o.error.rmseShare(); }},
-    kRelMse{{"rel_mse", "relMSE", "%.4f"}, [](const Outcome&o) -> Value { return o.error.relMse; }},
-    kBias{{"bias", "bias", "%+.1f %%", 100}, [](const Outcome&o) -> Value { return o.error.bias; }};
-/// Those that have a title.
+/// Of errors, which every row has where there is a truth.
+inline constexpr Column kRmseShare{{"rmse_share", "RMSE over mean", "%.2f %%", 100}},
+    kRelMse{{"rel_mse", "relMSE", "%.4f"}}, kBias{{"bias", "bias", "%+.1f %%", 100}};
 std::string tableText(const std::vector<Column>& columns, const Value& rows);
 
 /// One scene or shot that is drawn, traced and reported on.
@@ -106,11 +103,11 @@ class Study {
   void compareWith(const Image& picture) { truth = picture; }
 
   Outcome outcome(const Measured& run) const;
-  /// Of the columns that say where they come from.
+  /// Errors, and what columns hold that say where they come from.
   Value row(const std::vector<Column>& columns, const Measured& run) const;
   Value rows(const std::vector<Column>& columns, std::span<const Measured> runs) const;
   /// The table, with how well its truth is known.
-  void report(const std::vector<Column>& columns, const Value& rows, Value figures = Value::of({})) const;
+  void report(const std::vector<Column>& columns, const Value& rows, Value figures = Value::of()) const;
 
   LaunchOptions launch;
   const std::unique_ptr<LaunchContext> opened;

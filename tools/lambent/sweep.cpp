@@ -39,7 +39,7 @@ class RunLog {
   }
 
   void add(const std::string& key, Value run) {
-    run.update(Value::of({{"key", key}, {"session", session_}, {"conditions", conditions_}}));
+    run.update(Value::of("key", key, "session", session_, "conditions", conditions_));
     std::ofstream out(file_, std::ios::app);
     out << (begun_ ? "" : "\n") << run.json(-1) << '\n'; // not behind half a line
     if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
@@ -141,11 +141,8 @@ class SceneSweep {
       double sampleMs = 0; // of the pass that took samples; later ones find them all there
       if (traced.sampleSeconds > 0) writeText(pace, format("%.9g", 1000 * traced.sampleSeconds));
       std::ifstream(pace) >> sampleMs;
-      out_.truth[name] = Value::of({{"spp", traced.samples},
-                                    {"relative_error_of_mean", p.relativeErrorOfMean},
-                                    {"rel_mse", truthRelMse_[int(light)]},
-                                    {"seed", opened_.seed},
-                                    {"sample_ms", sampleMs}});
+      out_.truth[name] = Value::of("spp", traced.samples, "relative_error_of_mean", p.relativeErrorOfMean, "rel_mse",
+                                   truthRelMse_[int(light)], "seed", opened_.seed, "sample_ms", sampleMs);
     }
     out_.exposure = exposureFor(out_.truths[0].pixels);
   }
@@ -173,7 +170,7 @@ class SceneSweep {
     const PictureError e = pictureError(picture, out_.truths[int(light)]);
     // What the truth does not know is no error of the picture, down to a tenth of it.
     const double relMse = std::max(e.relMse - truthRelMse_[int(light)], 0.1 * truthRelMse_[int(light)]);
-    return Value::of({{"rel_mse", relMse}, {"rmse_share", e.rmseShare()}, {"bias", e.bias}});
+    return Value::of("rel_mse", relMse, "rmse_share", e.rmseShare(), "bias", e.bias);
   }
 
   Value measured(const SweepPoint& point, int seed, const std::string& key) {
@@ -207,7 +204,7 @@ class SceneSweep {
       for (int f = from; f < to; ++f) ms.push_back(m.frames[size_t(f)].wallMs);
       return spreadOf(std::move(ms)).median;
     };
-    Value run = Value::of({{"point", point.name}, {"seed", seed}, {"gpu_mib", double(m.gpuBytes) / (1 << 20)}});
+    Value run = Value::of("point", point.name, "seed", seed, "gpu_mib", double(m.gpuBytes) / (1 << 20));
     run["moving"] = errorsOf(still > 0 ? m.before[0] : m.picture, point.light);
     run["moving"]["ms"] = medianMs(std::min(2, moving - 1), moving); // shaders and maps of the first are past
     if (still > 0) {
@@ -223,7 +220,7 @@ class SceneSweep {
       std::vector<uint32_t> pixels(tracked_.points.size());
       for (uint32_t i = 0; i < pixels.size(); ++i) pixels[i] = i;
       const StabilityErrors e = stabilityErrors(toneMappedSeries(m.series, seen, watchedExposure_), wanted, pixels);
-      run["moving"].update(Value::of({{"error", e.error}, {"change", e.change}}));
+      run["moving"].update(Value::of("error", e.error, "change", e.change));
     }
     m.frames.resize(size_t(moving));
     for (StageId stage : m.stages()) run["stages"][kStageNames[size_t(stage)]] = m.ms(stage).median;

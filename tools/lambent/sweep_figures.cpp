@@ -121,11 +121,8 @@ Figures figuresOf(const SweptScene& scene) {
     PointFigures& f = figures[point.name];
     f.point = point;
     Value& row = f.row;
-    row = Value::of({{"point", point.name},
-                     {"seeds", ownSeeds.size()},
-                     {"cost_noise", perTime},
-                     {"rays", meanOf(own, "", "rays")},
-                     {"gpu_mib", meanOf(own, "", "gpu_mib")}});
+    row = Value::of("point", point.name, "seeds", ownSeeds.size(), "cost_noise", perTime, "rays",
+                    meanOf(own, "", "rays"), "gpu_mib", meanOf(own, "", "gpu_mib"));
     const auto addState = [&](const std::string& state, double noise) {
       const CostError p{meanOf(own, state, "ms"), meanOf(own, state, "rel_mse"), perTime, perSeed * noise};
       row[state + "_ms"] = p.cost;

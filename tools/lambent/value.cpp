@@ -27,7 +27,7 @@ Value valueOf(const Json& json) {
   if (json.is_number_float()) return json.get<double>();
   if (json.is_number()) return json.get<long>();
   if (json.is_string()) return json.get<std::string>();
-  Value out = json.is_array() ? Value::list() : json.is_object() ? Value::of({}) : Value();
+  Value out = json.is_array() ? Value::list() : json.is_object() ? Value::of() : Value();
   for (const auto& [name, value] : json.items()) (json.is_array() ? out.add({}) : out[name]) = valueOf(value);
   return out;
 }
@@ -46,10 +46,10 @@ Value::Value(const char* text) : kind_(Text), text_(text) {}
 Value::Value(std::string text) : kind_(Text), text_(std::move(text)) {}
 Value::Value(List list) : kind_(Several), list_(std::move(list)) {}
 
-Value Value::of(std::initializer_list<Field> fields) {
+Value Value::ofPairs(std::initializer_list<Value> pairs) {
   Value out;
   out.kind_ = Object;
-  for (const Field& f : fields) out[f.name] = f.value;
+  for (const Value* name = pairs.begin(); name != pairs.end(); name += 2) out[name->text()] = name[1];
   return out;
 }
 

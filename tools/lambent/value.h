@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lambent {
@@ -16,7 +17,6 @@ class Value {
  public:
   using List = std::vector<Value>;
   using Fields = std::map<std::string, Value>;
-  struct Field;
 
   Value();
   Value(const Value&);
@@ -32,8 +32,8 @@ class Value {
   Value(List list);
   template <class T> Value(const std::vector<T>& list) : Value(List(list.begin(), list.end())) {}
   static Value list() { return List(); }
-  /// Values by name.
-  static Value of(std::initializer_list<Field> fields);
+  /// Values by name: name, value, name, value…
+  template <class... T> static Value of(T&&... fields) { return ofPairs({Value(std::forward<T>(fields))...}); }
 
   /// Of JSON; nothing where it is none.
   static Value parsed(const std::string& json);
@@ -63,17 +63,14 @@ class Value {
   void update(const Value& other);
 
  private:
+  static Value ofPairs(std::initializer_list<Value> pairs);
+
   enum { Nothing, Bool, Whole, Real, Text, Several, Object } kind_ = Nothing;
   long whole_ = 0;
   double real_ = 0;
   std::string text_;
   List list_;
   Fields fields_;
-};
-
-struct Value::Field {
-  const char* name;
-  Value value;
 };
 
 } // namespace lambent

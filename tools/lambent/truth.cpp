@@ -1,6 +1,9 @@
-// lambent reference SCENE|SHOT: path-traced truth, progressive and resumable.
+// lambent reference SCENE|SHOT: path-traced truth, progressive and resumable. lambent compare A B: RMSE, relative MSE,
+// bias and largest difference of two linear pictures.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
+#include "gi/measure/picture_error.h"
+#include "tools/lambent/commands.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/study.h"
 
@@ -10,9 +13,9 @@
 
 namespace lambent {
 
-namespace {
-
 namespace fs = std::filesystem;
+
+namespace {
 
 struct ReferenceOptions {
   LaunchOptions launch;
@@ -104,18 +107,11 @@ void reference(const ReferenceOptions& options) {
     const float factor = buffer == ReferenceBuffer::Irradiance ? traced.exposure / kPi : traced.exposure;
     writePicture(out, picture.mean, factor, settings.image.toneMapper);
     if (!options.errors.empty()) writePicture(options.errors, picture.error, factor);
-    writeJson(
-        options.output.json,
-        Value::of({{"picture", out},
-                   {"buffer", options.buffer},
-                   {"bounces", traced.bounces},
-                   {"clamp", traced.clamp},
-                   {"spp", traced.samples},
-                   {"relative_error", picture.relativeError},
-                   {"relative_error_of_mean", picture.relativeErrorOfMean},
-                   {"exposure", traced.exposure},
-                   {"seconds", seconds},
-                   {"rays", Value::of({{"closest", traced.rays.closest}, {"occlusion", traced.rays.occlusion}})}}));
+    writeJson(options.output.json,
+              Value::of("picture", out, "buffer", options.buffer, "bounces", traced.bounces, "clamp", traced.clamp,
+                        "spp", traced.samples, "relative_error", picture.relativeError, "relative_error_of_mean",
+                        picture.relativeErrorOfMean, "exposure", traced.exposure, "seconds", seconds, "rays",
+                        Value::of("closest", traced.rays.closest, "occlusion", traced.rays.occlusion)));
     if (!options.output.quiet)
       std::printf("%s: %dx%d %s, %d bounces, %u samples per pixel, standard error %.3g %% per pixel (RMS over mean), "
                   "%.2g %% of the mean, %.1f s\n",
@@ -127,6 +123,51 @@ void reference(const ReferenceOptions& options) {
                    (options.state.empty() ? " in the picture" : "; the same command goes on"));
 }
 
+struct CompareOptions {
+  OutputOptions output;
+  std::string a, b, layer, mask, difference;
+};
+
+std::string sizeText(const Image& image) { return std::to_string(image.width) + "x" + std::to_string(image.height); }
+
+void checkSize(const std::string& file, const Image& image, const std::string& like, const Image& wanted) {
+  if (image.width != wanted.width || image.height != wanted.height)
+    throw InputError(file, sizeText(image) + ", while " + like + " is " + sizeText(wanted) + " (sizes must agree)");
+}
+
+void compare(const CompareOptions& options) {
+  if (!options.difference.empty()) checkPictureName(options.difference);
+  const Image x = readLinear(options.a);
+  const Image y = options.layer.empty() ? readLinear(options.b) : readExr(options.b, options.layer);
+  checkSize(options.b, y, options.a, x);
+  Image mask;
+  if (!options.mask.empty()) {
+    mask = readLinear(options.mask);
+    checkSize(options.mask, mask, options.a, x);
+  }
+  const PictureError e = pictureError(x, y, mask);
+  if (e.pixels == 0 && e.notFinite == 0) throw InputError(options.mask, "leaves no pixel (those above 0 count)");
+  if (!options.difference.empty()) {
+    Image difference = absoluteDifference(x, y);
+    for (size_t i = 0; i < mask.pixels.size(); ++i)
+      if (!(maxComponent(mask.pixels[i]) > 0)) difference.pixels[i] = vec3(0);
+    writePicture(options.difference, difference, midGreyAt(e.meanTruth));
+  }
+  writeJson(options.output.json,
+            Value::of("rmse", e.rmse, "rel_mse", e.relMse, "bias", e.bias, "max", e.largest, "mean_b", e.meanTruth,
+                      "pixels", e.pixels, "not_finite_pixels", e.notFinite));
+  const auto refuse = [&] { // figures of the others are right, but this is no picture to be content with
+    if (e.notFinite > 0)
+      throw RunError(options.a + " or " + options.b + ": " + std::to_string(e.notFinite) +
+                     " pixels are NaN or infinite");
+  };
+  if (options.output.quiet || e.pixels == 0) return refuse();
+  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", e.rmse,
+              e.relMse, 100 * e.bias, e.largest, e.meanTruth);
+  if (e.notFinite > 0) std::printf("%zu pixels with NaN or infinity left out\n", e.notFinite);
+  refuse();
+}
+
 } // namespace
 
 void declareReference(CLI::App& app) {
@@ -136,19 +177,31 @@ void declareReference(CLI::App& app) {
   command.launch(options->launch);
   command.output(options->output, "picture, linear .exr or .png (default reference.exr)");
   command.text("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
-  command.number("--spp", options->samples, 1, kLargestSamples,
+  command.number("--spp", &options->samples, 1, kLargestSamples,
                  "samples per pixel in all (default 64; with --error no bound)");
-  command.number("--error", options->error, 1e-6, 1e6,
+  command.number("--error", &options->error, 1e-6, 1e6,
                  "stop at this standard error per pixel: its RMS over pixels and channels, over the picture's mean");
-  command.number("--time", options->time, "seconds into the shot or the scene's animation");
+  command.number("--time", &options->time, 0, 0, "seconds into the shot or the scene's animation");
   command.text("--state", options->state, "keep the sums in this file, and go on from it when it is there");
   command.text("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
   command.text("--pixels", options->pixels,
                "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
-  command.number("--grid", options->grid, 0, 256, "grid of so many by so many pixels (default 16)");
+  command.number("--grid", &options->grid, 0, 256, "grid of so many by so many pixels (default 16)");
   command.flag("--clamped", options->clamped,
                "bound the geometry term between picture and first bounce as gather.clamp bounds virtual lights");
   command.run([options] { reference(*options); });
+}
+
+void declareCompare(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  Command command(app, "compare", "errors of picture A against B (linear .exr or .pfm)");
+  command.scene(options->a, "A", "picture to judge");
+  command.scene(options->b, "B", "picture to hold it to");
+  command.text("--layer", options->layer, "layer of B to take, where it is an .exr with several");
+  command.text("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
+  command.text("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");
+  command.output(options->output, "");
+  command.run([options] { compare(*options); });
 }
 
 } // namespace lambent
