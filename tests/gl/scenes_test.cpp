@@ -130,8 +130,8 @@ TEST_F(ScenesTest, OneWhereAnotherWasIsDrawn) {
   }
 }
 
-/// Assigned in place, and moved elsewhere: its meshes lie somewhere else then.
-TEST_F(ScenesTest, OneThatIsAssignedOrMovedIsOpenedAgain) {
+/// Assigned in place, copied, and moved elsewhere: its meshes lie somewhere else then.
+TEST_F(ScenesTest, OneThatIsAssignedCopiedOrMovedIsOpenedAgain) {
   LitRoom room(false), other(true);
   Viewer gi(small());
   gi.run(room.scene.view());
@@ -140,6 +140,13 @@ TEST_F(ScenesTest, OneThatIsAssignedOrMovedIsOpenedAgain) {
   gi.run(room.scene.view());
   EXPECT_NEAR(gi.rays().closest(Ray{vec3(0.45f, 0.9f, 0.15f), vec3(0, -1, 0)}).t, 1.1f, 1e-4f);
   const Image before = gi.read(Buffer::Albedo);
+
+  SceneAssets blue = room.scene.assets; // a copy, then changed
+  for (Material& material : blue.materials) material.baseColor = vec3(0, 0, 1);
+  SceneView ofCopy = room.scene.view();
+  ofCopy.assets = &blue;
+  gi.run(ofCopy);
+  EXPECT_EQ(gi.read(Buffer::Albedo).at(20, 20).x, 0);
 
   auto moved = std::make_unique<SceneAssets>(std::move(room.scene.assets));
   room.scene.assets = {};
