@@ -2,27 +2,17 @@
 #pragma once
 
 #include "tests/support/effort.h"
+#include "tests/support/files.h"
 #include "tools/content/content.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
-#include <fstream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace lambent {
-
-inline std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 /// A recipe's name with only the letters that a test's name may have.
 inline std::string testName(const ContentRecipe& recipe) {
@@ -37,21 +27,10 @@ inline bool isLarge(const ContentRecipe& r) {
 inline void PrintTo(const ContentRecipe& recipe, std::ostream* out) { *out << recipe.name; }
 
 struct WrittenScene {
-  std::filesystem::path folder;
+  test::TemporaryFolder folder;
   GeneratedScene scene;
 
-  explicit WrittenScene(const ContentRecipe& recipe, const std::string& tag = "") {
-    // Tests may run at the same time, each in a process of its own.
-    folder =
-        std::filesystem::path(testing::TempDir()) / ("lambent-" + std::to_string(::getpid()) + "-" + recipe.name + tag);
-    scene = recipe.write(folder);
-  }
-  ~WrittenScene() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
-  }
-  WrittenScene(const WrittenScene&) = delete;
-  WrittenScene& operator=(const WrittenScene&) = delete;
+  explicit WrittenScene(const ContentRecipe& recipe) : scene(recipe.write(folder.path())) {}
 };
 
 /// All recipes; where sanitizers look at them, without the two that take most of the time: they have smaller sisters.

@@ -1,17 +1,12 @@
 // Cells of VPLs: the surface that each stands for.
 #include "engine/core/rng.h"
-#include "engine/trace/analytic_query.h"
-#include "gi/vpl/smc.h"
+#include "tests/support/comparator_world.h"
 #include "tests/support/statistics.h"
 
 namespace lambent::test::cells_test {
 
 Vpl vplAt(const vec3& position, const vec3& normal, uint64_t id, const vec3& seenFrom) {
-  Vpl v;
-  v.position = position;
-  v.normal = v.geometricNormal = normal;
-  v.albedo = vec3(0.5f);
-  v.id = id;
+  Vpl v = test::vplAt(position, normal, id);
   v.mailbox = seenFrom;
   v.alive = v.valid = true;
   return v;

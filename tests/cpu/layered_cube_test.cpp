@@ -1,17 +1,12 @@
 // The layered depth cube: surfaces found along the axes, light put in and taken out, and the file that keeps it.
-#include "engine/core/error.h"
 #include "engine/scene/scene_hash.h"
 #include "gi/cube/cube_file.h"
 #include "gi/lighting/light_set.h"
 #include "gi/vpl/sources.h"
+#include "tests/support/files.h"
 #include "tests/support/random_world.h"
 
-#include <filesystem>
-#include <fstream>
-
 namespace lambent::test::layered_cube_test {
-
-using Bytes = std::vector<char>;
 
 CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
   return {.resolution = resolution, .sights = sights, .hemicube = 64};
@@ -347,25 +342,16 @@ TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
 class CubeFileTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("lambent-cube-" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-    file_ = folder_ / "room.cube";
+
     w.lights = {lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(1)), lightAt({0.5f, -0.99f, 0}, {0, 1, 0}, vec3(1))};
     w.room();
     key_ = cubeKey(w.view);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  Bytes read() const {
-    std::ifstream in(file_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void write(const Bytes& bytes) const {
-    std::ofstream(file_, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-  }
 
   CubeWorld w;
   CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
-  std::filesystem::path folder_, file_;
+  TemporaryFolder folder_;
+  const fs::path file_ = folder_ / "room.cube";
   uint64_t key_ = 0;
 };
 
@@ -385,21 +371,19 @@ TEST_F(CubeFileTest, SaysWhatIsWrongWithAFile) {
   cube.update(w.inputs(settings));
   saveCube(file_, cube, key_);
   EXPECT_THROW(loadCube(file_, key_ + 1), InputError);
-  const Bytes good = read();
+  const std::string good = readBytes(file_);
   EXPECT_NO_THROW(loadCube(file_, key_));
   for (size_t at = 0; at < good.size(); at += 997) {
-    Bytes bad = good;
+    std::string bad = good;
     bad[at] = char(bad[at] ^ 0x55);
-    write(bad);
+    writeBytes(file_, bad);
     EXPECT_THROW(loadCube(file_, key_), InputError) << at;
   }
   for (const size_t size : {size_t(0), size_t(10), size_t(24), size_t(100), good.size() / 2, good.size() - 1}) {
-    write(Bytes(good.begin(), good.begin() + std::ptrdiff_t(size)));
+    writeBytes(file_, good.substr(0, size));
     EXPECT_THROW(loadCube(file_, key_), InputError) << size;
   }
-  Bytes longer = good;
-  longer.push_back(0);
-  write(longer);
+  writeBytes(file_, good + '\0');
   EXPECT_THROW(loadCube(file_, key_), InputError);
 }
 

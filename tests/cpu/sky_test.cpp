@@ -6,7 +6,7 @@
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_paths.h"
 #include "gi/lighting/photons.h"
-#include "gi/vpl/smc.h"
+#include "tests/support/comparator_world.h"
 #include "tests/support/daylight.h"
 #include "tests/support/effort.h"
 #include "tests/support/statistics.h"
@@ -283,22 +283,6 @@ TEST(SkyPaths, ThroughAWindowWithoutFireflies) {
   std::printf("variance at equal rays over that of cosine rays: mean %.2f, largest %.2f\n", ratios / cases, worst);
   EXPECT_LT(ratios / cases, 1);
   EXPECT_LT(worst, 1.5);
-}
-
-Vpl vplAt(const vec3& position, const vec3& normal, uint64_t id) {
-  Vpl v;
-  v.position = position;
-  v.normal = v.geometricNormal = normal;
-  v.albedo = vec3(0.5f);
-  v.id = id;
-  return v;
-}
-
-vec3 radianceOf(Vpl v, const RayQuery& rays, const LightSet& lights, int bounces, int paths) {
-  Vpl* one = &v;
-  RayCounts counts;
-  estimateRadiance({&one, 1}, rays, lights, paths, bounces, 1, counts);
-  return v.radiance;
 }
 
 TEST(SkyPaths, RadiosityOfOpenPlanesAndOfARoom) {

@@ -1,21 +1,14 @@
 // A recorded walk, read back from its file: the camera where it was in every frame.
 #include "game/rules/path_recorder.h"
 
-#include "engine/core/error.h"
-
-#include "tests/support/test.h"
-
-#include <fstream>
+#include "tests/support/files.h"
 
 namespace lambent::test::path_recorder_test {
 
-namespace fs = std::filesystem;
-
 class PathRecorderTest : public testing::Test {
  protected:
-  PathRecorderTest() : folder_(fs::path(testing::TempDir()) / "lambent-path-recorder") { fs::remove_all(folder_); }
-  ~PathRecorderTest() override { fs::remove_all(folder_); }
-  const fs::path folder_;
+  TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_ / "walks";
 };
 
 PlayedMoment momentAt(double t) {
@@ -78,7 +71,7 @@ TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   recorder.begin("a.gltf", nullptr, 30, {});
   EXPECT_FALSE(recorder.end(folder_).has_value());
   EXPECT_FALSE(fs::exists(folder_));
-  std::ofstream(folder_.string()) << "a file by the folder's name";
+  writeBytes(folder_, "a file by the folder's name");
   recorder.begin("a.gltf", nullptr, 30, {});
   recorder.add(at(0), dvec3(0), {});
   EXPECT_THROW(recorder.end(folder_), RunError);

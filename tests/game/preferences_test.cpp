@@ -1,33 +1,19 @@
 // What the window keeps from one run to the next: a round trip, files that are something else, and who wins.
 #include "game/rules/preferences.h"
 
-#include "engine/core/error.h"
 #include "gi/plan/presets.h"
 
-#include "tests/support/test.h"
-
-#include <fstream>
+#include "tests/support/files.h"
 
 namespace lambent::test::preferences_test {
 
-namespace fs = std::filesystem;
-
 class PreferencesTest : public testing::Test {
  protected:
-  PreferencesTest() : folder_(fs::path(testing::TempDir()) / "lambent-preferences"), file_(folder_ / "a/b.json") {
-    fs::remove_all(folder_);
-  }
-  ~PreferencesTest() override { fs::remove_all(folder_); }
+  void write(const std::string& text) const { writeBytes(file_, text); }
+  std::string text() const { return readBytes(file_); }
 
-  void write(const std::string& text) const {
-    fs::create_directories(file_.parent_path());
-    std::ofstream(file_) << text;
-  }
-  std::string text() const {
-    std::ifstream in(file_);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  const fs::path folder_, file_;
+  TemporaryFolder folder_;
+  const fs::path file_ = folder_ / "a/b.json";
 };
 
 Preferences some() {
@@ -57,7 +43,7 @@ TEST_F(PreferencesTest, NoFileGivesTheDefaultsAndNothingToSay) {
   EXPECT_EQ(kept.now, Preferences());
   EXPECT_EQ(kept.takeComplaint(), "");
   kept.save();
-  EXPECT_FALSE(fs::exists(folder_)) << "nothing was changed";
+  EXPECT_FALSE(fs::exists(folder_ / "a")) << "nothing was changed";
 }
 
 TEST_F(PreferencesTest, AFileThatIsSomethingElseStaysUntilSomethingChanges) {

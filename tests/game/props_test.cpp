@@ -1,13 +1,10 @@
 // What somebody played with, written into a shot and shown again in the scene as it was loaded.
 #include "game/rules/props.h"
 
-#include "engine/core/error.h"
 #include "engine/scene/gltf_import.h"
 #include "game/rules/solids.h"
 
-#include "tests/support/test.h"
-
-#include <filesystem>
+#include "tests/support/files.h"
 
 namespace lambent::test::props_test {
 
@@ -60,10 +57,9 @@ TEST(PropsTest, AreShownAgainToTheBit) {
   shot.scene = "door.gltf";
   shot.seconds = 1;
   shot.played = {before, played.props.moment(1)};
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "lambent-props.json";
-  saveShot(shot, file);
-  const Shot read = loadShot(file);
-  std::filesystem::remove(file);
+  const TemporaryFolder folder;
+  saveShot(shot, folder / "props.json");
+  const Shot read = loadShot(folder / "props.json");
   EXPECT_EQ(read.played, shot.played);
 
   Room anew;

@@ -1,15 +1,9 @@
 // Context, objects, programs, profiler.
-#include "engine/core/error.h"
 #include "gl_fixture.h"
+#include "shader_copy.h"
 #include "shaders/shared/light_record.h"
 
-#include <filesystem>
-#include <fstream>
-#include <unistd.h>
-
 namespace lambent::test::context_test {
-
-namespace fs = std::filesystem;
 
 using ContextTest = GlTest;
 
@@ -67,29 +61,8 @@ TEST_F(ContextTest, ProfilerTimesPassesInOrder) {
   EXPECT_TRUE(profiler.takeRows().empty());
 }
 
-/// A folder of shaders of its own, removed at the end.
-class ShaderFolder {
- public:
-  ShaderFolder() : path(fs::temp_directory_path() / ("lambent-shaders-" + std::to_string(getpid()))) {
-    fs::create_directories(path / "sub");
-    fs::copy_file(gl::findShaderFolder() / "fullscreen.vert", path / "fullscreen.vert",
-                  fs::copy_options::overwrite_existing);
-  }
-  ~ShaderFolder() { fs::remove_all(path); }
-
-  void write(const std::string& file, const std::string& text) const {
-    std::ofstream(path / file) << text;
-    // File times may be coarser than the time between two writes of a test.
-    fs::last_write_time(path / file, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
-  }
-  fs::path path;
-
- private:
-  mutable int writes_ = 0;
-};
-
 TEST_F(ContextTest, IncludesGoInOnceAndKeepTheirLines) {
-  const ShaderFolder folder;
+  const ShaderCopy folder;
   folder.write("sub/a.glsl", "#include \"b.glsl\"\nfloat a;\n");
   folder.write("sub/b.glsl", "#ifdef __cplusplus\n#include \"only/for/cpp.h\"\n#endif\nfloat b;\n");
   folder.write("main.frag", "#version 450\n#include \"sub/a.glsl\"\n#include \"sub/b.glsl\"\nfloat c;\n");
@@ -101,17 +74,13 @@ TEST_F(ContextTest, IncludesGoInOnceAndKeepTheirLines) {
   EXPECT_EQ(shader.text.find("only/for/cpp"), std::string::npos);
 
   folder.write("broken.frag", "#version 450\n\n#include \"missing.glsl\"\n");
-  try {
-    gl::loadShader(folder.path, "broken.frag", {});
-    FAIL();
-  } catch (const RunError& error) {
-    EXPECT_NE(std::string(error.what()).find("broken.frag:3"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("missing.glsl"), std::string::npos);
-  }
+  const std::string error = messageOf<RunError>([&] { gl::loadShader(folder.path, "broken.frag", {}); });
+  EXPECT_NE(error.find("broken.frag:3"), std::string::npos) << error;
+  EXPECT_NE(error.find("missing.glsl"), std::string::npos) << error;
 }
 
 TEST_F(ContextTest, ReloadKeepsTheLastGoodProgram) {
-  const ShaderFolder folder;
+  const ShaderCopy folder;
   const auto color = [](const char* value) {
     return std::string("#version 450\n#include \"value.glsl\"\nlayout(location = 0) out vec4 c;\nvoid main() { c = ") +
            value + "; }\n";
@@ -148,15 +117,11 @@ TEST_F(ContextTest, ReloadKeepsTheLastGoodProgram) {
 }
 
 TEST_F(ContextTest, FirstCompileFailureIsARunErrorWithTheLog) {
-  const ShaderFolder folder;
+  const ShaderCopy folder;
   folder.write("bad.frag", "#version 450\nvoid main() { undeclared = 1; }\n");
   gl::ProgramCache cache(folder.path);
-  try {
-    cache.get({.fragment = "bad.frag"});
-    FAIL();
-  } catch (const RunError& error) {
-    EXPECT_NE(std::string(error.what()).find("undeclared"), std::string::npos) << error.what();
-  }
+  const std::string error = messageOf<RunError>([&] { cache.get({.fragment = "bad.frag"}); });
+  EXPECT_NE(error.find("undeclared"), std::string::npos) << error;
   folder.write("bad.frag", "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(1); }\n");
   EXPECT_NO_THROW(cache.get({.fragment = "bad.frag"}));
 }

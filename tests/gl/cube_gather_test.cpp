@@ -1,10 +1,6 @@
 // Technique ibrr: the layered depth cube that pixels look light up in.
-#include "engine/core/error.h"
 #include "frames.h"
-
-#include <filesystem>
-#include <fstream>
-#include <unistd.h>
+#include "tests/support/files.h"
 
 namespace lambent::test::cube_gather_test {
 
@@ -191,8 +187,8 @@ TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
 TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) { expectDarkBesideLit(settings, 0.01); }
 
 TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("lambent-gather-" + std::to_string(::getpid()) + ".cube");
+  const TemporaryFolder folder;
+  const fs::path file = folder / "room.cube";
   settings.cubeFile = file.string();
   Settings plainSettings;
   Image first;
@@ -215,9 +211,7 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   settings.cubeFile = file.string();
   for (const bool damaged : {true, false}) {
     if (damaged) {
-      std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
-      bytes.seekp(4000);
-      bytes.put(0x5a);
+      writeBytes(file, readBytes(file).replace(4000, 1, "\x5a"));
     } else {
       room.scene.instances.pop_back();
     }
@@ -232,10 +226,9 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
     EXPECT_EQ(stats.raysCube.occlusion, 0u);
   }
   // What is no cube is not touched.
-  std::ofstream(file, std::ios::trunc) << "{\"asset\": {\"version\": \"2.0\"}}";
+  writeBytes(file, "{\"asset\": {\"version\": \"2.0\"}}");
   EXPECT_NE(Viewer(settings).run(room.scene.view()).warning, "");
-  EXPECT_EQ(std::filesystem::file_size(file), 29u);
-  std::filesystem::remove(file);
+  EXPECT_EQ(fs::file_size(file), 29u);
 }
 
 } // namespace lambent::test::cube_gather_test

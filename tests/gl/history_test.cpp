@@ -172,8 +172,7 @@ TEST_F(HistoryTest, GetsOverWhatIsNoNumber) {
 class HistoryPassTest : public GatherTest {
  protected:
   Image averaged(const GBuffer& gbuffer, std::span<const vec4> light, bool cameraMoved) {
-    const gl::Texture given("given", {.format = GL_RGBA32F, .width = gbuffer.width, .height = gbuffer.height});
-    glTextureSubImage2D(given.name(), 0, 0, 0, gbuffer.width, gbuffer.height, GL_RGBA, GL_FLOAT, light.data());
+    const gl::Texture given = textureOf(gbuffer.width, gbuffer.height, light);
     history.fit(gbuffer);
     const SurfaceLighting raw{&given, nullptr, false};
     return read(Buffer::Irradiance, gbuffer, raw, history.run({gbuffer, raw, cameraMoved, false, {.frames = 64}, {}}));

@@ -131,11 +131,10 @@ TEST_F(IndirectTest, FilterMixesAllSubsetsEqually) {
   const Floor floor;
   const GBuffer gbuffer = surfaces(floor.scene);
   // Each subset holds another constant; their mean must appear wherever the kernel lies inside the picture.
-  const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
   std::vector<vec4> texels(64 * 48);
   for (const auto [x, y] : Pixels(64, 48))
     texels[size_t(y) * 64 + x] = vec4(vec3(float(1 << (x / 16 + 4 * (y / 12)))), 1);
-  glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const gl::Texture tiles = textureOf(64, 48, texels);
   const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (const auto [x, y] : Pixels({3, 3}, {61, 45}))
@@ -150,8 +149,7 @@ TEST_F(IndirectTest, FilterStopsAtEdges) {
   std::vector<vec4> texels(64 * 48);
   for (const auto [x, y] : Pixels(64, 48))
     texels[size_t(y % 4 * 12 + y / 4) * 64 + x % 4 * 16 + x / 4] = vec4(normal.at(x, 47 - y).y > 0.5f ? 1.0f : 0.0f);
-  const gl::Texture tiles("tiles", {.format = GL_RGBA32F, .width = 64, .height = 48});
-  glTextureSubImage2D(tiles.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const gl::Texture tiles = textureOf(64, 48, texels);
   const SurfaceLighting raw{&tiles, nullptr, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   for (const auto [x, y] : Pixels(64, 48))
@@ -169,8 +167,7 @@ TEST_F(IndirectTest, FilterStopsAtSteps) { // between planes that face the same 
   std::vector<vec4> texels(64 * 48);
   for (const auto [x, y] : Pixels(64, 48))
     texels[size_t(y) * 64 + x] = vec4(depth.at(x, 47 - y).x < 2.5f ? 1.0f : 0.0f);
-  const gl::Texture light("light", {.format = GL_RGBA32F, .width = 64, .height = 48});
-  glTextureSubImage2D(light.name(), 0, 0, 0, 64, 48, GL_RGBA, GL_FLOAT, texels.data());
+  const gl::Texture light = textureOf(64, 48, texels);
   const SurfaceLighting raw{&light, nullptr, false, true};
   const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {}}));
   int nearer = 0;

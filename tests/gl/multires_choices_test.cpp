@@ -3,19 +3,6 @@
 
 namespace lambent::test::multires_choices_test {
 
-/// A panel before a wall, over the left half of the picture, and a lamp between them that lights the wall alone.
-struct Panels {
-  HandScene scene;
-  std::vector<VirtualLight> lamp{lightAt(vec3(0, 0, -1), vec3(0, 0, -1), vec3(1), 0.1f)};
-
-  Panels() {
-    const uint32_t grey = scene.material(vec3(0.5f));
-    scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-    scene.quad(vec3(-9, -9, 0), vec3(9, 0, 0), vec3(0, 18, 0), grey);
-    scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
-  }
-};
-
 /// A tilted square before nothing: its outline crosses patches of every size.
 struct Island {
   HandScene scene;
@@ -26,12 +13,6 @@ struct Island {
     scene.camera = cameraAt(vec3(0, 0, 3), vec3(0), 0.9f, 131, 77);
   }
 };
-
-std::vector<float> depths(const GBuffer& gbuffer) {
-  std::vector<float> depth(size_t(gbuffer.width) * gbuffer.height);
-  glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
-  return depth;
-}
 
 TEST_F(MultiresTest, NoPatchIsSmallerThanTheFinest) {
   Room room;
@@ -81,11 +62,8 @@ TEST_F(MultiresTest, AboveTheFinestPatchesAreThoseOfPixels) {
 
 /// A patch that would be split and may not has no parts to be balanced against.
 TEST_F(MultiresTest, PatchesOfTheFinestSizeSplitNoneBesideThem) {
-  HandScene scene;
-  const uint32_t grey = scene.material(vec3(0.5f));
-  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-  scene.quad(vec3(-9, -9, 0), vec3(9.854f, 0, 0), vec3(0, 18, 0), grey); // up to pixel 76
-  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
+  const Panels panels(9.854f); // up to pixel 76
+  const HandScene& scene = panels.scene;
   multires(surfaces(scene), roomLights(), {.coarsest = 4, .finest = 8, .edges = false});
   const std::vector<int> levels = patchLevels(surfaces(scene));
   for (int x = 64; x < 80; ++x) ASSERT_EQ(levels[size_t(x)], 3) << x;
@@ -277,16 +255,11 @@ TEST_F(MultiresTest, GlossyLightOfFinestPatchesIsUpsampledEitherWay) {
   Room room;
   for (Material& m : room.scene.assets.materials) m.roughness = m.metalness = 0.5f;
   const GBuffer gbuffer = surfaces(room.scene, true);
-  const auto glossy = [&](GatherMode mode, const MultiresSettings& settings) {
-    Settings all = with(mode);
-    all.gather.glossy = true;
-    all.multires = settings;
-    return readTexture(*GatherTest::gathered(gbuffer, roomLights(), all).glossy);
-  };
   float lo = kInfinity, hi = 0;
-  for (const vec4& g : glossy(GatherMode::Full, {})) lo = std::min(lo, g.x), hi = std::max(hi, g.x);
+  for (const vec4& g : glossyTexels(gbuffer, GatherMode::Full, {})) lo = std::min(lo, g.x), hi = std::max(hi, g.x);
   for (const PatchUpsample upsample : {PatchUpsample::Bilateral, PatchUpsample::Bilinear})
-    for (const vec4& g : glossy(GatherMode::Multires, {.coarsest = 4, .finest = 2, .upsample = upsample})) {
+    for (const vec4& g :
+         glossyTexels(gbuffer, GatherMode::Multires, {.coarsest = 4, .finest = 2, .upsample = upsample})) {
       ASSERT_GE(g.x, 0.9999f * lo);
       ASSERT_LE(g.x, 1.0001f * hi);
     }

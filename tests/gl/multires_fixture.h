@@ -8,6 +8,37 @@
 
 namespace lambent::test {
 
+/// A panel before a wall, over the left half of the image unless it is wider, and a lamp between them that lights the
+/// wall alone.
+struct Panels {
+  HandScene scene;
+  std::vector<VirtualLight> lamp{lightAt(vec3(0, 0, -1), vec3(0, 0, -1), vec3(1), 0.1f)};
+
+  explicit Panels(float width = 9, int pixelsX = 128, int pixelsY = 64) {
+    const uint32_t grey = scene.material(vec3(0.5f));
+    scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
+    scene.quad(vec3(-9, -9, 0), vec3(width, 0, 0), vec3(0, 18, 0), grey);
+    scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, pixelsX, pixelsY);
+  }
+};
+
+inline std::vector<VirtualLight> lightsIn(const vec3& lo, const vec3& hi, int count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> u(0, 1);
+  std::vector<VirtualLight> lights;
+  for (int i = 0; i < count; ++i) {
+    const auto any = [&] {
+      const float x = u(random), y = u(random);
+      return vec3(x, y, u(random));
+    };
+    const vec3 position = lo + any() * (hi - lo), normal = glm::normalize(any() - 0.5f);
+    lights.push_back(lightAt(position, normal, any(), 0.05f));
+  }
+  return lights;
+}
+
+inline std::vector<VirtualLight> roomLights() { return lightsIn(vec3(-0.9f), vec3(0.9f), 40); }
+
 class MultiresTest : public GatherTest {
  protected:
   Image gathered(const GBuffer& gbuffer, const std::vector<VirtualLight>& lights, GatherMode mode) {
@@ -18,6 +49,20 @@ class MultiresTest : public GatherTest {
     Settings all = with(mode);
     all.multires = settings;
     return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, all));
+  }
+  /// Glossy light as it was gathered; nothing where there is none.
+  std::vector<vec4> glossyTexels(const GBuffer& gbuffer, GatherMode mode, const MultiresSettings& settings) {
+    Settings all = with(mode);
+    all.gather.glossy = true;
+    all.multires = settings;
+    const gl::Texture* texture = GatherTest::gathered(gbuffer, roomLights(), all).glossy;
+    return texture ? readTexture(*texture) : std::vector<vec4>();
+  }
+  /// Inverse ones, from the bottom.
+  static std::vector<float> depths(const GBuffer& gbuffer) {
+    std::vector<float> depth(size_t(gbuffer.width) * gbuffer.height);
+    gbuffer.depth->read(std::span(depth), GL_DEPTH_COMPONENT, GL_FLOAT);
+    return depth;
   }
   /// Patches that the stencil marked in a gather with these settings.
   uint64_t patchesMarked(const GBuffer& gbuffer, const MultiresSettings& settings,
@@ -39,8 +84,7 @@ class MultiresTest : public GatherTest {
       for (const auto [x, y] : Pixels(gbuffer))
         if (lo[size_t(y >> level) * size.x + (x >> level)].a < 0.5f) levels[size_t(y) * gbuffer.width + x] = level;
     }
-    std::vector<float> depth(levels.size());
-    glGetTextureImage(gbuffer.depth->name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
+    const std::vector<float> depth = depths(gbuffer);
     for (size_t i = 0; i < depth.size(); ++i)
       if (depth[i] == 0) levels[i] = -1;
     return levels;
@@ -70,23 +114,5 @@ class MultiresTest : public GatherTest {
     return count;
   }
 };
-
-inline std::vector<VirtualLight> lightsIn(const vec3& lo, const vec3& hi, int count) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> u(0, 1);
-  std::vector<VirtualLight> lights;
-  for (int i = 0; i < count; ++i) {
-    VirtualLight v;
-    v.position = lo + vec3(u(random), u(random), u(random)) * (hi - lo);
-    v.normal = v.geometricNormal = glm::normalize(vec3(u(random), u(random), u(random)) - 0.5f);
-    v.radiance = vec3(u(random), u(random), u(random));
-    v.area = 0.05f;
-    v.alive = true;
-    lights.push_back(v);
-  }
-  return lights;
-}
-
-inline std::vector<VirtualLight> roomLights() { return lightsIn(vec3(-0.9f), vec3(0.9f), 40); }
 
 } // namespace lambent::test

@@ -25,13 +25,8 @@ TEST_F(MultiresTest, AConstantStaysConstant) {
   for (int i = 0; i < 6; ++i) {
     vec3 axis(0);
     axis[i / 2] = i % 2 ? -1.0f : 1.0f;
-    VirtualLight v;
-    v.position = 1e6f * axis;
-    v.normal = v.geometricNormal = -axis;
-    v.radiance = vec3(1e12f) * vec3(0.5f, 1, 2);
-    v.area = 1;
-    v.alive = true;
-    for (int c = 0; c < 16; ++c) lights[size_t(i) * 16 + c] = v;
+    for (int c = 0; c < 16; ++c)
+      lights[size_t(i) * 16 + c] = lightAt(1e6f * axis, -axis, vec3(1e12f) * vec3(0.5f, 1, 2), 1);
   }
   for (const GatherMode mode : {GatherMode::Multires, GatherMode::Splat, GatherMode::MultiresInterleaved}) {
     const Image image = multires(gbuffer, lights, {.coarsest = 4}, mode);
@@ -136,8 +131,7 @@ TEST_F(MultiresTest, NoPixelLiesFartherFromItsPlaneThanThePatchSays) {
   scene.camera = cameraAt(vec3(0.3f, 0, 2), vec3(0), 0.8f, 128, 96);
   const GBuffer gbuffer = surfaces(scene);
   multires(gbuffer, roomLights(), {.coarsest = 4});
-  std::vector<float> depth(128 * 96);
-  gbuffer.depth->read(std::span(depth), GL_DEPTH_COMPONENT, GL_FLOAT);
+  const std::vector<float> depth = depths(gbuffer);
   int bounded = 0;
   for (int level = 1; level <= patches->levels; ++level) {
     const glm::ivec2 size = patches->padded / (1 << level);
@@ -163,8 +157,7 @@ TEST_F(MultiresTest, NoPatchHoldsBackground) {
   scene.camera = cameraAt(vec3(0, 0, 2), vec3(0), 1.0f, 128, 96);
   const GBuffer gbuffer = surfaces(scene);
   multires(gbuffer, roomLights(), {.coarsest = 4, .edges = false});
-  std::vector<float> depth(128 * 96);
-  gbuffer.depth->read(std::span(depth), GL_DEPTH_COMPONENT, GL_FLOAT);
+  const std::vector<float> depth = depths(gbuffer);
   int whole = 0;
   for (int level = 1; level <= patches->levels; ++level) {
     const glm::ivec2 size = patches->padded / (1 << level);
@@ -204,12 +197,7 @@ TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
 
 /// An edge along a border that patches of every size share: the pyramid alone would end the largest ones there.
 TEST_F(MultiresTest, PatchesBesideAnEdgeStaySmallWithBalanceOrWithout) {
-  HandScene scene;
-  const uint32_t grey = scene.material(vec3(0.5f));
-  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-  scene.quad(vec3(-9, -9, 0), vec3(9, 0, 0), vec3(0, 18, 0), grey); // nearer, over the left half
-  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 128, 64);
-  const GBuffer gbuffer = surfaces(scene);
+  const GBuffer gbuffer = surfaces(Panels().scene);
   for (const bool balance : {true, false})
     for (const bool edges : {true, false}) {
       multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance, .edges = edges});
@@ -223,19 +211,9 @@ TEST_F(MultiresTest, PatchesBesideAnEdgeStaySmallWithBalanceOrWithout) {
 
 /// A light between two panels lights the far one only.
 TEST_F(MultiresTest, NoLightLeaksOverAnEdge) {
-  HandScene scene;
-  const uint32_t grey = scene.material(vec3(0.5f));
-  scene.quad(vec3(-9, -9, -2), vec3(18, 0, 0), vec3(0, 18, 0), grey);
-  scene.quad(vec3(-9, -9, 0), vec3(8.87f, 0, 0), vec3(0, 18, 0), grey);
-  scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.0f, 131, 77);
-  const GBuffer gbuffer = surfaces(scene);
-  VirtualLight v;
-  v.position = vec3(0, 0, -1);
-  v.normal = v.geometricNormal = vec3(0, 0, -1);
-  v.radiance = vec3(1);
-  v.area = 0.1f;
-  v.alive = true;
-  const std::vector<VirtualLight> lights{v};
+  const Panels panels(8.87f, 131, 77);
+  const GBuffer gbuffer = surfaces(panels.scene);
+  const std::vector<VirtualLight>& lights = panels.lamp;
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const Image image = multires(gbuffer, lights, {.coarsest = 4});
   int dark = 0, lit = 0;
@@ -274,13 +252,7 @@ TEST_F(MultiresTest, SplattingIsGatheringTheOtherWayRound) {
 TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
   const Floor floor;
   const GBuffer gbuffer = surfaces(floor.scene);
-  VirtualLight v;
-  v.position = vec3(0.3f, 0.2f, -0.2f);
-  v.normal = v.geometricNormal = vec3(0, -1, 0);
-  v.radiance = vec3(1);
-  v.area = 0.05f;
-  v.alive = true;
-  const std::vector<VirtualLight> lights{v};
+  const std::vector lights{lightAt(vec3(0.3f, 0.2f, -0.2f), vec3(0, -1, 0), vec3(1), 0.05f)};
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const auto error = [&](const Image& image) {
     double sum = 0;
@@ -297,31 +269,20 @@ TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
 /// Glossy light goes the same ways.
 TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
   Room room;
-  for (Material& m : room.scene.assets.materials) {
-    m.roughness = 0.5f;
-    m.metalness = 0.5f;
-  }
+  for (Material& m : room.scene.assets.materials) m.roughness = m.metalness = 0.5f;
   const GBuffer gbuffer = surfaces(room.scene, true);
   ASSERT_NE(gbuffer.roughnessMetalness, nullptr);
-  const std::vector<VirtualLight> lights = roomLights();
-  const auto glossy = [&](GatherMode mode, const MultiresSettings& settings) {
-    Settings all = with(mode);
-    all.gather.glossy = true;
-    all.multires = settings;
-    const gl::Texture* texture = GatherTest::gathered(gbuffer, lights, all).glossy;
-    return texture ? readTexture(*texture) : std::vector<vec4>();
-  };
-  const std::vector<vec4> full = glossy(GatherMode::Full, {});
+  const std::vector<vec4> full = glossyTexels(gbuffer, GatherMode::Full, {});
   ASSERT_EQ(full.size(), 64u * 48);
   for (const GatherMode mode : {GatherMode::Multires, GatherMode::Splat, GatherMode::SplatPerVpl}) {
-    const std::vector<vec4> each = glossy(mode, {.coarsest = 4, .depth = 0});
+    const std::vector<vec4> each = glossyTexels(gbuffer, mode, {.coarsest = 4, .depth = 0});
     ASSERT_EQ(each.size(), full.size());
     for (size_t i = 0; i < full.size(); ++i) {
       ASSERT_GT(full[i].x, 0);
       ASSERT_NEAR(each[i].x, full[i].x, 2e-5f * full[i].x);
     }
   }
-  const std::vector<vec4> patched = glossy(GatherMode::Multires, {.coarsest = 4});
+  const std::vector<vec4> patched = glossyTexels(gbuffer, GatherMode::Multires, {.coarsest = 4});
   float lo = kInfinity, hi = 0;
   for (const vec4& g : full) lo = std::min(lo, g.x), hi = std::max(hi, g.x);
   for (const vec4& g : patched) {

@@ -1,39 +1,38 @@
 // Shaders of the program, changed for a test.
 #pragma once
 
-#include "engine/core/error.h"
 #include "engine/gl/program.h"
+#include "tests/support/files.h"
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <unistd.h>
+#include <chrono>
 
 namespace lambent::test {
 
 /// A copy of the shader folder, removed at the end.
 class ShaderCopy {
  public:
-  ShaderCopy() : path(std::filesystem::temp_directory_path() / ("lambent-shader-copy-" + std::to_string(getpid()))) {
-    std::filesystem::copy(gl::findShaderFolder(), path, std::filesystem::copy_options::recursive);
-  }
-  ~ShaderCopy() { std::filesystem::remove_all(path); }
-  ShaderCopy(const ShaderCopy&) = delete;
-  ShaderCopy& operator=(const ShaderCopy&) = delete;
+  ShaderCopy() { fs::copy(gl::findShaderFolder(), path, fs::copy_options::recursive); }
 
-  std::string read(const std::string& file) const {
-    std::stringstream text;
-    text << std::ifstream(path / file).rdbuf();
-    return text.str();
+  std::string read(const std::string& file) const { return readBytes(path / file); }
+  void write(const std::string& file, const std::string& text) const {
+    writeBytes(path / file, text);
+    // File times may be coarser than the time between two writes of a test.
+    fs::last_write_time(path / file, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
   }
   /// The first `from` becomes `to`; it must be there.
   void replace(const std::string& file, const std::string& from, const std::string& to) const {
     std::string text = read(file);
     const size_t at = text.find(from);
     CHECK(at != std::string::npos);
-    std::ofstream(path / file) << text.replace(at, from.size(), to);
+    writeBytes(path / file, text.replace(at, from.size(), to));
   }
-  std::filesystem::path path;
+
+ private:
+  TemporaryFolder folder_;
+  mutable int writes_ = 0;
+
+ public:
+  const fs::path path = folder_ / "shaders";
 };
 
 } // namespace lambent::test

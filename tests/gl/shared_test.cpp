@@ -1,15 +1,10 @@
 // Mappings that C++ and GLSL share give the same numbers on both sides.
 #include "gl_fixture.h"
+#include "shader_copy.h"
 #include "shaders/shared/octahedral.h"
 #include "shaders/shared/shadow_lookup.h"
 
-#include <filesystem>
-#include <fstream>
-#include <unistd.h>
-
 namespace lambent::test::shared_test {
-
-namespace fs = std::filesystem;
 
 using SharedTest = GlTest;
 
@@ -26,11 +21,8 @@ TEST(ParaboloidValue, SixteenBitsHoldNearDistancesFinely) {
 
 TEST_F(SharedTest, GlslAgreesWithCpp) {
   constexpr int kSide = 33; // odd: the axes themselves are among the directions
-  const fs::path folder = fs::temp_directory_path() / ("lambent-shared-" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  fs::copy(gl::findShaderFolder() / "shared", folder / "shared", fs::copy_options::recursive);
-  fs::copy_file(gl::findShaderFolder() / "fullscreen.vert", folder / "fullscreen.vert");
-  std::ofstream(folder / "probe.frag") << R"(#version 450
+  const ShaderCopy folder;
+  folder.write("probe.frag", R"(#version 450
 #include "shared/paraboloid.h"
 #include "shared/octahedral.h"
 layout(location = 0) out vec4 outTangent;
@@ -50,8 +42,8 @@ void main() {
   outMapping = vec4(paraboloidFromDirection(d), directionFromParaboloid(p * 0.5 + 0.5).xy);
   outDecoded = vec4(decoded, directionFromParaboloid(p * 0.5 + 0.5).z);
 }
-)";
-  gl::ProgramCache cache(folder);
+)");
+  gl::ProgramCache cache(folder.path);
   std::vector<gl::Texture> targets;
   for (int i = 0; i < 4; ++i)
     targets.emplace_back("probe", gl::TextureDesc{.format = GL_RGBA32F, .width = kSide, .height = kSide});
@@ -62,25 +54,22 @@ void main() {
   gl::drawFullscreen();
   std::vector<std::vector<vec4>> got;
   for (const gl::Texture& t : targets) got.push_back(readTexture(t));
-  fs::remove_all(folder);
 
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
-      const int i = y * kSide + x;
-      const vec2 p = vec2(x, y) / 16.0f - 1.0f;
-      const vec3 n = unitFromOctahedral(p);
-      const vec3 decoded = unitFromOctahedral(glm::unpackSnorm2x16(glm::packSnorm2x16(octahedralFromUnit(n))));
-      vec3 tangent, bitangent;
-      basisAround(decoded, tangent, bitangent);
-      const vec2 map = paraboloidFromDirection(vec3(n.x, n.y, std::abs(n.z)));
-      const vec3 d = directionFromParaboloid(p * 0.5f + 0.5f);
-      EXPECT_LT(glm::length(vec3(got[0][i]) - tangent), 2e-4f) << x << ' ' << y;
-      EXPECT_LT(glm::length(vec3(got[1][i]) - bitangent), 2e-4f) << x << ' ' << y;
-      EXPECT_LT(glm::length(vec3(got[3][i]) - decoded), 2e-4f) << x << ' ' << y;
-      EXPECT_LT(glm::length(vec2(got[2][i].x, got[2][i].y) - map), 1e-5f) << x << ' ' << y;
-      EXPECT_LT(glm::length(vec3(got[2][i].z, got[2][i].w, got[3][i].w) - d), 1e-5f) << x << ' ' << y;
-      EXPECT_LT(glm::length(decoded - n), 1e-4f) << x << ' ' << y; // 16 bits are enough
-    }
+  for (const auto [x, y] : Pixels(kSide, kSide)) {
+    const int i = y * kSide + x;
+    const vec2 p = vec2(x, y) / 16.0f - 1.0f;
+    const vec3 n = unitFromOctahedral(p);
+    const vec3 decoded = unitFromOctahedral(glm::unpackSnorm2x16(glm::packSnorm2x16(octahedralFromUnit(n))));
+    vec3 tangent, bitangent;
+    basisAround(decoded, tangent, bitangent);
+    const vec2 map = paraboloidFromDirection(vec3(n.x, n.y, std::abs(n.z)));
+    const vec3 d = directionFromParaboloid(p * 0.5f + 0.5f);
+    EXPECT_LT(glm::length(vec3(got[0][i]) - tangent), 2e-4f) << x << ' ' << y;
+    EXPECT_LT(glm::length(vec3(got[1][i]) - bitangent), 2e-4f) << x << ' ' << y;
+    EXPECT_LT(glm::length(vec3(got[3][i]) - decoded), 2e-4f) << x << ' ' << y;
+    EXPECT_LT(glm::length(vec2(got[2][i].x, got[2][i].y) - map), 1e-5f) << x << ' ' << y;
+    EXPECT_LT(glm::length(vec3(got[2][i].z, got[2][i].w, got[3][i].w) - d), 1e-5f) << x << ' ' << y;
+    EXPECT_LT(glm::length(decoded - n), 1e-4f) << x << ' ' << y; // 16 bits are enough
   }
 }
 

@@ -3,8 +3,6 @@
 #include "gl_fixture.h"
 #include "shader_copy.h"
 
-namespace fs = std::filesystem;
-
 namespace lambent::test::strict_fetch_test {
 
 /// Makes shaders fetch `outside` outside the mip level that they ask for.
@@ -87,13 +85,8 @@ class StrictFetchTest : public GlTest {
 };
 
 TEST_F(StrictFetchTest, NoPictureDependsOnWhatLiesOutsideATexture) {
-  LightView point, sun;
-  point.position = vec3(0.3f, 0.5f, 0.4f);
-  point.intensity = vec3(1, 2, 3);
-  sun.type = LightType::Directional;
-  sun.direction = glm::normalize(vec3(0.3f, -1, 0.2f));
-  sun.intensity = vec3(4);
-  lights = {point, sun};
+  lights = {{.position = vec3(0.3f, 0.5f, 0.4f), .intensity = vec3(1, 2, 3)},
+            {.type = LightType::Directional, .direction = glm::normalize(vec3(0.3f, -1, 0.2f)), .intensity = vec3(4)}};
   const std::vector<std::vector<vec4>> zeros = pictures(0), large = pictures(1e6f);
   ASSERT_EQ(zeros.size(), 22u);
   for (size_t i = 0; i < zeros.size(); ++i) EXPECT_TRUE(zeros[i] == large[i]) << "picture " << i;

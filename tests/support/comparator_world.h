@@ -22,6 +22,23 @@ inline LightView lampAt(const vec3& position, float intensity) {
   return l;
 }
 
+inline Vpl vplAt(const vec3& position, const vec3& normal, uint64_t id = 1, float albedo = 0.5f) {
+  Vpl v;
+  v.position = position;
+  v.normal = v.geometricNormal = normal;
+  v.albedo = vec3(albedo);
+  v.id = id;
+  return v;
+}
+
+inline vec3 radianceOf(Vpl v, const RayQuery& rays, const LightSet& lights, int bounces, int paths = 16,
+                       uint32_t seed = 1) {
+  Vpl* one = &v;
+  RayCounts counts;
+  estimateRadiance({&one, 1}, rays, lights, paths, bounces, seed, counts);
+  return v.radiance;
+}
+
 /// Whether two sets hold the same lights, bit by bit.
 inline void expectSame(std::span<const Vpl> a, std::span<const Vpl> b) {
   ASSERT_EQ(a.size(), b.size());

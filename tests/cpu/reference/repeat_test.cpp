@@ -1,11 +1,8 @@
 // The reference is the same however it is run, and honest about its own error.
-#include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "gi/reference/state_file.h"
+#include "tests/support/files.h"
 #include "tests/support/reference.h"
-
-#include <fstream>
-#include <unistd.h>
 
 namespace lambent::test::repeat_test {
 
@@ -22,12 +19,8 @@ class Room : public ::testing::Test {
     scene_.lamp({1, 0.9f, 1.5f});
     scene_.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.5f, 3}, 1, 24, 16);
     traced_.emplace(scene_);
-    file_ = std::filesystem::temp_directory_path() / ("lambent-reference-" + std::to_string(getpid()) + ".state");
   }
-  ~Room() override {
-    setThreadCount(0);
-    std::filesystem::remove(file_);
-  }
+  ~Room() override { setThreadCount(0); }
 
   ReferenceInputs inputs(uint32_t seed = 1) const {
     return {traced_->rays, traced_->lights, traced_->view.camera, 3, 0, seed};
@@ -44,11 +37,6 @@ class Room : public ::testing::Test {
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(PixelSums)) == 0;
   }
 
-  static std::string bytesOf(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
   /// The one line that says why the file is refused.
   std::string refusal(const ReferenceInputs& in) const {
     try {
@@ -61,7 +49,8 @@ class Room : public ::testing::Test {
 
   HandScene scene_;
   std::optional<TracedScene> traced_;
-  std::filesystem::path file_;
+  TemporaryFolder folder_;
+  const fs::path file_ = folder_ / "reference.state";
   mutable RayCounts counts_;
 };
 
@@ -79,13 +68,13 @@ TEST_F(Room, PassesAndThreadsDoNotMatter) {
 TEST_F(Room, ResumedEqualsOneRun) {
   const uint64_t key = referenceKey(traced_->view, inputs());
   saveReference(file_, sumsOf({12}), key);
-  const std::string whole = bytesOf(file_);
+  const std::string whole = readBytes(file_);
   saveReference(file_, sumsOf({5}), key);
-  EXPECT_NE(bytesOf(file_), whole);
+  EXPECT_NE(readBytes(file_), whole);
   ReferenceSums sums = loadReference(file_, inputs(), key);
   addSamples(sums, inputs(), 7, counts_);
   saveReference(file_, sums, key);
-  EXPECT_EQ(bytesOf(file_), whole);
+  EXPECT_EQ(readBytes(file_), whole);
 }
 
 TEST_F(Room, StateOfAnotherPictureIsRefused) {
@@ -121,9 +110,9 @@ TEST_F(Room, StateOfAnotherPictureIsRefused) {
 TEST_F(Room, DamagedStateIsRefused) {
   const ReferenceInputs in = inputs();
   saveReference(file_, sumsOf({2}), referenceKey(traced_->view, in));
-  const std::string whole = bytesOf(file_);
+  const std::string whole = readBytes(file_);
   const auto refused = [&](std::string bytes, const std::string& why) {
-    std::ofstream(file_, std::ios::binary) << bytes;
+    writeBytes(file_, bytes);
     EXPECT_NE(refusal(in).find(why), std::string::npos) << refusal(in);
   };
   refused("", "is not the state");

@@ -7,7 +7,6 @@
 
 namespace lambent::test::bad_input_test {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 class BadInput : public ::testing::Test {

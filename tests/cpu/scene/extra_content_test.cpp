@@ -9,8 +9,6 @@
 
 namespace lambent::test::extra_content_test {
 
-namespace fs = std::filesystem;
-
 void expectSound(const Scene& scene) {
   for (const Mesh& mesh : scene.assets.meshes) {
     ASSERT_FALSE(mesh.triangles.empty());

@@ -1,21 +1,6 @@
 #include "tests/cpu/scene/support.h"
 
-#include <fstream>
-#include <sstream>
-
 namespace lambent::test {
-
-namespace fs = std::filesystem;
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "lambent-test-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw RunError("cannot make a folder for the test");
-  path_ = name;
-}
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 namespace {
 
@@ -73,18 +58,6 @@ GltfBuilder oneTriangle() {
   GltfBuilder b;
   b.addMeshNode({{"attributes", {{"POSITION", b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})}}}});
   return b;
-}
-
-void writeBytes(const fs::path& file, const std::string& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out << bytes;
-}
-
-std::string readBytes(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
 }
 
 bool hasWarning(const Scene& scene, const std::string& text) {

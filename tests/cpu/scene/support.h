@@ -2,26 +2,12 @@
 #pragma once
 
 #include "engine/scene/scene.h"
+#include "tests/support/files.h"
 #include "tests/support/pixels.h"
-
-#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 namespace lambent::test {
-
-/// Exists while the test runs.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A glTF document under construction: `json` is free to edit, `bytes` is its one buffer (a data URI when written).
 struct GltfBuilder {
@@ -81,23 +67,6 @@ struct GltfBuilder {
 
 /// The right triangle (0,0,0), (1,0,0), (0,1,0), whose front is +Z, without normals.
 GltfBuilder oneTriangle();
-
-void writeBytes(const std::filesystem::path& file, const std::string& bytes);
-std::string readBytes(const std::filesystem::path& file);
-
-/// Message of the InputError that `run` throws; fails the test and returns "" when it throws none.
-template <class Fn> std::string inputErrorOf(Fn&& run) {
-  try {
-    run();
-  } catch (const InputError& e) {
-    return e.what();
-  } catch (const std::exception& e) {
-    ADD_FAILURE() << "another exception than InputError: " << e.what();
-    return "";
-  }
-  ADD_FAILURE() << "no InputError";
-  return "";
-}
 
 /// Whether any warning of the scene contains `text`.
 bool hasWarning(const Scene& scene, const std::string& text);
