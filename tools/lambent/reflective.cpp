@@ -23,12 +23,17 @@ struct Baseline {
   float exposure = 1;
 };
 
-Baseline baselineOf(const Study& study, const Variant& every) {
+/// Every texel of the maps at every pixel, or the same VPLs at every pixel. Kept as FILE in the folder.
+Baseline baselineOf(const Study& study, bool texels, const fs::path& file) {
+  Variant every = study.variant("truth", {{"gather.mode", "full"}}, "rsm");
+  if (texels) lightByEveryTexel(every.settings);
   const Measured m = study.draw({every}, Buffer::Indirect)[0];
   if (!(pictureError(m.picture, m.picture).meanTruth > 0))
     throw InputError(study.launch.scene,
                      "no light of reflective shadow maps reaches this view (another view or --point)");
-  return {m.picture, shownImage(m.picture, m.exposure), m.exposure};
+  const Image shown = shownImage(m.picture, m.exposure);
+  writeShown(file, shown);
+  return {m.picture, shown, m.exposure};
 }
 
 /// Errors of the picture as radiance and as it is shown, which is given back.
@@ -153,17 +158,14 @@ void reflectiveFigure(const AccuracyOptions& options) {
   const fs::path folder = reportFolder(options.output.out, format("out/figure-%s", figure.name));
   opened.settings.effects[EffectId::Redraw] = EffectMode::On;
   std::optional<Baseline> baseline;
-  if (figure.truth != FigureTruth::None) {
-    Variant every = study.variant("truth", {{"gather.mode", "full"}}, "rsm");
-    if (figure.truth == FigureTruth::Texels) lightByEveryTexel(every.settings);
-    baseline = baselineOf(study, every);
-    writeShown(folder / "baseline.png", baseline->shown);
-  }
+  if (figure.truth != FigureTruth::None)
+    baseline = baselineOf(study, figure.truth == FigureTruth::Texels, folder / "baseline.png");
 
   std::vector<LightView> lights;
   RunPlan plan = planOf(opened, options.quick ? 4 : 0);
-  if (!figure.overTime) { // lights waver, so that every stage runs in every frame; in the last they are where the
-    plan = stillPlan(opened, Buffer::Indirect, options.quick ? 3 : 5); // baseline has them
+  if (!figure.overTime) {
+    // Lights waver, so that every stage runs in every frame; in the last they are where the baseline has them.
+    plan = stillPlan(opened, Buffer::Indirect, options.quick ? 3 : 5);
     plan.view = [&](int frame) { return unsteady(opened.at(0), frame, lights); };
   }
   plan.skip = 1;
@@ -187,8 +189,9 @@ void reflectiveFigure(const AccuracyOptions& options) {
     own.update(study.row(timeColumns(), runs[i]));
     if (baseline) {
       const Image shown = addErrors(own, runs[i].picture, *baseline);
-      if (!row.picture.empty()) writeShownBesideTruth(folder, row.picture, shown, baseline->shown); // splatted or
-    } // gathered: the same one
+      // Splatted or gathered, it is the same picture.
+      if (!row.picture.empty()) writeShownBesideTruth(folder, row.picture, shown, baseline->shown);
+    }
     printed.add(own);
     if (!figure.overTime) report.add(own);
   }
@@ -232,10 +235,7 @@ void accuracyCurve(const AccuracyOptions& options) {
   LaunchContext& opened = *study.opened;
   const fs::path folder = reportFolder(options.output.out, "out/accuracy");
   opened.settings.effects[EffectId::Redraw] = EffectMode::On;
-  Variant every = study.variant("truth", {{"gather.mode", "full"}}, "rsm");
-  if (!patches) lightByEveryTexel(every.settings);
-  const Baseline baseline = baselineOf(study, every);
-  writeShown(folder / (kind + "-baseline.png"), baseline.shown);
+  const Baseline baseline = baselineOf(study, !patches, folder / (kind + "-baseline.png"));
   Value all = Value::list();
   std::vector<Plot> plots;
   std::string tables, pictured;
@@ -258,10 +258,11 @@ void accuracyCurve(const AccuracyOptions& options) {
     Value points;
     for (size_t i = 0; i < runs.size(); ++i) {
       const bool used = sweep.values[i] == inUse;
-      Value& point = points.add(Value::of(
-          "technique", sweep.technique, "setting", sweep.setting, "value", sweep.values[i], "in_use", used, "gather_ms",
-          runs[i].ms(StageId::Gather).median, "vpls", runs[i].frames.back().vplsAlive)); // 0: clusters of its own
-      const Image shown = addErrors(point, runs[i].picture, baseline);                   // for each fragment
+      Value& point = points.add(
+          Value::of("technique", sweep.technique, "setting", sweep.setting, "value", sweep.values[i], "in_use", used));
+      point["gather_ms"] = runs[i].ms(StageId::Gather).median;
+      point["vpls"] = runs[i].frames.back().vplsAlive; // 0: each fragment has clusters of its own
+      const Image shown = addErrors(point, runs[i].picture, baseline);
       rmse.y.push_back(100 * point["rmse_share"].number());
       shownRms.y.push_back(100 * point["rms_shown"].number());
       all.add(point);

@@ -167,8 +167,9 @@ void writeReport(const OutputOptions& output, const fs::path& folder, const std:
   writeJson(output.json, figures);
   writeText(folder / (name + ".csv"), csv);
   const fs::path page = folder / (name + ".md");
-  writeText(page, escaped("# " + heading + "\n\n" + text)); // names of files may look like HTML
-  if (!output.quiet) std::printf("%s\nreport: %s\n", text.c_str(), page.c_str());
+  writeText(page, escaped("# " + heading + "\n\n" + text));    // names of files may look like HTML
+  const std::string printed = text.substr(0, text.find("![")); // pictures stand at the end, and are for the page
+  if (!output.quiet) std::printf("%s\nreport: %s\n", printed.c_str(), page.c_str());
 }
 
 fs::path reportFolder(const std::string& out, const std::string& unnamed) {
