@@ -166,10 +166,10 @@ void App::prepare(LoadedScene loaded) {
         showProgress(progress);
         shown = Clock::now();
       },
-      [&] { hud_.keepPicture(); });
+      [&] { hud_.keepFrame(); });
   preparing_ = false;
   gap_.end();
-  hud_.forgetPicture();
+  hud_.forgetFrame();
 }
 
 void App::showProgress(const Progressed& progress) {

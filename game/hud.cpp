@@ -108,8 +108,8 @@ void Hud::draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, cons
 
 void Hud::drawProgress(const std::string& scene, const std::string& at, float share) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  if (picture_) {
-    const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(picture_->name()));
+  if (keptFrame_) {
+    const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(keptFrame_->name()));
     ImGui::GetBackgroundDrawList()->AddImage(texture, {0, 0}, size, {0, 1}, {1, 0}); // GL's first row is the lowest
   }
   centre(360 * scale_);
@@ -146,16 +146,16 @@ MenuChoice Hud::drawMenu(const std::vector<std::string>& scenes, bool playing) {
   return choice;
 }
 
-void Hud::keepPicture() {
+void Hud::keepFrame() {
   const ImVec2 size = ImGui::GetIO().DisplaySize, pixels = ImGui::GetIO().DisplayFramebufferScale;
   const int width = int(size.x * pixels.x), height = int(size.y * pixels.y);
-  picture_ = std::make_unique<gl::Texture>(
-      "hud/first picture", gl::TextureDesc{.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+  keptFrame_ = std::make_unique<gl::Texture>(
+      "hud/kept frame", gl::TextureDesc{.format = GL_RGBA8, .width = width, .height = height, .linear = true});
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glCopyTextureSubImage2D(picture_->name(), 0, 0, 0, 0, 0, width, height);
+  glCopyTextureSubImage2D(keptFrame_->name(), 0, 0, 0, 0, 0, width, height);
 }
 
-void Hud::forgetPicture() { picture_.reset(); }
+void Hud::forgetFrame() { keptFrame_.reset(); }
 
 /// Frames per second, and what the last ones spent their time on.
 void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {

@@ -86,14 +86,14 @@ class Hud {
   MenuChoice drawMenu(const std::vector<std::string>& scenes, bool playing);
 
   /// Keeps what the window's next picture is so far, to stand behind drawProgress.
-  void keepPicture();
-  void forgetPicture();
+  void keepFrame();
+  void forgetFrame();
 
  private:
   void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
   void drawDay(HudModel& model);
   void drawLights(Scene& scene);
-  void drawPicture(HudModel& model, Viewer& gi);
+  void drawImageSection(HudModel& model, Viewer& gi);
   void drawPlayer(HudModel& model);
   void drawTime(HudModel& model);
   void drawQuality(HudModel& model, Viewer& gi);
@@ -118,7 +118,7 @@ class Hud {
   std::deque<Message> messages_;
   std::optional<bool> wasFolded_; // the panel
   std::string lastSaid_;
-  std::unique_ptr<gl::Texture> picture_;
+  std::unique_ptr<gl::Texture> keptFrame_;
   float scale_ = 1;                                          // of the display's pixels
   std::map<uint16_t, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
   std::map<std::string, std::string> edited_;                // settings in the middle of being typed

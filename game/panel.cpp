@@ -57,7 +57,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   const auto section = [&](const char* name, bool open) {
     return ImGui::CollapsingHeader(name, open && size.y >= kLow * scale_ ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   };
-  if (section("Picture", true)) drawPicture(model, gi);
+  if (section("Picture", true)) drawImageSection(model, gi);
   if (section("You", true)) drawPlayer(model);
   if (section("Time", false)) drawTime(model);
   if (section("Time of day", true)) drawDay(model);
@@ -73,7 +73,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   ImGui::End();
 }
 
-void Hud::drawPicture(HudModel& model, Viewer& gi) {
+void Hud::drawImageSection(HudModel& model, Viewer& gi) {
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show (1 ... 0)", bufferNames(), view)) model.buffer = bufferByName(view);
   float ev = std::log2(std::max(gi.exposure(), 1e-6f));

@@ -33,7 +33,7 @@ struct CubeInputs {
 
 /// What an update did.
 struct CubeWork {
-  uint32_t lightsIn = 0, lightsOut = 0; // put in, taken out: 64 that were lit anew count in both
+  uint32_t lightsIn = 0, lightsOut = 0; // put in, taken out: 64 that were lit again count in both
   uint32_t entriesAnew = 0;
   bool changed = false; // the irradiance of any entry may be other than before
   RayCounts rays;

@@ -80,7 +80,7 @@ bool differsBeyondBorders(const Fragment& f, std::span<const Fragment> fragments
 
 /// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it,
 /// whether or not these are fragments; says which fragments are split. `level` above 0.
-std::vector<uint8_t> askAround(const AreaVisibility& visibility, const PictureSurfaces& surfaces, int level,
+std::vector<uint8_t> askAround(const AreaVisibility& visibility, const FrameSurfaces& surfaces, int level,
                                const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments,
                                uint64_t& rays) {
   std::vector<int> numbers(size_t(size.x) * size_t(size.y), -1); // of what is asked, by texel
@@ -152,8 +152,8 @@ void markBorders(std::span<FragmentLevel> levels) {
 /// The fragments of a picture: tested from the coarsest level down, split, kept.
 class Fragments {
  public:
-  Fragments(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
-            const AreaSettings& settings, std::span<FragmentLevel> levels)
+  Fragments(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, const AreaSettings& settings,
+            std::span<FragmentLevel> levels)
       : visibility_(rays, lights, surfaces, settings.rays), surfaces_(surfaces), settings_(settings), levels_(levels),
         neighbours_(settings.refinement == AreaRefinement::Neighbours),
         byCounts_(settings.refinement == AreaRefinement::Counts), states_(levels.size()), open_(levels.size()) {
@@ -401,7 +401,7 @@ class Fragments {
   }
 
   const AreaVisibility visibility_;
-  const PictureSurfaces& surfaces_;
+  const FrameSurfaces& surfaces_;
   const AreaSettings& settings_;
   const std::span<FragmentLevel> levels_;
   const bool neighbours_, byCounts_;
@@ -412,7 +412,7 @@ class Fragments {
 
 } // namespace
 
-FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces,
                             const AreaSettings& settings, std::span<FragmentLevel> levels) {
   CHECK(!levels.empty() && settings.rays <= kMostAreaRays);
   const FragmentCounts counts = Fragments(rays, lights, surfaces, settings, levels).run();

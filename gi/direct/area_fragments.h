@@ -24,7 +24,7 @@ struct FragmentCounts {
 };
 
 /// Level 0 to the coarsest; fills `visible`. The same for any number of threads.
-FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces,
                             const AreaSettings& settings, std::span<FragmentLevel> levels);
 
 } // namespace lambent

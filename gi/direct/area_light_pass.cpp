@@ -43,7 +43,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   plain.roughnessMetalness = nullptr;
   atlas_.fit(plain, pyramid, false);
   readSurfaces(surfaces, pyramid);
-  const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+  const FrameSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
   const RayQuery& rays = tracerFor(world, seen, settings.area);
   stats.areaTracer = tracer_.report();
   std::vector<AreaLights> groups;
@@ -80,7 +80,7 @@ void AreaLightPass::collect(const World& world) {
 }
 
 /// Embree or the GPU.
-const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfaces& surfaces,
+const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces& surfaces,
                                          const AreaSettings& settings) {
   const bool automatic = settings.tracer == AreaTracer::Auto, measures = automatic && !tracer_.measured();
   const bool gpu = settings.tracer == AreaTracer::Gpu || (automatic && tracer_.gpu());

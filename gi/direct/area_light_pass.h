@@ -31,7 +31,7 @@ class AreaLightPass {
   }
 
  private:
-  const RayQuery& tracerFor(const World& world, const PictureSurfaces& surfaces, const AreaSettings& settings);
+  const RayQuery& tracerFor(const World& world, const FrameSurfaces& surfaces, const AreaSettings& settings);
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void collect(const World& world);

@@ -17,7 +17,7 @@ namespace lambent {
 inline constexpr int kMostAreaRays = 64; // from a quarter: bits of a word
 
 /// A picture's surfaces on the CPU, rows from the bottom.
-struct PictureSurfaces {
+struct FrameSurfaces {
   int width = 0, height = 0;
   std::span<const float> depth; // as GBuffer
   std::span<const vec4> normal;
@@ -47,7 +47,7 @@ struct AreaSeen {
 /// Asks the rays of many fragments: from all threads, or where the query belongs to one, in long lists.
 class AreaVisibility {
  public:
-  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces, int raysPerPart)
+  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, int raysPerPart)
       : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
 
   /// Of patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
@@ -97,7 +97,7 @@ class AreaVisibility {
 
   const RayQuery& rays_;
   const AreaLights& lights_;
-  const PictureSurfaces& surfaces_;
+  const FrameSurfaces& surfaces_;
   int count_; // of a quarter
 };
 

@@ -181,17 +181,17 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool alone = status.stored && sameLight;
   // By photons or chains; photons take the same ways as long as nothing is in another place.
   const bool sameWays = needs.anyView && sameLight;
-  const bool placedAnew = needs.lights == LightSupply::PerFrame;
+  const bool perFrame = needs.lights == LightSupply::PerFrame;
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
-  decide(EffectId::Relight, !lights                  ? none
-                            : reflective             ? fromMaps
-                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
-                            : placedAnew             ? Answer{true, "the technique lights its VPLs anew in every frame"}
-                            : changes.first          ? Answer{true, "the scene is new"}
-                            : changes.lights         ? Answer{true, "lights changed"}
-                            : moved                  ? Answer{true, movers}
-                            : facts.settingsChanged  ? Answer{true, "settings changed"}
+  decide(EffectId::Relight, !lights                 ? none
+                            : reflective            ? fromMaps
+                            : perFrame && sameWays  ? Answer{false, "photons take the same ways as before"}
+                            : perFrame              ? Answer{true, "the technique lights its VPLs again in every frame"}
+                            : changes.first         ? Answer{true, "the scene is new"}
+                            : changes.lights        ? Answer{true, "lights changed"}
+                            : moved                 ? Answer{true, movers}
+                            : facts.settingsChanged ? Answer{true, "settings changed"}
                             : !smc.cache && !(still && status.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
@@ -199,8 +199,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : needs.lights == LightSupply::Fixed ? Answer{false, "the samples stay on their surfaces"}
                             : alone      ? Answer{false, "nothing has changed for long: a cube holds all light"}
                             : reflective ? fromMaps
-                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
-                            : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
+                            : perFrame && sameWays ? Answer{false, "photons take the same ways as before"}
+                            : perFrame             ? Answer{true, "the technique places its VPLs again in every frame"}
                             : still && status.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                   ? Answer{true, "the VPLs have not settled yet"}
                                                       : Answer{true, "the view or the scene changed"});

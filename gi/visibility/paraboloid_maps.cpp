@@ -16,7 +16,7 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   CHECK(in.farDistance > 0);
   std::vector<MapJob> all;
   std::span<const MapJob> jobs = in.jobs;
-  if (drawsAllAnew(in)) {
+  if (redrawsAll(in)) {
     allocate(in);
     all.resize(in.poses.size());
     for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
@@ -33,7 +33,7 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   return {arrays_, resolution_, in.farDistance};
 }
 
-bool ParaboloidMapPass::drawsAllAnew(const ParaboloidMapInputs& in) const {
+bool ParaboloidMapPass::redrawsAll(const ParaboloidMapInputs& in) const {
   return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size();
 }
 

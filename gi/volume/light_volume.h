@@ -36,15 +36,15 @@ class LightVolume {
   vec3 fluxDeposited() const;
 
  private:
-  /// Where a light stands, and the cells around that it may go to.
-  struct Seat {
+  /// Where a light stands, and the cells around it that receive its flux.
+  struct Injection {
     vec3 position{kInfinity}, normal{0};
     ivec3 base{0};
     float weights[8] = {}; // sum 1, or 0 where nothing is open to it
   };
 
   template <class T> void upload(gl::Buffer& buffer, const char* label, std::span<const T> data);
-  void seat(const VolumeInputs& in, RayCounts& counts);
+  void findCells(const VolumeInputs& in, RayCounts& counts);
   bool deposit(const VolumeInputs& in, RayCounts& counts);
   void propagate();
 
@@ -52,7 +52,7 @@ class LightVolume {
   VolumeVisibility sights_;
   gl::Buffer open_, seen_, deposits_, light_[2], passed_;
   gl::Ring changes_{"volume/changes"};
-  std::vector<Seat> seats_; // by slot
+  std::vector<Injection> injections_; // by slot
   std::vector<vec4> deposited_;
   int steps_ = -1;
 };

@@ -160,9 +160,9 @@ class NeighbourTree {
 };
 
 /// Stage 6, other than the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
-/// whose VPL is new or stands elsewhere; cells that `disturbance` touches are drawn anew. Returns the slots whose cell
+/// whose VPL is new or stands elsewhere; cells that `dirty` touches are redrawn. Returns the slots whose cell
 /// changed, ascending: their radiance is another.
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& disturbance,
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& dirty,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed, RayCounts& counts);
 
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates

@@ -15,7 +15,7 @@ namespace lambent {
 namespace {
 
 /// What happened since the last update, in the terms of the stages.
-struct Since {
+struct ChangesSince {
   bool camera = false, lights = false, instances = false;
   DirtyRegion moved;
   std::vector<uint8_t> carried; // by slot: moved with its object; empty: none did
@@ -326,7 +326,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   set.slots.resize(settings.vpls);
   set.samplerPaths.resize(set.slots.size());
   set.lightPaths.resize(set.slots.size());
-  Since since;
+  ChangesSince since;
   since.camera = changed.camera;
   since.lights = effects.relightAll ||
                  (effects.relight && (changed.lights || changed.first || in.settingsChanged || emittersChanged(in)));
@@ -364,7 +364,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 
   VplChanges all;
   if (effects.replace || start) {
-    Since sampled = since;
+    ChangesSince sampled = since;
     sampled.camera |= set.sampledLate;
     const bool changing = changed.lights || since.geometry() || emittersChanged(in);
     Iteration now{settings.moves, relight || set.sampledLate, changed.camera && !start, changing};
