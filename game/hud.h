@@ -1,4 +1,4 @@
-// What is drawn over the picture: the panel, the frame rate, messages, the menu, and how far loading is.
+// What is drawn over the image: the panel, the frame rate, messages, the menu, and how far loading is.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -50,7 +50,7 @@ struct HudModel {
   std::string offer = {};  // what using would do now
   Gait gait = Gait::Walk;  // shown
   float speed = 1;         // of the player, times the usual
-  Pacer pacer{{}, false};  // of frames, by the picture's scale
+  Pacer pacer{{}, false};  // of frames, by the image's scale
   std::optional<GoalShown> goal = {};
 };
 
@@ -78,14 +78,14 @@ class Hud {
   // Between these two, what is to be drawn into the framebuffer that is bound at the end.
   void begin();
   void end();
-  /// Over the picture of the last Viewer::run.
+  /// Over the image of the last Viewer::run.
   void draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats,
             const FrameTimes& times);
   void drawProgress(const std::string& scene, const std::string& at, float share);
   /// `playing`: there is a scene to go back to.
   MenuChoice drawMenu(const std::vector<std::string>& scenes, bool playing);
 
-  /// Keeps what the window's next picture is so far, to stand behind drawProgress.
+  /// Keeps the window's next frame as it is so far, to stand behind drawProgress.
   void keepFrame();
   void forgetFrame();
 

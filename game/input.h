@@ -36,7 +36,7 @@ class Input {
  public:
   explicit Input(GLFWwindow* window);
 
-  /// `keysTaken`, `mouseTaken`: the panel uses them at the moment. `mayCapture`: a click into the picture catches the
+  /// `keysTaken`, `mouseTaken`: the panel uses them at the moment. `mayCapture`: a click into the image catches the
   /// pointer. `seconds` since the last call.
   Wishes read(bool keysTaken, bool mouseTaken, bool mayCapture, float seconds);
   /// Only whether Escape went down: while nothing can be played.

@@ -58,8 +58,8 @@ void drawPoints(int count);
 /// The bound compute program, so many groups of it; counted as a draw.
 void dispatch(int groupsX, int groupsY = 1, int groupsZ = 1);
 
-/// Ends all that was asked of the GPU, so that a clock beside it tells the truth. For measuring only: a frame that is
-/// not measured never does this, so it is not counted.
+/// Waits until the GPU has done all that it was asked for, so that a clock on the CPU measures it. For measuring only:
+/// a frame that is not measured never does this, so it is not counted.
 void finishToMeasure();
 
 } // namespace lambent::gl

@@ -13,7 +13,7 @@ class EmbreeQuery final : public RayQuery {
   ~EmbreeQuery() override;
 
   /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went, and refits the
-  /// bottom level of what was reshaped. With `all` every instance is placed anew. Returns how many were.
+  /// bottom level of what was reshaped. With `all` every instance is placed again. Returns how many were.
   uint32_t update(const SceneView& view, bool all = false);
 
   /// Masked at the start.

@@ -15,7 +15,7 @@
 
 namespace lambent {
 
-/// With frame.overlap, what concerns the update of the VPLs is of the update that ended before this frame's picture:
+/// With frame.overlap, what concerns the update of the VPLs is of the update that ended before this frame:
 /// that of the frame before.
 struct FrameStats {
   uint32_t frame = 0;
@@ -23,9 +23,9 @@ struct FrameStats {
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
       raysMapTests, raysShadows, raysArea, raysVolume, raysCube;
-  uint64_t patches = 0;                      // of the multiresolution buffer that gathered, as far as the GPU has told
-  uint64_t areaFragments = 0;                // of area lights
-  uint64_t cubes = 0, cubeEntries = 0;       // layered depth cubes, and entries of these that light reaches
+  uint64_t patches = 0;                // of the multiresolution buffer that gathered, as far as the GPU has reported
+  uint64_t areaFragments = 0;          // of area lights
+  uint64_t cubes = 0, cubeEntries = 0; // layered depth cubes, and entries of these that light reaches
   uint64_t cubeBytes = 0, cubeKeptBytes = 0; // of these, and of what brings them up to date
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before

@@ -1,4 +1,4 @@
-// What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are drawn anew.
+// What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are redrawn.
 #pragma once
 
 #include "engine/trace/ray_query.h"
@@ -39,7 +39,7 @@ struct TexelRect {
   }
 };
 
-/// Texels of the map of one slot that are drawn anew.
+/// Texels of the map of one slot that are redrawn.
 struct MapJob {
   uint32_t slot = 0;
   TexelRect texels;

@@ -1,4 +1,4 @@
-// Smooth patches of a picture, or of maps side by side.
+// Smooth patches of an image, or of maps side by side.
 #pragma once
 
 #include "engine/core/math.h"
@@ -23,7 +23,7 @@ struct PatchPyramid {
   glm::ivec2 padded{0};                  // pixels
 };
 
-/// The pyramid of a frame's picture: made when somebody first asks, the same for everybody who does.
+/// The pyramid of a frame's image: made when somebody first asks, the same for everybody who does.
 class Patches {
  public:
   Patches() = default;

@@ -1,4 +1,4 @@
-// Light that surfaces of the picture receive: what every stage of direct and indirect light gives.
+// Light that surfaces of the image receive: what every stage of direct and indirect light gives.
 #pragma once
 
 #include "engine/gl/ring.h"
@@ -21,7 +21,7 @@ class LightTarget {
  public:
   explicit LightTarget(std::string label) : label_(std::move(label)) {}
 
-  /// Makes them anew where size, or whether surfaces are glossy, changed.
+  /// Makes them again where size, or whether surfaces are glossy, changed.
   void fit(const GBuffer& surfaces, const glm::ivec2& size);
   void fit(const GBuffer& surfaces) { fit(surfaces, {surfaces.width, surfaces.height}); }
   /// Binds the framebuffer, sets the viewport, and makes everything black.

@@ -34,7 +34,7 @@ class CubeSurfaces {
 
  private:
   friend struct CubeFile; // gi/cube/cube_file.cpp
-  struct Growth;          // of a tree, beside the one before
+  struct Growth;          // of a tree, next to the one before
 
   DepthCube cubeOf(uint32_t index) const;
   Growth grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const;

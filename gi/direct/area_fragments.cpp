@@ -149,7 +149,7 @@ void markBorders(std::span<FragmentLevel> levels) {
   }
 }
 
-/// The fragments of a picture: tested from the coarsest level down, split, kept.
+/// The fragments of an image: tested from the coarsest level down, split, kept.
 class Fragments {
  public:
   Fragments(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, const AreaSettings& settings,
@@ -167,11 +167,11 @@ class Fragments {
 
   FragmentCounts run() {
     descend();
-    // Fragments of other levels beside one, and the single pixels in it, may tell what its own rays missed.
-    while (byCounts_ && splitBesideOthers()) descend();
+    // Adjacent fragments of other levels, and the single pixels in it, may show what its own rays missed.
+    while (byCounts_ && splitNextToOthers()) descend();
     while (askExtra()) {
       descend();
-      while (splitBesideOthers()) descend();
+      while (splitNextToOthers()) descend();
     }
     return counts_;
   }
@@ -274,7 +274,7 @@ class Fragments {
     }
   }
 
-  /// By as many rays as the threshold; beside what is dark, by one: a step from nothing is seen however small.
+  /// By as many rays as the threshold; next to what is dark, by one: a step from nothing is seen however small.
   bool apart(float a, float b) const {
     if (a < 0 || b < 0) return false;
     const float rays = std::abs(a - b) * float(settings_.rays);
@@ -282,7 +282,7 @@ class Fragments {
   }
 
   /// Splits fragments whose sub-fragments see other shares than finer ones, or others as large, across a border.
-  bool splitBesideOthers() {
+  bool splitNextToOthers() {
     std::vector<std::pair<int, glm::ivec2>> found;
     for (int level = 1; level < int(levels_.size()); ++level) {
       const glm::ivec2 size = levels_[size_t(level)].size;
@@ -334,7 +334,7 @@ class Fragments {
     return -1;
   }
 
-  /// Single pixels in large fragments that have none yet. Says whether one of them tells otherwise than the fragment
+  /// Single pixels in large fragments that have none yet. Says whether one of them differs from the fragment
   /// around it, which is then split.
   bool askExtra() {
     if (!settings_.extra || settings_.upsample != AreaUpsample::Rbf || neighbours_) return false;

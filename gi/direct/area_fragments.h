@@ -1,4 +1,4 @@
-// Which share of the area lights' light reaches the fragments of a picture: patches of it, split where visibility
+// Which share of the area lights' light reaches the fragments of an image: patches of it, split where visibility
 // changes. Paper 4, sections 3.1.1 to 3.1.4 (sub-fragment visibility tests, SFVT; gradient aware subdivision, GASS),
 // and for comparison that of Nichols et al. 2010 by neighbourhoods.
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-/// Fragments of one level, 2^level pixels wide, row by row over the padded picture.
+/// Fragments of one level, 2^level pixels wide, row by row over the padded image.
 struct FragmentLevel {
   glm::ivec2 size{0};
   std::vector<uint8_t> smooth; // in: 1 where the patch is one surface, 0 where it is to be split or shows nothing

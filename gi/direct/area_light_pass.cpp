@@ -67,7 +67,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   }
 }
 
-/// The lights anew where emitters changed: what else moves does not change them.
+/// Collects the lights again where emitters changed: what else moves does not change them.
 void AreaLightPass::collect(const World& world) {
   const std::vector<EmitterTriangle>& now = world.lights.triangles;
   const bool same = now.size() == triangles_.size() &&
@@ -104,14 +104,14 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
   };
   msPerMillion(*gpuRays_); // compiles
   const double onGpu = msPerMillion(*gpuRays_), onCpu = msPerMillion(world.rays);
-  if (onCpu == 0) return world.rays; // no light reaches the frame: another one tells
+  if (onCpu == 0) return world.rays; // no light reaches the frame: another one decides
   tracer_.measure(onCpu, onGpu, "a million rays");
   if (tracer_.gpu()) return *gpuRays_;
   gpuRays_.reset();
   return world.rays;
 }
 
-/// What the CPU has to know of the picture. Waits for the GPU.
+/// What the CPU has to know of the image. Waits for the GPU.
 void AreaLightPass::readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid) {
   const size_t pixels = size_t(surfaces.width) * size_t(surfaces.height);
   depth_.resize(pixels);

@@ -1,4 +1,4 @@
-// Direct light of emissive surfaces by patches of the picture (paper 4): what they bring where nothing is between, in
+// Direct light of emissive surfaces by patches of the image (paper 4): what they bring where nothing is between, in
 // closed form at every pixel, times the share of it that rays from patches find open.
 #pragma once
 
@@ -21,10 +21,10 @@ class AreaLightPass {
  public:
   explicit AreaLightPass(PassContext context) : context_(context) {}
 
-  /// Adds to the target, which is as large as the picture.
+  /// Adds to the target, which is as large as the image.
   void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
            const LightTarget& target, FrameStats& stats);
-  /// It is not asked for a while: what lights come to be meanwhile is not told.
+  /// Must be called where no light is asked for a while: what becomes a light meanwhile is not reported.
   void forget() {
     lights_ = {};
     gpuRays_.reset();

@@ -1,4 +1,4 @@
-// What a fragment of a picture sees of the area lights: rays towards them from its parts, and which share of their
+// What a fragment of an image sees of the area lights: rays towards them from its parts, and which share of their
 // light these find open.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace lambent {
 
 inline constexpr int kMostAreaRays = 64; // from a quarter: bits of a word
 
-/// A picture's surfaces on the CPU, rows from the bottom.
+/// An image's surfaces on the CPU, rows from the bottom.
 struct FrameSurfaces {
   int width = 0, height = 0;
   std::span<const float> depth; // as GBuffer
@@ -24,7 +24,7 @@ struct FrameSurfaces {
   CameraBlock camera;
 
   bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
-  /// Up to `count` pixels that show a surface, spread over the picture.
+  /// Up to `count` pixels that show a surface, spread over the image.
   std::vector<glm::ivec2> some(size_t count) const;
   size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
 };
@@ -57,7 +57,7 @@ class AreaVisibility {
   /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
   /// are a quarter.
   std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
-  /// Whether two pixels beside each other show one smooth surface.
+  /// Whether two adjacent pixels show one smooth surface.
   bool oneSurface(const glm::ivec2& a, const glm::ivec2& b) const;
   /// Of a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to `asked` a
   /// ray to each that brings any.

@@ -16,7 +16,7 @@ class DirectLight : public LightProvider {
   explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowRayPass::kMost);
   /// The light of the last run where neither surfaces nor light can have changed.
   SurfaceLighting run(const Frame& frame, FrameStats& stats) override;
-  /// Also where it is not asked for a while: what changes meanwhile is not told.
+  /// Also where it is not asked for a while: what changes meanwhile is not reported.
   void forget() override { stale_ = true; }
 
   struct Area {

@@ -13,7 +13,7 @@
 
 namespace lambent {
 
-/// What a plan depends on besides the view and the settings.
+/// What a plan depends on, apart from the view and the settings.
 struct PlanInputs {
   bool first = true; // there is no frame yet
   bool host = false; // the surfaces are a host's, who may have drawn them again
@@ -30,7 +30,7 @@ class WorldState {
   /// Takes the view over.
   void take(const SceneView& given, const Settings& settings);
   const SceneView& view() const { return view_.view(); }
-  /// Decides what is done in this frame. What no stage was told of stays a change until all hear of it.
+  /// Decides what is done in this frame. A change stays one until every stage has seen it.
   EffectPlan plan(const Settings& settings, const PlanInputs& in);
   /// The view as the plan lets it be; valid until the next plan.
   World place(const EffectPlan& plan, FrameStats& stats);
@@ -57,7 +57,7 @@ class WorldState {
   bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
   bool hosted_ = false;        // the last surfaces were a host's
   bool frozen_ = false;        // objects stand where they stood
-  bool lightingStale_ = false; // something changed that not all stages were told of
+  bool lightingStale_ = false; // something changed that not all stages have seen
   bool surfacesStale_ = false; // nor those of surfaces and direct light
 };
 

@@ -14,13 +14,13 @@ namespace lambent {
 
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
-// Each cycle of 16 pictures has an order of its own, so that nothing that moves over the pixels keeps step with it.
+// Each cycle of 16 frames has an order of its own, so that nothing that moves over the pixels keeps step with it.
 int lightClassOf(const glm::ivec2& subset, uint32_t picture) {
   std::array<int, kLightClasses> turns;
   std::iota(turns.begin(), turns.end(), 0);
   Rng rng(0, Stream::Turns, picture / kLightClasses);
   for (uint32_t i = kLightClasses; i > 1; --i) std::swap(turns[i - 1], turns[rng.below(i)]);
-  const int first = picture < kLightClasses ? turns[0] : 0; // the very first picture is that of paper 1
+  const int first = picture < kLightClasses ? turns[0] : 0; // the very first frame is that of paper 1
   const int turn = turns[picture % kLightClasses] ^ first;
   return ((subset.x + turn) & 3) + 4 * ((subset.y + (turn >> 2)) & 3);
 }

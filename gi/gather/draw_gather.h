@@ -30,20 +30,20 @@ struct GatherDraw {
   GatherSettings bounds = {};                   // of near lights, and of lobes; the mode is not read
 };
 
-/// Size of one of the 16 sub-images of a de-interleaved picture.
+/// Size of one of the 16 sub-images of a de-interleaved frame.
 glm::ivec2 tileSize(const GBuffer& gbuffer);
 
-/// The class of lights that a sub-image of 4×4 gathers in a picture: each in turn, within 16 pictures.
+/// The class of lights that a sub-image of 4×4 gathers in a frame: each in turn, within 16 frames.
 int lightClassOf(const glm::ivec2& subset, uint32_t picture);
 
-/// Pixels of the picture as they are, or as 16 tiles.
+/// Pixels of the frame as they are, or as 16 tiles.
 std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture = 0);
 
 /// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
 /// G-buffer has roughness and metalness, else none.
 std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);
 
-/// What shaders/lib/vpl_shading.glsl reads besides lights and surfaces.
+/// What shaders/lib/vpl_shading.glsl reads, apart from lights and surfaces.
 void setShading(const gl::Program& program, const GatherDraw& draw);
 
 /// One area by a program that gathers. `patches`: only those that the stencil marks.

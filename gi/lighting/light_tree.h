@@ -70,7 +70,7 @@ class LightTree {
 };
 
 /// Chooses one light for a surface point. A set of more than kFewLights lights needs its tree. Suns, which stand
-/// nowhere, weigh by what they bring, beside the tree's parts.
+/// nowhere, weigh by what they bring, next to the tree's parts.
 class LightChoice {
  public:
   static constexpr uint32_t kFewLights = 32;

@@ -16,7 +16,7 @@ struct NearLightInputs {
   const GatherSettings& gather;
   int casts = 8;        // rays, as GatherSettings::near
   int bounces = 1;      // of the virtual lights: SmcSettings::bounces
-  bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each picture
+  bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each frame
   bool glossy = false;
   uint32_t seed = 1;
   uint32_t picture = 0; // which of those that are averaged

@@ -19,11 +19,11 @@ constexpr EffectRow kRows[kEffects] = {
     {"relight", "VPLs follow lights and geometry that change", "VPLs"},
     {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
     {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
-    {"history", "indirect light of a pixel is averaged over pictures; off: each by itself", "draws"},
+    {"history", "indirect light of a pixel is averaged over frames; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"gather", "light of VPLs is brought to surfaces; off: what a cube holds stays, and else there is none", "draws"},
-    {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
+    {"redraw", "the frame is drawn again; off: the last one stays", "draws"},
 };
 
 std::string count(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
@@ -159,7 +159,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
                             : needs.subsets               ? Answer{true, "the gather is interleaved"}
                             : bounded                     ? Answer{true, "near light is traced"}
-                                                          : Answer{false, "every picture gathers the same light"});
+                                                          : Answer{false, "every frame gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});
@@ -209,7 +209,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : needs.stored ? sameLight && !facts.drawingChanged && !status.lightArrived
                                                 ? Answer{false, "the cube holds the light of what there is"}
                                                 : Answer{true, "the cube follows lights and objects"}
-                                          : Answer{true, "every picture gathers its light"});
+                                          : Answer{true, "every frame gathers its light"});
   const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History);
   const int historyFrames = averages ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
@@ -227,7 +227,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                                        : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
-    redraw.reason = "there is no picture yet";
+    redraw.reason = "there is no frame yet";
   }
   return plan;
 }

@@ -46,7 +46,7 @@ std::optional<double> timeOf(const Settings& settings) {
   return 1;
 }
 
-/// From settings of this time to the dearest preset whose picture need not be too small for the target, else to the
+/// From settings of this time to the dearest preset whose image need not be too small for the target, else to the
 /// cheapest.
 void choosePreset(Governed& g, double time, double ms, double targetMs, const GovernorGains& gains) {
   const auto scaleOf = [&](const Preset& p) { return scaleFor(g.scale, ms * p.time / time, targetMs); };

@@ -16,7 +16,7 @@ struct Preset {
   std::string name;
   Assignments set;
   /// As measured over the scenes of the report, of the default's: time of a frame in motion; relMSE of indirect light,
-  /// moving and standing (geometric mean).
+  /// moving and still (geometric mean).
   double time, error;
 };
 /// Cheapest first. The rule that chose them: ladderOf, gi/measure/front.h. Without a preset the defaults hold, which

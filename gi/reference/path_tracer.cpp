@@ -15,7 +15,7 @@ namespace lambent {
 
 namespace {
 
-constexpr size_t kBlockPixels = 16; // small pictures still keep all threads busy
+constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 
 /// Surfaces at the centres of pixels [begin, end).
 std::vector<SurfaceHit> primaryHits(const RayQuery& rays, const CameraView& camera, size_t begin, size_t end) {

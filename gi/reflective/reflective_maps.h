@@ -38,7 +38,7 @@ struct ReflectiveMaps {
   int levelOf(int patchesPerSide) const; // mip level with about so many clusters per side of a map
 };
 
-/// What is made of the maps besides themselves.
+/// What is made from the maps.
 struct ReflectiveNeeds {
   bool clusters = false; // the coarser mip levels
   bool patches = false;  // which clusters are smooth; only with clusters

@@ -1,4 +1,4 @@
-// Surfaces of the picture: drawn, or taken over from a host; and the pyramid of their smooth patches.
+// Surfaces of the image: drawn, or taken over from a host; and the pyramid of their smooth patches.
 #pragma once
 
 #include "engine/gl/ring.h"
@@ -53,7 +53,7 @@ struct PatchInputs {
   const gl::Texture& depth;  // reversed, affine on planes; 0 where nothing is seen
   const gl::Texture& normal; // unit
   glm::ivec2 size;           // pixels
-  glm::ivec2 cell;           // of one map; `size` for a picture
+  glm::ivec2 cell;           // of one map; `size` for an image
   int levels = 0;
   float orthoScale = 0;                             // depth range over half the width of maps by parallel rays
   int orthoFrom = 1 << 20;                          // the first of these, row by row; all before it have a perspective
@@ -68,7 +68,7 @@ class PatchPass {
  public:
   PatchPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
   PatchPyramid run(const PatchInputs& in);
-  /// Of a picture.
+  /// Of an image.
   PatchPyramid run(const GBuffer& surfaces, const MultiresSettings& settings);
 
  private:

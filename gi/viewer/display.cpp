@@ -54,7 +54,7 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   return {{"MODE 0"}, frame.picture.radiance, exposure};
 }
 
-/// Pictures of light have edges to smooth; figures shown as colours must stay what they are.
+/// Images of light have edges to smooth; figures shown as colours must stay what they are.
 bool hasEdgesToSmooth(Buffer buffer) {
   return buffer == Buffer::Beauty || buffer == Buffer::Direct || buffer == Buffer::Indirect;
 }

@@ -1,4 +1,4 @@
-// The picture, and looking at everything that led to it.
+// The image, and looking at everything that led to it.
 #pragma once
 
 #include "engine/core/image.h"
@@ -40,8 +40,8 @@ class CompositePass {
   gl::Framebuffer framebuffer_;
 };
 
-/// Factor that brings the log-average luminance of the picture's surfaces (black ones left out) to 0.18; 1 when there
-/// is no light. Reads the picture back: meant to run once.
+/// Factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 1 when there
+/// is no light. Reads the image back: meant to run once.
 float measureExposure(const Picture& picture);
 
 // Looking at it ----------------------------------------------------------------------------------------------------
@@ -69,7 +69,7 @@ class DisplayPass {
   explicit DisplayPass(PassContext context) : context_(context) {}
 
   /// Draws `buffer` as a display shows it into a texture (RGB8, sRGB-encoded, dithered; alpha means nothing) of the
-  /// picture's size.
+  /// image's size.
   const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error = {});
   /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height. With `right`, that
   /// takes its place right of `divider`, a share of the width, and a line parts them.

@@ -70,7 +70,7 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
   const auto raster = [&](std::span<const MapJob> maps) { drawRaster(in, maps); };
   const double raysMs = msOfEach(sample, [&](std::span<const MapJob> maps) { drawRays(in, maps); });
   // Where one map says enough, eight would take as long as all of them take by rays: a second of Sponza's first
-  // picture.
+  // frame.
   constexpr double kHopeless = 4;
   double rasterMs = msOfEach(one, raster);
   if (rasterMs < kHopeless * raysMs) rasterMs = msOfEach(sample, raster);

@@ -181,7 +181,7 @@ struct VplEffects {
   bool lastRays = false;   // see RadianceUpdate
 };
 
-/// What one update needs besides the set.
+/// What one update needs, apart from the set.
 struct VplUpdate {
   const SceneView& view;
   const RayQuery& rays;
@@ -214,7 +214,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 /// nothing.
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
-/// Asks a gather for the light that the receivers' lobes reflect, beside irradiance.
+/// Asks a gather for the light that the receivers' lobes reflect, as well as for irradiance.
 struct GlossyGather {
   const SceneView& view;      // camera and materials
   std::vector<vec3> radiance; // filled: W/(m² sr) over glossyTint (shaders/shared/ggx.h)
@@ -225,7 +225,7 @@ struct GlossyGather {
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
                                const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr);
 
-/// What the camera sees at points (u, v) of its picture, v down, in [0, 1]. Rays start at the near plane, as the
+/// What the camera sees at points (u, v) of its image, v down, in [0, 1]. Rays start at the near plane, as the
 /// rasteriser's.
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points);
 

@@ -1,6 +1,6 @@
 // Who places the virtual lights: the sequential Monte Carlo set, or one of the techniques that paper 1 compares it with
 // (section 5.1). All fill the same VplSet, so that visibility, gathering and filtering are the same for each. The
-// comparators place their whole set anew in every frame; what keeps its place keeps its slot, its id and its map.
+// comparators place their whole set again in every frame; what keeps its place keeps its slot, its id and its map.
 #pragma once
 
 #include "gi/vpl/smc.h"

@@ -371,7 +371,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
     set.sampledLate = false;
     all = iterate(set, in, sampled, now, log);
     // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the
-    // picture.
+    // frame.
     constexpr int kBurstIterations = 3;
     const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
     now = {start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false, false};
