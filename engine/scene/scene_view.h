@@ -64,7 +64,7 @@ struct CameraView {
 
   vec3 position() const { return vec3(worldFromView[3]); }
   float aspect() const { return float(width) / float(height); }
-  /// Of an image so many times as wide and as high, in whole pixels; one at least.
+  /// Returns the camera of an image `side` times as wide and as high, in whole pixels, at least one.
   CameraView scaled(float side) const;
 };
 

@@ -15,8 +15,8 @@
 
 namespace lambent {
 
-/// With frame.overlap, what concerns the update of the VPLs is of the update that ended before this frame:
-/// that of the frame before.
+/// Figures of one frame. With frame.overlap, those of the VPL update are of the update that ended before this frame:
+/// the last frame's.
 struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages;   // CPU and GPU, in order
@@ -44,7 +44,7 @@ struct FrameStats {
   std::string warning;                   // one line for whoever started the program; empty: nothing to say
 
   uint64_t& of(EffectId id) { return work[size_t(id)]; }
-  /// Milliseconds that the machine was at it: the longer of the frame's wall time and the GPU's passes.
+  /// Milliseconds that the machine worked on the frame: the longer of the frame's wall time and the GPU's passes.
   double costMs() const;
   /// Milliseconds of a stage, the longer of CPU and GPU; 0 if it did not run.
   double ms(StageId stage) const;

@@ -46,7 +46,7 @@ struct MapJob {
   bool coarse = false; // every second texel of every second row is traced, and those between follow from them
 };
 
-/// Texels that are traced for a rectangle.
+/// Number of texels that are traced for a rectangle.
 inline int64_t texelsTraced(const TexelRect& t, bool coarse) {
   return coarse ? int64_t((t.x1 - t.x0 + 1) / 2) * ((t.y1 - t.y0 + 1) / 2) : t.area();
 }

@@ -33,7 +33,7 @@ class Patches {
     if (!made_) made_ = make_();
     return *made_;
   }
-  /// As far as anybody asked.
+  /// Returns the pyramid if anybody has asked for it.
   const std::optional<PatchPyramid>& made() const { return made_; }
 
  private:

@@ -16,7 +16,7 @@ struct SurfaceLighting {
   bool subsets = deinterleaved; // pixels side by side were lit by other classes
 };
 
-/// A stage's own textures for that, and the framebuffer that draws into them.
+/// A stage's own textures for SurfaceLighting, and the framebuffer that draws into them.
 class LightTarget {
  public:
   explicit LightTarget(std::string label) : label_(std::move(label)) {}

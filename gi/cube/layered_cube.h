@@ -51,7 +51,7 @@ class LayeredCube {
   const CubeSurfaces& surfaces() const { return surfaces_; }
   /// Irradiance of an entry of surfaces(), W/m², under its shading normal.
   vec3 irradiance(size_t entry) const { return vec3(sums_[entry]); }
-  /// Of what keeps it up to date: entries, their sums, and who sees whom.
+  /// Bytes of what keeps the cube up to date: entries, their sums, and who sees whom.
   size_t bytesKept() const;
 
  private:

@@ -23,7 +23,8 @@ struct FragmentCounts {
   RayCounts rays;
 };
 
-/// Level 0 to the coarsest; fills `visible`. The same for any number of threads.
+/// Finds which share of the lights is visible and fills `visible` of the levels, 0 to the coarsest. The result is the
+/// same for any number of threads.
 FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces,
                             const AreaSettings& settings, std::span<FragmentLevel> levels);
 

@@ -21,10 +21,10 @@ class AreaLightPass {
  public:
   explicit AreaLightPass(PassContext context) : context_(context) {}
 
-  /// Adds to the target, which is as large as the image.
+  /// Adds the light to the target, which is as large as the image.
   void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
            const LightTarget& target, FrameStats& stats);
-  /// Must be called where no light is asked for a while: what becomes a light meanwhile is not reported.
+  /// Drops the collected lights. Call it when the pass is not run for a while: changes of lights are then not reported.
   void forget() {
     lights_ = {};
     gpuRays_.reset();

@@ -50,17 +50,17 @@ class AreaVisibility {
   AreaVisibility(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, int raysPerPart)
       : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
 
-  /// Of patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
+  /// Asks for patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
   std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
-  /// Of pixels. Unless all rays are asked for: where a quarter of them is open, the others are not asked.
+  /// Asks for pixels. Unless `askAll`: where a quarter of a pixel's rays is open, the others are not traced.
   std::vector<AreaSeen> ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const;
-  /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
-  /// are a quarter.
+  /// Asks for the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the
+  /// patches' are a quarter.
   std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
-  /// Whether two adjacent pixels show one smooth surface.
+  /// Says whether two adjacent pixels show one smooth surface.
   bool oneSurface(const glm::ivec2& a, const glm::ivec2& b) const;
-  /// Of a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to `asked` a
-  /// ray to each that brings any.
+  /// Looks from a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to
+  /// `asked` a ray to each that brings any.
   void askEach(const glm::ivec2& pixel, std::span<double> brought, std::vector<std::pair<uint32_t, Ray>>& asked) const;
   /// Pixel in the middle of a patch.
   glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {

@@ -18,8 +18,8 @@ namespace lambent {
 class MapChecks {
  public:
   explicit MapChecks(PassContext context) : differences_(context, StageId::MapChecks) {}
-  /// What the gather is to draw into instead of the target: for each 2048 lights the target with a place for what its
-  /// pixels draw. Empty where nothing is to be checked.
+  /// Returns what the gather must draw into instead of the target: for each 2048 lights the target with a place for
+  /// what its pixels draw. Empty where nothing is to be checked.
   std::span<const gl::Framebuffer> begin(const GatherInputs& in, const LightTarget& target, bool subsets);
   /// Traces what was drawn and adds the differences in irradiance to the target, of subsets. Glossy light stays the
   /// maps': drawn for its irradiance, a light in a lobe would be a bright dot.

@@ -30,13 +30,13 @@ class PatchAtlas {
   const gl::Framebuffer& framebuffer() const { return framebuffer_; } // with the stencil
   const gl::Texture& stencil() const { return stencil_; }
 
-  /// Black everywhere.
+  /// Makes the atlas black.
   void clear() const;
-  /// What the patches of a level hold, row by row over the padded image.
+  /// Sets what the patches of a level hold, row by row over the padded image.
   void put(int level, std::span<const vec4> values) const;
   void bind(int unit) const { atlas_.bind(unit); }
   void clearLight() const { target_.clear(); }
-  /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
+  /// Upsamples from the patches to pixels, coarse to fine; `add`: adds to what the pixels hold.
   void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);
   SurfaceLighting light() const { return target_.light(shape_.grid > 1); }
   const LightTarget& target() const { return target_; } // of the pixels

@@ -41,7 +41,7 @@ class EffectPlan {
  public:
   bool on(EffectId id) const { return effects_[size_t(id)].on; }
   bool calledFor(EffectId id) const { return effects_[size_t(id)].calledFor; }
-  /// On without need: the work is done and must not change anything.
+  /// Says whether the effect is on without need: the work is done and must not change anything.
   bool idle(EffectId id) const { return on(id) && !calledFor(id); }
   const Effect& operator[](EffectId id) const { return effects_[size_t(id)]; }
   /// Says whether the frame would be drawn again even if light were not averaged over frames.
@@ -59,7 +59,7 @@ class EffectPlan {
   bool changed_ = true, seenChanges_ = true, lightChanges_ = true;
 };
 
-/// `view.changes` counts: what nothing changed about needs no work.
+/// Plans a frame. `view.changes` decides: what did not change needs no work.
 EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts);
 
 } // namespace lambent

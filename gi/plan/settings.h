@@ -269,9 +269,9 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// The axes that the settings amount to.
+/// Returns the axes that the settings amount to.
 Axes axesOf(const Settings& settings);
-/// Why the settings contradict each other; empty where they do not.
+/// Says why the settings contradict each other; empty where they do not.
 std::string whyNot(const Settings& settings);
 
 enum class SettingKind { Flag, Whole, Real, Choice };
@@ -299,16 +299,16 @@ struct SettingRow {
 const std::vector<SettingRow>& settingsTable();
 /// The row of a setting that one technique owns.
 SettingRow rowOf(const OwnSetting& setting);
-/// The table, and what the chosen technique owns.
+/// Returns the table and the rows that the chosen technique owns.
 std::vector<SettingRow> settingRows(const Settings& settings);
-/// The name that a setting has now: that of a renamed one, which is accepted for one version, else the same.
+/// Returns the name that a setting has now. The old name of a renamed one is accepted for one version.
 std::string_view presentName(std::string_view name);
-/// Of the table, or of those that the chosen technique owns. Throws InputError with the nearest name.
+/// Finds a row of the table or of those that the chosen technique owns. Throws InputError with the nearest name.
 SettingRow settingRow(std::string_view name, const Settings& settings = {});
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);
-/// Text of the present value.
+/// Returns the present value as text.
 std::string settingText(const Settings& settings, std::string_view name);
 
 } // namespace lambent

@@ -18,8 +18,8 @@ struct FilterInputs {
   bool fresh = true; // of one frame; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
 
-/// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. Light of every class, in its
-/// place, passes through.
+/// Filters with a cross-bilateral 7×7 kernel; with the filter off only puts the pixels back in their places. Light of
+/// every class, in its place, passes through.
 class FilterPass {
  public:
   explicit FilterPass(PassContext context) : context_(context) {}
@@ -39,18 +39,18 @@ struct HistoryInputs {
   const FilterSettings& filter;
 };
 
-/// The mean of what was gathered at the place of each pixel in this frame and those before it.
+/// Averages what was gathered at the place of each pixel in this frame and those before it.
 class HistoryPass {
  public:
   explicit HistoryPass(PassContext context) : context_(context) {}
-  /// Before the gather: makes room. Frames of another size are looked up like any others; those of another kind are
-  /// forgotten.
+  /// Makes room; call it before the gather. Frames of another size are looked up like any others; those of another kind
+  /// are forgotten.
   void fit(const GBuffer& surfaces);
   SurfaceLighting run(const HistoryInputs& in);
   void forget() { frames_ = 0, following_ = 0; }
-  /// Whether the next frame of a still view follows light that changed before.
+  /// Says whether the next frame of a still view follows light that changed before.
   bool follows() const { return following_ > 0; }
-  /// Frames in it: which of those that are averaged the next one is.
+  /// Number of frames in the mean, which is the number of the next sample.
   uint32_t sample() const { return frames_; }
 
  private:

@@ -16,7 +16,7 @@
 
 namespace lambent {
 
-/// What is known after some passes.
+/// The truth after some passes.
 struct LiveTruth {
   ReferenceBuffer buffer = ReferenceBuffer::Beauty;
   ReferencePicture picture;
@@ -36,8 +36,8 @@ class LiveReference {
   /// wanted that can be read from them. The view's assets must outlive this.
   std::string follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
 
-  /// The newest truth of what was last followed, once; null where none is new. With `wait` it waits for one, unless
-  /// none is being traced. Rethrows what ended the thread.
+  /// Returns the newest truth of what was last followed, once; null where none is new. With `wait` it waits for one,
+  /// unless none is being traced. Rethrows what ended the thread.
   std::shared_ptr<const LiveTruth> take(bool wait = false);
 
  private:

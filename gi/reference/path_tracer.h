@@ -23,8 +23,7 @@ struct ReferenceInputs {
   /// Primary hits reflect by the roughness and metalness of this view's materials, as with gather.glossy; null:
   /// Lambert.
   const SceneView* glossy = nullptr;
-  /// Where another thread sets it, addSamples returns soon; what it has added is then part of a pass, and good for
-  /// nothing.
+  /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };
 
@@ -48,9 +47,9 @@ struct ReferenceSums {
 /// Takes `count` more samples of every pixel. The sums have the camera's size.
 void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, RayCounts& counts);
 
-/// `samples` samples at each of some surfaces (surfacesAt), as at the pixels of an image. Random numbers belong to the
-/// surface's index and the sample, not to a frame: when the camera moves a little the noise of a tracked pixel stays
-/// nearly the same, so differences between consecutive frames are known far better than the values.
+/// Takes `samples` samples at each of some surfaces (surfacesAt), as at the pixels of an image. Random numbers belong
+/// to the surface's index and the sample, not to a frame: when the camera moves a little the noise of a tracked pixel
+/// stays nearly the same, so differences between consecutive frames are known far better than the values.
 std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, const ReferenceInputs& in, uint32_t samples,
                                       RayCounts& counts);
 
@@ -68,7 +67,7 @@ struct ReferencePicture {
   /// Standard error of the image's mean over that mean, as if a pixel's channels were fully correlated (else less).
   double relativeErrorOfMean = 0;
 };
-/// Irradiance is not to be had from glossy sums.
+/// Reads a buffer from the sums. Glossy sums do not give irradiance.
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
 
 } // namespace lambent

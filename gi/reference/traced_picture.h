@@ -32,14 +32,14 @@ struct TracedPicture {
       0; // that one sample of every pixel took, without what is made once; 0: none was taken in this run
 };
 
-/// Whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance, which
-/// does not depend on how it is reflected.
+/// Says whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance,
+/// which does not depend on how it is reflected.
 bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
 
-/// Throws InputError for a state file of another image.
+/// Traces a view. Throws InputError for a state file of another image.
 TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
-/// The exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
+/// Returns the exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
 /// measures an image; 1 without light.
 float exposureFor(std::span<const vec3> radiance);
 

@@ -22,15 +22,15 @@ struct SurfaceInputs {
   bool previous = false;              // those of the last run stay too
 };
 
-/// Throws InputError when a host's texture is missing or has not the camera's size.
+/// Checks a host's surfaces. Throws InputError when a texture is missing or has not the camera's size.
 void checkHost(const HostSurfaces& host, const CameraView& camera);
 
 class SurfacePass {
  public:
   explicit SurfacePass(PassContext context) : context_(context) {}
   GBuffer run(const SurfaceInputs& in);
-  /// Depth, normals and camera of the run before, where the last one was asked for it; null the first time, at another
-  /// size, and of a host's surfaces.
+  /// Returns depth, normals and camera of the run before, where the last one was asked for it; null the first time, at
+  /// another size, and of a host's surfaces.
   const GBuffer* previous() const { return before_.depth ? &before_ : nullptr; }
 
  private:
@@ -68,7 +68,7 @@ class PatchPass {
  public:
   PatchPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
   PatchPyramid run(const PatchInputs& in);
-  /// Of an image.
+  /// Makes the pyramid of an image.
   PatchPyramid run(const GBuffer& surfaces, const MultiresSettings& settings);
 
  private:

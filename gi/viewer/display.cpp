@@ -103,7 +103,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     black_.clear();
   }
   if (!display_ || display_.width() != width || display_.height() != height) {
-    display_ = gl::Texture("display/picture", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+    display_ = gl::Texture("display/image", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
     framebuffer_ = gl::Framebuffer("display", {&display_});
   }
   framebuffer_.bind();

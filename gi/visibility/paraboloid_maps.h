@@ -36,13 +36,13 @@ class ParaboloidMapPass {
   ParaboloidMapPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
-  /// Whether a run would draw every map, whatever its jobs.
+  /// Says whether a run would draw every map, whatever its jobs.
   bool redrawsAll(const ParaboloidMapInputs& in) const;
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
-  /// Who draws, and how it was chosen. Empty before the first map.
+  /// Says which maker draws and how it was chosen. Empty before the first map.
   const FasterOf& maker() const { return maker_; }
-  /// The stored map of a slot, as distances in metres (kInfinity where nothing is met).
+  /// Reads the stored map of a slot, as distances in metres (kInfinity where nothing is met).
   std::vector<float> readLayer(uint32_t slot) const;
   /// Draws one pose with both makers into scratch maps, for the measure of their agreement. Requires in.rays.
   MakerComparison compareMakers(const ParaboloidMapInputs& in, const MapPose& pose);

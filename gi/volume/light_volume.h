@@ -20,19 +20,20 @@ struct VolumeInputs {
   const VolumeSettings& settings;
 };
 
-/// Deposits are made on the CPU, where the lights and the rays are; the steps on the GPU. What nothing changed is kept.
+/// Deposits flux on the CPU, where the lights and the rays are, and propagates it on the GPU. What did not change is
+/// kept.
 class LightVolume {
  public:
   explicit LightVolume(PassContext context) : context_(context) {}
 
   void update(const VolumeInputs& in, FrameStats& stats);
-  /// Storage blocks and uniforms of volume_gather.frag.
+  /// Binds storage blocks and sets uniforms of volume_gather.frag.
   void bind(const gl::Program& program) const;
 
   const VolumeVisibility& sights() const { return sights_; }
-  /// Flux that is on its way after the last step, W. Reads back: for tests.
+  /// Returns the flux that is on its way after the last step, W. Reads back, so it is for tests.
   vec3 fluxOnItsWay() const;
-  /// Flux that was deposited, W.
+  /// Returns the flux that was deposited, W.
   vec3 fluxDeposited() const;
 
  private:
@@ -57,7 +58,7 @@ class LightVolume {
   int steps_ = -1;
 };
 
-/// Light of pixels from such a volume (`lpv`).
+/// Makes the gather of pixels' light from such a volume (`lpv`).
 std::unique_ptr<Gather> makeVolumeGather(PassContext context);
 
 } // namespace lambent

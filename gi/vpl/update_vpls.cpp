@@ -77,7 +77,7 @@ void estimateSamplerDensities(VplSet& set, const SmcSettings& settings) {
   for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].candidateArea = areas[i];
 }
 
-RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceUse use) {
+RadianceUpdate radianceUpdate(const VplUpdate& in, const ChangesSince& since, RadianceUse use) {
   RadianceUpdate update;
   update.paths = use == RadianceUse::Rendering ? in.settings.paths : samplerPaths(in.settings);
   update.bounces = in.settings.bounces;
@@ -90,7 +90,7 @@ RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceU
   return update;
 }
 
-void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const Since& since, RadianceUse use,
+void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const ChangesSince& since, RadianceUse use,
            VplUpdateLog& log) {
   const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights, radianceUpdate(in, since, use));
   log.paths += counts;
@@ -99,8 +99,8 @@ void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const Since& 
 }
 
 /// What rendering uses: areas of all VPLs, radiance of `moved` slots and of those whose cell changed, or of all.
-void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::span<const uint32_t> moved, bool all,
-                   VplUpdateLog& log) {
+void estimateLight(VplSet& set, const VplUpdate& in, const ChangesSince& since, std::span<const uint32_t> moved,
+                   bool all, VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   const bool cells = settings.density == DensityEstimator::Cells;
   std::vector<uint32_t> changed(moved.begin(), moved.end());
@@ -173,7 +173,8 @@ struct Iteration {
   bool changing; // lights or objects are
 };
 
-VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const Iteration& now, VplUpdateLog& log) {
+VplChanges iterate(VplSet& set, const VplUpdate& in, const ChangesSince& since, const Iteration& now,
+                   VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   ++set.frame;
   std::vector<VisiblePoint> points;
