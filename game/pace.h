@@ -23,7 +23,7 @@ class Pacer {
   /// moved for it. `settings` may get another preset.
   void took(const FrameStats& stats, double wholeMs, bool moved, Settings& settings);
 
-  /// A person sets the scale, and nothing else does until `govern`.
+  /// Sets the scale by hand; nothing else changes it until `govern`.
   void hold(float scale);
   void govern(double targetMs);
 

@@ -1,4 +1,4 @@
-// Images on disk. Outputs go to a temporary name beside the target and are renamed, so nothing is ever half-written.
+// Images on disk. Outputs go to a temporary name next to the target and are renamed, so nothing is ever half-written.
 #pragma once
 
 #include "engine/core/math.h"
@@ -9,7 +9,7 @@
 
 namespace lambent {
 
-/// Larger pictures are refused on reading, so that a damaged header cannot ask for all memory.
+/// Larger images are refused on reading, so that a damaged header cannot ask for all memory.
 inline constexpr int kMaxImageSide = 32768;
 
 /// Linear RGB float image, row 0 at the top.

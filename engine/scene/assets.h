@@ -62,7 +62,7 @@ struct Primitive {
   uint32_t firstTriangle = 0, triangleCount = 0;
   uint32_t material = 0;
   Aabb boundsObject;
-  bool flat = false; // normals are the triangles', each with vertices of its own: made anew when the mesh is deformed
+  bool flat = false; // normals are the triangles', each with vertices of its own: made again when the mesh is deformed
 };
 
 /// Up to four joints per vertex, as indices into the joints of the skin that the mesh is shown with. The weights of a

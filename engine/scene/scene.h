@@ -38,7 +38,8 @@ struct Scene {
   std::vector<std::string> warnings; // one line each: what the file holds that is shown differently or left out
 };
 
-/// Told what loading is at, and the share of it that is done, from any thread. May throw, which ends the loading.
+/// Called with what loading is at, and the share of it that is done, from any thread. May throw, which ends the
+/// loading.
 using LoadStep = std::function<void(const char* at, float share)>;
 
 /// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).

@@ -1,5 +1,5 @@
 // A thing that waits for daylight: a node whose name says how much, "altar, goal 0.02" in W/m². What it gets is
-// measured by light paths of its own, whatever the picture shows, with all that is carried about. Sun, sky and what
+// measured by light paths of its own, whatever the image shows, with all that is carried about. Sun, sky and what
 // glows count; lamps do not, so that light has to be led there.
 #pragma once
 
