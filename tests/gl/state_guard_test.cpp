@@ -125,7 +125,7 @@ std::vector<Step> allSteps() {
   });
   smc("hemicubes", [](Settings& s) {
     applyTechnique(s, "ibrr");
-    cube.visibility = CubeVisibility::Hemicubes;
+    s.cube.visibility = CubeVisibility::Hemicubes;
     s.cube.levels = 1;
     s.smc.vpls = 16;
   });
