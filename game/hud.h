@@ -66,11 +66,11 @@ class Hud {
   ~Hud();
   Hud(const Hud&) = delete;
 
-  /// Whether a text field or a slider uses the keys or the mouse at the moment.
+  /// Says whether a text field or a slider uses the keys or the mouse at the moment.
   bool keysTaken() const;
   bool mouseTaken() const;
 
-  /// One line at the bottom, for some seconds.
+  /// Shows one line at the bottom for some seconds.
   void say(std::string message);
   const std::string& lastSaid() const { return lastSaid_; }
   float scale() const { return scale_; } // of letters, by the display's pixels per inch
@@ -78,7 +78,7 @@ class Hud {
   // Between these two, what is to be drawn into the framebuffer that is bound at the end.
   void begin();
   void end();
-  /// Over the image of the last Viewer::run.
+  /// Draws over the image of the last Viewer::run.
   void draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats,
             const FrameTimes& times);
   void drawProgress(const std::string& scene, const std::string& at, float share);

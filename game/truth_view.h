@@ -11,7 +11,7 @@ namespace lambent {
 enum class TruthMode { Off, Split, Heat };
 constexpr TruthMode nextMode(TruthMode mode) { return TruthMode((int(mode) + 1) % 3); }
 
-/// The truth of what a buffer shows; none of those that are no light.
+/// Returns the reference buffer of what a buffer shows; none for those that are no light.
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer);
 
 /// Frames that were drawn (a settled one stays) since anything about the view or its light last changed.
@@ -41,7 +41,7 @@ class TruthView {
   const LiveTruth* truth() const { return truth_.get(); }
   const AgainstTruth& against() const { return against_; }
   const FramesSpent& spent() const { return spent_; }
-  /// As chosen, or a round number from twice the RMSE on.
+  /// Returns the full error as chosen, or a round number of at least twice the RMSE.
   double fullErrorNow() const;
   /// Why there is no truth yet, in words.
   const std::string& reason() const { return reason_; }
@@ -64,7 +64,7 @@ class TruthView {
 
 /// The figures, side by side, as a part of the panel.
 void drawTruthFigures(TruthView& truth);
-/// What is where, and what colours mean, over the image.
+/// Draws over the image what is where and what colours mean.
 void drawTruthLegend(const TruthView& truth, Buffer shown);
 
 } // namespace lambent

@@ -53,7 +53,7 @@ struct Material {
   bool doubleSided = false;
 
   bool emits() const { return maxComponent(emission) > 0; }
-  /// Whether it is anything but Lambert; a texture may make it so.
+  /// Says whether the material is anything but Lambert; a texture may make it so.
   bool glossy() const { return roughness < 1 || metalness > 0 || roughnessMetalnessTexture.image != kNone; }
 };
 
