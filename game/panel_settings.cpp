@@ -68,7 +68,7 @@ void Hud::drawSettings(Settings& settings) {
   if (!settingError_.empty()) ImGui::TextWrapped("%s", settingError_.c_str());
   std::string group;
   bool open = false;
-  for (const SettingRow& row : settingsTable()) {
+  for (const SettingRow& row : settingRows(settings)) {
     const std::string prefix = row.name.substr(0, row.name.find('.'));
     if (!filter_.empty()) {
       if (holds(row.name, filter_) || holds(row.help, filter_) || holds(titleOf(prefix), filter_))

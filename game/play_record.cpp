@@ -55,7 +55,7 @@ void Play::toggleRecording() {
     model_.time = 0;
     model_.paused = false;
     std::map<std::string, std::string> set;
-    for (const SettingRow& row : settingsTable())
+    for (const SettingRow& row : settingRows(gi_.settings()))
       if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
     recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set));
     log_ = {};

@@ -2,9 +2,9 @@
 // window or as the picture's error, with the figures that go with it.
 #pragma once
 
-#include "gi/viewer/viewer.h"
 #include "gi/measure/against_truth.h"
 #include "gi/reference/live_reference.h"
+#include "gi/viewer/viewer.h"
 
 namespace lambent {
 

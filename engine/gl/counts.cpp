@@ -6,7 +6,7 @@
 namespace lambent::gl {
 
 Counts& detail::countsSoFar() {
-  static Counts counts;
+  thread_local Counts counts; // a thread draws in one context
   return counts;
 }
 

@@ -195,7 +195,17 @@ Texture Texture::ofBuffer(const std::string& label, GLenum format, const Buffer&
   return texture;
 }
 
-void Texture::bind(int unit) const { glBindTextureUnit(GLuint(unit), name()); }
+void bindTexture(int unit, GLuint texture) {
+  CHECK_LT(unit, kTextureUnits);
+  glBindTextureUnit(GLuint(unit), texture);
+}
+
+void bindSampler(int unit, GLuint sampler) {
+  CHECK_LT(unit, kTextureUnits);
+  glBindSampler(GLuint(unit), sampler);
+}
+
+void Texture::bind(int unit) const { bindTexture(unit, name()); }
 
 void Texture::limitLevels(int first, int last) const {
   glTextureParameteri(name(), GL_TEXTURE_BASE_LEVEL, first);
@@ -222,14 +232,21 @@ void Buffer::readBytes(uint64_t offset, uint64_t size, void* to) const {
   ++detail::countsSoFar().readBacks;
 }
 
-void Buffer::bindUniform(int binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name()); }
+void Buffer::bindUniform(int binding) const {
+  CHECK_LT(binding, kUniformBindings);
+  glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(binding), name());
+}
 
 void Buffer::bindUniform(int binding, uint64_t offset, uint64_t size) const {
+  CHECK_LT(binding, kUniformBindings);
   CHECK_LE(offset + size, bytes());
   glBindBufferRange(GL_UNIFORM_BUFFER, GLuint(binding), name(), GLintptr(offset), GLsizeiptr(size));
 }
 
-void Buffer::bindStorage(int binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name()); }
+void Buffer::bindStorage(int binding) const {
+  CHECK_LT(binding, kStorageBindings);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name());
+}
 
 Framebuffer::Framebuffer(const std::string& label)
     : Object(GL_FRAMEBUFFER, make([](GLsizei n, GLuint* names) { glCreateFramebuffers(n, names); }), label, 0) {}

@@ -1,11 +1,13 @@
 #include "engine/gl/pulse.h"
 
+#include "engine/gl/state_guard.h"
+
 #include <utility>
 
 namespace lambent::gl {
 
 namespace {
-std::function<void()> beating; // contexts are used from one thread
+thread_local std::function<void()> beating; // as its context, a thread's own
 } // namespace
 
 Pulse::Pulse(std::function<void()> beat) : before_(std::exchange(beating, std::move(beat))) {}
@@ -17,6 +19,7 @@ void pulse() {
     std::function<void()> beat = std::exchange(beating, nullptr);
     ~Silence() { beating = std::move(beat); }
   } silence;
+  const CallOut out;
   silence.beat();
 }
 

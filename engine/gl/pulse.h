@@ -6,7 +6,7 @@
 namespace lambent::gl {
 
 /// While it lives, `beat` is called by that work. It may draw, with all state of the context as it was found afterwards
-/// (StateGuard), and may throw, which ends the work. Of several the last made counts.
+/// (StateGuard), and may throw, which ends the work. Of several on a thread the last made counts.
 class Pulse {
  public:
   explicit Pulse(std::function<void()> beat);

@@ -1,10 +1,12 @@
 #include "engine/gl/state_guard.h"
 
-#include <epoxy/gl.h>
+#include "engine/gl/objects.h"
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <iterator>
+#include <utility>
 
 namespace lambent::gl {
 
@@ -72,7 +74,10 @@ constexpr GLenum kTextureTargets[] = {
     GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY,
 };
 
-constexpr int kUnits = 10, kUniformBuffers = 4, kMostViewports = 16, kTargets = 8;
+/// That passes ask.
+constexpr GLenum kQueries[] = {GL_SAMPLES_PASSED, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN};
+
+constexpr int kMostViewports = 16, kMostTargets = 16;
 constexpr GLuint kColorAttribute = 3; // GpuScene sets it for vertices without colour
 
 GLint get(GLenum what) {
@@ -83,6 +88,11 @@ GLint get(GLenum what) {
 GLint get(GLenum what, int index) {
   GLint value = 0;
   glGetIntegeri_v(what, GLuint(index), &value);
+  return value;
+}
+GLint query(GLenum target) {
+  GLint value = 0;
+  glGetQueryiv(target, GL_CURRENT_QUERY, &value);
   return value;
 }
 void set(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
@@ -151,22 +161,27 @@ struct StateGuard::Saved {
   std::array<bool, std::size(kSwitches)> switches;
   std::array<GLint, std::size(kPixelStore)> pixelStore;
   std::array<Viewport, kMostViewports> viewports;
-  std::array<Target, kTargets> targets;
-  std::array<Unit, kUnits> units;
-  std::array<Range, kUniformBuffers> uniformBuffers;
-  Range storageBuffer; // of index 0
-  int viewportCount = 0;
+  std::array<Target, kMostTargets> targets;
+  std::array<Unit, kTextureUnits> units;
+  std::array<GLint, std::size(kQueries)> queries;
+  std::array<Range, kUniformBindings> uniformBuffers;
+  std::array<Range, kStorageBindings> storageBuffers;
+  int viewportCount = 0, targetCount = 0;
   GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
-  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, polygonMode[2] = {};
-  GLint packBuffer = 0, unpackBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffers = 0, activeUnit = 0;
+  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, polygonMode[2] = {};
+  GLint packBuffer = 0, unpackBuffer = 0, queryBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0,
+        activeUnit = 0;
   GLint transformFeedback = 0;
   bool feedbackRuns = false;
   GLboolean depthMask = GL_FALSE;
   Face front, back;
   GLfloat pointSize = 1, color[4] = {};
 
+  int exceptions = std::uncaught_exceptions();
+
   Saved();
   void restore() const;
+  void endWhatWasBegun() const;
 };
 
 StateGuard::Saved::Saved() {
@@ -180,7 +195,8 @@ StateGuard::Saved::Saved() {
     glGetIntegeri_v(GL_SCISSOR_BOX, GLuint(i), v.scissor);
     v.scissored = glIsEnabledi(GL_SCISSOR_TEST, GLuint(i));
   }
-  for (int i = 0; i < kTargets; ++i) {
+  targetCount = std::min(get(GL_MAX_DRAW_BUFFERS), kMostTargets);
+  for (int i = 0; i < targetCount; ++i) {
     Target& t = targets[size_t(i)];
     t.blended = glIsEnabledi(GL_BLEND, GLuint(i));
     t.source = get(GL_BLEND_SRC_RGB, i);
@@ -192,18 +208,19 @@ StateGuard::Saved::Saved() {
     glGetBooleani_v(GL_COLOR_WRITEMASK, GLuint(i), t.mask);
   }
   activeUnit = get(GL_ACTIVE_TEXTURE);
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kTextureUnits; ++i) {
     glActiveTexture(GLenum(GL_TEXTURE0 + i));
     for (size_t t = 0; t < std::size(kTextureTargets); ++t) units[size_t(i)].textures[t] = get(kTextureTargets[t]);
     units[size_t(i)].sampler = get(GL_SAMPLER_BINDING);
   }
   uniformBuffer = get(GL_UNIFORM_BUFFER_BINDING);
-  for (int i = 0; i < kUniformBuffers; ++i)
+  for (int i = 0; i < kUniformBindings; ++i)
     uniformBuffers[size_t(i)] =
         Range::of(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, i);
-  storageBuffers = get(GL_SHADER_STORAGE_BUFFER_BINDING);
-  storageBuffer =
-      Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, 0);
+  storageBuffer = get(GL_SHADER_STORAGE_BUFFER_BINDING);
+  for (int i = 0; i < kStorageBindings; ++i)
+    storageBuffers[size_t(i)] =
+        Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, i);
   program = get(GL_CURRENT_PROGRAM);
   vertexArray = get(GL_VERTEX_ARRAY_BINDING);
   drawFramebuffer = get(GL_DRAW_FRAMEBUFFER_BINDING);
@@ -213,21 +230,32 @@ StateGuard::Saved::Saved() {
   clipOrigin = get(GL_CLIP_ORIGIN);
   clipDepth = get(GL_CLIP_DEPTH_MODE);
   frontFace = get(GL_FRONT_FACE);
+  provokingVertex = get(GL_PROVOKING_VERTEX);
   glGetIntegerv(GL_POLYGON_MODE, polygonMode);
   glGetFloatv(GL_POINT_SIZE, &pointSize);
   front = stencilOf(true);
   back = stencilOf(false);
   packBuffer = get(GL_PIXEL_PACK_BUFFER_BINDING);
   unpackBuffer = get(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  queryBuffer = get(GL_QUERY_BUFFER_BINDING);
   indirectBuffer = get(GL_DRAW_INDIRECT_BUFFER_BINDING);
   glGetVertexAttribfv(kColorAttribute, GL_CURRENT_VERTEX_ATTRIB, color);
+  for (size_t i = 0; i < queries.size(); ++i) queries[i] = query(kQueries[i]);
   transformFeedback = get(GL_TRANSFORM_FEEDBACK_BINDING);
   feedbackRuns = get(GL_TRANSFORM_FEEDBACK_ACTIVE) && !get(GL_TRANSFORM_FEEDBACK_PAUSED);
   if (feedbackRuns) glPauseTransformFeedback(); // else no other program may be used
   glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
 }
 
+/// By a pass that something was thrown out of.
+void StateGuard::Saved::endWhatWasBegun() const {
+  if (get(GL_TRANSFORM_FEEDBACK_ACTIVE)) glEndTransformFeedback();
+  for (size_t i = 0; i < queries.size(); ++i)
+    if (query(kQueries[i]) != queries[i]) glEndQuery(kQueries[i]);
+}
+
 void StateGuard::Saved::restore() const {
+  if (std::uncaught_exceptions() > exceptions) endWhatWasBegun();
   for (size_t i = 0; i < switches.size(); ++i) set(kSwitches[i].what, switches[i]);
   for (size_t i = 0; i < pixelStore.size(); ++i) glPixelStorei(kPixelStore[i].what, pixelStore[i]);
   for (int i = 0; i < viewportCount; ++i) {
@@ -237,7 +265,7 @@ void StateGuard::Saved::restore() const {
     glScissorIndexedv(GLuint(i), v.scissor);
     set(GL_SCISSOR_TEST, i, v.scissored);
   }
-  for (int i = 0; i < kTargets; ++i) {
+  for (int i = 0; i < targetCount; ++i) {
     const Target& t = targets[size_t(i)];
     const GLuint index = GLuint(i);
     set(GL_BLEND, i, t.blended);
@@ -246,7 +274,7 @@ void StateGuard::Saved::restore() const {
     glBlendEquationSeparatei(index, GLenum(t.equation), GLenum(t.equationAlpha));
     glColorMaski(index, t.mask[0], t.mask[1], t.mask[2], t.mask[3]);
   }
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kTextureUnits; ++i) {
     const Unit& u = units[size_t(i)];
     glBindTextureUnit(GLuint(i), 0);
     for (const GLint texture : u.textures)
@@ -254,10 +282,10 @@ void StateGuard::Saved::restore() const {
     glBindSampler(GLuint(i), GLuint(u.sampler));
   }
   glActiveTexture(GLenum(activeUnit));
-  for (int i = 0; i < kUniformBuffers; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
+  for (int i = 0; i < kUniformBindings; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
   glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniformBuffer));
-  storageBuffer.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffers));
+  for (int i = 0; i < kStorageBindings; ++i) storageBuffers[size_t(i)].bind(GL_SHADER_STORAGE_BUFFER, i);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffer));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawFramebuffer));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(readFramebuffer));
   glBindVertexArray(GLuint(vertexArray));
@@ -265,12 +293,14 @@ void StateGuard::Saved::restore() const {
   glDepthMask(depthMask);
   glClipControl(GLenum(clipOrigin), GLenum(clipDepth));
   glFrontFace(GLenum(frontFace));
+  glProvokingVertex(GLenum(provokingVertex));
   glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygonMode[0]));
   glPointSize(pointSize);
   setStencil(GL_FRONT, front);
   setStencil(GL_BACK, back);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(packBuffer));
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(unpackBuffer));
+  glBindBuffer(GL_QUERY_BUFFER, GLuint(queryBuffer));
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirectBuffer));
   glVertexAttrib4fv(kColorAttribute, color);
   // One that was deleted while in use went for good when another took its place.
@@ -284,16 +314,35 @@ void setConventions() {
   for (const PixelStore& p : kPixelStore) glPixelStorei(p.what, p.convention);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  glBindBuffer(GL_QUERY_BUFFER, 0); // else answers go there
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthRange(0, 1);
   glFrontFace(GL_CCW);
+  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPointSize(1);
   glBlendEquation(GL_FUNC_ADD);
-  for (GLuint unit = 0; unit < kUnits; ++unit) glBindSampler(unit, 0);
+  for (int unit = 0; unit < kTextureUnits; ++unit) bindSampler(unit, 0);
 }
 
-StateGuard::StateGuard() : saved_(std::make_unique<Saved>()) { setConventions(); }
-StateGuard::~StateGuard() { saved_->restore(); }
+namespace {
+thread_local int guards = 0; // around what this thread does
+} // namespace
+
+StateGuard::StateGuard() {
+  if (guards == 0) {
+    saved_ = std::make_unique<Saved>();
+    setConventions();
+  }
+  ++guards;
+}
+
+StateGuard::~StateGuard() {
+  --guards;
+  if (saved_) saved_->restore();
+}
+
+CallOut::CallOut() : depth_(std::exchange(guards, 0)) {}
+CallOut::~CallOut() { guards = depth_; }
 
 } // namespace lambent::gl

@@ -1,6 +1,6 @@
 #include "engine/platform/context_setup.h"
 
-#include "engine/core/error.h"
+#include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 
 #include <epoxy/gl.h>
@@ -31,18 +31,7 @@ void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum sever
 uint64_t glDebugErrors() { return debugErrors; }
 
 void setUpContext(DebugOutput debug) {
-  const int version = epoxy_gl_version();
-  if (version < 45)
-    throw RunError("OpenGL " + std::to_string(version / 10) + "." + std::to_string(version % 10) +
-                   " is too old (4.5 is needed; Mesa's llvmpipe offers it on any machine: install libgl1-mesa-dri)");
-  GLint uniformBlockBytes = 0, layers = 0;
-  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &uniformBlockBytes);
-  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
-  if (uniformBlockBytes < 65536)
-    throw RunError("uniform blocks hold only " + std::to_string(uniformBlockBytes) + " bytes here (65536 are needed)");
-  if (layers < 2048)
-    throw RunError("array textures have only " + std::to_string(layers) + " layers here (2048 are needed)");
-
+  gl::requireContext();
   glEnable(GL_DEBUG_OUTPUT);
   if (debug == DebugOutput::AtOnce) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(onDebugMessage, nullptr);

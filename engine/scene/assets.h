@@ -3,6 +3,7 @@
 
 #include "engine/core/math.h"
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -45,8 +46,8 @@ struct Material {
   TextureRef baseColorTexture;
   vec3 emission{0}; // emissiveFactor × emissiveStrength
   TextureRef emissiveTexture;
-  float roughness = 1, metalness = 0; // factors, [0,1]; roughness is perceptual: α = roughness²
-  TextureRef roughnessMetalnessTexture;           // G: roughness, B: metalness
+  float roughness = 1, metalness = 0;   // factors, [0,1]; roughness is perceptual: α = roughness²
+  TextureRef roughnessMetalnessTexture; // G: roughness, B: metalness
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
@@ -91,7 +92,36 @@ struct Mesh {
   std::vector<MorphTarget> morphTargets;
 };
 
+/// Which contents an object holds: a number that no other of this process ever had. A copy, and what is moved or
+/// assigned to, hold others, for whatever was made of them keeps pointers to the first. Who keeps something made of an
+/// object knows by it whether that object is still there, though another may have taken its place in memory. Says
+/// nothing else, and so may not enter a result.
+class Identity {
+ public:
+  Identity() = default;
+  Identity(const Identity&) {}
+  Identity(Identity&& from) noexcept { from.value_ = next(); }
+  Identity& operator=(const Identity&) {
+    value_ = next();
+    return *this;
+  }
+  Identity& operator=(Identity&& from) noexcept {
+    value_ = next();
+    from.value_ = next();
+    return *this;
+  }
+  uint64_t value() const { return value_; } // never 0
+
+ private:
+  static uint64_t next() {
+    static std::atomic<uint64_t> last = 0;
+    return ++last;
+  }
+  uint64_t value_ = next();
+};
+
 struct SceneAssets {
+  Identity identity;
   std::vector<Mesh> meshes;
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;

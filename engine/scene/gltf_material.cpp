@@ -69,7 +69,8 @@ uint32_t importMaterial(Import& import, int index) {
   };
   out.roughness = factor(in.roughness, "roughness");
   out.metalness = factor(in.metalness, "metalness");
-  out.roughnessMetalnessTexture = importTexture(import, in.roughnessMetalnessTexture, place + ", roughness and metalness", false);
+  out.roughnessMetalnessTexture =
+      importTexture(import, in.roughnessMetalnessTexture, place + ", roughness and metalness", false);
   out.emission = glm::max(in.emissive * in.emissiveStrength, vec3(0));
   if (!(maxComponent(out.emission) <= kMostLight) || !isFinite(out.emission))
     doc.fail(place, "the emission is beyond what pictures can hold (1e30)");

@@ -32,8 +32,8 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_
   return point;
 }
 
-RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex, uint32_t triangle,
-                            vec2 barycentric) {
+RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex,
+                                        uint32_t triangle, vec2 barycentric) {
   CHECK_LT(instance, view.instances.size());
   const Mesh& mesh = view.assets->meshes[view.instances[instance].mesh];
   CHECK_LT(primitiveIndex, mesh.primitives.size());

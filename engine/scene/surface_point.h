@@ -23,6 +23,6 @@ struct RoughnessMetalness {
   float roughness = 1, metalness = 0; // roughness is perceptual
 };
 RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
-                            vec2 barycentric);
+                                        vec2 barycentric);
 
 } // namespace lambent

@@ -84,8 +84,8 @@ inline float rayEpsilonOf(const Aabb& b) {
 }
 
 /// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again:
-/// the query's rayEpsilon, and 2^-16 of the position's own coordinates. (16 float steps would do for rays; virtual lights
-/// then stand in gaps that their maps of 16 bits cannot see: relMSE of living-room-2 0.26 instead of 0.22.)
+/// the query's rayEpsilon, and 2^-16 of the position's own coordinates. (16 float steps would do for rays; virtual
+/// lights then stand in gaps that their maps of 16 bits cannot see: relMSE of living-room-2 0.26 instead of 0.22.)
 inline vec3 offsetPoint(const vec3& position, const vec3& geometricNormal, float rayEpsilon) {
   return position + geometricNormal * (rayEpsilon + 0x1p-16f * maxComponent(glm::abs(position)));
 }

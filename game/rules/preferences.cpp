@@ -26,7 +26,7 @@ constexpr int kSmallest = 160, kLargest = 16384;     // sides of a window that i
 
 template <class Action> void eachDifference(const Settings& a, const Settings& b, Action&& action) {
   if (a == b) return;
-  for (const SettingRow& row : settingsTable())
+  for (const SettingRow& row : settingRows(b))
     if (row.name != kExposure && row.get(a) != row.get(b)) action(row.name);
 }
 
@@ -79,7 +79,7 @@ Settings Preferences::over(const Settings& settings, const AskedFor& asked, cons
     if (!asked.presetOrTechnique && !preset.empty()) applyPreset(chosen, preset);
     if (!asked.presetOrTechnique && !technique.empty()) apply(chosen, technique);
     wanted = chosen;
-    for (const SettingRow& row : settingsTable())
+    for (const SettingRow& row : settingRows(settings))
       if (isAsked(row.name)) row.set(wanted, row.get(settings));
     for (const auto& [name, value] : set)
       if (!isAsked(name) && !(asked.presetOrTechnique && !name.starts_with("image.")))

@@ -8,9 +8,9 @@
 
 namespace lambent {
 
-/// The choice, and the measurement that made it. The two differ in a few texels or rays along edges, so a machine's noise
-/// must not decide which image it is: the GPU is taken only where it is twice as fast. (Software Mesa is 2 to 12 times on
-/// the one side, a GPU with a slow CPU as far on the other.)
+/// The choice, and the measurement that made it. The two differ in a few texels or rays along edges, so a machine's
+/// noise must not decide which image it is: the GPU is taken only where it is twice as fast. (Software Mesa is 2 to 12
+/// times on the one side, a GPU with a slow CPU as far on the other.)
 class FasterOf {
  public:
   FasterOf(const char* cpu, const char* gpu) : cpu_(cpu), gpu_(gpu) {}

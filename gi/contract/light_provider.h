@@ -1,6 +1,6 @@
-// A provider of light: what a technique is at run time. It takes a frame and gives light on its surfaces. Indirect light by
-// virtual lights (gi/frame/composed_technique.h), direct light (gi/direct), and whatever a technique brings of its own are
-// providers of the same kind; what each asks of a frame stands in its row (gi/plan/needs.h).
+// A provider of light: what a technique is at run time. It takes a frame and gives light on its surfaces. Indirect
+// light by virtual lights (gi/frame/composed_technique.h), direct light (gi/direct), and whatever a technique brings of
+// its own are providers of the same kind; what each asks of a frame stands in its row (gi/plan/needs.h).
 #pragma once
 
 #include "gi/contract/patches.h"
@@ -34,9 +34,10 @@ struct FrameWorld {
 /// A frame: the world, and what the camera sees of it.
 struct Frame : FrameWorld {
   const GBuffer& surfaces;
-  Patches& patches;                  // of the surfaces, made when somebody first asks
-  const GBuffer* previous = nullptr; // depth, normals and camera of the frame before; null unless needed, or the first time
-  int bounces = 1;                   // that its light may be reflected
+  Patches& patches; // of the surfaces, made when somebody first asks
+  const GBuffer* previous =
+      nullptr;     // depth, normals and camera of the frame before; null unless needed, or the first time
+  int bounces = 1; // that its light may be reflected
 };
 
 /// What a provider shows of its inside, to debug views. Valid until its next run; null where it has none.

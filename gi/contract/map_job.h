@@ -12,7 +12,7 @@ struct MapPose {
   vec3 position{0};              // on the surface
   vec3 normal{0, 1, 0};          // shading normal, unit
   vec3 geometricNormal{0, 1, 0}; // unit; the map's origin lies off the surface on this side
-  float rayEpsilon = 1e-4f;           // of the ray query: how far
+  float rayEpsilon = 1e-4f;      // of the ray query: how far
   vec3 origin() const { return offsetPoint(position, geometricNormal, rayEpsilon); }
   bool operator==(const MapPose&) const = default;
 };

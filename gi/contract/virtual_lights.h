@@ -27,7 +27,9 @@ struct VirtualLight {
 
   /// Radiance × area, W/sr as a luminance.
   float intensity() const { return luminance(radiance) * area; }
-  MapPose pose(float rayEpsilon) const { return {position, normal, geometricNormal, rayEpsilon}; } // RayQuery::rayEpsilon
+  MapPose pose(float rayEpsilon) const {
+    return {position, normal, geometricNormal, rayEpsilon};
+  } // RayQuery::rayEpsilon
 };
 
 /// Lights on the GPU, in chunks of 2048, as many as a map array has layers. Within chunk k, class c (slot mod 16) is

@@ -16,7 +16,7 @@ struct World {
   const RayQuery& rays;
   const DirtyRegion& moved; // where geometry changed since the last frame
   const LightSet& lights;   // those that the plan lets shine
-  float farDistance = 1;          // distance that stands for 1 in maps, metres: the scene's size, with room to grow
+  float farDistance = 1;    // distance that stands for 1 in maps, metres: the scene's size, with room to grow
 };
 
 } // namespace lambent

@@ -29,7 +29,8 @@ std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& a
     return std::any_of(found.begin(), found.end(), [&](const CubeEntry& f) {
       if (!matches(f, e.position, e.normal, kSamePlane * grid.texel)) return false;
       ++counts.occlusion;
-      return !rays.occluded(segment(lifted(f, grid.texel, rays.rayEpsilon()), lifted(e, grid.texel, rays.rayEpsilon())));
+      return !rays.occluded(
+          segment(lifted(f, grid.texel, rays.rayEpsilon()), lifted(e, grid.texel, rays.rayEpsilon())));
     });
   };
   vec3 along(0);
@@ -178,7 +179,8 @@ void DepthCube::linkAll(std::span<const uint32_t> columns, const RayQuery& rays,
           for (uint32_t o = firsts[c]; o < firsts[c + 1]; ++o) {
             const CubeEntry& other = entries[o];
             if (!matches(other, entry.position, entry.normal, kNextPlane * grid.texel)) continue;
-            asked.push_back(segment(lifted(entry, grid.texel, rays.rayEpsilon()), lifted(other, grid.texel, rays.rayEpsilon())));
+            asked.push_back(
+                segment(lifted(entry, grid.texel, rays.rayEpsilon()), lifted(other, grid.texel, rays.rayEpsilon())));
             of.emplace_back(e, k);
           }
         }

@@ -123,7 +123,7 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
 /// Looks at the entries from lights `which` of a word, and brings bits and sums up to date.
 void LayeredCube::put(const CubeInputs& in, size_t word, Word which, CubeWork& work,
                       const std::vector<uint8_t>* isNew) {
-  const std::vector<Word> seen = settings_.sights == CubeSights::Rays ? byRays(in, word, which, work.rays, isNew)
+  const std::vector<Word> seen = settings_.visibility == CubeVisibility::Rays ? byRays(in, word, which, work.rays, isNew)
                                                                       : byHemicubes(in, word, which, work.rays);
   parallelFor(sums_.size(), kRun, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
@@ -237,7 +237,7 @@ void LayeredCube::adoptSurfaces(const CubeInputs& in, CubeWork& work) {
       const VirtualLight& light = in_[w * kBatch + size_t(b)];
       // A hemicube that sees the place of a mover, or entries that are new beside it, is made anew.
       const auto inFront = [&](const Aabb& box) { return sees(light, box, 4 * surfaces_.texel()); };
-      if (light.alive && (settings_.sights == CubeSights::Rays || std::ranges::any_of(places, inFront)))
+      if (light.alive && (settings_.visibility == CubeVisibility::Rays || std::ranges::any_of(places, inFront)))
         which |= Word(1) << b;
     }
     if (which) put(in, w, which, work, &isNew);

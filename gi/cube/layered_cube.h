@@ -12,8 +12,8 @@
 #include "gi/contract/virtual_lights.h"
 #include "gi/cube/cube_surfaces.h"
 #include "gi/cube/hemicube.h"
-#include "gi/plan/settings.h"
 #include "gi/lighting/dirty_region.h"
+#include "gi/plan/settings.h"
 
 #include <array>
 

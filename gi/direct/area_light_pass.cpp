@@ -4,7 +4,6 @@
 #include "gi/gather/draw_gather.h"
 #include "gi/lighting/area_lobe.h"
 
-
 #include <algorithm>
 
 namespace lambent {

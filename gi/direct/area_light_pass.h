@@ -2,16 +2,16 @@
 // closed form at every pixel, times the share of it that rays from patches find open.
 #pragma once
 
+#include "engine/gpu_trace/gpu_rays.h"
 #include "gi/contract/faster_of.h"
 #include "gi/contract/figures.h"
-#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/world.h"
 #include "gi/direct/area_fragments.h"
 #include "gi/direct/area_groups.h"
 #include "gi/gather/patch_atlas.h"
-#include "engine/gpu_trace/gpu_rays.h"
 
 #include <memory>
 

@@ -211,11 +211,11 @@ void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, co
   program.set("firstLight", int(block.first));
   block.maps->bind(2);
   block.maps->bind(4);
-  glBindSampler(2, block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
-  glBindSampler(4, depths_.name());
+  gl::bindSampler(2, block.kind == MapKind::Emitter ? smoothDistances_.name() : 0);
+  gl::bindSampler(4, depths_.name());
   gl::drawFullscreen();
-  glBindSampler(2, 0);
-  glBindSampler(4, 0);
+  gl::bindSampler(2, 0);
+  gl::bindSampler(4, 0);
 }
 
 /// Adds the light of pairs that rays found to see one another.

@@ -45,7 +45,7 @@ class DirectLight : public LightProvider {
   Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
-  bool stale_ = true; // nothing of the last run may be used
+  bool stale_ = true;                    // nothing of the last run may be used
   LightTarget target_{"direct"};
 };
 

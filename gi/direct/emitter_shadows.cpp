@@ -1,8 +1,8 @@
 #include "gi/direct/emitter_shadows.h"
 
-#include "gi/visibility/shadow_map_cache.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
+#include "gi/visibility/shadow_map_cache.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <algorithm>

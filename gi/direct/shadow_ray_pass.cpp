@@ -29,7 +29,7 @@ bool ShadowRayPass::collect() {
 }
 
 void ShadowRayPass::trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&)>& towards,
-                         RayCounts& counts) {
+                          RayCounts& counts) {
   // In the order of lights and pixels, not that in which the GPU came by them: rays side by side are faster, and sums
   // the same every time.
   std::sort(doubts_.begin(), doubts_.end(), [](const ShadowDoubt& a, const ShadowDoubt& b) {

@@ -1,5 +1,5 @@
-// A technique that is composed of the four axes (gi/plan/axes.h): virtual lights from a source, maps of who sees them, a
-// gather, and what puts its light together.
+// A technique that is composed of the four axes (gi/plan/axes.h): virtual lights from a source, maps of who sees them,
+// a gather, and what puts its light together.
 #pragma once
 
 #include "gi/contract/gather.h"

@@ -1,6 +1,7 @@
 #include "gi/frame/gi_frame.h"
 
 #include "engine/core/error.h"
+#include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
@@ -42,7 +43,8 @@ struct GiFrame::Kept {
   void end(Clock::time_point begin, const gl::Counts& before);
 };
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed) : kept_(std::make_unique<Kept>(settings, seed)) {}
+GiFrame::GiFrame(const Settings& settings, uint32_t seed)
+    : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed))) {}
 GiFrame::~GiFrame() = default;
 
 void GiFrame::restart() {
@@ -54,9 +56,10 @@ void GiFrame::restart() {
 
 // The frame -----------------------------------------------------------------------------------------------------------
 
-const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& progress,
+const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(int, int)>& told,
                                const HostSurfaces* host) {
   const gl::StateGuard guard;
+  const std::function<void(int, int)> progress = gl::callingOut(told);
   Kept& k = *kept_;
   const Settings& settings = k.settings;
   FrameStats& stats = k.stats;
@@ -71,10 +74,9 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   k.world.take(given, settings);
   indirect.begin(k.world.view(), settings);
   const Needs needs = needsOf(settings);
-  const EffectPlan plan = k.world.plan(settings, {.first = !k.outputs.surfaces.depth,
-                                                  .host = host != nullptr,
-                                                  .needs = needs,
-                                                  .status = indirect.status()});
+  const EffectPlan plan = k.world.plan(
+      settings,
+      {.first = !k.outputs.surfaces.depth, .host = host != nullptr, .needs = needs, .status = indirect.status()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   const FrameWorld now{.world = world,
@@ -190,7 +192,8 @@ ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int
                                  .resolution = k.settings.shadow.resolution,
                                  .maker = k.settings.shadow.maker};
   ParaboloidMapPass pass(k.context, StageId::VplMaps);
-  return measureShadowAgreement(pass, maps, world.rays, view.camera, lights, k.settings, slots, points, progress);
+  return measureShadowAgreement(pass, maps, world.rays, view.camera, lights, k.settings, slots, points,
+                                gl::callingOut(progress));
 }
 
 std::vector<std::string> GiFrame::reloadShaders() {

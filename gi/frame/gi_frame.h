@@ -21,8 +21,8 @@ namespace lambent {
 struct FrameOutputs; // gi/contract/frame_outputs.h
 struct PassContext;
 
-/// Owns all GI state of one scene in the current GL context (OpenGL 4.5, the host's or ours). Not copyable; destroy while
-/// the context is current.
+/// Owns all GI state of one scene in the current GL context (OpenGL 4.5, the host's or ours). Not copyable; destroy
+/// while the context is current.
 class GiFrame {
  public:
   explicit GiFrame(const Settings& settings, uint32_t seed = 1);
@@ -35,11 +35,11 @@ class GiFrame {
   const Settings& settings() const;
 
   /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up. Where nothing
-  /// changed and the technique has converged, nothing is computed and the last outputs stay. With frame.overlap the VPLs
-  /// of this view are still being updated when it returns. The state of the context is left as it was.
-  /// `progress` (may be empty) is called during the warm-up with done and total iterations.
-  /// With `host` the surfaces are not drawn but taken over; they must be those of the view.
-  /// Throws InputError where settings contradict each other, or a host's texture does not fit.
+  /// changed and the technique has converged, nothing is computed and the last outputs stay. With frame.overlap the
+  /// VPLs of this view are still being updated when it returns. The state of the context is left as it was. `progress`
+  /// (may be empty) is called during the warm-up with done and total iterations. With `host` the surfaces are not drawn
+  /// but taken over; they must be those of the view. Throws InputError where settings contradict each other, or a
+  /// host's texture does not fit.
   const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
                         const HostSurfaces* host = nullptr);
 

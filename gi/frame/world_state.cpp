@@ -19,15 +19,16 @@ float farDistanceOf(const SceneView& view, float before) {
 } // namespace
 
 bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
-  if (assets_ == &assets) return false;
+  if (opened_ == assets.identity.value()) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  assets_ = &assets;
+  opened_ = 0; // until it is: a pulse may throw
   gpu_ = std::make_unique<GpuScene>(programs_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
   frozen_ = false;
   lightingStale_ = surfacesStale_ = true;
   testedDraws_ = 0;
+  opened_ = assets.identity.value();
   return true;
 }
 
@@ -50,9 +51,9 @@ EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
   gather.debug = before_.debug;
   gatherChanged_ = before_ != gather || shadersChanged_;
   const bool drawingChanged = before_ != settings || shadersChanged_ || in.host || hosted_;
-  settingsChanged_ =
-      before_.smc != settings.smc || before_.vpl != settings.vpl || before_.effects != settings.effects ||
-      before_.own != settings.own || before_.ownValues != settings.ownValues || in.first;
+  settingsChanged_ = before_.smc != settings.smc || before_.vpl != settings.vpl ||
+                     before_.effects != settings.effects || before_.own != settings.own ||
+                     before_.ownValues != settings.ownValues || in.first;
   before_ = settings;
   shadersChanged_ = false;
   hosted_ = in.host;

@@ -6,10 +6,10 @@
 #include "engine/trace/embree_query.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/world.h"
-#include "gi/plan/settings.h"
-#include "gi/surfaces/gpu_scene.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
+#include "gi/plan/settings.h"
+#include "gi/surfaces/gpu_scene.h"
 
 namespace lambent {
 
@@ -45,7 +45,7 @@ class WorldState {
 
  private:
   gl::ProgramCache& programs_;
-  const SceneAssets* assets_ = nullptr;
+  uint64_t opened_ = 0; // identity of its assets
   std::unique_ptr<GpuScene> gpu_;
   std::unique_ptr<EmbreeQuery> rays_;
   ViewCopy view_;
@@ -55,8 +55,8 @@ class WorldState {
   float farDistance_ = 0;
   uint64_t testedDraws_ = 0; // the scene's count when last asked
   bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
-  bool hosted_ = false; // the last surfaces were a host's
-  bool frozen_ = false; // objects stand where they stood
+  bool hosted_ = false;        // the last surfaces were a host's
+  bool frozen_ = false;        // objects stand where they stood
   bool lightingStale_ = false; // something changed that not all stages were told of
   bool surfacesStale_ = false; // nor those of surfaces and direct light
 };

@@ -1,8 +1,8 @@
 // Light that the CPU found at pixels, added to what was gathered.
 #pragma once
 
-#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
+#include "gi/contract/surface_lighting.h"
 
 #include <span>
 

@@ -1,8 +1,8 @@
 // The draw that all gathers of virtual lights share.
 #pragma once
 
-#include "gi/contract/surface_lighting.h"
 #include "gi/contract/pass_context.h"
+#include "gi/contract/surface_lighting.h"
 #include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
 
@@ -49,8 +49,8 @@ void setShading(const gl::Program& program, const GatherDraw& draw);
 /// One area by a program that gathers. `patches`: only those that the stencil marks.
 void drawArea(const gl::Program& program, const GatherArea& area, bool patches, bool add);
 
-/// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has roughness and metalness, gets the glossy
-/// light. From trees patches must be black before.
+/// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has roughness and metalness,
+/// gets the glossy light. From trees patches must be black before.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
 /// The draw of lights that are trees.

@@ -4,9 +4,9 @@
 // every fourth pixel; a patch of such a buffer lies within a smooth block of the picture, so that all subsets have the
 // same patches.
 #include "engine/gl/query_ring.h"
+#include "gi/gather/gathers.h"
 #include "gi/gather/near_light_pass.h"
 #include "gi/gather/patch_atlas.h"
-#include "gi/gather/gathers.h"
 #include "shaders/shared/patches.h"
 
 namespace lambent {

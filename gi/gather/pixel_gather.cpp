@@ -1,8 +1,8 @@
 // Gather at pixels: every light at each of them, or the 4×4 subsets side by side.
 #include "gi/gather/draw_gather.h"
+#include "gi/gather/gathers.h"
 #include "gi/gather/map_checks.h"
 #include "gi/gather/near_light_pass.h"
-#include "gi/gather/gathers.h"
 
 namespace lambent {
 
@@ -22,7 +22,8 @@ class PixelGather : public Gather {
  private:
   std::span<const gl::Framebuffer> gather(const GatherInputs& in) {
     const gl::PassScope scope = context_.scope(StageId::Gather);
-    target_.fit(in.frame.surfaces, grid_ > 1 ? 4 * tileSize(in.frame.surfaces) : glm::ivec2(in.frame.surfaces.width, in.frame.surfaces.height));
+    target_.fit(in.frame.surfaces, grid_ > 1 ? 4 * tileSize(in.frame.surfaces)
+                                             : glm::ivec2(in.frame.surfaces.width, in.frame.surfaces.height));
     const std::span<const gl::Framebuffer> checks = checks_.begin(in, target_, grid_ > 1);
     drawGather(context_.programs, target_.framebuffer(),
                {.surfaces = in.frame.surfaces,

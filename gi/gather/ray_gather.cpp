@@ -1,6 +1,6 @@
 // Gather on the CPU with a ray for every pixel and light: the measure of shadow maps and subsets (paper 1, fig. 8).
-#include "gi/gather/near_light_pass.h"
 #include "gi/gather/gathers.h"
+#include "gi/gather/near_light_pass.h"
 #include "gi/vpl/smc.h"
 
 namespace lambent {
@@ -18,8 +18,8 @@ class RayGather : public Gather {
     std::vector<vec3> irradiance;
     {
       CpuScope scope(stats.stages, key(StageId::GatherByRays));
-      irradiance = gatherByRays(in.frame.world.rays, camera, in.lights.list.slots, in.frame.settings.gather, stats.raysGather,
-                                lobes ? &glossy : nullptr);
+      irradiance = gatherByRays(in.frame.world.rays, camera, in.lights.list.slots, in.frame.settings.gather,
+                                stats.raysGather, lobes ? &glossy : nullptr);
     }
     {
       const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);

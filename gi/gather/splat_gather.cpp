@@ -1,7 +1,7 @@
 // Lights splatted into patches (paper 2), all into the same, or each into patches of its own.
+#include "gi/gather/gathers.h"
 #include "gi/gather/near_light_pass.h"
 #include "gi/gather/splat.h"
-#include "gi/gather/gathers.h"
 
 namespace lambent {
 

@@ -38,9 +38,9 @@ LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter,
   const float pdfLight = probability * e.pdfArea * r2 / cosEmitter; // per steradian
   const float mis = powerHeuristic(pdfLight, pdfCosineHemisphere(cosReceiver));
   const vec3 emitterSide = -glm::dot(towards, e.normal) > 0 ? e.normal : -e.normal;
-  return {
-      segment(offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon), offsetPoint(e.position, emitterSide, rayEpsilon)),
-      weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))};
+  return {segment(offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon),
+                  offsetPoint(e.position, emitterSide, rayEpsilon)),
+          weight * e.radiance * (cosReceiver * mis / (kPi * pdfLight))};
 }
 
 } // namespace

@@ -24,7 +24,8 @@ LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex,
                                const vec3& uPoint, float rayEpsilon);
 
 /// Light of a sky that is not constant, from a direction drawn by what the sky brings to the vertex; numbers in [0, 1).
-LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u, float rayEpsilon);
+LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u,
+                             float rayEpsilon);
 
 /// Radiance that a cosine-distributed ray from `vertex` brings when it meets the sky: all where the sky is constant,
 /// else its share; connections bring the rest.

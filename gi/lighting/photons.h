@@ -49,7 +49,7 @@ class PhotonSource {
 
   const LightSet& lights_;
   Aabb bounds_;
-  float rayEpsilon_;         // of the ray query
+  float rayEpsilon_;    // of the ray query
   Distribution choice_; // punctual lights, then emitters, then the sky
   float power_ = 0;
 };

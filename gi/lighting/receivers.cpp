@@ -12,8 +12,10 @@ Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
   const CameraView& camera = view.camera;
   const vec3 towardsViewer =
       camera.orthoHalfHeight > 0 ? vec3(camera.worldFromView[2]) : glm::normalize(camera.position() - hit.position);
-  const RoughnessMetalness roughnessMetalness = roughnessMetalnessAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric);
-  return makeReceiver(hit.normal, towardsViewer, hit.albedo, roughnessMetalness.roughness, roughnessMetalness.metalness);
+  const RoughnessMetalness roughnessMetalness =
+      roughnessMetalnessAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric);
+  return makeReceiver(hit.normal, towardsViewer, hit.albedo, roughnessMetalness.roughness,
+                      roughnessMetalness.metalness);
 }
 
 vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {

@@ -19,8 +19,8 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "gi/near/near_mix.h"
 #include "gi/lighting/receivers.h"
+#include "gi/near/near_mix.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gi/contract/virtual_lights.h"
-#include "gi/plan/settings.h"
 #include "gi/lighting/light_set.h"
+#include "gi/plan/settings.h"
 #include "gi/vpl/smc.h"
 
 namespace lambent {

@@ -85,7 +85,7 @@ std::string whyNot(const Axes& axes) {
   if (source.tree && seen) return visibility + name + " has clusters of all sizes, and no shadow maps of them (none)";
   if (gather.volume && seen) return visibility + "light of a volume goes around corners by itself (none)";
   if (gather.stored && seen)
-    return visibility + "what is stored was looked at by lights themselves, as cube.sights says (none)";
+    return visibility + "what is stored was looked at by lights themselves, as cube.visibility says (none)";
   if (gather.stored && !source.anyView) return mode + ": the lights of " + name + " follow the view (ir, poisson)";
   if (source.tree && gather.volume)
     return "gather.mode volume: " + name + " has clusters of all sizes, and no list of them (smc, rsm, poisson, ...)";

@@ -181,7 +181,7 @@ class Table {
            "of a tree of cubes: each halves the texels where cube.split says so; 0 = one cube over all of the scene");
     number("cube.split", &Settings::cube, &CubeSettings::split, {0, 1}, Nothing,
            "share of edges among what a cube of the tree holds that makes eight of it; 0 splits all but the empty");
-    choice("cube.sights", &Settings::cube, &CubeSettings::sights, {"rays", "hemicubes"}, Nothing,
+    choice("cube.visibility", &Settings::cube, &CubeSettings::visibility, {"rays", "hemicubes"}, Nothing,
            "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
     number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of these images; half of it for lights after the first bounce");
@@ -360,16 +360,27 @@ SettingRow rowOf(const OwnSetting& setting) {
           }};
 }
 
+std::vector<SettingRow> settingRows(const Settings& settings) {
+  std::vector<SettingRow> rows = settingsTable();
+  if (settings.own)
+    for (const OwnSetting& setting : settings.own->settings) rows.push_back(rowOf(setting));
+  return rows;
+}
+
+std::string_view presentName(std::string_view name) {
+  if (name == "gather") return "gather.mode"; // the short form that the papers' variants are named by: gather=full
+  if (name == "cube.sights") return "cube.visibility"; // renamed in 0.1
+  return name;
+}
+
 SettingRow settingRow(std::string_view name, const Settings& settings) {
-  if (name == "gather") name = "gather.mode"; // the short form that the papers' variants are named by: gather=full
+  name = presentName(name);
+  for (const SettingRow& row : settingsTable())
+    if (row.name == name) return row;
   std::vector<std::string> names;
-  for (const SettingRow& row : settingsTable()) {
+  for (const SettingRow& row : settingRows(settings)) {
     if (row.name == name) return row;
     names.push_back(row.name);
-  }
-  for (const OwnSetting& setting : settings.own ? settings.own->settings : std::span<const OwnSetting>()) {
-    if (setting.name == name) return rowOf(setting);
-    names.push_back(setting.name);
   }
   const std::string near = nearestName(name, names);
   throw InputError("setting " + std::string(name),

@@ -28,7 +28,7 @@ enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
-enum class CubeSights : int { Rays, Hemicubes };
+enum class CubeVisibility : int { Rays, Hemicubes };
 enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
@@ -179,7 +179,7 @@ struct CubeSettings {
   int resolution = 128; // texels along an edge of a cube
   int levels = 0;       // of a tree of cubes below the one over all of the scene
   float split = 0.15f;  // share of edges among a cube's entries that makes eight of it
-  CubeSights sights = CubeSights::Rays;
+  CubeVisibility visibility = CubeVisibility::Rays;
   int hemicube = 128; // texels along an edge of a light's hemicube; half of it after the first bounce
   bool operator==(const CubeSettings&) const = default;
 };
@@ -299,6 +299,10 @@ struct SettingRow {
 const std::vector<SettingRow>& settingsTable();
 /// The row of a setting that one technique owns.
 SettingRow rowOf(const OwnSetting& setting);
+/// The table, and what the chosen technique owns.
+std::vector<SettingRow> settingRows(const Settings& settings);
+/// The name that a setting has now: that of a renamed one, which is accepted for one version, else the same.
+std::string_view presentName(std::string_view name);
 /// Of the table, or of those that the chosen technique owns. Throws InputError with the nearest name.
 SettingRow settingRow(std::string_view name, const Settings& settings = {});
 

@@ -33,8 +33,10 @@ class LiveReference::Tracing {
   void begin(std::unique_ptr<Task> task) {
     task_ = std::move(task);
     const SceneView& view = task_->view.view();
-    if (assets_ != view.assets) rays_ = std::make_unique<EmbreeQuery>(*view.assets);
-    assets_ = view.assets;
+    if (const uint64_t given = view.assets->identity.value(); given != opened_) {
+      rays_ = std::make_unique<EmbreeQuery>(*view.assets);
+      opened_ = given;
+    }
     rays_->update(view, true); // views in between may not have come here
     lights_ = collectLights(view);
     sums_ = ReferenceSums(view.camera.width, view.camera.height);
@@ -77,7 +79,7 @@ class LiveReference::Tracing {
   const uint32_t seed_;
   const std::atomic<bool>& stopped_;
   std::unique_ptr<Task> task_;
-  const SceneAssets* assets_ = nullptr;
+  uint64_t opened_ = 0; // identity of its assets
   std::unique_ptr<EmbreeQuery> rays_;
   LightSet lights_;
   ReferenceSums sums_;

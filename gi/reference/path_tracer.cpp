@@ -86,8 +86,9 @@ class BlockTracer {
   }
 
   void connectSky(int vertex, RayCounts& counts) {
-    connectBy(vertex, counts,
-              [&](Path& p) { return connectToSky(in_.lights, p.vertex, p.weight, p.rng.next2(), in_.rays.rayEpsilon()); });
+    connectBy(vertex, counts, [&](Path& p) {
+      return connectToSky(in_.lights, p.vertex, p.weight, p.rng.next2(), in_.rays.rayEpsilon());
+    });
   }
 
   /// `connection(path)` gives what is to be tested.

@@ -18,6 +18,18 @@ constexpr int kMostMaps = 1024; // of a uniform block of 16 KiB
 /// Bounds the buffer of clusters (64 MiB): with very many maps the finest clusters are larger.
 constexpr uint64_t kMostClusters = uint64_t(1) << 20;
 
+/// While points are captured. Ends even where something is thrown, for what captures may not be deleted meanwhile.
+struct Capturing {
+  explicit Capturing(const gl::TransformFeedback& feedback) {
+    feedback.bind();
+    glBeginTransformFeedback(GL_POINTS);
+  }
+  ~Capturing() {
+    glEndTransformFeedback();
+    gl::TransformFeedback::unbind();
+  }
+};
+
 /// Runs the program over `vertices` points into `target`.
 void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vertices) {
   const gl::VertexArray empty("points");
@@ -27,11 +39,10 @@ void capture(const gl::Program& program, const gl::Buffer& target, uint32_t vert
   program.use();
   glBindVertexArray(empty.name());
   glEnable(GL_RASTERIZER_DISCARD);
-  feedback.bind();
-  glBeginTransformFeedback(GL_POINTS);
-  gl::drawArrays(GL_POINTS, int(vertices));
-  glEndTransformFeedback();
-  gl::TransformFeedback::unbind();
+  {
+    const Capturing capturing(feedback);
+    gl::drawArrays(GL_POINTS, int(vertices));
+  }
   glDisable(GL_RASTERIZER_DISCARD);
   glBindVertexArray(0);
 }

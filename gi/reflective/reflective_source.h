@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gi/contract/light_source.h"
-#include "gi/sources/packed_lights.h"
 #include "gi/reflective/reflective_maps.h"
+#include "gi/sources/packed_lights.h"
 
 #include <optional>
 

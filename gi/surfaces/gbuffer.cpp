@@ -58,8 +58,9 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     albedo_ = make("g-buffer/albedo", GL_RGBA16F);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
     roughnessMetalness_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
-    framebuffer_ = in.glossy ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
-                             : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
+    framebuffer_ = in.glossy
+                       ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
+                       : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
   }
   const GBuffer out{&depth_,  &normal_, &albedo_, &emission_, in.glossy ? &roughnessMetalness_ : nullptr,
                     &camera_, block,    width,    height};
@@ -78,12 +79,13 @@ void SurfacePass::keepPrevious(bool any) {
   if (!any) return;
   const int width = depth_.width(), height = depth_.height();
   if (!depthBefore_ || depthBefore_.width() != width || depthBefore_.height() != height) {
-    depthBefore_ = gl::Texture("g-buffer/depth before",
-                               {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+    depthBefore_ =
+        gl::Texture("g-buffer/depth before", {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
     normalBefore_ = gl::Texture("g-buffer/normal before", {.format = GL_RGBA16F, .width = width, .height = height});
   }
   for (const auto& [from, to] : {std::pair(&depth_, &depthBefore_), std::pair(&normal_, &normalBefore_)})
-    glCopyImageSubData(from->name(), GL_TEXTURE_2D, 0, 0, 0, 0, to->name(), GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
+    glCopyImageSubData(from->name(), GL_TEXTURE_2D, 0, 0, 0, 0, to->name(), GL_TEXTURE_2D, 0, 0, 0, 0, width, height,
+                       1);
   before_ = {.depth = &depthBefore_, .normal = &normalBefore_, .block = block_, .width = width, .height = height};
 }
 

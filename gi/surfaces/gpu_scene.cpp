@@ -104,12 +104,12 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
 void GpuScene::bindMaterial(uint32_t index) const {
   const MaterialDraw& material = materialDraws_[index];
   materials_.bindUniform(1, index * materialStride_, sizeof(MaterialBlock));
-  glBindTextureUnit(2, material.baseTexture);
-  glBindSampler(2, material.baseSampler);
-  glBindTextureUnit(3, material.emissiveTexture);
-  glBindSampler(3, material.emissiveSampler);
-  glBindTextureUnit(4, material.roughnessMetalnessTexture);
-  glBindSampler(4, material.finishSampler);
+  gl::bindTexture(2, material.baseTexture);
+  gl::bindSampler(2, material.baseSampler);
+  gl::bindTexture(3, material.emissiveTexture);
+  gl::bindSampler(3, material.emissiveSampler);
+  gl::bindTexture(4, material.roughnessMetalnessTexture);
+  gl::bindSampler(4, material.finishSampler);
 }
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which) const {
@@ -161,9 +161,9 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
     ++draws;
     testedDraws_ += tested(material);
   }
-  glBindSampler(2, 0);
-  glBindSampler(3, 0);
-  glBindSampler(4, 0);
+  gl::bindSampler(2, 0);
+  gl::bindSampler(3, 0);
+  gl::bindSampler(4, 0);
   glBindVertexArray(0);
   return draws;
 }

@@ -158,8 +158,9 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
     const Material& m = assets.materials[i];
     const MaterialBlock block = blockOf(m);
     std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
-    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.roughnessMetalnessTexture),
-                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture), samplerOf(m.roughnessMetalnessTexture),
+    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture),
+                              textureOf(m.roughnessMetalnessTexture), samplerOf(m.baseColorTexture),
+                              samplerOf(m.emissiveTexture), samplerOf(m.roughnessMetalnessTexture),
                               m.alphaMode == AlphaMode::Mask});
   }
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);

@@ -1,6 +1,6 @@
 // The picture from its parts, and the exposure that suits it.
-#include "gi/viewer/picture.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/viewer/picture.h"
 
 #include <cmath>
 

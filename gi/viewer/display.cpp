@@ -1,7 +1,7 @@
 // Every buffer as a display shows it, and the views that exist only for looking.
-#include "gi/viewer/viewer.h"
-#include "gi/viewer/picture.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,9 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   case Buffer::Unfiltered:
     if (frame.inside.gathered.deinterleaved && frame.inside.gathered.irradiance)
       return {{"MODE 0", "DEINTERLEAVED"}, frame.inside.gathered.irradiance, exposure / kPi};
-    return {
-        {"MODE 0"}, frame.inside.gathered.irradiance ? frame.inside.gathered.irradiance : frame.indirect.irradiance, exposure / kPi};
+    return {{"MODE 0"},
+            frame.inside.gathered.irradiance ? frame.inside.gathered.irradiance : frame.indirect.irradiance,
+            exposure / kPi};
   case Buffer::Albedo:
     return {{"MODE 1"}, frame.surfaces.albedo, 1};
   case Buffer::Normal:

@@ -1,7 +1,7 @@
 // Buffers as linear values on the CPU.
-#include "gi/viewer/viewer.h"
-#include "gi/viewer/picture.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer.h"
 #include "shaders/shared/ggx.h"
 
 #include <algorithm>
@@ -55,7 +55,8 @@ Image depthOf(const FrameResults& frame) {
   return image;
 }
 
-/// albedo/π · irradiance; with the receivers' lobes where the G-buffer has roughness and metalness, as shaders/lib/receiver.glsl.
+/// albedo/π · irradiance; with the receivers' lobes where the G-buffer has roughness and metalness, as
+/// shaders/lib/receiver.glsl.
 Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const gl::Texture* glossyLight) {
   const GBuffer& g = frame.surfaces;
   Image image = rgbOf(irradiance, g.width, g.height);
@@ -64,7 +65,8 @@ Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const 
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
     return image;
   }
-  const Image glossy = rgbOf(glossyLight, g.width, g.height), roughnessMetalness = rgbOf(g.roughnessMetalness, g.width, g.height),
+  const Image glossy = rgbOf(glossyLight, g.width, g.height),
+              roughnessMetalness = rgbOf(g.roughnessMetalness, g.width, g.height),
               normal = rgbOf(g.normal, g.width, g.height), distance = depthOf(frame);
   const mat4& worldFromView = g.block.worldFromView;
   for (int y = 0; y < g.height; ++y)
@@ -72,8 +74,9 @@ Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const 
       if (distance.at(x, y).x == 0) continue;
       const vec2 ndc = (vec2(x, g.height - 1 - y) + 0.5f) * vec2(g.block.size.z, g.block.size.w) * 2.0f - 1.0f;
       const vec3 towardsView = g.block.lens.w > 0 ? vec3(0, 0, 1) : -vec3(ndc * vec2(g.block.lens), -1);
-      const Receiver receiver = makeReceiver(normal.at(x, y), glm::normalize(mat3(worldFromView) * towardsView),
-                                             albedo.at(x, y), roughnessMetalness.at(x, y).x, roughnessMetalness.at(x, y).y);
+      const Receiver receiver =
+          makeReceiver(normal.at(x, y), glm::normalize(mat3(worldFromView) * towardsView), albedo.at(x, y),
+                       roughnessMetalness.at(x, y).x, roughnessMetalness.at(x, y).y);
       image.at(x, y) = receiver.diffuse / kPi * image.at(x, y) + glossyTint(receiver) * glossy.at(x, y);
     }
   return image;

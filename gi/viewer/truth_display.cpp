@@ -1,6 +1,6 @@
-#include "gi/viewer/viewer.h"
-#include "gi/viewer/picture.h"
 #include "gi/gather/add_pixels.h"
+#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer.h"
 
 #include "engine/core/error.h"
 

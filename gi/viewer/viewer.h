@@ -1,5 +1,6 @@
-// Looking at global illumination: the frame (gi/frame/gi_frame.h), the image that comes of it, and every buffer on the way.
-// For the walkthrough, tools and tests; an engine that composes its own image does without. Needs no OpenGL header.
+// Looking at global illumination: the frame (gi/frame/gi_frame.h), the image that comes of it, and every buffer on the
+// way. For the walkthrough, tools and tests; an engine that composes its own image does without. Needs no OpenGL
+// header.
 #pragma once
 
 #include "engine/core/image.h"
@@ -59,8 +60,8 @@ class Viewer {
   /// The last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world normal,
   /// depth in metres along the view direction.
   Image read(Buffer buffer) const;
-  /// Name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next run. 0 for depth
-  /// (GBuffer::depth holds it reversed) and debug views, and before the first frame.
+  /// Name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next run. 0 for
+  /// depth (GBuffer::depth holds it reversed) and debug views, and before the first frame.
   uint32_t texture(Buffer buffer) const;
   /// The last frame as shown on a display: exposure, tone mapper, sRGB (albedo, normal, depth mapped to visible
   /// ranges).

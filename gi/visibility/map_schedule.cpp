@@ -49,9 +49,9 @@ float fluxPerTexel(const TexelRect& texels, int resolution) {
 
 } // namespace
 
-void MapSchedule::invalidate(std::span<const MapPose> poses, std::span<const float> brightness, const DirtyRegion& moved,
-                          const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame,
-                          RayCounts& counts) {
+void MapSchedule::invalidate(std::span<const MapPose> poses, std::span<const float> brightness,
+                             const DirtyRegion& moved, const RayQuery& rays, int resolution, int raysPerBox,
+                             uint32_t seed, uint32_t frame, RayCounts& counts) {
   stale_.resize(poses.size());
   constexpr size_t kGrain = 64;
   // With many movers rays would take longer than the maps; a light that has tried so many counts as seeing the rest.

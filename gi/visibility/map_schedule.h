@@ -14,7 +14,8 @@ class MapSchedule {
   /// Queues the texels of each map in which something that moved is seen or was. `poses` and `brightness` (what the
   /// light brings; 0: it needs no map) by slot. Whether a place is seen is tried with up to `raysPerBox` rays.
   void invalidate(std::span<const MapPose> poses, std::span<const float> brightness, const DirtyRegion& moved,
-               const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame, RayCounts& counts);
+                  const RayQuery& rays, int resolution, int raysPerBox, uint32_t seed, uint32_t frame,
+                  RayCounts& counts);
   /// Queues the maps of `count` slots, going on where the last call stopped.
   void invalidateInTurn(size_t slots, size_t count, int resolution);
   /// Queues these maps as wholes.

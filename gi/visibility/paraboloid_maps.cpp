@@ -6,7 +6,6 @@
 #include "engine/gl/profiler.h"
 #include "engine/gl/pulse.h"
 
-
 #include <algorithm>
 
 namespace lambent {

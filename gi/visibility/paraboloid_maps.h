@@ -16,11 +16,11 @@ class RayQuery;
 
 struct ParaboloidMapInputs {
   const GpuScene& scene;
-  const RayQuery* rays = nullptr; // null: raster only
-  std::span<const MapPose> poses; // all slots
+  const RayQuery* rays = nullptr;    // null: raster only
+  std::span<const MapPose> poses;    // all slots
   std::span<const MapJob> jobs = {}; // what to draw anew; the rest keeps its texels. By slot, one each
-  float farDistance = 1;          // scene diameter, metres
-  int resolution = 128;           // every slot is drawn anew when it, farDistance or the number of slots changes
+  float farDistance = 1;             // scene diameter, metres
+  int resolution = 128;              // every slot is drawn anew when it, farDistance or the number of slots changes
   ShadowMaker maker = ShadowMaker::Auto;
 };
 

@@ -67,7 +67,7 @@ std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, FrameStats
     schedule_.invalidateInTurn(poses_.size(), size_t(shadow.refresh), resolution);
   } else if (view.changes.geometry || view.changes.instances) {
     schedule_.invalidate(poses_, brightness, world.moved, world.rays, resolution, shadow.motionRays, in.frame.seed,
-                      stats.frame, stats.raysMapTests);
+                         stats.frame, stats.raysMapTests);
   }
   // A map goes where its light goes: what rides along is seen right, the rest as late as other maps in motion.
   if (plan.on(EffectId::MapRefresh)) schedule_.invalidateWhole(in.lights.carried, poses_.size(), resolution);

@@ -76,7 +76,8 @@ struct Connection {
   }
   Ray lifted(const Vpl& v, const SurfaceSample& p, float distance) const {
     return segment(offsetPoint(v.position, v.geometricNormal, rays.rayEpsilon()) + kLift * distance * v.geometricNormal,
-                   offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon()) + kLift * distance * p.geometricNormal);
+                   offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon()) +
+                       kLift * distance * p.geometricNormal);
   }
   bool operator()(const Vpl& v, const SurfaceSample& p, float distance2) const {
     const std::optional<Ray> ray = close(v, p);

@@ -6,11 +6,11 @@
 #pragma once
 
 #include "engine/core/profile.h"
+#include "gi/lighting/dirty_region.h"
+#include "gi/lighting/light_set.h"
 #include "gi/plan/settings.h"
 #include "gi/plan/stages.h"
-#include "gi/lighting/dirty_region.h"
 #include "gi/vpl/kept_paths.h"
-#include "gi/lighting/light_set.h"
 #include "gi/vpl/vpl_set.h"
 
 #include <functional>
@@ -235,8 +235,8 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
                                    RayCounts& counts, GlossyGather* glossy = nullptr);
 
 /// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
-/// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m². Within
-/// 3e-7 of itself for squared distances and areas of 1e-20 to 1e20 m².
+/// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².
+/// Within 3e-7 of itself for squared distances and areas of 1e-20 to 1e20 m².
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);
 
 } // namespace lambent

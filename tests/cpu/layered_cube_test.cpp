@@ -8,7 +8,7 @@
 
 namespace lambent::test::layered_cube_test {
 
-CubeSettings smallCube(CubeSights sights = CubeSights::Rays, int resolution = 32) {
+CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
   return {.resolution = resolution, .sights = sights, .hemicube = 64};
 }
 
@@ -107,10 +107,10 @@ TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
     w.scene.box(at, at + 0.4f, grey, false);
   }
   w.place();
-  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   settings.levels = 5;
-  const CubeSurfaces tree = w.surfaces(settings), wide = w.surfaces(smallCube(CubeSights::Rays, 16)),
-                     narrow = w.surfaces(smallCube(CubeSights::Rays, 512));
+  const CubeSurfaces tree = w.surfaces(settings), wide = w.surfaces(smallCube(CubeVisibility::Rays, 16)),
+                     narrow = w.surfaces(smallCube(CubeVisibility::Rays, 512));
   float least = kInfinity;
   size_t onBlocks = 0;
   for (size_t c = 0; c + 1 < tree.firsts().size(); ++c) {
@@ -186,13 +186,13 @@ struct LitWorld {
 };
 
 struct CubeKind {
-  CubeSights sights;
+  CubeVisibility sights;
   int levels;
 };
-class CubeSightsTest : public ::testing::TestWithParam<CubeKind> {};
+class CubeVisibilityTest : public ::testing::TestWithParam<CubeKind> {};
 
 /// After anything happened the cube is the one that is built from what there is now.
-TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
+TEST_P(CubeVisibilityTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   RandomWorld world(0.01f);
   CubeSettings settings = smallCube(GetParam().sights, 16);
   settings.levels = GetParam().levels;
@@ -232,9 +232,9 @@ TEST_P(CubeSightsTest, WhatIsPutInAndTakenOutLeavesNoTrace) {
   EXPECT_GT(compared, 5000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sights, CubeSightsTest,
-                         ::testing::Values(CubeKind{CubeSights::Rays, 0}, CubeKind{CubeSights::Hemicubes, 0},
-                                           CubeKind{CubeSights::Rays, 2}, CubeKind{CubeSights::Hemicubes, 2}));
+INSTANTIATE_TEST_SUITE_P(Sights, CubeVisibilityTest,
+                         ::testing::Values(CubeKind{CubeVisibility::Rays, 0}, CubeKind{CubeVisibility::Hemicubes, 0},
+                                           CubeKind{CubeVisibility::Rays, 2}, CubeKind{CubeVisibility::Hemicubes, 2}));
 
 TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
   LitWorld w;
@@ -258,7 +258,7 @@ TEST(LayeredCube, FewerSlotsLeaveNoLightBehind) {
   CubeWorld w;
   w.room();
   for (int i = 0; i < 20; ++i) w.lights.push_back(lightAt({0.09f * float(i) - 0.9f, -0.99f, 0}, {0, 1, 0}, vec3(1)));
-  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube, anew;
   cube.update(w.inputs(settings));
   w.lights.resize(5);
@@ -272,7 +272,7 @@ TEST(LayeredCube, ALightThatWasBlackIsLookedAtWhenItShines) {
   CubeWorld w;
   w.room();
   w.lights.push_back(lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(0)));
-  const CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   LayeredCube cube;
   cube.update(w.inputs(settings));
   w.lights[0].radiance = vec3(100);
@@ -290,7 +290,7 @@ TEST(LayeredCube, HemicubesSeeWhatRaysSee) {
   LayeredCube byRays;
   byRays.update(w.inputs(smallCube()));
   for (int fine = 0; fine < 2; ++fine) {
-    CubeSettings settings = smallCube(CubeSights::Hemicubes);
+    CubeSettings settings = smallCube(CubeVisibility::Hemicubes);
     settings.hemicube = fine ? 128 : 32;
     LayeredCube cube;
     cube.update(w.inputs(settings));
@@ -349,7 +349,7 @@ class CubeFileTest : public ::testing::Test {
   }
 
   CubeWorld w;
-  CubeSettings settings = smallCube(CubeSights::Rays, 16);
+  CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
   TemporaryFolder folder_;
   const fs::path file_ = folder_ / "room.cube";
   uint64_t key_ = 0;

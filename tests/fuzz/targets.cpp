@@ -5,9 +5,9 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
 #include "engine/trace/analytic_query.h"
+#include "gi/lighting/light_set.h"
 #include "gi/plan/presets.h"
 #include "gi/reference/state_file.h"
-#include "gi/lighting/light_set.h"
 
 #include <fstream>
 #include <sstream>

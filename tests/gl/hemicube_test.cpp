@@ -179,7 +179,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
   const LightSet none;
   const World now{view, gpu, world.rays(), kNothingMoved, none, view.boundsWorld.diameter()};
   const std::vector<VirtualLight> lights = photonLights(view, world.rays(), 96);
-  const CubeSettings settings{.resolution = 32, .sights = CubeSights::Hemicubes, .hemicube = 64};
+  const CubeSettings settings{.resolution = 32, .sights = CubeVisibility::Hemicubes, .hemicube = 64};
   const GatherSettings gather;
   HemicubePass pass(passes);
   pass.prepare(now, CubeMaker::Raster);
@@ -206,7 +206,7 @@ class HemicubeFrameTest : public HemicubeTest {
     room.scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     applyTechnique(settings, "ibrr");
     settings.smc = {.vpls = 128, .bounces = 2};
-    settings.cube = {.resolution = 32, .sights = CubeSights::Hemicubes, .hemicube = 32};
+    settings.cube = {.resolution = 32, .sights = CubeVisibility::Hemicubes, .hemicube = 32};
     settings.gather.near = 0;
   }
   struct Result {
@@ -237,7 +237,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
   EXPECT_NE(measured.stats.cubeMakerTimes.find("ms a hemicube"), std::string::npos) << measured.stats.cubeMakerTimes;
   EXPECT_EQ(measured.stats.cubeMakerTimes.find(measured.stats.cubeMaker), 0u);
   EXPECT_EQ(measured.light.pixels, measured.stats.cubeMaker == "rays" ? cast.light.pixels : drawn.light.pixels);
-  settings.cube.sights = CubeSights::Rays;
+  settings.cube.visibility = CubeVisibility::Rays;
   EXPECT_EQ(run(CubeMaker::Auto).stats.cubeMaker, "") << "there are none";
 }
 

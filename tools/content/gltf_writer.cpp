@@ -128,7 +128,8 @@ Index GltfWriter::addMaterial(const MaterialSpec& m) {
   factor.push_back(1);
   surface["baseColorFactor"] = std::move(factor);
   if (m.texture != kAbsent) surface["baseColorTexture"] = {{"index", m.texture}};
-  if (m.roughnessMetalnessTexture != kAbsent) surface["metallicRoughnessTexture"] = {{"index", m.roughnessMetalnessTexture}};
+  if (m.roughnessMetalnessTexture != kAbsent)
+    surface["metallicRoughnessTexture"] = {{"index", m.roughnessMetalnessTexture}};
   json material{{"name", m.name}, {"pbrMetallicRoughness", std::move(surface)}};
   if (m.alphaMask) material["alphaMode"] = "MASK";
   if (m.doubleSided) material["doubleSided"] = true;

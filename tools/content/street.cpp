@@ -60,10 +60,11 @@ class StreetBuilder {
 
   void addGround() {
     const double x0 = -6, x1 = length() + 6;
-    const Index road = s_.gltf.addMaterial({.name = "wet asphalt",
-                                            .albedo = {1, 1, 1},
-                                            .texture = s_.gltf.addTexture(asphalt("asphalt")),
-                                            .roughnessMetalnessTexture = s_.gltf.addTexture(asphaltFinish("asphalt-finish"))});
+    const Index road =
+        s_.gltf.addMaterial({.name = "wet asphalt",
+                             .albedo = {1, 1, 1},
+                             .texture = s_.gltf.addTexture(asphalt("asphalt")),
+                             .roughnessMetalnessTexture = s_.gltf.addTexture(asphaltFinish("asphalt-finish"))});
     s_.place("road", mapped(box({x0 - 8, -0.4, -14}, {x1 + 8, 0, 14}), 3.0), road);
     Geometry base, kerb;
     for (const double side : {-1.0, 1.0}) {

@@ -1,26 +1,36 @@
-// lambent accuracy SCENE: what approximations cost in error. Shadow maps of VPLs here; with --curve see
-// accuracy_curve.cpp, with the other forms accuracy_tables.cpp.
+// lambent accuracy SCENE: what approximations cost in error. Shadow maps of VPLs, and pictures of one view under
+// changing settings, compared with path tracing or with one among them: --convergence, --gathers, --light, --direct,
+// --volume, --figure of paper 1. The other forms: reflective.cpp, accuracy_report.cpp.
 #include "tools/lambent/accuracy.h"
 
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "engine/platform/gl_context.h"
-#include "gi/plan/techniques.h"
-#include "tools/lambent/reflective_figures.h"
+#include "tools/lambent/picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace lambent {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-void accuracy(const AccuracyOptions& options) {
-  const auto stage = openLaunch(options.launch);
-  say(*stage, options.output.quiet);
+/// Light of one picture, each pixel by itself: without what gives bounded energy back, and without a history.
+const Assignments kPlain{{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}};
+
+/// But the brightest hundredth of the pixels.
+Value biasOfMost(const Outcome& o) {
+  return pictureError(o.run.picture, o.study.truth, allButBrightest(o.study.truth, 0.01)).bias;
+}
+constexpr TableColumn kBiasOfMost{"bias_most", "but the brightest 1 %", "%+.1f %%", 100};
+
+void accuracyMaps(const AccuracyOptions& options) {
+  const auto opened = openAndSay(options.launch, options.output.quiet);
   GlContext context = GlContext::headless();
-  Viewer gi(stage->settings, stage->seed);
-  const SceneView view = stage->at(0);
+  Viewer gi(opened->settings, opened->seed);
+  const SceneView view = opened->at(0);
   {
     Progress progress("placing virtual lights", options.output.quiet);
     gi.run(view, [&](int done, int total) { progress.update(done, total); });
@@ -28,115 +38,326 @@ void accuracy(const AccuracyOptions& options) {
   Progress progress("comparing shadow maps", options.output.quiet);
   const ShadowAgreement a = gi.compareShadowMaps(view, options.slots, options.points,
                                                  [&](int done, int total) { progress.update(done, total); });
-  writeJson(options.output.json, {{"pairs", a.pairs},
-                                  {"resolution", stage->settings.shadow.resolution},
-                                  {"makers_disagree", a.makers},
-                                  {"raster_against_rays", a.rasterAgainstRays},
-                                  {"cast_against_rays", a.castAgainstRays}});
+  writeJson(options.output.json,
+            Value::of("pairs", a.pairs, "resolution", opened->settings.shadow.resolution, "makers_disagree", a.makers,
+                      "raster_against_rays", a.rasterAgainstRays, "cast_against_rays", a.castAgainstRays));
   if (options.output.quiet) return;
   std::printf("shadow maps of %d virtual lights at %d texels, %llu pixel pairs, shares of unshadowed contribution\n",
-              options.slots, stage->settings.shadow.resolution, (unsigned long long)a.pairs);
+              options.slots, opened->settings.shadow.resolution, (unsigned long long)a.pairs);
   std::printf("  raster and ray-cast maps disagree  %6.3f %%\n", 100 * a.makers);
   std::printf("  raster maps against a ray a pair   %6.3f %%\n", 100 * a.rasterAgainstRays);
   std::printf("  ray-cast maps against a ray a pair %6.3f %%\n", 100 * a.castAgainstRays);
 }
 
-} // namespace
-
+/// Throws InputError where no bound of the geometry term is given.
 void needClamp(const AccuracyOptions& options) {
   if (!(options.clamp.value_or(0) > 0))
     throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
 }
 
-RunPlan stillPlan(LaunchContext& stage, Progress& progress, Buffer buffer) {
-  RunPlan plan = planOf(stage, progress, 1);
-  plan.view = [&stage](int) { return stage.at(0); };
-  plan.inTurn = false;
-  plan.picture = buffer;
-  return plan;
+/// How the set of virtual lights converges (paper 1, 5.4).
+void accuracyConvergence(const AccuracyOptions& options) {
+  needClamp(options);
+  Assignments set = kPlain;
+  set.emplace_back("vpl.visibility", "rays");
+  Study study(options, options.launch.scene, {.size = "64x36", .set = set});
+  const double ofTruth = study.trace(4096, ReferenceBuffer::Irradiance, true).picture.relativeError;
+  const std::vector<double> counts = options.quick ? std::vector<double>{64, 256} : std::vector{512.0, 2048.0, 8192.0};
+  const size_t seeds = size_t(options.seeds.value_or(options.quick ? 1 : 3));
+  std::vector<Variant> variants;
+  for (const char* density : {"cells", "knn"})
+    for (double vpls : counts)
+      variants.push_back(study.variant(density, {{"smc.density", density}, {"smc.vpls", format("%g", vpls)}}));
+  const std::vector<Measured> runs = study.draw(seeded(variants, int(seeds)), Buffer::Irradiance);
+
+  Value rows, exponents;
+  std::vector<double> errors;
+  for (size_t i = 0; i < variants.size(); ++i) {
+    Value& row = rows.add(Value::of("density", variants[i].name, "vpls", variants[i].settings.smc.vpls));
+    double square = 0;
+    for (const Measured& m : std::span(runs).subspan(i * seeds, seeds)) {
+      const PictureError e = study.outcome(m).error;
+      square += e.rmseShare() * e.rmseShare() / double(seeds);
+      row["bias"].add(e.bias);
+    }
+    // What the truth does not know is no error of the lights.
+    errors.push_back(std::sqrt(std::max(square - ofTruth * ofTruth, 1e-12)));
+    row["rmse_share"] = errors.back();
+    if (errors.size() < counts.size()) continue;
+    exponents[variants[i].name] = exponentOf(counts, errors);
+    errors.clear();
+  }
+  study.report({{{"density", "density"}}, {{"vpls", "N"}}, kBias, kRmseShare}, rows, Value::of("exponents", exponents));
+  for (const auto& [density, exponent] : exponents.fields())
+    if (!options.output.quiet) std::printf("%s: RMSE falls as N^%.2f\n", density.c_str(), exponent.number());
 }
 
-void declareAccuracy(CLI::App& app) {
-  auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command =
-      app.add_subcommand("accuracy", "what approximations cost in error: shadow maps of virtual lights, "
-                                     "or a form of its own");
-  command->add_option("SCENE", options->scenes, "glTF or shot file; several with --report")->required();
-  addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output,
-                   "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
-  command->add_option("--lights", options->slots, "virtual lights to compare")->check(CLI::Range(1, 32768));
-  command->add_option("--points", options->points, "visible points to compare at")->check(CLI::Range(1, 1000000));
-  CLI::App* forms = command->add_option_group("Forms", "at most one")->require_option(0, 1);
-  forms
-      ->add_option(
-          "--curve", options->curve,
-          "error against threshold: patches (multires-gather; paper 3, fig. 9) or clusters (isr and hisr; fig. 13)")
-      ->check(CLI::IsMember({"patches", "clusters"}));
-  forms->add_flag("--convergence", options->convergence,
-                  "every pixel against every VPL by rays, for N = 512, 2048, 8192 with both densities, against path "
-                  "tracing clamped alike (paper 1, 5.4)");
-  forms->add_flag("--gathers", options->gathers,
-                  "ways to gather the same VPLs: time, and error against all at every pixel");
-  forms->add_flag(
-      "--light", options->light,
-      "indirect light as set, averaged over pictures, against path tracing: bias, error, share of blocks that "
-      "are right, frame time and path tracing's to the same error; beside it one picture, and every light at every "
-      "pixel by rays");
-  forms->add_flag("--direct", options->direct,
-                  "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
-                  "samples of what is emissive");
-  forms->add_flag(
-      "--volume", options->volume,
-      "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");
-  forms->add_flag("--report", options->report,
-                  "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
-                  "every technique, along each shot and standing at its end: front, curves, pictures on one page "
-                  "(index.html), points.csv; interrupted, the same command goes on");
-  forms
-      ->add_option(
-          "--figure", options->figure,
-          "of a paper. 1.8 (or 8): visibility by maps and rays against path tracing; 1.9: resolution of shadow "
-          "maps against rays; 1.10: N = 2000, 8000, 40000 by rays against path tracing. 2.table-1, 2.8: frame "
-          "rate by finest patches and VPLs; 2.7, 2.9: by the threshold of normals, and detail put back. 3.10: "
-          "as a shot's light moves; 3.11, 3.12: isr and hisr by thresholds and finest clusters; 3.combined: "
-          "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3")
-      ->check(CLI::IsMember(figureNames()));
-  command
-      ->add_option("--spp", options->samples,
-                   "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --figure 1024)")
-      ->check(CLI::Range(2, 1 << 24));
-  command->add_option("--clamp", options->clamp,
-                      "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
-  command->add_option("--seeds", options->seeds, "--convergence, --light: so many (3); --report (1)")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--frame", options->frame, "--light: of a shot, with all that moves before it")
-      ->check(CLI::Range(1, 1000000));
-  command->add_flag("--joint", options->joint, "--report: only what presets are chosen among");
-  command->add_flag("--alone", options->alone, "--light, --direct: only as set, nothing beside it");
-  command->add_flag("--quick", options->quick, "small and rough, to try whether it runs");
-  command->callback([options] {
-    AccuracyOptions& o = *options;
-    if (!o.report && o.scenes.size() > 1)
-      throw InputError(o.scenes[1], "one scene or shot is enough (several go with --report)");
-    o.launch.scene = o.scenes[0];
-    if (const std::string& technique = o.launch.technique; !technique.empty()) {
-      if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
-      if (std::ranges::count(reflectiveFigureNames(), o.figure) > 0)
-        throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
-      if (!needsOf(techniqueByName(technique)).sampled())
-        throw InputError("--technique " + technique, "has no sampled lights (smc, ir, mir and tcas have)");
+/// Ways to gather the same virtual lights: time, and error against every light at every pixel.
+void accuracyGathers(const AccuracyOptions& options) {
+  Study study(options, options.launch.scene,
+              {.size = "320x180", .set = {{"gather.near", "0"}, {"history.frames", "0"}}}); // the same for all of them
+  std::vector<Variant> variants;
+  for (const char* mode : {"full", "interleaved", "multires-interleaved", "multires"})
+    variants.push_back(study.variant(mode, {{"gather.mode", mode}}));
+  variants.insert(
+      variants.begin() + 3,
+      study.variant("multires-interleaved, multires.normal=0.7, multires.depth=0.1",
+                    {{"gather.mode", "multires-interleaved"}, {"multires.normal", "0.7"}, {"multires.depth", "0.1"}}));
+  for (Variant& v : variants) v.settings.effects[EffectId::Redraw] = EffectMode::On;
+  RunPlan plan = stillPlan(*study.opened, Buffer::Irradiance, options.quick ? 3 : 8, options.quick ? 1 : 2);
+  plan.inTurn = true;
+  const std::vector<Measured> runs = run(variants, plan, "drawing", options.output.quiet);
+  study.compareWith(runs[0].picture);
+  const std::vector<Column> columns{{{"gather", "gather"}, variantName},
+                                    {{"ms", "ms", "%.0f"},
+                                     [](const Outcome& o) -> Value {
+                                       using enum StageId;
+                                       double ms = 0;
+                                       for (StageId s : {Patches, Stencil, Gather, Upsample, Filter})
+                                         ms += o.run.ms(s).median;
+                                       return ms;
+                                     }},
+                                    {{"ratio", "of interleaved", "%.2f"}},
+                                    kRmseShare,
+                                    kRelMse};
+  Value rows = study.rows(columns, std::span(runs).subspan(1));
+  for (Value& row : rows.items()) row["ratio"] = row["ms"].number() / rows.items()[0]["ms"].number();
+  study.report(columns, rows);
+}
+
+/// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
+void accuracyLight(const AccuracyOptions& options) {
+  Study study(options, options.launch.scene, {.size = "160x90"});
+  if (options.frame > 0 && !study.opened->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
+  study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame);
+  const int averaged = std::max(1, study.opened->settings.history.frames),
+            seeds = options.seeds.value_or(options.quick ? 1 : 3);
+  std::vector<std::pair<Variant, int>> ways{{study.variant("as set"), averaged}}; // and frames of a still view
+  if (!options.alone) ways.emplace_back(study.variant("one picture", {{"history.frames", "0"}}), 1);
+  if (!options.alone && options.frame == 0) // as many near rays as averaged pictures have
+    ways.emplace_back(
+        study.variant("all, rays", {{"gather.mode", "full"}, {"vpl.visibility", "rays"}, {"gather.near", "32"}}), 1);
+  const std::vector<Column> columns{
+      {{"lights", "lights"}, variantName},
+      {{"seed", "seed"}, [](const Outcome& o) -> Value { return o.run.variant.seed; }},
+      kBias,
+      {kBiasOfMost, biasOfMost},
+      {{"blocks", "blocks within 6 %", "%.0f %%", 100},
+       [](const Outcome& o) -> Value { return blocksWithin(o.run.picture, o.study.truth, 10, 0.06); }},
+      kRelMse,
+      {{"ms", "ms a frame", "%.0f"}, [](const Outcome& o) -> Value { return steadyMs(o.run.frames); }},
+      {{"paths_ms", "ms of path tracing to that error", "%.0f"},
+       [](const Outcome& o) -> Value { return pathsMs(*o.study.traced, o.error.relMse); }},
+      {{"times", "times the frame", "%.1f"}}};
+  Value rows = Value::list();
+  for (const auto& [variant, frames] : ways) {
+    const std::vector<Variant> variants = seeded({variant}, seeds);
+    for (const Measured& m : options.frame > 0 ? study.drawUpTo(options.frame, variants, Buffer::Irradiance)
+                                               : study.draw(variants, Buffer::Irradiance, frames)) {
+      Value& row = rows.add(study.row(columns, m));
+      if (row.has("ms") && row.has("paths_ms")) row["times"] = row["paths_ms"].number() / row["ms"].number();
     }
-    if (!o.curve.empty()) return accuracyCurve(o);
-    if (o.convergence) return accuracyConvergence(o);
-    if (o.gathers) return accuracyGathers(o);
-    if (o.light) return accuracyLight(o);
-    if (o.direct) return accuracyDirect(o);
-    if (o.volume) return accuracyVolume(o);
-    if (o.report) return accuracyReport(o);
-    if (!o.figure.empty()) return accuracyFigure(o);
-    accuracy(o);
-  });
+  }
+  study.report(columns, rows);
+}
+
+/// Bias and error of direct light against path tracing, as set, and by other means.
+void accuracyDirect(const AccuracyOptions& options) {
+  Study study(options, options.launch.scene, {.size = "320x180", .set = {{"effects.indirect", "off"}}});
+  study.trace(256, ReferenceBuffer::Direct);
+  std::vector<Variant> variants{study.variant("as set"), study.variant("maps alone", {{"shadow.rays", "off"}}),
+                                study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}})};
+  if (options.alone) variants.resize(1);
+  const std::vector<Column> columns{
+      {{"shadows", "shadows"}, variantName},
+      {{"rays", "rays", "%.0f"}, [](const Outcome& o) -> Value { return o.run.frames.back().raysShadows.occlusion; }},
+      kBias,
+      {kBiasOfMost, biasOfMost},
+      kRelMse};
+  study.report(columns, study.rows(columns, study.draw(variants, Buffer::Direct)));
+}
+
+/// Light propagation volumes by what their settings take, next to lights that every pixel gathers.
+void accuracyVolume(const AccuracyOptions& options) {
+  Study study(options, options.launch.scene, {.size = "160x90"});
+  study.trace(1024, ReferenceBuffer::Irradiance);
+  std::vector<Variant> variants{study.variant("smc", {}, "smc")};
+  if (!study.opened->at(0).lights.empty()) variants.push_back(study.variant("rsm", {}, "rsm"));
+  for (const Assignments& set : std::vector<Assignments>{{},
+                                                         {{"lpv.cells", "8"}, {"lpv.steps", "16"}},
+                                                         {{"lpv.cells", "32"}, {"lpv.steps", "64"}},
+                                                         {{"lpv.cells", "64"}, {"lpv.steps", "128"}},
+                                                         {{"lpv.steps", "16"}},
+                                                         {{"lpv.steps", "64"}},
+                                                         {{"lpv.occlusion", "off"}},
+                                                         {{"smc.vpls", "512"}},
+                                                         {{"smc.vpls", "8192"}},
+                                                         {{"smc.bounces", "1"}}}) {
+    std::string name = "lpv";
+    for (const auto& [setting, value] : set) name += ", " + setting + "=" + value;
+    variants.push_back(study.variant(name, set, "lpv"));
+    if (options.quick && !set.empty()) break;
+  }
+  const std::vector<Column> columns{{{"technique", "technique"}, variantName},
+                                    kBias,
+                                    kRmseShare,
+                                    kRelMse,
+                                    {{"steps_ms", "steps, ms (shaders too)", "%.0f"},
+                                     [](const Outcome& o) -> Value { return o.run.ms(StageId::Propagate).median; }},
+                                    {{"rays", "rays of the grid", "%.0f"}, [](const Outcome& o) -> Value {
+                                       return o.run.frames.back().raysVolume.occlusion;
+                                     }}};
+  study.report(columns, study.rows(columns, study.draw(variants, Buffer::Irradiance)));
+}
+
+/// Paper 1's figs. 8, 9 and 10: pictures of one set of virtual lights, or of sets of several sizes, compared with path
+/// tracing or with a ray for every pair. Its fig. 7 is `lambent stability`.
+struct PathFigure {
+  std::vector<std::pair<std::string, Assignments>> drawn;
+  std::vector<std::string> traced; // what all are compared with; none: the first that is drawn
+  bool twiceShown = false;         // differences are of what is shown, times 2; else of radiance
+};
+
+constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-tracing";
+
+PathFigure pathFigure(const std::string& name, bool quick) {
+  if (name == "1.8")
+    return {{{"interleaved", {}}, {"all-maps", {{"gather.mode", "full"}}}, {"all-rays", {{"vpl.visibility", "rays"}}}},
+            {kTraced, kTracedClamped}};
+  PathFigure figure{{}, {kTraced, kTracedClamped}, true};
+  if (name == "1.9") {
+    figure = {{{"rays", {{"vpl.visibility", "rays"}}}}, {}};
+    for (const char* texels : {"128", "256", "512", "1024"})
+      if (!quick || figure.drawn.size() < 3)
+        figure.drawn.emplace_back(std::string("maps-") + texels,
+                                  Assignments{{"gather.mode", "full"}, {"shadow.resolution", texels}});
+    return figure;
+  }
+  using Texts = std::vector<std::string>;
+  for (const std::string& vpls : quick ? Texts{"64", "256"} : Texts{"2000", "8000", "40000"})
+    figure.drawn.emplace_back("vpls-" + vpls, Assignments{{"vpl.visibility", "rays"}, {"smc.vpls", vpls}});
+  return figure;
+}
+
+void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
+  const PathFigure figure = pathFigure(name, options.quick);
+  if (!figure.traced.empty()) needClamp(options);
+  const fs::path folder = reportFolder(options.output.out, "out/figure-" + name);
+  Study study(options, options.launch.scene, {.size = "320x180", .set = kPlain});
+  std::vector<std::pair<std::string, Image>> truths;
+  for (const std::string& traced : figure.traced) {
+    study.trace(1024, ReferenceBuffer::Indirect, traced == kTracedClamped, folder / (traced + ".state"));
+    truths.emplace_back(traced, study.truth);
+  }
+  std::vector<Variant> variants;
+  for (const auto& [drawn, set] : figure.drawn) variants.push_back(study.variant(drawn, set));
+  std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
+  const float exposure = study.traced ? study.traced->exposure : runs[0].exposure;
+  if (truths.empty()) {
+    truths.emplace_back(runs[0].variant.name, runs[0].picture);
+    runs.erase(runs.begin());
+  }
+
+  const auto write = [&](const std::string& picture, const Image& image) {
+    for (const char* extension : {".exr", ".png"})
+      writePicture((folder / (picture + extension)).string(), image, exposure);
+  };
+  const std::vector<Column> columns{
+      {{"picture", "picture"}, variantName}, {{"against", "against"}}, kRmseShare, kRelMse, kBias};
+  Value rows;
+  for (const auto& [picture, truth] : truths) write(picture, truth);
+  for (const Measured& m : runs) {
+    write(m.variant.name, m.picture);
+    for (const auto& [against, truth] : truths) {
+      study.compareWith(truth);
+      rows.add(study.row(columns, m))["against"] = against;
+      const std::string file = (folder / (m.variant.name + "-minus-" + against + ".png")).string();
+      if (figure.twiceShown)
+        writeShown(file, absoluteDifference(shownImage(m.picture, exposure), shownImage(truth, exposure), 2));
+      else
+        writePicture(file, absoluteDifference(m.picture, truth), midGreyAt(study.outcome(m).error.meanTruth));
+    }
+  }
+  writeText(folder / "figure.csv", csvText(rows));
+  study.report(columns, rows);
+  if (!options.output.quiet) std::printf("pictures: %s\n", folder.c_str());
+}
+
+/// Of paper 1, by number alone as well.
+const std::vector<std::string> kPathFigures{"1.8", "1.9", "1.10", "8", "9", "10"};
+
+void accuracy(AccuracyOptions& o) {
+  if (o.form != accuracyReport && o.scenes.size() > 1)
+    throw InputError(o.scenes[1], "one scene or shot is enough (several go with --report)");
+  o.launch.scene = o.scenes[0];
+  const bool reflective = std::ranges::count(reflectiveFigureNames(), o.figure) > 0;
+  if (const std::string& technique = o.launch.technique; !technique.empty()) {
+    if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
+    if (reflective) throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
+    needSampledLights(technique);
+  }
+  if (o.quick && o.curve.empty() && !reflective && o.form != accuracyReport) useFewLights(o);
+  if (!o.curve.empty()) return accuracyCurve(o);
+  if (reflective) return reflectiveFigure(o);
+  if (!o.figure.empty()) return drawPathFigure(o, o.figure.starts_with("1.") ? o.figure : "1." + o.figure);
+  (o.form ? o.form : accuracyMaps)(o);
+}
+
+} // namespace
+
+void declareAccuracy(CLI::App& app) {
+  auto o = std::make_shared<AccuracyOptions>();
+  Command command(app, "accuracy",
+                  "what approximations cost in error: shadow maps of virtual lights, or a form of its own");
+  command.scenes(o->scenes, "SCENE", "glTF or shot file; several with --report");
+  command.launch(o->launch);
+  command.output(o->output, "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
+  command.number("--lights", &o->slots, 1, 32768, "virtual lights to compare");
+  command.number("--points", &o->points, 1, 1000000, "visible points to compare at");
+  const auto form = [&](const char* name, void (*form)(const AccuracyOptions&), const char* help) {
+    command.flag(
+        name, [o, form] { o->form = form; }, help);
+  };
+  command.beginForms();
+  command.choice(
+      "--curve", o->curve, {"patches", "clusters"},
+      "error against threshold: patches (multires-gather; paper 3, fig. 9) or clusters (isr and hisr; fig. 13)");
+  form("--convergence", accuracyConvergence,
+       "every pixel against every VPL by rays, for N = 512, 2048, 8192 with both densities, against path "
+       "tracing clamped alike (paper 1, 5.4)");
+  form("--gathers", accuracyGathers, "ways to gather the same VPLs: time, and error against all at every pixel");
+  form("--light", accuracyLight,
+       "indirect light as set, averaged over pictures, against path tracing: bias, error, share of blocks that "
+       "are right, frame time and path tracing's to the same error; beside it one picture, and every light at every "
+       "pixel by rays");
+  form("--direct", accuracyDirect,
+       "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
+       "samples of what is emissive");
+  form("--volume", accuracyVolume,
+       "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");
+  form("--report", accuracyReport,
+       "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
+       "every technique, along each shot and standing at its end: front, curves, pictures on one page "
+       "(index.html), points.csv; interrupted, the same command goes on");
+  std::vector<std::string> figures = kPathFigures;
+  for (const std::string& name : reflectiveFigureNames()) figures.push_back(name);
+  command.choice("--figure", o->figure, figures,
+                 "of a paper. 1.8 (or 8): visibility by maps and rays against path tracing; 1.9: resolution of shadow "
+                 "maps against rays; 1.10: N = 2000, 8000, 40000 by rays against path tracing. 2.table-1, 2.8: frame "
+                 "rate by finest patches and VPLs; 2.7, 2.9: by the threshold of normals, and detail put back. 3.10: "
+                 "as a shot's light moves; 3.11, 3.12: isr and hisr by thresholds and finest clusters; 3.combined: "
+                 "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3");
+  command.endForms();
+  command.number("--spp", &o->samples, 2, 1 << 24,
+                 "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --figure 1024)");
+  command.number("--clamp", &o->clamp, 0, 0,
+                 "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
+  command.number("--seeds", &o->seeds, 1, 1000, "--convergence, --light: so many (3); --report (1)");
+  command.number("--frame", &o->frame, 1, 1000000, "--light: of a shot, with all that moves before it");
+  command.flag("--joint", o->joint, "--report: only what presets are chosen among");
+  command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
+  command.flag("--quick", o->quick, "small and rough, to try whether it runs");
+  command.run([o] { accuracy(*o); });
 }
 
 } // namespace lambent

@@ -1,12 +1,9 @@
 // lambent accuracy SCENE... --report: what accuracy costs in time. Measures the sweeps of gi/measure/runs/sweeps.h in
 // each scene (sweep.cpp), and writes one page with everything in it (index.html), and points.csv.
 #include "engine/core/error.h"
-#include "tools/lambent/html.h"
-#include "tools/lambent/linear_picture.h"
-#include "tools/lambent/scatter.h"
-#include "tools/lambent/study.h"
-#include "tools/lambent/sweep_figures.h"
-#include "tools/lambent/text.h"
+#include "tools/lambent/picture.h"
+#include "tools/lambent/plot.h"
+#include "tools/lambent/sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,33 +37,23 @@ std::vector<std::string> frontNames(const Choice& choice) {
   return names;
 }
 
-MarkShape shapeOf(SweepPoint::Kind kind) {
-  switch (kind) {
-  case SweepPoint::Kind::Default:
-    return MarkShape::Diamond;
-  case SweepPoint::Kind::Alone:
-    return MarkShape::Square;
-  case SweepPoint::Kind::Joint:
-    return MarkShape::Dot;
-  case SweepPoint::Kind::Named:
-    return MarkShape::Triangle;
-  }
-  return MarkShape::Dot;
+Shape shapeOf(SweepPoint::Kind kind) {
+  constexpr Shape kShapes[] = {Shape::Diamond, Shape::Square, Shape::Dot, Shape::Triangle};
+  return kShapes[int(kind)];
 }
 
-Scatter frontPlot(const std::string& title, const Figures& figures, State state, bool relative) {
-  Scatter plot;
-  plot.title = title + ", " + titleOf(state);
-  plot.xLabel = relative ? "time of a frame, of the default's" : "milliseconds a frame";
-  plot.yLabel = relative ? "relMSE, of the default's" : "relMSE of indirect irradiance";
-  plot.legend = {{MarkShape::Diamond, "default"},
-                 {MarkShape::Square, "one setting changed"},
-                 {MarkShape::Dot, "joint sweep"},
-                 {MarkShape::Triangle, "technique"}};
+Plot frontPlot(const std::string& title, const Figures& figures, State state, bool relative) {
+  Plot plot{title + ", " + titleOf(state), relative ? "time of a frame, of the default's" : "milliseconds a frame",
+            relative ? "relMSE, of the default's" : "relMSE of indirect irradiance", true, true};
+  plot.legend = {{Shape::Diamond, "default"},
+                 {Shape::Square, "one setting changed"},
+                 {Shape::Dot, "joint sweep"},
+                 {Shape::Triangle, "technique"}};
   const Choice choice = indirectPoints(figures, state);
   const std::vector<size_t> front = frontOf(choice.points);
-  plot.lines.push_back({.stairs = true});
-  for (size_t i : front) plot.lines[0].points.emplace_back(choice.points[i].cost, choice.points[i].error);
+  PlotLine& line = plot.lines.emplace_back();
+  line.stairs = true;
+  for (size_t i : front) line.x.push_back(choice.points[i].cost), line.y.push_back(choice.points[i].error);
   for (size_t i = 0; i < choice.points.size(); ++i) {
     const CostError& p = choice.points[i];
     const SweepPoint::Kind kind = figures.at(choice.names[i]).point.kind;
@@ -106,47 +93,37 @@ std::vector<KnobCurve> curvesOf(const Knob& knob, const std::vector<std::string>
   return curves;
 }
 
-Scatter knobPlot(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
-  Scatter plot;
-  plot.title = std::string(knob.setting) + ", " + titleOf(state);
-  plot.xLabel = "milliseconds a frame";
-  plot.yLabel = "relMSE";
-  constexpr MarkShape shapes[] = {MarkShape::Dot, MarkShape::Square, MarkShape::Triangle, MarkShape::Diamond};
+Plot knobPlot(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
+  Plot plot{std::string(knob.setting) + ", " + titleOf(state), "milliseconds a frame", "relMSE", true, true};
   for (size_t s = 0; s < curves.size(); ++s) {
     const KnobCurve& curve = curves[s];
-    plot.lines.push_back({.dashed = s % 2 == 1});
+    const Shape shape = Shape(s % 4);
+    PlotLine& line = plot.lines.emplace_back();
+    line.dashed = s % 2 == 1;
     for (size_t i = 0; i < curve.points.size(); ++i) {
       const CostError& p = curve.points[i];
-      plot.lines.back().points.emplace_back(p.cost, p.error);
+      line.x.push_back(p.cost), line.y.push_back(p.error);
       plot.marks.push_back({p.cost, p.error, 0, p.errorNoise, curve.scene + ": " + knob.setting + "=" + curve.values[i],
-                            curve.values[i], shapes[s % 4]});
+                            curve.values[i], shape});
     }
-    plot.legend.emplace_back(shapes[s % 4], curve.scene);
+    plot.legend.emplace_back(shape, curve.scene);
   }
   return plot;
 }
 
 /// What a knob does in each scene, in words.
-nlohmann::json verdictsOf(const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
-  nlohmann::json rows;
+void addVerdicts(Value& rows, const Knob& knob, const std::vector<KnobCurve>& curves, State state) {
   const SettingRow& setting = settingRow(knob.setting);
   const std::string standard = setting.text(setting.standard);
   for (const KnobCurve& curve : curves) {
     const KnobVerdict v = knobVerdict(curve.points);
-    rows.push_back(
-        {{"knob", knob.setting},
-         {"scene", curve.scene},
-         {"state", titleOf(state)},
-         {"values", curve.values.front() + " to " + curve.values.back()},
-         {"dearer", v.dearer},
-         {"nearer", v.nearer},
-         {"buys", v.buys    ? "less error"
-                  : v.costs ? "nothing here"
-                            : "nothing, and costs nothing"},
-         {"default", standard + (v.buys || !v.costs || standard == curve.values.front() ? "" : ", not the cheap end")},
-         {"monotone", v.monotone ? "yes" : "no"}});
+    const char* buys = v.buys ? "less error" : v.costs ? "nothing here" : "nothing, and costs nothing";
+    const bool meant = v.buys || !v.costs || standard == curve.values.front();
+    rows.add(Value::of("knob", knob.setting, "scene", curve.scene, "state", titleOf(state), "values",
+                       curve.values.front() + " to " + curve.values.back(), "dearer", v.dearer, "nearer", v.nearer,
+                       "buys", buys, "default", standard + (meant ? "" : ", not the cheap end"), "monotone",
+                       v.monotone ? "yes" : "no"));
   }
-  return rows;
 }
 
 const std::vector<TableColumn> kVerdictColumns{
@@ -181,48 +158,46 @@ std::string frontPictures(const SweptScene& scene, const Figures& figures, const
 
 /// Milliseconds of each stage in motion, at the points of the front: those of a hundredth of a frame and more.
 std::string frontStages(const Figures& figures) {
-  nlohmann::json rows;
+  Value rows;
   std::vector<TableColumn> columns{{"number", ""}, {"point", "point"}, {"moving_ms", "frame", "%.1f"}};
   std::set<std::string> listed;
   for (const std::string& name : frontNames(indirectPoints(figures, State::Moving))) {
-    const nlohmann::json& row = figures.at(name).row;
-    nlohmann::json times{{"number", rows.size() + 1}, {"point", name}, {"moving_ms", row["moving_ms"]}};
+    const Value& row = figures.at(name).row;
+    const double all = row["moving_ms"].number();
+    Value& times = rows.add(Value::of("number", rows.size() + 1, "point", name, "moving_ms", all));
     for (const char* stage : kStageNames) {
-      const double ms = row.value(std::string("ms_") + stage, 0.0);
+      const double ms = row.numberOr(std::string("ms_") + stage, 0);
       times[stage] = ms;
-      if (ms >= 0.01 * row["moving_ms"].get<double>() && listed.insert(stage).second)
-        columns.push_back({stage, stage, "%.1f", 1, ""});
+      if (ms >= 0.01 * all && listed.insert(stage).second) columns.push_back({stage, stage, "%.1f", 1, ""});
     }
-    rows.push_back(std::move(times));
   }
   return htmlTable(columns, rows);
 }
 
-nlohmann::json frontRows(const Figures& figures, State state, bool relative) {
-  nlohmann::json rows;
+Value frontRows(const Figures& figures, State state, bool relative) {
+  Value rows;
   for (const std::string& name : frontNames(indirectPoints(figures, state))) {
     const CostError p = of(figures.at(name), state);
-    rows.push_back(relative ? nlohmann::json{{"point", name}, {"time", p.cost}, {"error", p.error}}
-                            : figures.at(name).row);
-    rows.back()["number"] = rows.size();
+    Value& row = rows.add(relative ? Value::of("point", name, "time", p.cost, "error", p.error) : figures.at(name).row);
+    row["number"] = rows.size();
   }
   return rows;
 }
 
 /// Milliseconds of path tracing over those of the default's frame, for the same relMSE.
-nlohmann::json pathRow(const SweptScene& scene, const Figures& figures, State state) {
+Value pathRow(const SweptScene& scene, const Figures& figures, State state) {
   const CostError p = of(figures.at(sweepPoints(SweepPart::Quick)[0].name), state);
-  const nlohmann::json& truth = scene.truth["indirect"];
-  const double ofTruth = truth["rel_mse"];
-  nlohmann::json row{{"scene", scene.name}, {"state", titleOf(state)}, {"ms", p.cost}, {"rel_mse", p.error}};
-  const std::optional<double> ms = pathTracingMs(
-      p.error + ofTruth, ofTruth, truth["sample_ms"].get<double>() * truth["spp"].get<double>()); // it was taken off
+  const Value& truth = scene.truth["indirect"];
+  const double ofTruth = truth["rel_mse"].number(); // was taken off
+  Value row = Value::of("scene", scene.name, "state", titleOf(state), "ms", p.cost, "rel_mse", p.error);
+  const std::optional<double> ms =
+      pathTracingMs(p.error + ofTruth, ofTruth, truth["sample_ms"].number() * truth["spp"].number());
   row["holds"] = "the truth is too noisy";
   if (!ms) return row;
   const double times = *ms / p.cost;
-  row.update({{"paths_ms", *ms},
-              {"times", times},
-              {"holds", holdsBar({times, times * std::hypot(p.costNoise, p.errorNoise)})}});
+  row["paths_ms"] = *ms;
+  row["times"] = times;
+  row["holds"] = holdsBar({times, times * std::hypot(p.costNoise, p.errorNoise)});
   return row;
 }
 
@@ -241,35 +216,34 @@ const std::vector<TableColumn> kLadderColumns{{"preset", "preset"},
                                               {"step_time", "of the step below: time", "%.2f x"},
                                               {"step_error", "error", "%.2f x"}};
 
-nlohmann::json ladderRows(const Choice& choice) {
-  nlohmann::json rows;
+Value pointRow(const Choice& choice, size_t i, const char* noPreset) {
+  const CostError& p = choice.points[i];
+  Value row = Value::of("point", choice.names[i], "time", p.cost, "error", p.error);
+  if (noPreset) row["preset"] = noPreset;
+  for (const Preset& preset : presetTable())
+    if (presetPoint(preset) == choice.names[i]) row["preset"] = preset.name;
+  return row;
+}
+
+Value ladderRows(const Choice& choice) {
+  Value rows;
   const CostError* below = nullptr;
   for (size_t i : ladderOf(choice.points)) {
     const CostError& p = choice.points[i];
-    rows.push_back({{"point", choice.names[i]}, {"time", p.cost}, {"error", p.error}});
-    rows.back()["preset"] = "(none is this)";
-    for (const Preset& preset : presetTable())
-      if (presetPoint(preset) == choice.names[i]) rows.back()["preset"] = preset.name;
-    if (below) rows.back().update({{"step_time", p.cost / below->cost}, {"step_error", p.error / below->error}});
+    Value& row = rows.add(pointRow(choice, i, "(none is this)"));
+    if (below) row.update(Value::of("step_time", p.cost / below->cost, "step_error", p.error / below->error));
     below = &p;
   }
   return rows;
 }
 
 /// What presets are chosen among; which of them are presets, and whether these have left the front.
-nlohmann::json presetRows(const Choice& choice) {
-  nlohmann::json rows;
-  for (size_t i = 0; i < choice.points.size(); ++i) {
-    const CostError& p = choice.points[i];
-    rows.push_back({{"point", choice.names[i]},
-                    {"time", p.cost},
-                    {"error", p.error},
-                    {"time_noise", p.costNoise},
-                    {"error_noise", p.errorNoise},
-                    {"off_front", offFront(choice.points, i) ? 1 : 0}});
-    for (const Preset& preset : presetTable())
-      if (presetPoint(preset) == choice.names[i]) rows.back()["preset"] = preset.name;
-  }
+Value presetRows(const Choice& choice) {
+  Value rows;
+  for (size_t i = 0; i < choice.points.size(); ++i)
+    rows.add(pointRow(choice, i, nullptr))
+        .update(Value::of("time_noise", choice.points[i].costNoise, "error_noise", choice.points[i].errorNoise,
+                          "off_front", offFront(choice.points, i) ? 1 : 0));
   return rows;
 }
 
@@ -281,15 +255,13 @@ struct Report {
   Figures all;
 };
 
-nlohmann::json verdictRows(const Report& r) {
+Value verdictRows(const Report& r) {
   std::vector<std::string> names = r.names;
   std::vector<Figures> figures = r.figures;
   names.push_back("all together"), figures.push_back(r.all);
-  nlohmann::json rows;
+  Value rows;
   for (const Knob& knob : knobTable())
-    for (State state : kStates)
-      for (nlohmann::json& row : verdictsOf(knob, curvesOf(knob, names, figures, state), state))
-        rows.push_back(std::move(row));
+    for (State state : kStates) addVerdicts(rows, knob, curvesOf(knob, names, figures, state), state);
   return rows;
 }
 
@@ -331,22 +303,22 @@ std::string sectionOf(const std::string& name, const SweptScene& scene, const Fi
       htmlTable(columns, frontRows(figures, State::Still, false)) +
       format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
              "and more.</p>",
-             scene.truth["indirect"]["spp"].get<int>(), scene.truth["indirect"]["rel_mse"].get<double>(),
+             int(scene.truth["indirect"]["spp"].number()), scene.truth["indirect"]["rel_mse"].number(),
              100 * kBlackAt) +
       frontPictures(scene, figures, folder);
   for (const std::string& left : scene.leftOut) page += "<p>Left out: " + escaped(left) + "</p>";
-  nlohmann::json rows;
-  for (const auto& [point, f] : figures) rows.push_back(f.row);
+  Value rows;
+  for (const auto& [point, f] : figures) rows.add(f.row);
   return page + "<details open><summary>All points</summary>" + htmlTable(kPointColumns, rows) + "</details>\n";
 }
 
-std::string knobSection(const Report& r, const nlohmann::json& verdicts) {
+std::string knobSection(const Report& r, const Value& verdicts) {
   std::string page =
       "<h2>Setting by setting</h2><p>Each alone, the others at their defaults; values from those that should be "
       "cheap to those that should be dear. A setting that buys nothing leaves errors within their noise (two standard "
       "errors).</p>";
   for (KnobLight light : {KnobLight::Indirect, KnobLight::Direct}) {
-    std::vector<Scatter> plots;
+    std::vector<Plot> plots;
     for (const Knob& knob : knobTable())
       for (State state : kStates) {
         if (knob.light != light) continue;
@@ -375,14 +347,13 @@ void accuracyReport(const AccuracyOptions& options) {
   }
   r.all = overScenes(r.figures);
   const Choice presets = presetChoice(r.all);
-  const nlohmann::json verdicts = verdictRows(r);
-  nlohmann::json points, paths;
+  const Value verdicts = verdictRows(r);
+  Value points, paths;
   for (size_t s = 0; s < r.scenes.size(); ++s) {
     for (const auto& [name, f] : r.figures[s]) {
-      points.push_back(f.row);
-      points.back()["scene"] = r.names[s];
+      points.add(f.row)["scene"] = r.names[s];
     }
-    for (State state : kStates) paths.push_back(pathRow(r.scenes[s], r.figures[s], state));
+    for (State state : kStates) paths.add(pathRow(r.scenes[s], r.figures[s], state));
   }
   const std::string front =
       svgOf({frontPlot("All scenes", r.all, State::Moving, true), frontPlot("All scenes", r.all, State::Still, true)},
@@ -404,13 +375,10 @@ void accuracyReport(const AccuracyOptions& options) {
   writeText(folder / "points.csv", csvText(points));
   writeText(folder / "knobs.csv", csvText(verdicts));
   writeText(folder / "presets.csv", csvText(presetRows(presets)));
-  writeJson(options.output.json, {{"points", points},
-                                  {"knobs", verdicts},
-                                  {"ladder", ladderRows(presets)},
-                                  {"presets", presetRows(presets)},
-                                  {"paths", paths},
-                                  {"front_moving", frontRows(r.all, State::Moving, true)},
-                                  {"front_still", frontRows(r.all, State::Still, true)}});
+  writeJson(options.output.json,
+            Value::of("points", points, "knobs", verdicts, "ladder", ladderRows(presets), "presets",
+                      presetRows(presets), "paths", paths, "front_moving", frontRows(r.all, State::Moving, true),
+                      "front_still", frontRows(r.all, State::Still, true)));
   if (options.output.quiet) return;
   std::printf("%s\n%s\nreport: %s\n", tableText(kLadderColumns, ladderRows(presets)).c_str(),
               tableText(kPathColumns, paths).c_str(), (folder / "index.html").c_str());

@@ -1,17 +1,16 @@
 // lambent bench SHOT|SCENE: where the time of a frame goes, and what was done in it; with --against of two settings,
-// with --techniques of several techniques, frame by frame in turn. Other forms: bench_multires.cpp, bench_tables.cpp
-// (--table2), bench_growth.cpp, bench_equal_error.cpp, bench_rays.cpp.
+// with --techniques of several techniques, frame by frame in turn. The other forms: bench_*.cpp.
 #include "tools/lambent/bench.h"
 
 #include "engine/core/error.h"
-#include "engine/platform/gl_context.h"
-#include "tools/lambent/text.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
 
 namespace lambent {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -57,19 +56,15 @@ double mostWaiting(const Measured& m) {
   return m.of([](const FrameStats& s) { return s.mapsWaiting; }).most;
 }
 
-nlohmann::json figuresOf(const Measured& m, const std::vector<Line>& times, const std::vector<Line>& counts) {
-  nlohmann::json j{{"settings", m.variant.name}};
-  for (const Line& line : times) {
-    const Spread s = line.of(m);
-    if (s.count == 0) continue;
-    j["median_ms"][line.name] = s.median;
-    j["quartiles_ms"][line.name] = {s.quarter, s.threeQuarters};
-  }
-  const auto of = [](const Spread& s) { return nlohmann::json{{"median", s.median}, {"most", s.most}}; };
-  for (const Line& line : counts) j["counts"][line.name] = of(line.of(m));
-  for (const Share& share : kShares) j[share.key] = of(spreadOf(share, m));
-  j["most_maps_waiting"] = uint64_t(mostWaiting(m));
-  return j;
+Value figuresOf(const Measured& m, const std::vector<Line>& times, const std::vector<Line>& counts) {
+  Value figures = Value::of("settings", m.variant.name);
+  for (const Line& line : times)
+    if (const Spread s = line.of(m); s.count > 0) addSpread(figures, line.name, s);
+  const auto of = [](const Spread& s) { return Value::of("median", s.median, "most", s.most); };
+  for (const Line& line : counts) figures["counts"][line.name] = of(line.of(m));
+  for (const Share& share : kShares) figures[share.key] = of(spreadOf(share, m));
+  figures["most_maps_waiting"] = uint64_t(mostWaiting(m));
+  return figures;
 }
 
 /// Wide enough for times and for the side's name.
@@ -80,11 +75,8 @@ void print(const std::vector<Line>& lines, const std::vector<Measured>& sides, i
     std::printf("  %-22s", line.name.c_str());
     std::vector<Spread> spreads;
     for (const Measured& m : sides) {
-      spreads.push_back(line.of(m));
-      if (spreads.back().count > 0)
-        std::printf(" %*.*f", widthOf(m), digits, spreads.back().median);
-      else
-        std::printf(" %*s", widthOf(m), "");
+      const Spread s = spreads.emplace_back(line.of(m));
+      std::printf(" %*s", widthOf(m), s.count > 0 ? format("%.*f", digits, s.median).c_str() : "");
     }
     if (ratio && spreads[0].count > 0 && spreads[1].median > 0)
       std::printf(" %8.2f", spreads[0].median / spreads[1].median);
@@ -92,19 +84,19 @@ void print(const std::vector<Line>& lines, const std::vector<Measured>& sides, i
   }
 }
 
-std::vector<Variant> sidesOf(const BenchOptions& options, const LaunchContext& stage) {
+std::vector<Variant> sidesOf(const BenchOptions& options, const LaunchContext& opened) {
   std::vector<Variant> sides;
   for (const std::string& technique : options.techniques) {
     LaunchOptions launch = options.launch;
     launch.technique = technique; // under what --set says, which may contradict it
-    sides.push_back({technique, chosenSettings(launch, stage.shot), stage.seed});
+    sides.push_back({technique, chosenSettings(launch, opened.shot), opened.seed});
     // Nothing moves in a scene, and what may keep its picture would cost nothing.
-    if (!stage.shot) sides.back().settings.effects[EffectId::Redraw] = EffectMode::On;
+    if (!opened.shot) sides.back().settings.effects[EffectId::Redraw] = EffectMode::On;
   }
   if (!sides.empty()) return sides;
-  sides.push_back({"as set", stage.settings, stage.seed});
+  sides.push_back(variantOf(opened, "as set"));
   if (options.against.empty()) return sides;
-  Variant other{"", stage.settings, stage.seed};
+  Variant other = variantOf(opened, "");
   for (const std::string& assignment : options.against) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) throw InputError("--against " + assignment, "is not NAME=VALUE");
@@ -115,40 +107,24 @@ std::vector<Variant> sidesOf(const BenchOptions& options, const LaunchContext& s
   return sides;
 }
 
-void bench(const BenchOptions& options) {
-  if (options.multires) return benchMultires(options);
-  if (options.table2) return benchTable2(options);
-  if (options.equalError) return benchEqualError(options);
-  if (options.area) return benchArea(options);
-  if (options.cube) return benchCube(options);
-  if (options.launch.scene.empty())
-    throw InputError(
-        options.scenes[1],
-        "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
-  if (options.growth) return benchGrowth(options);
-  if (options.rays) return benchRays(options);
-  if (!options.techniques.empty() && !options.launch.technique.empty())
-    throw InputError("--technique " + options.launch.technique, "goes into --techniques, with the others");
-  const auto stage = openLaunch(options.launch);
-  const std::vector<Variant> variants = sidesOf(options, *stage);
+void benchSides(const BenchOptions& options) {
+  if (!options.techniques.empty()) refuseTechnique(options, "goes into --techniques, with the others");
+  const auto opened = openLaunch(options.launch);
+  const std::vector<Variant> variants = sidesOf(options, *opened);
   if (std::ranges::any_of(variants, [](const Variant& v) { return needsOf(v.settings).reflective(); }))
-    needPunctualLight(*stage);
-  say(*stage, options.output.quiet);
+    needPunctualLight(*opened);
+  say(*opened, options.output.quiet);
   GlContext context = GlContext::headless();
-  std::vector<Measured> sides;
-  {
-    Progress progress("measuring", options.output.quiet);
-    sides = measure(variants, benchPlan(options, *stage, progress));
-  }
+  const std::vector<Measured> sides = run(variants, benchPlan(options, *opened), "measuring", options.output.quiet);
   const std::vector<Line> times = timeLines(sides), counts = countLines();
-  nlohmann::json j{{"scene", options.launch.scene}, {"frames", sides[0].frames.size()}};
-  for (const Measured& m : sides) j["sides"].push_back(figuresOf(m, times, counts));
-  writeJson(options.output.json, j);
+  Value figures = Value::of("scene", options.launch.scene, "frames", sides[0].frames.size());
+  for (const Measured& m : sides) figures["sides"].add(figuresOf(m, times, counts));
+  writeJson(options.output.json, figures);
 
   if (options.output.quiet) return;
   const bool two = !options.against.empty();
-  std::printf("%zu frames of %d x %d, medians in ms\n  %-22s", sides[0].frames.size(), stage->camera.width,
-              stage->camera.height, "");
+  std::printf("%zu frames of %d x %d, medians in ms\n  %-22s", sides[0].frames.size(), opened->camera.width,
+              opened->camera.height, "");
   for (const Measured& m : sides) std::printf(" %*s", widthOf(m), m.variant.name.c_str());
   std::printf(two ? " %8s\n" : "\n", "ratio");
   print(times, sides, 3, two);
@@ -163,6 +139,22 @@ void bench(const BenchOptions& options) {
     }
     std::printf("  %-50s %.0f at most\n", "shadow maps that had to wait", mostWaiting(m));
   }
+}
+
+void bench(BenchOptions& o) {
+  if (o.quick && o.launch.size.empty()) o.launch.size = "64x36";
+  if (o.quick && o.frames == 0) o.frames = o.skip + 3;
+  if (o.quick && o.form == benchEqualError) useFewLights(o);
+  if (o.quick && (o.form == benchArea || o.form == benchCube)) o.samples = o.samples.value_or(16);
+  const bool several = o.form && o.form != benchGrowth && o.form != benchRays;
+  if (o.scenes.size() > 1 && !several)
+    throw InputError(
+        o.scenes[1],
+        "one scene or shot is enough (several go with --multires, --table2, --equal-error, --area and --cube)");
+  for (const std::string& file : o.scenes) // before minutes are spent on those before it
+    if (several && !fs::exists(file)) throw InputError(file, "no such file");
+  o.launch.scene = o.scenes[0];
+  (o.form ? o.form : benchSides)(o);
 }
 
 } // namespace
@@ -182,74 +174,72 @@ std::vector<Line> timeLines(const std::vector<Measured>& sides) {
   return lines;
 }
 
-std::string spreadText(const Spread& s) {
-  const int digits = s.median < 10 ? 2 : s.median < 100 ? 1 : 0;
-  return format("%.*f (%.*f to %.*f)", digits, s.median, digits, s.quarter, digits, s.threeQuarters);
+void addSpread(Value& row, const std::string& key, const Spread& spread) {
+  row["median_ms"][key] = spread.median;
+  row["quartiles_ms"][key] = std::vector{spread.quarter, spread.threeQuarters};
 }
 
-RunPlan benchPlan(const BenchOptions& options, LaunchContext& stage, Progress& progress, int frames) {
-  RunPlan plan = planOf(stage, progress, options.frames > 0 || stage.shot ? options.frames : frames);
+std::string spreadText(double median, const Value& quartiles) {
+  const int digits = median < 10 ? 2 : median < 100 ? 1 : 0;
+  return format("%.*f (%.*f to %.*f)", digits, median, digits, quartiles.items()[0].number(), digits,
+                quartiles.items()[1].number());
+}
+
+RunPlan benchPlan(const BenchOptions& options, LaunchContext& opened, int frames) {
+  RunPlan plan = planOf(opened, options.frames > 0 || opened.shot ? options.frames : frames);
   plan.skip = options.skip;
   if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));
   return plan;
 }
 
+void refuseTechnique(const BenchOptions& options, const std::string& why) {
+  if (!options.launch.technique.empty()) throw InputError("--technique " + options.launch.technique, why);
+}
+
 void declareBench(CLI::App& app) {
-  auto options = std::make_shared<BenchOptions>();
-  CLI::App* command =
-      app.add_subcommand("bench", "time per stage and work per frame, of one way or of several in turn");
-  command
-      ->add_option("SCENE", options->scenes,
-                   "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube")
-      ->required();
-  addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output,
-                   "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");
-  command
-      ->add_option("--frames", options->frames,
-                   "only the first so many (60 of a scene; --growth 32; not with --equal-error)")
-      ->check(CLI::Range(1, 1000000));
-  command->add_option("--skip", options->skip, "frames at the start that do not count (default 2)")
-      ->check(CLI::Range(1, 1000000));
-  CLI::App* forms = command->add_option_group("Forms", "at most one")->require_option(0, 1);
-  forms->add_option("--against", options->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
-  forms->add_option("--techniques", options->techniques, "comma-separated: measure each")->delimiter(',');
-  forms->add_flag("--multires", options->multires,
-                  "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
-                  "(paper 3, table 1)");
-  forms->add_flag("--table2", options->table2,
-                  "shots: milliseconds of the steps of paper 1's table 2, medians and quartiles, the paper's beside");
-  forms->add_flag("--growth", options->growth,
-                  "how each stage's time grows with virtual lights, pixels, lights, instances and triangles, one at a "
-                  "time, values in turn: medians, exponents with standard errors, plots");
-  forms->add_flag("--equal-error", options->equalError,
-                  "the presets' error of indirect irradiance, still and in shots moving, and how long path tracing "
-                  "takes to the same");
-  forms->add_flag("--area", options->area,
-                  "direct light of lamps, and of lamps a quarter as wide, at patches that split by their quarters, by "
-                  "their neighbours, and at every pixel: fragments, time, error (paper 4, table 1)");
-  forms->add_flag("--cube", options->cube,
-                  "layered depth cubes of several resolutions and numbers of lights: time to build and to look up, "
-                  "memory, error (paper 5, table 1)");
-  forms->add_flag("--rays", options->rays,
-                  "a million rays on the GPU and with Embree: where they differ, and how many a second");
-  command->add_option("--along", options->along, "--growth: comma-separated, only these")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"vpls", "pixels", "lights", "instances", "triangles"}));
-  command->add_option("--seeds", options->seeds, "--equal-error: so many (default 3)")->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--spp", options->samples,
-                   "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)")
-      ->check(CLI::Range(2, 1 << 24));
-  command->add_option("--frame", options->frame, "--equal-error: of a shot in motion (default 30, or the last)")
-      ->check(CLI::Range(1, 1000000));
-  command->add_flag("--quick", options->quick, "a few small frames, to try whether it runs");
-  command->callback([options] {
-    if (options->quick && options->launch.size.empty()) options->launch.size = "64x36";
-    if (options->quick && options->frames == 0) options->frames = options->skip + 3;
-    if (options->scenes.size() == 1) options->launch.scene = options->scenes[0];
-    bench(*options);
-  });
+  auto o = std::make_shared<BenchOptions>();
+  Command command(app, "bench", "time per stage and work per frame, of one way or of several in turn");
+  command.scenes(o->scenes, "SCENE",
+                 "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube");
+  command.launch(o->launch);
+  command.output(o->output, "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");
+  command.number("--frames", &o->frames, 1, 1000000,
+                 "only the first so many (60 of a scene; --growth 32; not with --equal-error)");
+  command.number("--skip", &o->skip, 1, 1000000, "frames at the start that do not count (default 2)");
+  const auto form = [&](const char* name, void (*form)(const BenchOptions&), const char* help) {
+    command.flag(
+        name, [o, form] { o->form = form; }, help);
+  };
+  command.beginForms();
+  command.texts("--against", o->against, "NAME=VALUE: measure this setting too, frame by frame in turn");
+  command.list("--techniques", o->techniques, "comma-separated: measure each");
+  form("--multires", benchMultires,
+       "light gathered at patches of the picture against light splatted into them, frame by frame in turn "
+       "(paper 3, table 1)");
+  form("--table2", benchTable2,
+       "shots: milliseconds of the steps of paper 1's table 2, medians and quartiles, the paper's beside");
+  form("--growth", benchGrowth,
+       "how each stage's time grows with virtual lights, pixels, lights, instances and triangles, one at a "
+       "time, values in turn: medians, exponents with standard errors, plots");
+  form("--equal-error", benchEqualError,
+       "the presets' error of indirect irradiance, still and in shots moving, and how long path tracing "
+       "takes to the same");
+  form("--area", benchArea,
+       "direct light of lamps, and of lamps a quarter as wide, at patches that split by their quarters, by "
+       "their neighbours, and at every pixel: fragments, time, error (paper 4, table 1)");
+  form("--cube", benchCube,
+       "layered depth cubes of several resolutions and numbers of lights: time to build and to look up, "
+       "memory, error (paper 5, table 1)");
+  form("--rays", benchRays, "a million rays on the GPU and with Embree: where they differ, and how many a second");
+  command.endForms();
+  command.list("--along", o->along, "--growth: comma-separated, only these",
+               {"vpls", "pixels", "lights", "instances", "triangles"});
+  command.number("--seeds", &o->seeds, 1, 1000, "--equal-error: so many (default 3)");
+  command.number("--spp", &o->samples, 2, 1 << 24,
+                 "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)");
+  command.number("--frame", &o->frame, 1, 1000000, "--equal-error: of a shot in motion (default 30, or the last)");
+  command.flag("--quick", o->quick, "a few small frames, to try whether it runs");
+  command.run([o] { bench(*o); });
 }
 
 } // namespace lambent

@@ -1,32 +1,22 @@
 // What the forms of `lambent bench` share.
 #pragma once
 
-#include "tools/lambent/commands.h"
-
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
+#include "tools/lambent/study.h"
 
 namespace lambent {
 
-class GlContext;
-
-struct BenchOptions {
-  LaunchOptions launch; // its scene is empty where several are given
-  OutputOptions output;
-  std::vector<std::string> scenes, techniques;
+struct BenchOptions : MeasureOptions {
+  std::vector<std::string> techniques;
   std::vector<std::string> against; // NAME=VALUE
   std::vector<std::string> along;   // what --growth sweeps; empty: all
-  bool multires = false, table2 = false, growth = false, equalError = false, rays = false, area = false, cube = false,
-       quick = false;
   int frames = 0, skip = 2;
-  int seeds = 3, frame = 0;   // --equal-error; frame 0: 30, or the last
-  std::optional<int> samples; // --equal-error, --area
+  void (*form)(const BenchOptions&) = nullptr; // null: stages and counts, of one way or of several in turn
 };
 
 /// As the options say, of a scene `frames` where they say nothing. Throws InputError when no frame would be left.
-RunPlan benchPlan(const BenchOptions& options, LaunchContext& stage, Progress& progress, int frames = 0);
+RunPlan benchPlan(const BenchOptions& options, LaunchContext& opened, int frames = 0);
+/// Throws InputError: the form measures techniques of its own.
+void refuseTechnique(const BenchOptions& options, const std::string& why);
 
 /// A line of a table: of time, or of what is counted.
 struct Line {
@@ -36,8 +26,10 @@ struct Line {
 /// Of each stage that ran on any side, of updating the virtual lights, and of the frame: milliseconds.
 std::vector<Line> timeLines(const std::vector<Measured>& sides);
 
-/// "12.3 (11.9 to 13.0)": median and quartiles.
-std::string spreadText(const Spread& spread);
+/// Median and quartiles of a line or column, for programs: KEY under median_ms, and under quartiles_ms.
+void addSpread(Value& row, const std::string& key, const Spread& spread);
+/// The same for people: "12.3 (11.9 to 13.0)".
+std::string spreadText(double median, const Value& quartiles);
 
 /// Techniques multires-gather and multires-splat, scene by scene (paper 3, table 1).
 void benchMultires(const BenchOptions& options);

@@ -3,11 +3,10 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
+#include "engine/gpu_trace/gpu_rays.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/embree_query.h"
-#include "engine/gpu_trace/gpu_rays.h"
 #include "tools/lambent/bench.h"
-#include "tools/lambent/text.h"
 
 #include <chrono>
 #include <cstdio>
@@ -35,14 +34,15 @@ std::vector<Ray> randomRays(const RayQuery& rays, const Aabb& bounds, size_t cou
 /// Why two answers may differ, or that nothing excuses it.
 enum class Difference { None, SamePlace, End, Edge, Grazing, Alpha, Other, Count };
 constexpr const char* kDifferences[] = {"the same",
-                                        "two surfaces at the same place (each to the query's rayEpsilon)",
+                                        "two surfaces at the same place (each to the query's ray epsilon)",
                                         "at an end of the segment (as near)",
                                         "at an edge (a thousandth of the triangle)",
                                         "grazing (a thousandth of a right angle)",
                                         "at the border of a mask",
                                         "other"};
 
-Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a, const SurfaceHit& b) {
+Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a,
+                        const SurfaceHit& b) {
   // Metres between two places on the ray, across the surface that lies there.
   const auto apart = [&](const SurfaceHit& h, float t) {
     return std::abs((h.t - t) * glm::dot(h.geometricNormal, ray.direction));
@@ -72,18 +72,17 @@ double secondsOf(const std::function<void()>& work) {
 } // namespace
 
 void benchRays(const BenchOptions& options) {
-  const auto stage = openLaunch(options.launch);
-  say(*stage, options.output.quiet);
-  const GlContext context = GlContext::headless();
-  const std::string machine = machineText(context);
-  const SceneView view = stage->at(0);
-  EmbreeQuery embree(stage->scene.assets);
+  const Study study(options, options.launch.scene, {});
+  const std::string machine = machineText(study.context);
+  const SceneView view = study.opened->at(0);
+  EmbreeQuery embree(*view.assets);
   embree.update(view);
   gl::ProgramCache programs;
-  GpuRays gpu(programs, stage->scene.assets);
+  GpuRays gpu(programs, *view.assets);
   gpu.update(view);
 
-  const std::vector<Ray> rays = randomRays(embree, view.boundsWorld, options.quick ? 10000 : 1000000, stage->seed);
+  const std::vector<Ray> rays =
+      randomRays(embree, view.boundsWorld, options.quick ? 10000 : 1000000, study.opened->seed);
   std::vector<SurfaceHit> a(rays.size()), b(rays.size());
   std::vector<uint8_t> blockedA(rays.size()), blockedB(rays.size());
   const auto parallel = [&](auto&& trace) {
@@ -94,17 +93,16 @@ void benchRays(const BenchOptions& options) {
   gpu.distances(std::span(rays).first(64), std::span(t).first(64));
   struct Row {
     const char* name;
-    double closest, any;
+    double closest, any; // seconds
   };
+  const std::span all(rays);
   const Row rows[] = {
       {"Embree", secondsOf([&] {
-         parallel(
-             [&](size_t at, size_t n) { embree.closest(std::span(rays).subspan(at, n), std::span(a).subspan(at, n)); });
+         parallel([&](size_t at, size_t n) { embree.closest(all.subspan(at, n), std::span(a).subspan(at, n)); });
        }),
        secondsOf([&] {
-         parallel([&](size_t at, size_t n) {
-           embree.occluded(std::span(rays).subspan(at, n), std::span(blockedA).subspan(at, n));
-         });
+         parallel(
+             [&](size_t at, size_t n) { embree.occluded(all.subspan(at, n), std::span(blockedA).subspan(at, n)); });
        })},
       {"GPU", secondsOf([&] { gpu.distances(rays, t); }), secondsOf([&] { gpu.occluded(rays, blockedB); })}};
   gpu.closest(rays, b);
@@ -115,17 +113,18 @@ void benchRays(const BenchOptions& options) {
     ++counts[size_t(differenceOf(view, embree.rayEpsilon(), rays[i], a[i], b[i]))];
     if (blockedA[i] != blockedB[i]) ++blockedOnly[blockedB[i]];
   }
-  nlohmann::json j{{"scene", options.launch.scene}, {"rays", rays.size()}, {"machine", machine}};
+  const double count = double(rays.size());
+  Value figures = Value::of("scene", options.launch.scene, "rays", rays.size(), "machine", machine, "blocked_only",
+                            Value::of("Embree", blockedOnly[0], "GPU", blockedOnly[1]));
   for (const Row& r : rows)
-    j["rays_per_second"][r.name] = {{"closest", double(rays.size()) / r.closest}, {"any", double(rays.size()) / r.any}};
-  for (size_t i = 0; i < counts.size(); ++i) j["differences"][kDifferences[i]] = counts[i];
-  j["blocked_only"] = {{"Embree", blockedOnly[0]}, {"GPU", blockedOnly[1]}};
-  writeJson(options.output.json, j);
+    figures["rays_per_second"][r.name] = Value::of("closest", count / r.closest, "any", count / r.any);
+  for (size_t i = 0; i < counts.size(); ++i) figures["differences"][kDifferences[i]] = counts[i];
+  writeJson(options.output.json, figures);
   if (options.output.quiet) return;
   std::printf("%zu rays, half of them all over the scene, half between surfaces; %s\n", rays.size(), machine.c_str());
   for (const Row& r : rows)
     std::printf("  %-8s %8.2f million closest hits a second, %8.2f million answers whether anything is met\n", r.name,
-                double(rays.size()) / r.closest * 1e-6, double(rays.size()) / r.any * 1e-6);
+                1e-6 * count / r.closest, 1e-6 * count / r.any);
   for (size_t i = 0; i < counts.size(); ++i) std::printf("  %8zu %s\n", counts[i], kDifferences[i]);
   std::printf("  %8zu blocked to Embree alone, %zu to the GPU alone\n", blockedOnly[0], blockedOnly[1]);
 }

@@ -1,8 +1,11 @@
 #include "tools/lambent/command_line.h"
 
 #include "engine/core/error.h"
+#include "engine/core/image.h"
 
-#include <vector>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
 
 namespace lambent {
 
@@ -54,8 +57,9 @@ class TopDownHelp : public CLI::Formatter {
   }
 };
 
-std::string guessText(const std::string& near, const std::string& help) {
-  return near.empty() ? "see " + help : "did you mean " + near + "? see " + help;
+std::string guessOrHelp(const std::string& name, const std::vector<std::string>& known, const std::string& help) {
+  const std::string guess = guessText(name, known, "");
+  return guess + (guess.empty() ? "see " : " see ") + help;
 }
 
 /// Of a command and its groups.
@@ -69,24 +73,21 @@ void collectOptions(const CLI::App& command, std::vector<std::string>& names) {
 std::string unknownOptionText(const CLI::App& command, const std::string& option) {
   std::vector<std::string> known;
   collectOptions(command, known);
-  return "no option " + option + " (" +
-         guessText(nearestName(option, known), "lambent " + command.get_name() + " --help") + ")";
+  return "no option " + option + " (" + guessOrHelp(option, known, "lambent " + command.get_name() + " --help") + ")";
 }
 
-} // namespace
-
-std::shared_ptr<CLI::Formatter> helpFormatter() { return std::make_shared<TopDownHelp>(); }
-
+/// Throws InputError, with the nearest name, where the first word is no command: CLI11 would say only that one is
+/// needed.
 void checkCommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   const std::string name = argv[1];
   std::vector<std::string> known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   if (std::ranges::find(known, name) != known.end()) return;
-  throw InputError("command line",
-                   "no command " + name + " (" + guessText(nearestName(name, known), "lambent --help") + ")");
+  throw InputError("command line", "no command " + name + " (" + guessOrHelp(name, known, "lambent --help") + ")");
 }
 
+/// What CLI11 found wrong, in one line that says where help is; of an unknown option, with the nearest name.
 std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
   std::string help = "lambent --help";
   for (const CLI::App* command : app.get_subcommands()) {
@@ -99,6 +100,95 @@ std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
   for (char& c : text)
     if (c == '\n') c = ' ';
   return "command line: " + printable(text) + " (see " + help + ")";
+}
+
+} // namespace
+
+std::string guessText(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise) {
+  const std::string near = nearestName(name, known);
+  return near.empty() ? otherwise : "did you mean " + near + "?";
+}
+
+Command::Command(CLI::App& app, const std::string& name, const std::string& help)
+    : command_(app.add_subcommand(name, help)), to_(command_) {}
+
+void Command::scene(std::string& value, const std::string& name, const std::string& help, bool required) {
+  to_->add_option(name, value, help)->required(required);
+}
+
+void Command::scenes(std::vector<std::string>& values, const std::string& name, const std::string& help,
+                     bool required) {
+  to_->add_option(name, values, help)->required(required);
+}
+
+void Command::launch(LaunchOptions& options) { addLaunchOptions(*command_, options); }
+
+void Command::output(OutputOptions& options, const std::string& outHelp) {
+  if (!outHelp.empty()) text("--out", options.out, outHelp);
+  to_->add_option("--json", options.json, "write the figures to this file, for programs")
+      ->check([](const std::string& file) { // before the work
+        checkWritable(file);
+        return std::string();
+      });
+  flag("--quiet", options.quiet, "print nothing but errors");
+}
+
+void Command::text(const std::string& name, std::string& value, const std::string& help) {
+  to_->add_option(name, value, help);
+}
+void Command::choice(const std::string& name, std::string& value, const std::vector<std::string>& of,
+                     const std::string& help) {
+  to_->add_option(name, value, help)->check(CLI::IsMember(of));
+}
+void Command::texts(const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  to_->add_option(name, values, help);
+}
+void Command::list(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                   const std::vector<std::string>& of) {
+  CLI::Option* option = to_->add_option(name, values, help)->delimiter(',');
+  if (!of.empty()) option->check(CLI::IsMember(of));
+}
+void Command::number(const std::string& name, Number value, double least, double most, const std::string& help) {
+  std::visit(
+      [&](auto* to) {
+        CLI::Option* option = to_->add_option(name, *to, help);
+        const bool whole = std::is_same_v<decltype(to), int*> || std::is_same_v<decltype(to), std::optional<int>*>;
+        if (least < most) option->check(whole ? CLI::Range(int(least), int(most)) : CLI::Range(least, most));
+      },
+      value);
+}
+void Command::flag(const std::string& name, bool& value, const std::string& help) { to_->add_flag(name, value, help); }
+void Command::flag(const std::string& name, const std::function<void()>& given, const std::string& help) {
+  to_->add_flag_callback(name, given, help);
+}
+
+void Command::beginForms() { to_ = command_->add_option_group("Forms", "at most one")->require_option(0, 1); }
+void Command::footer(const std::string& text) { command_->footer(text); }
+void Command::run(const std::function<void()>& run) { command_->callback(run); }
+
+int runCommand(int argc, char** argv, const char* version, std::initializer_list<void (*)(CLI::App&)> commands) {
+  CLI::App app{"Lambent: global illumination for moving worlds", "lambent"};
+  app.formatter(std::make_shared<TopDownHelp>());
+  app.set_version_flag("--version", version, "name and version, and nothing else");
+  app.require_subcommand(1);
+  for (const auto& declare : commands) declare(app);
+  for (CLI::App* command : app.get_subcommands({})) refuseNotANumber(*command);
+  try {
+    checkCommand(app, argc, argv);
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) { // help, version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    std::fprintf(stderr, "error: %s\n", textOf(e, app).c_str());
+    return 2;
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "error: %s\n", e.what());
+    return 1;
+  }
+  return 0;
 }
 
 } // namespace lambent

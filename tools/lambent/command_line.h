@@ -1,21 +1,65 @@
-// How the command line answers a person: help that is read from the top, and guesses at what was misspelt.
+// A command's options, and how the command line answers a person: help that is read from the top, and guesses at what
+// was misspelt. CLI11 is in command_line.cpp alone: it takes four seconds to compile, in every file that names it.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/launch/launch.h"
 
-#include <memory>
+#include <functional>
+#include <initializer_list>
+#include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace lambent {
 
-/// Lines of help end before a terminal does.
-std::shared_ptr<CLI::Formatter> helpFormatter();
+/// "did you mean NEAR?", or `otherwise` where no name is near.
+std::string guessText(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise);
 
-/// Throws InputError, with the nearest name, where the first word is no command: CLI11 would say only that one is
-/// needed.
-void checkCommand(const CLI::App& app, int argc, char** argv);
+/// What every command has.
+struct OutputOptions {
+  std::string out, json;
+  bool quiet = false;
+};
 
-/// What CLI11 found wrong, in one line that says where help is; of an unknown option, with the nearest name.
-std::string textOf(const CLI::ParseError& error, const CLI::App& app);
+/// Declares one command. What options are read into must outlive the parse.
+class Command {
+ public:
+  Command(CLI::App& app, const std::string& name, const std::string& help);
+
+  /// What stands without a name.
+  void scene(std::string& value, const std::string& name, const std::string& help, bool required = true);
+  void scenes(std::vector<std::string>& values, const std::string& name, const std::string& help, bool required = true);
+  /// The options that all share that draw; --out (unless its help is empty), --json, --quiet.
+  void launch(LaunchOptions& options);
+  void output(OutputOptions& options, const std::string& outHelp);
+
+  void text(const std::string& name, std::string& value, const std::string& help);
+  void choice(const std::string& name, std::string& value, const std::vector<std::string>& of, const std::string& help);
+  void texts(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  /// Comma-separated; of these alone, where there are any.
+  void list(const std::string& name, std::vector<std::string>& values, const std::string& help,
+            const std::vector<std::string>& of = {});
+  /// From the least to the most; any where these are the same.
+  using Number = std::variant<int*, double*, std::optional<int>*, std::optional<double>*>;
+  void number(const std::string& name, Number value, double least, double most, const std::string& help);
+  void flag(const std::string& name, bool& value, const std::string& help);
+  /// A flag that does something when it is given.
+  void flag(const std::string& name, const std::function<void()>& given, const std::string& help);
+
+  /// Of the options up to endForms at most one may be given.
+  void beginForms();
+  void endForms() { to_ = command_; }
+
+  void footer(const std::string& text);
+  /// What the command does once its options are read; throws InputError (exit 2) or RunError (exit 1).
+  void run(const std::function<void()>& run);
+
+ private:
+  CLI::App *command_, *to_;
+};
+
+/// Parses and runs one of the commands that these functions declare; the exit code.
+int runCommand(int argc, char** argv, const char* version, std::initializer_list<void (*)(CLI::App&)> commands);
 
 } // namespace lambent

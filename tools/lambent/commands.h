@@ -1,24 +1,15 @@
-// The commands of `lambent`, one file each. A declare… function adds the command to the app; its callback runs it and
-// throws InputError (exit 2) or RunError (exit 1).
+// The commands of `lambent`. A declare… function adds the command to the app.
 #pragma once
 
-#include "engine/core/progress.h"
 #include "gi/measure/runs/runs.h"
-#include "tools/launch/launch.h"
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include "gi/reference/traced_picture.h"
+#include "tools/lambent/command_line.h"
+#include "tools/lambent/report.h"
 
 #include <atomic>
 #include <string>
 
 namespace lambent {
-
-/// What every command has.
-struct OutputOptions {
-  std::string out, json;
-  bool quiet = false;
-};
 
 void declareDoctor(CLI::App& app);
 void declareInspect(CLI::App& app);
@@ -34,24 +25,23 @@ void declareContent(CLI::App& app);
 void declareSettings(CLI::App& app);
 void declareTechniques(CLI::App& app);
 
-void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp);
-/// --buffer with the names of all that can be looked at. `doing`: "draw", "record".
-void addBufferOption(CLI::App& command, std::string& buffer, const std::string& doing);
-/// Notes and warnings of a stage on stderr, unless quiet.
-void say(const LaunchContext& stage, bool quiet);
+/// Of --buffer: the names of all that can be looked at. `doing`: "draw", "record".
+std::string bufferHelp(const std::string& standard, const std::string& doing);
+/// Opens what the options say; its notes and warnings go to stderr, unless quiet.
+std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet);
+/// Notes and warnings on stderr, unless quiet.
+void say(const LaunchContext& opened, bool quiet);
 /// What a frame warns of, if anything: also where quiet.
 void sayWarning(const FrameStats& stats);
-/// Writes figures for programs; nothing when `file` is empty.
-void writeJson(const std::string& file, const nlohmann::json& figures);
 /// What to write for a buffer by the file's extension: .exr linear, .png as a display shows it. Throws InputError for
-/// others. A .png is brought to this size where one is given.
-void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer, int width = 0, int height = 0);
-/// Checks before long work that `file` has an extension that can be written, and a folder that takes it.
-void checkPictureName(const std::string& file);
-nlohmann::json figuresOf(const FrameStats& stats);
+/// others.
+void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer);
+Value figuresOf(const FrameStats& stats);
 
-/// A run over the first frames of the stage's shot (0: all; of a scene 60), until Ctrl-C.
-RunPlan planOf(LaunchContext& stage, Progress& progress, int frames);
+/// Hash of the program with its shaders, of the files of scene and shot, of what was opened and how, and of `more`; 16
+/// hexadecimal digits. Not of pictures and buffers next to a scene's file. Work that was interrupted goes on under the
+/// same conditions only.
+std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& options, const std::string& more);
 
 /// Set by Ctrl-C: long work ends after the present frame.
 extern std::atomic<bool> interrupted;

@@ -1,99 +1,118 @@
 #include "engine/core/error.h"
+#include "engine/core/rng.h"
+#include "engine/gl/program.h"
 #include "tools/lambent/commands.h"
+#include "tools/lambent/picture.h"
 
+#include <algorithm>
 #include <cstdio>
-#include <fstream>
 
 namespace lambent {
 
-void addOutputOptions(CLI::App& command, OutputOptions& options, const std::string& outHelp) {
-  if (!outHelp.empty()) command.add_option("--out", options.out, outHelp);
-  command.add_option("--json", options.json, "write the figures to this file, for programs")
-      ->check([](const std::string& file) { // before the work
-        checkWritable(file);
-        return std::string();
-      });
-  command.add_flag("--quiet", options.quiet, "print nothing but errors");
+namespace fs = std::filesystem;
+
+namespace {
+
+struct FigureValue {
+  Value operator()(uint64_t n) const { return n; }
+  Value operator()(bool on) const { return on; }
+  Value operator()(double ms) const { return ms; }
+  Value operator()(const std::string& text) const { return text; }
+  Value operator()(const RayCounts& c) const { return Value::of("closest", c.closest, "occlusion", c.occlusion); }
+};
+
+uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
+  for (char c : text) hash = mix64(hash ^ uint8_t(c));
+  return hash;
+}
+
+/// Buffers and images that a glTF file names: what it holds itself is of its own text.
+uint64_t hashOfNamedFiles(const fs::path& scene, uint64_t hash) {
+  const Value document = Value::parsed(readText(scene)); // nothing of a .glb
+  for (const char* list : {"buffers", "images"}) {
+    if (!document.has(list)) continue;
+    for (const Value& entry : document[list].items())
+      if (entry.has("uri") && !entry["uri"].text().starts_with("data:"))
+        hash = hashOf(readText(scene.parent_path() / entry["uri"].text()), hash);
+  }
+  return hash;
+}
+
+/// The program with its shaders: what another one made is not ours.
+uint64_t hashOfProgram() {
+  uint64_t hash = hashOf(readText("/proc/self/exe"));
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& e : fs::recursive_directory_iterator(gl::findShaderFolder()))
+    if (e.is_regular_file()) files.push_back(e.path());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) hash = hashOf(readText(file), hash);
+  return hash;
+}
+
+} // namespace
+
+std::string bufferHelp(const std::string& standard, const std::string& doing) {
+  std::string names, views;
+  for (const std::string& name : bufferNames()) {
+    std::string& list = bufferByName(name) <= Buffer::Depth ? names : views;
+    list += (list.empty() ? "" : ", ") + name + (name == standard ? " (default)" : "");
+  }
+  return "what to " + doing + ": " + names + "; to look inside: " + views;
+}
+
+std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet) {
+  std::unique_ptr<LaunchContext> opened = openLaunch(launch);
+  say(*opened, quiet);
+  return opened;
+}
+
+void say(const LaunchContext& opened, bool quiet) {
+  if (quiet) return;
+  for (const std::string& w : opened.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());
+  for (const std::string& n : opened.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
 }
 
 void sayWarning(const FrameStats& stats) {
   if (!stats.warning.empty()) std::fprintf(stderr, "warning: %s\n", printable(stats.warning).c_str());
 }
 
-void addBufferOption(CLI::App& command, std::string& buffer, const std::string& doing) {
-  std::string names, views;
-  for (const std::string& name : bufferNames()) {
-    std::string& list = bufferByName(name) <= Buffer::Depth ? names : views;
-    list += (list.empty() ? "" : ", ") + name + (name == buffer ? " (default)" : "");
-  }
-  command.add_option("--buffer", buffer, "what to " + doing + ": " + names + "; to look inside: " + views);
-}
-
-void say(const LaunchContext& stage, bool quiet) {
-  if (quiet) return;
-  for (const std::string& w : stage.scene.warnings) std::fprintf(stderr, "warning: %s\n", printable(w).c_str());
-  for (const std::string& n : stage.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
-}
-
-void writeJson(const std::string& file, const nlohmann::json& figures) {
-  if (file.empty()) return;
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary);
-    out << figures.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-    if (!out.flush()) throw RunError(file + ": cannot be written");
-  });
-}
-
-void checkPictureName(const std::string& file) {
-  const std::string extension = std::filesystem::path(file).extension().string();
-  if (extension != ".png" && extension != ".exr")
-    throw InputError(file, "not a picture format that can be written (.png or .exr)");
-  checkWritable(file);
-}
-
-void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer, int width, int height) {
+void writeBuffer(const std::string& file, const Viewer& gi, Buffer buffer) {
   checkPictureName(file);
-  if (std::filesystem::path(file).extension() == ".exr") return writeExr(file, gi.read(buffer));
-  const Image8 picture = gi.readDisplay(buffer);
-  const bool fits = width == 0 || (picture.width == width && picture.height == height);
-  writePng(file, fits ? picture : resized(picture, width, height));
+  if (fs::path(file).extension() == ".exr") return writeExr(file, gi.read(buffer));
+  writePng(file, gi.readDisplay(buffer));
 }
 
-namespace {
-
-template <class Value> nlohmann::json jsonOf(const Value& value) { return value; }
-nlohmann::json jsonOf(const RayCounts& c) { return {{"closest", c.closest}, {"occlusion", c.occlusion}}; }
-
-} // namespace
-
-nlohmann::json figuresOf(const FrameStats& s) {
-  nlohmann::json figures;
+Value figuresOf(const FrameStats& s) {
+  Value figures;
   for (const FigureRow& row : figureTable()) {
     const std::string name = row.name;
     const size_t dot = name.find('.');
-    nlohmann::json& at = dot == std::string::npos ? figures[name] : figures[name.substr(0, dot)][name.substr(dot + 1)];
-    at = std::visit([](const auto& value) { return jsonOf(value); }, row.value(s));
+    Value& at = dot == std::string::npos ? figures[name] : figures[name.substr(0, dot)][name.substr(dot + 1)];
+    at = std::visit(FigureValue{}, row.value(s));
   }
   figures["shadow_maker_times"] = s.makerTimes;
   figures["area_tracer"] = s.areaTracer;
   figures["cube"]["maker_times"] = s.cubeMakerTimes;
   for (const StageTime& t : s.stages)
-    figures["stages"].push_back({{"name", t.stage.name}, {"cpu_ms", t.cpuMs}, {"gpu_ms", t.gpuMs}});
+    figures["stages"].add(Value::of("name", t.stage.name, "cpu_ms", t.cpuMs, "gpu_ms", t.gpuMs));
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = s.plan[EffectId(i)];
     const EffectRow& row = effectRow(EffectId(i));
-    figures["effects"].push_back({{"name", row.name}, {"on", e.on}, {"reason", e.reason}, {row.work, s.work[i]}});
+    figures["effects"].add(Value::of("name", row.name, "on", e.on, "reason", e.reason, row.work, s.work[i]));
   }
   return figures;
 }
 
-RunPlan planOf(LaunchContext& stage, Progress& progress, int frames) {
-  const int all = stage.shot ? stage.shot->frameCount() : 60;
-  const double fps = stage.shot ? stage.shot->fps : 30;
-  return {.view = [&stage, fps](int frame) { return stage.at(frame / fps); },
-          .frames = frames > 0 ? std::min(frames, all) : all,
-          .cancelled = [] { return interrupted.load(); },
-          .progress = [&progress](int done, int total) { progress.update(done, total); }};
+std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
+  std::string text = more + '\n' + o.scene + '\n' + readText(o.scene) + readText(opened.scene.file);
+  for (const std::string& option : {o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
+                                    std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.seed)})
+    text += '\n' + option;
+  for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
+  for (const auto* list : {&o.suns, &o.points})
+    for (const std::string& light : *list) text += '\n' + light;
+  const uint64_t hash = hashOf(text, hashOfNamedFiles(opened.scene.file, hashOfProgram()));
+  return format("%016llx", static_cast<unsigned long long>(hash));
 }
 
 } // namespace lambent

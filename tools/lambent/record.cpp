@@ -4,18 +4,16 @@
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"
 #include "tools/lambent/commands.h"
-#include "tools/lambent/conditions.h"
-#include "tools/lambent/montage.h"
-#include "tools/lambent/text.h"
-#include "tools/lambent/video.h"
+#include "tools/lambent/picture.h"
 #include "tools/launch/frame_log.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <fstream>
-#include <optional>
 
 namespace lambent {
 
@@ -42,22 +40,16 @@ class RecordingMark {
   /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.
   int kept() const {
     removeLeftovers(file_);
-    const nlohmann::json mark = nlohmann::json::parse(std::ifstream(file_), nullptr, false);
-    const auto conditions = mark.is_object() ? mark.find("conditions") : mark.end();
-    const auto frames = mark.is_object() ? mark.find("frames") : mark.end();
-    if (conditions == mark.end() || frames == mark.end() || !frames->is_number_unsigned()) return 0;
-    if (*conditions != conditions_)
+    const Value mark = Value::parsed(readText(file_));
+    if (!mark.has("conditions") || !(mark.numberOr("frames", -1) >= 0)) return 0;
+    if (mark["conditions"].text() != conditions_)
       throw InputError("--resume", file_.parent_path().string() + " holds a recording of another shot, size, buffer, " +
                                        "setting or program (without --resume it is recorded anew)");
-    return frames->get<int>();
+    return int(mark["frames"].number());
   }
 
   void write(int frames) const {
-    writeAtomically(file_, [&](const fs::path& temporary) {
-      std::ofstream out(temporary);
-      out << nlohmann::json{{"conditions", conditions_}, {"frames", frames}} << '\n';
-      if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
-    });
+    writeText(file_, Value::of("conditions", conditions_, "frames", frames).json(-1) + "\n");
   }
 
  private:
@@ -73,6 +65,45 @@ double peakMemoryMiB() {
   return double(usage.ru_maxrss) / 1024;
 }
 
+constexpr int kNotInstalled = 127; // as a shell says it
+
+/// A path as ffmpeg's image readers take it: neither an option nor a pattern of its own.
+std::string forFfmpeg(const fs::path& path) {
+  std::string out;
+  for (char c : fs::absolute(path).string()) out += c == '%' ? std::string("%%") : std::string(1, c);
+  return out;
+}
+
+/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder: an earlier, longer recording may have
+/// left more. False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
+bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
+  const fs::path temporary = fs::absolute(folder) / ".video.mp4";
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string rate = format("%g", fps), pictures = forFfmpeg(folder) + "/%06d.png";
+    execlp("ffmpeg", "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", rate.c_str(), "-i",
+           pictures.c_str(), "-frames:v", std::to_string(frames).c_str(), "-pix_fmt", "yuv420p", "-vf",
+           "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18", temporary.c_str(), static_cast<char*>(nullptr));
+    _exit(kNotInstalled);
+  }
+  int status = 0;
+  const bool ended = child >= 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
+  if (ended && WEXITSTATUS(status) == 0) {
+    fs::rename(temporary, video);
+    return true;
+  }
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  if (ended && WEXITSTATUS(status) == kNotInstalled) return false;
+  throw RunError(video.string() + ": ffmpeg failed (the frames are written)");
+}
+
+/// What a person does about it who has ffmpeg, in one line.
+std::string videoCommand(const fs::path& folder, double fps) {
+  return format("ffmpeg -framerate %g -i ", fps) + (folder / "%06d.png").string() + " -pix_fmt yuv420p " +
+         (folder / "video.mp4").string();
+}
+
 /// One technique that is recorded: alone, or one of two beside each other.
 struct Side {
   std::string technique;
@@ -83,13 +114,13 @@ struct Side {
 };
 
 /// Of each side, from left to right.
-std::vector<Settings> settingsOf(const RecordOptions& options, LaunchContext& stage) {
-  std::vector<Settings> all = {stage.settings};
+std::vector<Settings> settingsOf(const RecordOptions& options, LaunchContext& opened) {
+  std::vector<Settings> all = {opened.settings};
   if (options.beside.empty()) return all;
   LaunchOptions right = options.launch;
   right.technique = options.beside;
-  all.push_back(chosenSettings(right, stage.shot));
-  tellWhatIsLeftOut(stage, all[1]);
+  all.push_back(chosenSettings(right, opened.shot));
+  tellWhatIsLeftOut(opened, all[1]);
   return all;
 }
 
@@ -97,7 +128,7 @@ std::vector<Settings> settingsOf(const RecordOptions& options, LaunchContext& st
 std::string choicesOf(const RecordOptions& options, const std::vector<Settings>& sides) {
   std::string text = options.buffer + ' ' + options.format + (options.captions ? " captions" : "");
   if (sides.size() > 1)
-    for (const SettingRow& row : settingsTable()) text += ' ' + settingText(sides[1], row.name);
+    for (const SettingRow& row : settingRows(sides[1])) text += ' ' + settingText(sides[1], row.name);
   return text;
 }
 
@@ -141,16 +172,12 @@ void checkOptions(const RecordOptions& o) {
 void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs::path& folder, int done, int total,
           bool filmed) {
   const std::string video = filmed ? (folder / "video.mp4").string() : "";
-  nlohmann::json figures = {{"folder", folder.string()},
-                            {"frames", done},
-                            {"frames_per_second", sides[0].log.framesPerSecond()},
-                            {"peak_memory_mib", peakMemoryMiB()},
-                            {"exposure", sides[0].gi->exposure()},
-                            {"video", video}};
+  Value figures =
+      Value::of("folder", folder.string(), "frames", done, "frames_per_second", sides[0].log.framesPerSecond(),
+                "peak_memory_mib", peakMemoryMiB(), "exposure", sides[0].gi->exposure(), "video", video);
   for (const Side& side : sides)
-    figures["sides"].push_back({{"technique", side.technique},
-                                {"log", (folder / side.logName).string()},
-                                {"frames_per_second", side.log.framesPerSecond()}});
+    figures["sides"].add(Value::of("technique", side.technique, "log", (folder / side.logName).string(),
+                                   "frames_per_second", side.log.framesPerSecond()));
   writeJson(options.output.json, figures);
   if (options.output.quiet) return;
   for (const Side& side : sides)
@@ -162,19 +189,15 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
 
 void record(const RecordOptions& options) {
   checkOptions(options);
-  const auto stage = openLaunch(options.launch);
-  if (!stage->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
-  const std::vector<Settings> settings = settingsOf(options, *stage);
-  say(*stage, options.output.quiet);
-  const fs::path folder = options.output.out.empty() ? fs::path("out") / fs::path(options.launch.scene).stem()
-                                                     : fs::path(options.output.out);
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+  const auto opened = openLaunch(options.launch);
+  if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
+  const std::vector<Settings> settings = settingsOf(options, *opened);
+  say(*opened, options.output.quiet);
+  const fs::path folder = reportFolder(options.output.out, "out/" + nameOf(options.launch.scene));
 
   const int total =
-      options.frames > 0 ? std::min(options.frames, stage->shot->frameCount()) : stage->shot->frameCount();
-  const RecordingMark mark(folder, conditionsOf(*stage, options.launch, choicesOf(options, settings)));
+      options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
+  const RecordingMark mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)));
   const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
   int kept = 0;
   for (const int marked = options.resume ? mark.kept() : 0; kept < marked; ++kept) // as far as none is missing
@@ -183,21 +206,21 @@ void record(const RecordOptions& options) {
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
-  for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, stage->seed)});
+  for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, opened->seed)});
   if (sides.size() > 1) sides[1].logName = "frames-" + options.beside + ".csv";
   Viewer& gi = *sides[0].gi;
-  const CameraView whole = stage->camera;
+  const CameraView whole = opened->camera;
   const int small = std::min(whole.width, kSheetWidth), smallHeight = std::max(1, whole.height * small / whole.width);
   ContactSheet sheet(options.sheet, total, small * int(sides.size()), smallHeight);
   std::optional<Governed> governor;
-  if (options.targetMs) governor = {.settings = stage->settings, .choosesPreset = options.launch.preset.empty()};
+  if (options.targetMs) governor = {.settings = opened->settings, .choosesPreset = options.launch.preset.empty()};
   int done = 0;
   {
     Progress progress("recording", options.output.quiet);
     for (; done < total && !interrupted; ++done) {
-      const double t = done / stage->shot->fps;
-      if (governor) stage->camera = whole.scaled(governor->scale);
-      const SceneView view = stage->at(t);
+      const double t = done / opened->shot->fps;
+      if (governor) opened->camera = whole.scaled(governor->scale);
+      const SceneView view = opened->at(t);
       for (size_t i = 0; i < sides.size(); ++i) { // in turn, so that none has the caches to itself
         Side& side = sides[(i + size_t(done)) % sides.size()];
         side.stats = &side.gi->run(view);
@@ -222,11 +245,11 @@ void record(const RecordOptions& options) {
   }
   for (const Side& side : sides) side.log.write(folder / side.logName);
   if (const Image8 all = sheet.sheet(); all.width > 0) writePng(folder / "contact-sheet.png", all);
-  const bool filmed = options.video && done > 0 && encodeVideo(folder, done, stage->shot->fps, folder / "video.mp4");
+  const bool filmed = options.video && done > 0 && encodeVideo(folder, done, opened->shot->fps, folder / "video.mp4");
   tell(options, sides, folder, done, total, filmed);
   if (options.video && done > 0 && !filmed && !options.output.quiet)
     std::printf("ffmpeg is not installed: the film stays a sequence of pictures (%s makes it)\n",
-                videoCommand(folder, stage->shot->fps).c_str());
+                videoCommand(folder, opened->shot->fps).c_str());
   if (interrupted)
     throw RunError("interrupted: " + std::to_string(done) + " frames and the log are whole" +
                    (options.targetMs ? "" : " (--resume goes on)"));
@@ -236,30 +259,27 @@ void record(const RecordOptions& options) {
 
 void declareRecord(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "every frame of a shot: pictures, frames.csv, video");
-  command->add_option("SHOT", options->launch.scene, "shot file (.json)")->required();
-  addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "folder (default out/NAME)");
-  addBufferOption(*command, options->buffer, "record");
-  command->add_option("--format", options->format, "png, exr or none (default png)");
-  command->add_option("--frames", options->frames, "only the first so many")->check(CLI::Range(1, 1000000));
-  command->add_flag("--video", options->video, "also make video.mp4, where ffmpeg is installed");
-  command->add_flag("--captions", options->captions, "burn technique, frame and milliseconds into the pictures");
-  command->add_option("--beside", options->beside,
-                      "a second technique: both see the same frames, and stand side by side in one picture; its log is "
-                      "frames-NAME.csv");
-  command->add_option("--contact-sheet", options->sheet, "also make contact-sheet.png of so many frames, evenly spaced")
-      ->check(CLI::Range(1, 1000));
-  command->add_flag("--resume", options->resume,
-                    "go on where the same command was interrupted: pictures that are there stay, frames before them "
-                    "are computed but not written");
-  command
-      ->add_option(
-          "--target-ms", options->targetMs,
-          "choose the preset (where none is given) that fits this time of a frame, and hold it by the scale at "
-          "which pictures are computed; frames.csv tells both")
-      ->check(CLI::Range(1.0, 10000.0));
-  command->callback([options] { record(*options); });
+  Command command(app, "record", "every frame of a shot: pictures, frames.csv, video");
+  command.scene(options->launch.scene, "SHOT", "shot file (.json)");
+  command.launch(options->launch);
+  command.output(options->output, "folder (default out/NAME)");
+  command.text("--buffer", options->buffer, bufferHelp(options->buffer, "record"));
+  command.text("--format", options->format, "png, exr or none (default png)");
+  command.number("--frames", &options->frames, 1, 1000000, "only the first so many");
+  command.flag("--video", options->video, "also make video.mp4, where ffmpeg is installed");
+  command.flag("--captions", options->captions, "burn technique, frame and milliseconds into the pictures");
+  command.text("--beside", options->beside,
+               "a second technique: both see the same frames, and stand side by side in one picture; its log is "
+               "frames-NAME.csv");
+  command.number("--contact-sheet", &options->sheet, 1, 1000,
+                 "also make contact-sheet.png of so many frames, evenly spaced");
+  command.flag("--resume", options->resume,
+               "go on where the same command was interrupted: pictures that are there stay, frames before them "
+               "are computed but not written");
+  command.number("--target-ms", &options->targetMs, 1.0, 10000.0,
+                 "choose the preset (where none is given) that fits this time of a frame, and hold it by the scale at "
+                 "which pictures are computed; frames.csv tells both");
+  command.run([options] { record(*options); });
 }
 
 } // namespace lambent

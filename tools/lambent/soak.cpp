@@ -1,6 +1,7 @@
 // lambent soak SCENE: many frames in which anything may change, through the whole frame. After each all must be whole
 // (gi/measure/runs/whole.h); memory, of the program and of OpenGL, must not grow.
 #include "engine/core/error.h"
+#include "engine/core/progress.h"
 #include "engine/core/rng.h"
 #include "engine/gl/objects.h"
 #include "engine/platform/gl_context.h"
@@ -23,17 +24,17 @@ struct SoakOptions {
   int frames = 2000;
 };
 
-/// Random changes of a stage, the same for the same seed.
+/// Random changes of what was opened, the same for the same seed.
 class Edits {
  public:
-  Edits(LaunchContext& stage, uint32_t seed) : stage_(stage), random_(seed, Stream::Test, 0) {
-    Registry& registry = stage.scene.registry;
-    bounds_ = worldBounds(stage.scene);
+  Edits(LaunchContext& opened, uint32_t seed) : opened_(opened), random_(seed, Stream::Test, 0) {
+    Registry& registry = opened.scene.registry;
+    bounds_ = worldBounds(opened.scene);
     registry.each<MeshInstance, Transform>([&](Entity e, const MeshInstance&, const Transform& t) {
       if (!t.matrix) objects_.emplace_back(e, t);
     });
     registry.each<PunctualLight>([&](Entity e, const PunctualLight& l) { lights_.emplace_back(e, l.intensity); });
-    stage.cameraGiven = true;
+    opened.cameraGiven = true;
   }
 
   /// Some frames change nothing, most one thing, some several.
@@ -50,8 +51,8 @@ class Edits {
   }
 
   void edit() {
-    Registry& registry = stage_.scene.registry;
-    CameraView& camera = stage_.camera;
+    Registry& registry = opened_.scene.registry;
+    CameraView& camera = opened_.camera;
     switch (below(7)) {
     case 0: // a cut
     case 1: {
@@ -88,13 +89,13 @@ class Edits {
         LightView lamp;
         lamp.position = place();
         lamp.intensity = vec3(0.01f * bounds_.diameter() * bounds_.diameter());
-        lamps_.push_back(addLight(stage_.scene, lamp, "soak"));
+        lamps_.push_back(addLight(opened_.scene, lamp, "soak"));
       }
       break;
     }
   }
 
-  LaunchContext& stage_;
+  LaunchContext& opened_;
   Rng random_;
   Aabb bounds_;
   std::vector<std::pair<Entity, Transform>> objects_;
@@ -132,12 +133,11 @@ struct Growth {
 };
 
 void soak(const SoakOptions& options) {
-  const auto stage = openLaunch(options.launch);
-  say(*stage, options.output.quiet);
-  needPunctualLight(*stage);
+  const auto opened = openAndSay(options.launch, options.output.quiet);
+  needPunctualLight(*opened);
   GlContext context = GlContext::headless();
-  Viewer gi(stage->settings, stage->seed);
-  Edits edits(*stage, stage->seed);
+  Viewer gi(opened->settings, opened->seed);
+  Edits edits(*opened, opened->seed);
   Growth program, openGl;
   int frame = 0;
   {
@@ -146,7 +146,7 @@ void soak(const SoakOptions& options) {
       if (frame > 0) edits.next();
       applyTechnique(gi.settings(), techniqueAt(frame, options.frames));
       const std::string at = "frame " + std::to_string(frame) + ", " + techniqueOf(gi.settings()).name + ": ";
-      gi.run(stage->at(frame / 30.0));
+      gi.run(opened->at(frame / 30.0));
       if (const std::string defect = defectOf(gi, gi.settings()); !defect.empty()) throw RunError(at + defect);
       if (glDebugErrors() > 0) throw RunError(at + "OpenGL reported errors (logged above)");
       program.add(residentMiB(), frame, options.frames);
@@ -154,9 +154,8 @@ void soak(const SoakOptions& options) {
       progress.update(frame + 1, options.frames);
     }
   }
-  writeJson(
-      options.output.json,
-      {{"frames", frame}, {"program_mib", {program.early, program.late}}, {"opengl_mib", {openGl.early, openGl.late}}});
+  writeJson(options.output.json, Value::of("frames", frame, "program_mib", std::vector{program.early, program.late},
+                                           "opengl_mib", std::vector{openGl.early, openGl.late}));
   if (!options.output.quiet)
     std::printf(
         "%d frames whole; largest in the second and in the last quarter: program %.0f and %.0f MiB, OpenGL %.1f "
@@ -171,13 +170,12 @@ void soak(const SoakOptions& options) {
 
 void declareSoak(CLI::App& app) {
   auto options = std::make_shared<SoakOptions>();
-  CLI::App* command =
-      app.add_subcommand("soak", "many frames in which anything changes: each is checked, memory must not grow");
-  command->add_option("SCENE", options->launch.scene, "glTF or shot file")->required();
-  addLaunchOptions(*command, options->launch);
-  addOutputOptions(*command, options->output, "");
-  command->add_option("--frames", options->frames, "so many (2000)")->check(CLI::Range(1, 100000000));
-  command->callback([options] { soak(*options); });
+  Command command(app, "soak", "many frames in which anything changes: each is checked, memory must not grow");
+  command.scene(options->launch.scene, "SCENE", "glTF or shot file");
+  command.launch(options->launch);
+  command.output(options->output, "");
+  command.number("--frames", &options->frames, 1, 100000000, "so many (2000)");
+  command.run([options] { soak(*options); });
 }
 
 } // namespace lambent

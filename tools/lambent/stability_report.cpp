@@ -1,11 +1,10 @@
 #include "tools/lambent/stability_report.h"
-#include "tools/lambent/html.h"
 
 #include "gi/plan/techniques.h"
-#include "tools/lambent/linear_picture.h"
+#include "tools/lambent/picture.h"
 #include "tools/lambent/plot.h"
-#include "tools/lambent/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -20,71 +19,54 @@ namespace {
 const std::map<std::string, double> kPublished{
     {"office", 0.57}, {"citadel", 0.61}, {"maze", 0.57}, {"atrium", 0.32}, {"citadel-moving", 0.22}};
 
-/// What |E'| is held against: that of ir as in paper 1, among techniques from reflective maps that of rsm.
-const TechniqueRun* simplestOf(const ShotRun& shot, const TechniqueRun& t) {
-  Settings settings;
-  applyTechnique(settings, t.name);
-  const TechniqueRun* simplest = shot.technique(needsOf(settings).reflective() ? "rsm" : "ir");
-  return simplest && simplest->grid.change > 0 ? simplest : nullptr;
+/// |E'| of what a technique is compared with: of ir as in paper 1, among techniques from reflective maps of rsm. 0:
+/// none.
+double simplestChange(const ShotRun& shot, const TechniqueRun& t) {
+  const char* name = needsOf(techniqueByName(t.name)).reflective() ? "rsm" : "ir";
+  const auto simplest = std::ranges::find(shot.techniques, name, &TechniqueRun::name);
+  return simplest != shot.techniques.end() ? simplest->grid.mean.change : 0;
 }
 
 /// What is ranked, as rows of figures name it.
 struct Statistic {
   const char *key, *title;
-  ErrorRuns TechniqueRun::*pixels;
-  StatisticRuns ErrorRuns::*error;
+  GroupErrors TechniqueRun::*pixels;
+  StatisticRuns GroupErrors::*runs;
 };
-constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::runsMarked, &ErrorRuns::error},
-                                     {"change_marked", "|E'| marked", &TechniqueRun::runsMarked, &ErrorRuns::change},
-                                     {"error_grid", "|E| grid", &TechniqueRun::runsGrid, &ErrorRuns::error},
-                                     {"change_grid", "|E'| grid", &TechniqueRun::runsGrid, &ErrorRuns::change}};
+constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::marked, &GroupErrors::error},
+                                     {"change_marked", "|E'| marked", &TechniqueRun::marked, &GroupErrors::change},
+                                     {"error_grid", "|E| grid", &TechniqueRun::grid, &GroupErrors::error},
+                                     {"change_grid", "|E'| grid", &TechniqueRun::grid, &GroupErrors::change}};
 
-/// Without marked pixels there is nothing to know of them.
-bool measured(const ShotRun& s, const Statistic& statistic) {
-  return s.marked > 0 || statistic.pixels != &TechniqueRun::runsMarked;
-}
-
-/// Beside the shot's techniques.
+/// Of the shot's techniques. Empty where no pixel is marked: there is nothing to know of them.
 std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& statistic) {
   std::vector<StatisticRuns> all;
-  for (const TechniqueRun& t : s.techniques) all.push_back(t.*statistic.pixels.*statistic.error);
+  for (const TechniqueRun& t : s.techniques)
+    if (s.marked > 0 || statistic.pixels != &TechniqueRun::marked) all.push_back(t.*statistic.pixels.*statistic.runs);
   return estimatesOf(all);
 }
 
-nlohmann::json figuresOf(const ShotRun& s, const TechniqueRun& t) {
-  nlohmann::json j{{"shot", s.name},
-                   {"technique", t.name},
-                   {"vpls", t.vpls},
-                   {"frames", s.truth.size()},
-                   {"pixels_marked", s.marked},
-                   {"pixels_grid", s.truth.front().size() - s.marked},
-                   {"steps", s.steps},
-                   {"error_marked", t.marked.error},
-                   {"change_marked", t.marked.change},
-                   {"error_grid", t.grid.error},
-                   {"change_grid", t.grid.change},
-                   {"bias_grid", t.grid.bias},
-                   {"l90_median", t.latency.median},
-                   {"l90_worst_tenth", t.latency.worstTenth},
-                   {"l90_followed", t.latency.followed},
-                   {"l90_count", t.latency.count},
-                   {"place_ms", t.placeMs},
-                   {"truth_error", s.truthError}};
-  for (const Statistic& statistic : kStatistics) {
-    if (!measured(s, statistic)) continue;
-    const double error = estimatesOf(s, statistic)[size_t(&t - s.techniques.data())].error;
-    if (!std::isnan(error)) j[std::string(statistic.key) + "_se"] = error;
-  }
-  if (t.latency.count > 0) j["l90"] = {t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
-  if (const TechniqueRun* simplest = simplestOf(s, t))
-    j["change_over_simplest"] = t.grid.change / simplest->grid.change;
+Value figuresOf(const ShotRun& s, size_t index) {
+  const TechniqueRun& t = s.techniques[index];
+  Value row = Value::of("shot", s.name, "technique", t.name, "vpls", t.vpls, "frames", s.truth.size(), "pixels_marked",
+                        s.marked, "pixels_grid", s.truth.front().size() - s.marked, "steps", s.steps, "error_marked",
+                        t.marked.mean.error, "change_marked", t.marked.mean.change, "error_grid", t.grid.mean.error,
+                        "change_grid", t.grid.mean.change, "bias_grid", t.grid.mean.bias, "l90_median",
+                        t.latency.median, "l90_worst_tenth", t.latency.worstTenth, "l90_followed", t.latency.followed,
+                        "l90_count", t.latency.count, "place_ms", t.placeMs, "truth_error", s.truthError);
+  for (const Statistic& statistic : kStatistics)
+    if (const auto estimates = estimatesOf(s, statistic); !estimates.empty() && !std::isnan(estimates[index].error))
+      row[std::string(statistic.key) + "_se"] = estimates[index].error;
+  if (t.latency.count > 0) row["l90"] = std::vector{t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
+  if (const double simplest = simplestChange(s, t); simplest > 0)
+    row["change_over_simplest"] = t.grid.mean.change / simplest;
   const auto published = kPublished.find(s.name.substr(0, s.name.find("-small")));
-  if (t.name == "smc" && published != kPublished.end()) j["paper_1"] = published->second;
-  if (!s.still) return j;
-  j["error_still_marked"] = t.stillMarked.error;
-  j["error_still_grid"] = t.stillGrid.error;
-  j["error_over_still"] = {t.marked.error / t.stillMarked.error, t.grid.error / t.stillGrid.error};
-  return j;
+  if (t.name == "smc" && published != kPublished.end()) row["paper_1"] = published->second;
+  if (!s.still) return row;
+  row["error_still_marked"] = t.marked.still;
+  row["error_still_grid"] = t.grid.still;
+  row["error_over_still"] = std::vector{t.marked.mean.error / t.marked.still, t.grid.mean.error / t.grid.still};
+  return row;
 }
 
 const std::vector<TableColumn> kColumns{{"shot", "shot"},
@@ -118,71 +100,62 @@ std::string seriesCsv(const ShotRun& s) {
 /// Tone-mapped luminance of each marked pixel over time, as paper 1, fig. 7.
 std::vector<Plot> plotsOf(const ShotRun& s) {
   std::vector<Plot> plots;
+  std::vector<double> seconds;
+  for (size_t f = 0; f < s.truth.size(); ++f) seconds.push_back(double(f) / s.fps);
   for (size_t p = 0; p < s.marked; ++p) {
-    Plot plot{.title = format("%s, pixel %zu", s.name.c_str(), p),
-              .xLabel = "time, s",
-              .yLabel = "luminance, tone-mapped (0 to 1)",
-              .x = {},
-              .even = true,
-              .series = {}};
+    Plot& plot = plots.emplace_back(format("%s, pixel %zu", s.name.c_str(), p), "time, s",
+                                    "luminance, tone-mapped (0 to 1)", false);
     const auto add = [&](const std::string& name, const PixelSeries& series, const char* colour) {
-      plot.series.push_back({name, {}, colour});
-      for (const auto& frame : series) plot.series.back().y.push_back(frame[p]);
+      PlotLine& line = plot.lines.emplace_back(name, seconds, std::vector<double>{}, colour);
+      for (const auto& frame : series) line.y.push_back(frame[p]);
     };
-    for (size_t f = 0; f < s.truth.size(); ++f) plot.x.push_back(double(f) / s.fps);
     for (const TechniqueRun& t : s.techniques) add(t.name, t.series, nullptr);
     add("truth", s.truth, "#000");
-    plots.push_back(std::move(plot));
   }
   return plots;
 }
 
-} // namespace
-
-const TechniqueRun* ShotRun::technique(const std::string& wanted) const {
-  for (const TechniqueRun& t : techniques)
-    if (t.name == wanted) return &t;
-  return nullptr;
-}
-
-nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots) {
-  nlohmann::json figures = nlohmann::json::array();
+/// A row for each technique of each shot, for programs and for the tables.
+Value stabilityFigures(const std::vector<ShotRun>& shots) {
+  Value figures = Value::list();
   for (const ShotRun& s : shots)
-    for (const TechniqueRun& t : s.techniques) figures.push_back(figuresOf(s, t));
+    for (size_t t = 0; t < s.techniques.size(); ++t) figures.add(figuresOf(s, t));
   return figures;
 }
 
-std::string stabilityTable(const nlohmann::json& figures) {
-  nlohmann::json rows = figures;
-  for (nlohmann::json& row : rows)
+/// The rows as Markdown.
+std::string stabilityTable(const Value& figures) {
+  Value rows = figures;
+  for (Value& row : rows.items())
     for (const Statistic& statistic : kStatistics)
-      if (const std::string error = std::string(statistic.key) + "_se"; row.contains(error))
-        row[statistic.key] = format("%.4f ± %.4f", row[statistic.key].get<double>(), row[error].get<double>());
+      if (const std::string error = std::string(statistic.key) + "_se"; row.has(error))
+        row[statistic.key] = format("%.4f ± %.4f", row[statistic.key].number(), row[error].number());
   return tableText(kColumns, rows);
 }
 
+/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
 std::string stabilityRankings(const std::vector<ShotRun>& shots) {
   std::string text;
-  for (const ShotRun& s : shots) {
-    if (s.techniques.size() < 2) continue;
+  for (const ShotRun& s : shots)
     for (const Statistic& statistic : kStatistics) {
-      if (!measured(s, statistic)) continue;
       const std::vector<UncertainValue> estimates = estimatesOf(s, statistic);
+      if (estimates.size() < 2) continue;
       std::vector<Ranked> all;
       for (size_t i = 0; i < estimates.size(); ++i) all.push_back({s.techniques[i].name, estimates[i]});
       text += "- " + s.name + ", " + statistic.title + ": " + rankingText(ranked(std::move(all))) + "\n";
     }
-  }
   if (text.empty()) return text;
   return "Rankings, the least first; a difference counts where seeds and the truth's noise make it in less than one of "
          "twenty cases:\n\n" +
          text;
 }
 
-void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& shots, const nlohmann::json& figures,
+} // namespace
+
+void writeStabilityReport(const OutputOptions& output, const fs::path& folder, const std::vector<ShotRun>& shots,
                           const std::string& conditions) {
-  writeText(folder / "stability.csv", csvText(figures));
-  std::string page = "# Temporal stability\n\n" + conditions + "\n\n" + stabilityTable(figures);
+  const Value figures = stabilityFigures(shots);
+  std::string page = conditions + "\n\n" + stabilityTable(figures);
   if (const std::string rankings = stabilityRankings(shots); !rankings.empty()) page += "\n" + rankings;
   for (const ShotRun& s : shots) {
     writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
@@ -192,7 +165,7 @@ void writeStabilityReport(const fs::path& folder, const std::vector<ShotRun>& sh
     writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
     page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
   }
-  writeText(folder / "stability.md", escaped(page)); // names of files may look like HTML
+  writeReport(output, folder, "stability", "Temporal stability", page, csvText(figures), figures);
 }
 
 } // namespace lambent

@@ -1,33 +1,28 @@
 // What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots.
 #pragma once
 
-#include "engine/core/image.h"
 #include "gi/measure/ranking.h"
 #include "gi/measure/stability.h"
-
-#include <nlohmann/json.hpp>
-
-#include <filesystem>
-#include <string>
-#include <vector>
+#include "tools/lambent/report.h"
 
 namespace lambent {
 
-/// |E| and |E'| of each seed, and against halves of the truth: what rankings are made from.
-struct ErrorRuns {
-  StatisticRuns error, change;
+/// Errors of one technique at some of the watched pixels.
+struct GroupErrors {
+  StabilityErrors mean; // over the seeds
+  StatisticRuns error,
+      change;       // |E| and |E'| of each seed, and against halves of the truth: what rankings are made from
+  double still = 0; // |E| of the same views standing still, where ShotRun::still is set
 };
 
 /// One technique over one shot.
 struct TechniqueRun {
   std::string name;
-  uint32_t vpls = 0; // N; those of most in a frame where it varies; 0: every pixel has its own clusters
-  PixelSeries series;
-  StabilityErrors marked, grid; // means over the seeds
-  ErrorRuns runsMarked, runsGrid;
-  StabilityErrors stillMarked, stillGrid; // of the same view standing still, where ShotRun::still is set
-  Latency latency;
-  double placeMs = 0; // median time per frame of placing virtual lights
+  uint32_t vpls = 0;       // N; those of most in a frame where it varies; 0: every pixel has its own clusters
+  PixelSeries series = {}; // of the first seed
+  GroupErrors marked = {}, grid = {};
+  Latency latency = {}; // the worst of the seeds
+  double placeMs = 0;   // median time per frame of placing virtual lights, mean over the seeds
 };
 
 /// One shot. The first `marked` pixels are the shot's own, the others its grid.
@@ -41,19 +36,11 @@ struct ShotRun {
   double truthError = 0;     // standard error of a value of the truth, RMS, tone-mapped luminance
   Image picture; // values of the display: the first frame, with the marked pixels numbered; empty: none are marked
   std::vector<TechniqueRun> techniques;
-
-  const TechniqueRun* technique(const std::string& name) const;
 };
 
-/// A row for each technique of each shot, for programs and for the tables.
-nlohmann::json stabilityFigures(const std::vector<ShotRun>& shots);
-/// The rows as Markdown.
-std::string stabilityTable(const nlohmann::json& figures);
-/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
-std::string stabilityRankings(const std::vector<ShotRun>& shots);
-/// stability.csv, stability.md and of each shot series-SHOT.csv and of its marked pixels a picture and plots, each in
-/// one step.
-void writeStabilityReport(const std::filesystem::path& folder, const std::vector<ShotRun>& shots,
-                          const nlohmann::json& figures, const std::string& conditions);
+/// stability.csv, stability.md (tables, rankings) and of each shot series-SHOT.csv and of its marked pixels a picture
+/// and plots, each in one step.
+void writeStabilityReport(const OutputOptions& output, const std::filesystem::path& folder,
+                          const std::vector<ShotRun>& shots, const std::string& conditions);
 
 } // namespace lambent

@@ -2,80 +2,193 @@
 
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
+#include "gi/plan/techniques.h"
 
 #include <algorithm>
 #include <cstdio>
 
 namespace lambent {
 
-Study::Study(const AccuracyOptions& options, const std::string& size, Assignments defaults)
-    : launch(options.launch), options_(options) {
-  if (launch.size.empty()) launch.size = options.quick ? "32x18" : size;
-  if (options.quick) defaults.insert(defaults.end(), {{"smc.vpls", "128"}, {"smc.warmup", "4"}});
-  if (options.clamp) defaults.emplace_back("gather.clamp", format("%.9g", *options.clamp));
-  for (const auto& [name, value] : defaults) launch.set.insert(launch.set.begin(), name + "=" + value);
-  stage = openLaunch(launch);
-  say(*stage, options.output.quiet);
-  context_.emplace(GlContext::headless());
-}
-
-Variant Study::variant(const std::string& name, const Assignments& assignments) const {
-  Variant v{name, stage->settings, stage->seed};
-  for (const auto& [setting, value] : assignments) applySetting(v.settings, setting, value);
+Variant variantOf(const LaunchContext& opened, const std::string& name, const Assignments& set,
+                  const std::string& technique) {
+  Variant v{name, opened.settings, opened.seed};
+  if (!technique.empty()) applyTechnique(v.settings, technique);
+  for (const auto& [setting, value] : set) applySetting(v.settings, setting, value);
   return v;
 }
 
-std::vector<Measured> Study::draw(const std::vector<Variant>& variants, Buffer buffer, int frames, int skip,
-                                  bool inTurn) {
-  Progress progress("drawing", options_.output.quiet);
-  RunPlan plan = stillPlan(*stage, progress, buffer);
-  plan.frames = frames, plan.skip = skip, plan.inTurn = inTurn;
+std::vector<Variant> seeded(const std::vector<Variant>& variants, int seeds) {
+  std::vector<Variant> out;
+  for (const Variant& v : variants)
+    for (int k = 0; k < seeds; ++k) out.emplace_back(v).seed += uint32_t(k);
+  return out;
+}
+
+void lightByEveryTexel(Settings& settings) {
+  applyTechnique(settings, "isr");
+  settings.gather.mode = GatherMode::Full;
+  settings.rsm.finest = settings.rsm.resolution;
+  settings.rsm.depth = 0;
+}
+
+void useFewLights(MeasureOptions& options) {
+  options.launch.set.insert(options.launch.set.begin(), {"smc.vpls=128", "smc.warmup=4"});
+}
+
+void needSampledLights(const std::string& technique) {
+  if (!needsOf(techniqueByName(technique)).sampled())
+    throw InputError("--technique " + technique, "has no sampled lights (smc, ir, mir and tcas have)");
+}
+void needSampledLights(const Settings& settings) { needSampledLights(techniqueOf(settings).name); }
+
+RunPlan planOf(LaunchContext& opened, int frames) {
+  const int all = opened.shot ? opened.shot->frameCount() : 60;
+  const double fps = opened.shot ? opened.shot->fps : 30;
+  return {.view = [&opened, fps](int frame) { return opened.at(frame / fps); },
+          .frames = frames > 0 ? std::min(frames, all) : all};
+}
+
+RunPlan stillPlan(LaunchContext& opened, Buffer buffer, int frames, int skip) {
+  return {.view = [&opened](int) { return opened.at(0); },
+          .frames = frames,
+          .skip = skip,
+          .inTurn = false,
+          .picture = buffer};
+}
+
+std::function<SceneView(int)> watchedBy(WatchedScene& watched, std::function<SceneView(int)> view) {
+  return [&watched, view = std::move(view)](int frame) {
+    const SceneView shown = view(frame);
+    watched.update(shown);
+    return shown;
+  };
+}
+
+std::vector<Measured> run(const std::vector<Variant>& variants, RunPlan plan, const std::string& doing, bool quiet) {
+  Progress progress(doing, quiet);
+  plan.cancelled = [] { return interrupted.load(); };
+  plan.progress = [&](int done, int total) { progress.update(done, total); };
   return measure(variants, plan);
 }
 
-std::vector<Measured> Study::drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) {
-  Progress progress("drawing", options_.output.quiet);
-  RunPlan plan = planOf(*stage, progress, frame + 1);
+TracedPicture trace(const SceneView& view, const Settings& settings, TracePlan plan, const std::string& doing,
+                    bool quiet) {
+  Progress progress(doing, quiet);
+  plan.cancelled = [] { return interrupted.load(); };
+  plan.progress = [&](int done, int total) { progress.update(done, total); };
+  return tracePicture(view, settings, plan);
+}
+
+double msOf(const FrameStats& stats, std::span<const StageId> stages) {
+  double ms = 0;
+  for (StageId stage : stages) ms += stats.ms(stage);
+  return ms;
+}
+double msOf(const Measured& run, std::initializer_list<StageId> stages) {
+  return run.of([&](const FrameStats& s) { return msOf(s, stages); }).median;
+}
+double frameMs(const Measured& run) {
+  return run.of([](const FrameStats& s) { return s.wallMs; }).median;
+}
+
+std::string tableText(const std::vector<Column>& columns, const Value& rows) {
+  std::vector<TableColumn> shown;
+  for (const Column& c : columns) shown.push_back(c.shown);
+  return tableText(shown, rows);
+}
+
+namespace {
+
+LaunchOptions launchOf(const MeasureOptions& options, const std::string& scene, const Study::Defaults& defaults) {
+  LaunchOptions launch = options.launch;
+  launch.scene = scene;
+  if (launch.size.empty()) launch.size = options.quick ? defaults.quickSize : defaults.size;
+  Assignments set = defaults.set;
+  if (options.clamp) set.emplace_back("gather.clamp", format("%.9g", *options.clamp));
+  for (const auto& [name, value] : set) launch.set.insert(launch.set.begin(), name + "=" + value);
+  return launch;
+}
+
+std::unique_ptr<LaunchContext> open(const LaunchOptions& launch, bool punctual, bool quiet) {
+  std::unique_ptr<LaunchContext> opened = openLaunch(launch);
+  if (punctual) needPunctualLight(*opened);
+  say(*opened, quiet);
+  return opened;
+}
+
+} // namespace
+
+Study::Study(const MeasureOptions& options, const std::string& scene, const Defaults& defaults)
+    : launch(launchOf(options, scene, defaults)), opened(open(launch, defaults.punctual, options.output.quiet)),
+      options_(options) {}
+
+std::vector<Measured> Study::draw(const std::vector<Variant>& variants, Buffer buffer, int frames) const {
+  return run(variants, stillPlan(*opened, buffer, frames), "drawing", options_.output.quiet);
+}
+
+std::vector<Measured> Study::drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) const {
+  RunPlan plan = planOf(*opened, frame + 1);
   plan.inTurn = false, plan.picture = buffer;
   if (plan.frames <= frame) throw InputError("--frame", "the shot has only " + std::to_string(plan.frames));
-  return measure(variants, plan);
+  return run(variants, plan, "drawing", options_.output.quiet);
 }
 
 const TracedPicture& Study::trace(int samples, ReferenceBuffer buffer, bool clamped, const std::filesystem::path& state,
                                   int frame) {
-  Progress progress("tracing paths", options_.output.quiet);
-  const RunPlan plan = planOf(*stage, progress, 0);
-  truth = tracePicture(plan.view(frame), stage->settings,
-                       {.buffer = buffer,
-                        .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
-                        .clamped = clamped,
-                        .seed = stage->seed,
-                        .state = state,
-                        .cancelled = plan.cancelled,
-                        .progress = plan.progress});
+  return traceView(planOf(*opened, 0).view(frame), samples, buffer, clamped, state);
+}
+
+const TracedPicture& Study::traceView(const SceneView& view, int samples, ReferenceBuffer buffer, bool clamped,
+                                      const std::filesystem::path& state) {
+  traced = lambent::trace(view, opened->settings,
+                          {.buffer = buffer,
+                           .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
+                           .clamped = clamped,
+                           .seed = opened->seed,
+                           .state = state},
+                          "tracing paths", options_.output.quiet);
   if (interrupted)
     throw RunError(state.empty() ? "interrupted before there was a result" : "interrupted: the same command goes on");
-  return *truth;
+  truth = traced->picture.mean;
+  return *traced;
 }
 
-void Study::report(const std::vector<TableColumn>& columns, const nlohmann::json& rows, nlohmann::json figures) const {
+Outcome Study::outcome(const Measured& run) const {
+  return {*this, run, truth.pixels.empty() ? PictureError{} : pictureError(run.picture, truth)};
+}
+
+Value Study::row(const std::vector<Column>& columns, const Measured& run) const {
+  const Outcome from = outcome(run);
+  const PictureError& e = from.error;
+  Value row = Value::of();
+  if (!truth.pixels.empty())
+    row = Value::of("rmse", e.rmse, "rmse_share", e.rmseShare(), "rel_mse", e.relMse, "bias", e.bias);
+  for (const Column& c : columns) {
+    Value value = c.of ? c.of(from) : Value();
+    if (!value.isNothing()) row[c.shown.key] = std::move(value);
+  }
+  return row;
+}
+
+Value Study::rows(const std::vector<Column>& columns, std::span<const Measured> runs) const {
+  Value rows = Value::list();
+  for (const Measured& run : runs) rows.add(row(columns, run));
+  return rows;
+}
+
+void Study::report(const std::vector<Column>& columns, const Value& rows, Value figures) const {
   figures["scene"] = launch.scene;
   figures["rows"] = rows;
-  if (truth)
-    figures["truth"] = {{"spp", truth->samples},
-                        {"clamp", truth->clamp},
-                        {"relative_error", truth->picture.relativeError},
-                        {"relative_error_of_mean", truth->picture.relativeErrorOfMean}};
+  if (traced)
+    figures["truth"] =
+        Value::of("spp", traced->samples, "clamp", traced->clamp, "relative_error", traced->picture.relativeError,
+                  "relative_error_of_mean", traced->picture.relativeErrorOfMean);
   writeJson(options_.output.json, figures);
   if (options_.output.quiet) return;
-  if (truth)
+  if (traced)
     std::printf("truth: %u paths per pixel, standard error %.2f %% per pixel (RMS), %.2f %% of the mean\n",
-                truth->samples, 100 * truth->picture.relativeError, 100 * truth->picture.relativeErrorOfMean);
+                traced->samples, 100 * traced->picture.relativeError, 100 * traced->picture.relativeErrorOfMean);
   std::printf("%s", tableText(columns, rows).c_str());
-}
-
-nlohmann::json rowOf(const PictureError& e) {
-  return {{"rmse", e.rmse}, {"rmse_share", e.rmseShare()}, {"rel_mse", e.relMse}, {"bias", e.bias}};
 }
 
 std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
@@ -84,16 +197,8 @@ std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
 }
 
 const char* holdsBar(const UncertainValue& times) {
-  switch (compared(times, {kPathTracingTimes, 0})) {
-  case Order::Greater:
-    return "yes";
-  case Order::Less:
-    return "no";
-  case Order::Unknown:
-    return "one seed";
-  default:
-    return "within noise";
-  }
+  constexpr const char* kTexts[] = {"no", "yes", "within noise", "one seed"}; // by Order
+  return kTexts[int(compared(times, {kPathTracingTimes, 0}))];
 }
 
 std::optional<double> steadyMs(const std::vector<FrameStats>& frames) {

@@ -2,21 +2,11 @@
 
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "engine/core/rng.h"
-#include "engine/gl/program.h"
-#include "engine/platform/gl_context.h"
-#include "gi/measure/picture_error.h"
 #include "gi/measure/stability.h"
 #include "gi/plan/techniques.h"
-#include "gi/reference/traced_picture.h"
-#include "tools/lambent/conditions.h"
-#include "tools/lambent/text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <iterator>
-#include <map>
 
 namespace lambent {
 
@@ -24,6 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kGoesOn = "interrupted: the same command goes on";
 constexpr int kGrid = 16;            // watched pixels besides the shot's own, squared
 constexpr int kBetweenControls = 10; // runs
 constexpr int kControlSeeds = 4;     // of the default: what chance does to an error
@@ -35,33 +26,33 @@ class RunLog {
     std::ifstream in(file_);
     int session = 0;
     for (std::string line; std::getline(in, line);) {
-      const nlohmann::json run = nlohmann::json::parse(line, nullptr, false);
-      if (run.is_discarded()) continue;
-      session = std::max(session, run.value("session", 0));
-      if (run.value("conditions", "") == conditions_) runs_.push_back(run);
+      const Value run = Value::parsed(line);
+      if (!run.isObject()) continue;
+      session = std::max(session, int(run.numberOr("session", 0)));
+      if (run.has("conditions") && run["conditions"].text() == conditions_) runs_.push_back(run);
     }
     session_ = session + 1;
   }
 
   bool has(const std::string& key) const {
-    return std::ranges::any_of(runs_, [&](const nlohmann::json& run) { return run["key"] == key; });
+    return std::ranges::any_of(runs_, [&](const Value& run) { return run["key"].text() == key; });
   }
 
-  void add(const std::string& key, nlohmann::json run) {
-    run.update({{"key", key}, {"session", session_}, {"conditions", conditions_}});
+  void add(const std::string& key, Value run) {
+    run.update(Value::of("key", key, "session", session_, "conditions", conditions_));
     std::ofstream out(file_, std::ios::app);
-    out << (begun_ ? "" : "\n") << run.dump() << '\n'; // not behind half a line
+    out << (begun_ ? "" : "\n") << run.json(-1) << '\n'; // not behind half a line
     if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
     begun_ = true;
     runs_.push_back(std::move(run));
   }
 
-  const std::vector<nlohmann::json>& runs() const { return runs_; }
+  const Value::List& runs() const { return runs_; }
 
  private:
   const fs::path file_;
   const std::string conditions_;
-  std::vector<nlohmann::json> runs_;
+  Value::List runs_;
   int session_ = 1;
   bool begun_ = false;
 };
@@ -69,22 +60,16 @@ class RunLog {
 class SceneSweep {
  public:
   SceneSweep(const AccuracyOptions& options, const std::string& file, const fs::path& folder, const SweepFrames& frames)
-      : options_(options), frames_(frames), folder_(folder) {
-    LaunchOptions launch = options.launch;
-    launch.scene = file;
-    if (launch.size.empty()) launch.size = options.quick ? "48x27" : "128x72";
-    stage_ = openLaunch(launch);
-    refuseGlossy(stage_->settings);
-    say(*stage_, options.output.quiet);
-    name_ = fs::path(file).stem().string();
-    context_.emplace(GlContext::headless());
-    samples_ = options.samples.value_or(options.quick ? 64 : 2048);
-    punctual_ = std::ranges::any_of(stage_->at(0).lights,
+      : options_(options), frames_(frames), folder_(folder),
+        study_(options, file, {.size = "128x72", .quickSize = "48x27"}), opened_(*study_.opened), name_(nameOf(file)),
+        samples_(options.samples.value_or(options.quick ? 64 : 2048)) {
+    refuseGlossy(opened_.settings);
+    punctual_ = std::ranges::any_of(opened_.at(0).lights,
                                     [](const LightView& light) { return maxComponent(light.intensity) > 0; });
     out_.name = name_;
-    conditions_ =
-        conditionsOf(*stage_, launch,
-                     format("%d %d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow, launch.threads));
+    conditions_ = conditionsOf(
+        opened_, study_.launch,
+        format("%d %d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow, study_.launch.threads));
     out_.pictures = folder_ / ("pictures-" + name_ + "-" + conditions_); // not beside another program's
     reportFolder(out_.pictures.string(), {});
   }
@@ -114,56 +99,50 @@ class SceneSweep {
     }
     while (!options_.quick && controls(log) < kControlSeeds) addControl(log, points[0], control);
     progress.update(1, 1);
-    for (const nlohmann::json& run : log.runs()) out_.runs.push_back(run);
+    out_.runs = log.runs();
     return std::move(out_);
   }
 
  private:
   static size_t controls(const RunLog& log) {
-    return size_t(std::ranges::count_if(log.runs(), [](const nlohmann::json& run) { return run.contains("control"); }));
+    return size_t(std::ranges::count_if(log.runs(), [](const Value& run) { return run.has("control"); }));
   }
 
   void addControl(RunLog& log, const SweepPoint& standard, int& control) {
     std::string key;
     do key = format("control %d", control++);
     while (log.has(key));
-    nlohmann::json run = measured(standard, (control - 1) % kControlSeeds, key);
+    Value run = measured(standard, (control - 1) % kControlSeeds, key);
     run["control"] = true;
     log.add(key, std::move(run));
   }
 
   SceneView viewAt(int frame) {
-    const double fps = stage_->shot ? stage_->shot->fps : 30;
-    return stage_->at(std::min(frame, frames_.moving - 1) / fps);
+    const double fps = opened_.shot ? opened_.shot->fps : 30;
+    return opened_.at(std::min(frame, frames_.moving - 1) / fps);
   }
 
   void traceTruths() {
-    const char* names[] = {"indirect", "direct"};
     for (KnobLight light : {KnobLight::Indirect, KnobLight::Direct}) {
-      const std::string name = names[int(light)];
-      Progress progress(name_ + ": truth of " + name + " light", options_.output.quiet);
-      const std::string file = "truth-" + name_ + "-" + name + "-" + conditions_;
-      const fs::path state = folder_ / (file + ".state"), pace = folder_ / (file + ".ms");
-      const TracedPicture traced =
-          tracePicture(viewAt(frames_.moving - 1), stage_->settings,
-                       {.buffer = light == KnobLight::Indirect ? ReferenceBuffer::Irradiance : ReferenceBuffer::Direct,
-                        .samples = uint32_t(light == KnobLight::Indirect ? samples_ : std::max(samples_ / 8, 2)),
-                        .seed = stage_->seed,
-                        .state = state,
-                        .cancelled = [] { return interrupted.load(); },
-                        .progress = [&](int done, int total) { progress.update(done, total); }});
-      if (interrupted) throw RunError("interrupted: the same command goes on");
+      const bool indirect = light == KnobLight::Indirect;
+      const std::string name = indirect ? "indirect" : "direct",
+                        file = "truth-" + name_ + "-" + name + "-" + conditions_;
+      const fs::path pace = folder_ / (file + ".ms");
+      const TracedPicture traced = trace(viewAt(frames_.moving - 1), opened_.settings,
+                                         {.buffer = indirect ? ReferenceBuffer::Irradiance : ReferenceBuffer::Direct,
+                                          .samples = uint32_t(indirect ? samples_ : std::max(samples_ / 8, 2)),
+                                          .seed = opened_.seed,
+                                          .state = folder_ / (file + ".state")},
+                                         name_ + ": truth of " + name + " light", options_.output.quiet);
+      if (interrupted) throw RunError(kGoesOn);
       const ReferencePicture& p = traced.picture;
       out_.truths[int(light)] = p.mean;
       truthRelMse_[int(light)] = expectedRelMse(p.mean, p.error);
-      out_.truth[name] = {{"spp", traced.samples},
-                          {"relative_error_of_mean", p.relativeErrorOfMean},
-                          {"rel_mse", truthRelMse_[int(light)]},
-                          {"seed", stage_->seed}};
       double sampleMs = 0; // of the pass that took samples; later ones find them all there
       if (traced.sampleSeconds > 0) writeText(pace, format("%.9g", 1000 * traced.sampleSeconds));
       std::ifstream(pace) >> sampleMs;
-      out_.truth[name]["sample_ms"] = sampleMs;
+      out_.truth[name] = Value::of("spp", traced.samples, "relative_error_of_mean", p.relativeErrorOfMean, "rel_mse",
+                                   truthRelMse_[int(light)], "seed", opened_.seed, "sample_ms", sampleMs);
     }
     out_.exposure = exposureFor(out_.truths[0].pixels);
   }
@@ -172,19 +151,14 @@ class SceneSweep {
   const PixelSeries& watchedTruth() {
     if (!watchedTruth_.empty()) return watchedTruth_;
     const Shot none;
-    tracked_ = trackedPixels(stage_->shot ? *stage_->shot : none, options_.quick ? 4 : kGrid);
+    tracked_ = trackedPixels(opened_.shot ? *opened_.shot : none, options_.quick ? 4 : kGrid);
     WatchedScene watched(tracked_.points);
-    Progress progress(name_ + ": truth of watched pixels", options_.output.quiet);
-    RunPlan plan = planOf(*stage_, progress, frames_.moving);
-    plan.frames = frames_.moving;
-    plan.view = [&](int frame) {
-      const SceneView view = viewAt(frame);
-      watched.update(view);
-      return view;
-    };
-    plan.points = tracked_.points;
+    RunPlan plan{.view = watchedBy(watched, [this](int frame) { return viewAt(frame); }),
+                 .frames = frames_.moving,
+                 .points = tracked_.points};
     const Measured truth =
-        measure({{"truth", stage_->settings, stage_->seed, pathsAtPoints(watched, uint32_t(samples_ / 2))}}, plan)[0];
+        lambent::run({{"truth", opened_.settings, opened_.seed, pathsAtPoints(watched, uint32_t(samples_ / 2))}}, plan,
+                     name_ + ": truth of watched pixels", options_.output.quiet)[0];
     std::vector<vec3> first;
     for (const TrackedValue& v : truth.series[0]) first.push_back(v.radiance);
     watchedExposure_ = exposureFor(first);
@@ -192,37 +166,35 @@ class SceneSweep {
     return watchedTruth_ = toneMappedSeries(truth.series, seen_, watchedExposure_);
   }
 
-  nlohmann::json errorsOf(const Image& picture, KnobLight light) const {
+  Value errorsOf(const Image& picture, KnobLight light) const {
     const PictureError e = pictureError(picture, out_.truths[int(light)]);
     // What the truth does not know is no error of the picture, down to a tenth of it.
     const double relMse = std::max(e.relMse - truthRelMse_[int(light)], 0.1 * truthRelMse_[int(light)]);
-    return {{"rel_mse", relMse}, {"rmse_share", e.rmseShare()}, {"bias", e.bias}};
+    return Value::of("rel_mse", relMse, "rmse_share", e.rmseShare(), "bias", e.bias);
   }
 
-  nlohmann::json measured(const SweepPoint& point, int seed, const std::string& key) {
+  Value measured(const SweepPoint& point, int seed, const std::string& key) {
     const bool direct = point.light == KnobLight::Direct;
-    Variant variant{point.name, stage_->settings, stage_->seed + uint32_t(seed)};
-    if (!point.technique.empty()) applyTechnique(variant.settings, point.technique);
-    for (const auto& [setting, value] : point.set) applySetting(variant.settings, setting, value);
+    Variant variant = study_.variant(point.name, point.set, point.technique);
+    variant.seed += uint32_t(seed);
     if (direct) variant.settings.effects[EffectId::Indirect] = EffectMode::Off;
     variant.settings.effects[EffectId::Redraw] = EffectMode::On; // what sleeps would cost nothing
     const PixelSeries& truth = watchedTruth();
 
     const int moving = point.slow ? std::min(frames_.slow, frames_.moving) : frames_.moving;
     const int still = point.slow || direct ? 0 : frames_.still, skipped = frames_.moving - moving;
-    RunPlan plan;
-    plan.frames = moving + still;
-    plan.view = [&](int frame) { return viewAt(skipped + frame); };
-    plan.inTurn = false;
-    plan.picture = direct ? Buffer::Direct : Buffer::Irradiance;
+    RunPlan plan{.view = [&](int frame) { return viewAt(skipped + frame); },
+                 .frames = moving + still,
+                 .inTurn = false,
+                 .picture = direct ? Buffer::Direct : Buffer::Irradiance,
+                 .cancelled = [] { return interrupted.load(); }};
     if (still > 0) plan.also = {moving - 1};
     if (!direct) plan.points = tracked_.points;
-    plan.cancelled = [] { return interrupted.load(); };
     Measured m = [&] {
       try {
         return measure({variant}, plan)[0];
       } catch (const RunError&) {
-        if (interrupted) throw RunError("interrupted: the same command goes on");
+        if (interrupted) throw RunError(kGoesOn);
         throw;
       }
     }();
@@ -232,7 +204,7 @@ class SceneSweep {
       for (int f = from; f < to; ++f) ms.push_back(m.frames[size_t(f)].wallMs);
       return spreadOf(std::move(ms)).median;
     };
-    nlohmann::json run{{"point", point.name}, {"seed", seed}, {"gpu_mib", double(m.gpuBytes) / (1 << 20)}};
+    Value run = Value::of("point", point.name, "seed", seed, "gpu_mib", double(m.gpuBytes) / (1 << 20));
     run["moving"] = errorsOf(still > 0 ? m.before[0] : m.picture, point.light);
     run["moving"]["ms"] = medianMs(std::min(2, moving - 1), moving); // shaders and maps of the first are past
     if (still > 0) {
@@ -248,7 +220,7 @@ class SceneSweep {
       std::vector<uint32_t> pixels(tracked_.points.size());
       for (uint32_t i = 0; i < pixels.size(); ++i) pixels[i] = i;
       const StabilityErrors e = stabilityErrors(toneMappedSeries(m.series, seen, watchedExposure_), wanted, pixels);
-      run["moving"].update({{"error", e.error}, {"change", e.change}});
+      run["moving"].update(Value::of("error", e.error, "change", e.change));
     }
     m.frames.resize(size_t(moving));
     for (StageId stage : m.stages()) run["stages"][kStageNames[size_t(stage)]] = m.ms(stage).median;
@@ -265,10 +237,11 @@ class SceneSweep {
   const AccuracyOptions& options_;
   const SweepFrames frames_;
   const fs::path folder_;
-  std::unique_ptr<LaunchContext> stage_;
-  std::optional<GlContext> context_;
-  std::string name_, conditions_;
-  int samples_ = 0;
+  const Study study_;
+  LaunchContext& opened_;
+  const std::string name_;
+  const int samples_;
+  std::string conditions_;
   bool punctual_ = false;
   double truthRelMse_[2] = {};
   TrackedPixels tracked_;

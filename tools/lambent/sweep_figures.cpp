@@ -1,16 +1,15 @@
-#include "tools/lambent/sweep_figures.h"
+#include "tools/lambent/sweep.h"
 
 #include "engine/core/error.h"
 #include "gi/measure/statistics.h"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace lambent {
 
 namespace {
-
-using Json = nlohmann::json;
 
 /// Standard deviation over the mean; 0 of one value.
 double relativeDeviation(const std::vector<double>& values) {
@@ -22,18 +21,18 @@ double relativeDeviation(const std::vector<double>& values) {
 
 constexpr double kUnknown = 0.25; // share, where too little was measured to know a noise
 
-bool isControl(const Json& run) { return run.contains("control"); }
+bool isControl(const Value& run) { return run.has("control"); }
 
 /// What brings a run's times to the pace of all: the median control over those before and after it, of its session.
-double paceOf(const Json& runs, size_t index, double all) {
-  const auto ms = [](const Json& run) { return run["moving"]["ms"].get<double>(); };
+double paceOf(const Value::List& runs, size_t index, double all) {
+  const auto ms = [](const Value& run) { return run["moving"]["ms"].number(); };
   if (isControl(runs[index])) return all / ms(runs[index]); // itself is the nearest
   double sum = 0;
   int count = 0;
   for (int step : {-1, 1})
     for (int i = int(index); i >= 0 && i < int(runs.size()); i += step) {
-      const Json& run = runs[size_t(i)];
-      if (run["session"] != runs[index]["session"]) break;
+      const Value& run = runs[size_t(i)];
+      if (run["session"].number() != runs[index]["session"].number()) break;
       if (!isControl(run)) continue;
       sum += ms(run), ++count;
       break;
@@ -42,14 +41,14 @@ double paceOf(const Json& runs, size_t index, double all) {
 }
 
 /// Relative spread of relMSE over seeds, root of the mean square over the points that have several.
-double pooledSpread(const std::map<std::string, std::vector<Json>>& runs, const char* state, KnobLight light) {
+double pooledSpread(const std::map<std::string, std::vector<Value>>& runs, const char* state, KnobLight light) {
   std::map<std::string, KnobLight> lights;
   for (const SweepPoint& p : sweepPoints(SweepPart::All)) lights[p.name] = p.light;
   double squares = 0, degrees = 0;
   for (const auto& [name, own] : runs) {
     std::map<int, double> errors; // by seed
-    for (const Json& run : own)
-      if (run.contains(state)) errors[run["seed"]] = run[state]["rel_mse"];
+    for (const Value& run : own)
+      if (run.has(state)) errors[int(run["seed"].number())] = run[state]["rel_mse"].number();
     const auto known = lights.find(name);
     if (errors.size() < 2 || known == lights.end() || known->second != light) continue;
     std::vector<double> values;
@@ -60,10 +59,10 @@ double pooledSpread(const std::map<std::string, std::vector<Json>>& runs, const 
   return degrees > 0 ? std::sqrt(squares / degrees) : kUnknown;
 }
 
-/// Mean of a figure over runs, "moving/ms".
-double meanOf(const std::vector<Json>& runs, const char* path) {
+/// Mean of a figure over runs: of a state, or of the run itself where that is empty.
+double meanOf(const std::vector<Value>& runs, const std::string& state, const char* key) {
   double sum = 0;
-  for (const Json& run : runs) sum += run.at(Json::json_pointer(path)).get<double>() / double(runs.size());
+  for (const Value& run : runs) sum += (state.empty() ? run : run[state])[key].number() / double(runs.size());
   return sum;
 }
 
@@ -86,8 +85,8 @@ const std::vector<TableColumn> kPointColumns{{"point", "point"},
 
 Figures figuresOf(const SweptScene& scene) {
   std::vector<double> controlMs;
-  for (const Json& run : scene.runs)
-    if (isControl(run)) controlMs.push_back(run["moving"]["ms"]);
+  for (const Value& run : scene.runs.items())
+    if (isControl(run)) controlMs.push_back(run["moving"]["ms"].number());
   const double all = spreadOf(controlMs).median;
   // Neighbouring controls differ by what is left once the slow changes of pace are out; a run's time has its own noise
   // and that of the two controls beside it.
@@ -96,15 +95,15 @@ Figures figuresOf(const SweptScene& scene) {
   const double costNoise =
       controlMs.size() > 1 ? std::sqrt(1.5 * 0.5 * turns / double(controlMs.size() - 1)) : kUnknown;
 
-  std::map<std::string, std::vector<Json>> runs;
+  std::map<std::string, std::vector<Value>> runs;
   for (size_t i = 0; i < scene.runs.size(); ++i) {
-    Json run = scene.runs[i];
-    const double pace = paceOf(scene.runs, i, all);
+    Value run = scene.runs.items()[i];
+    const double pace = paceOf(scene.runs.items(), i, all);
     for (const char* state : {"moving", "still"})
-      if (run.contains(state)) run[state]["ms"] = pace * run[state]["ms"].get<double>();
-    if (run.contains("stages"))
-      for (Json& ms : run["stages"]) ms = pace * ms.get<double>();
-    runs[run["point"]].push_back(std::move(run));
+      if (run.has(state)) run[state]["ms"] = pace * run[state]["ms"].number();
+    if (run.has("stages"))
+      for (auto& [stage, ms] : run["stages"].fields()) ms = pace * ms.number();
+    runs[run["point"].text()].push_back(std::move(run));
   }
 
   const double movingNoise = pooledSpread(runs, "moving", KnobLight::Indirect);
@@ -115,37 +114,32 @@ Figures figuresOf(const SweptScene& scene) {
   for (const SweepPoint& point : sweepPoints(SweepPart::All)) {
     const auto found = runs.find(point.name);
     if (found == runs.end()) continue;
-    const std::vector<Json>& own = found->second;
-    std::map<int, bool> ownSeeds;
-    for (const Json& run : own) ownSeeds[run["seed"]] = true;
+    const std::vector<Value>& own = found->second;
+    std::set<double> ownSeeds;
+    for (const Value& run : own) ownSeeds.insert(run["seed"].number());
     const double perTime = costNoise / std::sqrt(double(own.size())), perSeed = 1 / std::sqrt(double(ownSeeds.size()));
     PointFigures& f = figures[point.name];
     f.point = point;
+    Value& row = f.row;
+    row = Value::of("point", point.name, "seeds", ownSeeds.size(), "cost_noise", perTime, "rays",
+                    meanOf(own, "", "rays"), "gpu_mib", meanOf(own, "", "gpu_mib"));
+    const auto addState = [&](const std::string& state, double noise) {
+      const CostError p{meanOf(own, state, "ms"), meanOf(own, state, "rel_mse"), perTime, perSeed * noise};
+      row[state + "_ms"] = p.cost;
+      row[state + "_rel_mse"] = p.error;
+      row[state + "_noise"] = p.errorNoise;
+      for (const std::string key : {"bias", "rmse_share"}) row[state + "_" + key] = meanOf(own, state, key.c_str());
+      return p;
+    };
     const bool direct = point.light == KnobLight::Direct;
-    f.moving = {meanOf(own, "/moving/ms"), meanOf(own, "/moving/rel_mse"), perTime,
-                perSeed * (direct ? directNoise : movingNoise)};
-    Json& row = f.row;
-    row = {{"point", point.name},
-           {"seeds", ownSeeds.size()},
-           {"moving_ms", f.moving.cost},
-           {"moving_rel_mse", f.moving.error},
-           {"moving_noise", f.moving.errorNoise},
-           {"cost_noise", perTime},
-           {"moving_bias", meanOf(own, "/moving/bias")},
-           {"moving_rmse_share", meanOf(own, "/moving/rmse_share")},
-           {"rays", meanOf(own, "/rays")},
-           {"gpu_mib", meanOf(own, "/gpu_mib")}};
-    if (!direct) row.update({{"error", meanOf(own, "/moving/error")}, {"change", meanOf(own, "/moving/change")}});
-    if (own[0].contains("still")) {
-      f.still = {meanOf(own, "/still/ms"), meanOf(own, "/still/rel_mse"), perTime, perSeed * stillNoise};
-      row.update({{"still_ms", f.still.cost},
-                  {"still_rel_mse", f.still.error},
-                  {"still_noise", f.still.errorNoise},
-                  {"still_bias", meanOf(own, "/still/bias")},
-                  {"still_rmse_share", meanOf(own, "/still/rmse_share")}});
-      f.picture = own[0]["picture"];
+    f.moving = addState("moving", direct ? directNoise : movingNoise);
+    for (const char* key : {"error", "change"})
+      if (!direct) row[key] = meanOf(own, "moving", key);
+    if (own[0].has("still")) {
+      f.still = addState("still", stillNoise);
+      f.picture = own[0]["picture"].text();
     }
-    for (const auto& [stage, ms] : own[0]["stages"].items()) row["ms_" + stage] = ms;
+    for (const auto& [stage, ms] : own[0]["stages"].fields()) row["ms_" + stage] = ms;
   }
   return figures;
 }

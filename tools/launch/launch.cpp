@@ -210,6 +210,24 @@ bool isOpenOrHasLamp(LaunchContext& stage, const SceneView& view, const std::str
 
 } // namespace
 
+namespace {
+
+/// One note for each setting that is called by a name of before.
+std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std::optional<Shot>& shot) {
+  std::vector<std::string> names = options.set, notes;
+  if (shot)
+    for (const auto& [name, value] : shot->set) names.push_back(name);
+  for (const std::string& text : names) {
+    const std::string_view name = std::string_view(text).substr(0, text.find('='));
+    const std::string_view now = presentName(name);
+    if (now != name && name != "gather")
+      notes.push_back("setting " + std::string(name) + " is called " + std::string(now) + " now");
+  }
+  return notes;
+}
+
+} // namespace
+
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot) {
   Settings settings;
   if (!options.preset.empty()) applyPreset(settings, options.preset);
@@ -316,6 +334,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
                                         file.stem().string() + ")");
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
+  for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
   stage->scene = loadScene(file, options.sceneName, step);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");

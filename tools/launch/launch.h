@@ -67,8 +67,8 @@ class LaunchContext {
 /// context is made. Throws InputError.
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options);
 
-/// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only. openLaunch
-/// does it for the stage's own.
+/// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only.
+/// openLaunch does it for the stage's own.
 void tellWhatIsLeftOut(LaunchContext& stage, const Settings& settings);
 /// Its two halves, for who loads beside a window: the first before there is a context, the second on any thread.
 void useThreads(int threads);

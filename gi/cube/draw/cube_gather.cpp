@@ -1,11 +1,11 @@
 // Light of pixels from the layered depth cube.
+#include "gi/cube/draw/cube_gather.h"
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 #include "engine/gl/ring.h"
-#include "gi/cube/draw/cube_gather.h"
 #include "gi/cube/cube_file.h"
-#include "gi/gather/draw_gather.h"
 #include "gi/cube/draw/hemicube_pass.h"
+#include "gi/gather/draw_gather.h"
 #include "gi/near/near_light.h"
 #include "shaders/shared/layered_cube.h"
 #include "shaders/shared/octahedral.h"
@@ -61,11 +61,11 @@ class CubeGather : public Gather {
     Clock::duration saveAfter = std::chrono::seconds(5);
     hemicubes_.prepare(in.frame.world, in.frame.settings.hemicubes.maker);
     for (uint32_t total = 0, put = 0;; first = false) {
-      const CubeWork work =
-          cube_.update({in.frame.world.view.boundsWorld, in.frame.world.rays, first && !opened_ ? in.frame.world.moved : kNothingMoved,
-                        first && in.frame.world.view.changes.first && !opened_, lights.slots, lights.direct, in.frame.settings.cube,
-                        in.frame.settings.gather, &hemicubes_},
-                       std::min(kAtOnce, in.most));
+      const CubeWork work = cube_.update({in.frame.world.view.boundsWorld, in.frame.world.rays,
+                                          first && !opened_ ? in.frame.world.moved : kNothingMoved,
+                                          first && in.frame.world.view.changes.first && !opened_, lights.slots,
+                                          lights.direct, in.frame.settings.cube, in.frame.settings.gather, &hemicubes_},
+                                         std::min(kAtOnce, in.most));
       stats.raysCube += work.rays;
       hemicubes_.tell(stats);
       changed |= work.changed;

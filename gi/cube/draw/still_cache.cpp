@@ -87,11 +87,9 @@ SurfaceLighting StillCache::lookUp(const Frame& frame, FrameStats& stats) {
     lights_ = photons_->run(world, needsOf(kStored), ofPhotons);
   }
   const Frame stored{world, frame.surfaces, frame.patches, frame.previous, frame.bounces};
-  return cube_->run({.frame = stored,
-                     .lights = {lights_},
-                     .stores = wanted_,
-                     .most = uint32_t(frame.settings.stillCache.perFrame)},
-                    stats);
+  return cube_->run(
+      {.frame = stored, .lights = {lights_}, .stores = wanted_, .most = uint32_t(frame.settings.stillCache.perFrame)},
+      stats);
 }
 
 SurfaceLighting StillCache::mix(const Frame& frame, const SurfaceLighting& gathered, const SurfaceLighting& stored) {

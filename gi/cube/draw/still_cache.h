@@ -1,7 +1,7 @@
-// A technique in a world that has stood still for long (cube.after): photons, which do not depend on the view, are put into
-// a layered depth cube next to it, a few in every frame, and when all are in it the cube takes its place: a camera that
-// moves then pays a look-up. As soon as light changes the technique is back. Either way one is mixed into the other over
-// some frames, so that what they disagree about is no jump.
+// A technique in a world that has stood still for long (cube.after): photons, which do not depend on the view, are put
+// into a layered depth cube next to it, a few in every frame, and when all are in it the cube takes its place: a camera
+// that moves then pays a look-up. As soon as light changes the technique is back. Either way one is mixed into the
+// other over some frames, so that what they disagree about is no jump.
 #pragma once
 
 #include "gi/contract/gather.h"

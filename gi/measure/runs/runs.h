@@ -5,9 +5,9 @@
 //   Variant → Runner (runners.cpp) → measure (measure.cpp) → Measured
 #pragma once
 
-#include "gi/viewer/viewer.h"
 #include "gi/measure/statistics.h"
 #include "gi/measure/watched.h"
+#include "gi/viewer/viewer.h"
 
 #include <functional>
 #include <memory>
@@ -33,9 +33,9 @@ class Runner {
 struct Variant;
 using MakeRunner = std::function<std::unique_ptr<Runner>(const Variant&)>;
 
-/// Whole frames by Viewer, in the current GL context; values at points are those of the indirect or the direct buffer. Passes are
-/// finished one by one unless the settings choose a timing: timer queries that lag would give one variant's times to
-/// another.
+/// Whole frames by Viewer, in the current GL context; values at points are those of the indirect or the direct buffer.
+/// Passes are finished one by one unless the settings choose a timing: timer queries that lag would give one variant's
+/// times to another.
 std::unique_ptr<Runner> wholeFrames(const Variant& variant);
 /// The watched points alone, each from all virtual lights by rays; of stages only the placing of these. No GL.
 MakeRunner raysAtPoints(const WatchedScene& watched);

@@ -119,7 +119,7 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"rsm.resolution", "rsm.vpls", "rsm.exact", "rsm.coarsest", "rsm.finest", "rsm.depth", "rsm.normal", "rsm.tau"},
        "of techniques from reflective shadow maps; their curves: --curve clusters"},
       {{"lpv.cells", "lpv.size", "lpv.steps", "lpv.occlusion"}, "of light propagation volumes; their table: --volume"},
-      {{"cube.resolution", "cube.levels", "cube.split", "cube.sights", "cube.hemicube", "cube.after", "cube.perFrame"},
+      {{"cube.resolution", "cube.levels", "cube.split", "cube.visibility", "cube.hemicube", "cube.after", "cube.perFrame"},
        "of the layered depth cube; their table: bench --cube"},
       {{"smc.cache", "shadow.maker", "area.tracer", "cube.maker", "frame.overlap"},
        "time alone: the picture is the same, or a frame late"},
@@ -173,7 +173,7 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
   for (const Assignments& set : jointDesign(quick))
     if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
   for (const Technique& technique : techniqueTable()) {
-    if (technique.name == std::string("smc") || needsOf(technique).lights == LightSupply::None) continue;
+    if (&technique == &techniqueTable().front() || needsOf(technique).lights == LightSupply::None) continue;
     if (part == SweepPart::Joint || (quick && technique.name != std::string("rsm"))) continue;
     add({.name = technique.name,
          .kind = Named,

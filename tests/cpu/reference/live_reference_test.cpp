@@ -65,6 +65,21 @@ class LiveReferenceTest : public ::testing::Test {
   Settings settings_;
 };
 
+/// Another scene at the address of the last one, whose tracing has come to its end.
+TEST_F(LiveReferenceTest, TracesTheSceneThatIsThereNow) {
+  scene_.camera.width = scene_.camera.height = 1;
+  LiveReference live(kSeed);
+  begin(live, ReferenceBuffer::Direct);
+  while (live.take(true)) {
+  }
+  scene_.assets = SceneAssets(scene_.assets);
+  for (Material& material : scene_.assets.materials) material.baseColor = vec3(0.1f, 0.2f, 0.9f);
+  begin(live, ReferenceBuffer::Direct);
+  const auto truth = after(live, 1);
+  ASSERT_TRUE(truth);
+  expectTruth(*truth, ReferenceBuffer::Direct);
+}
+
 TEST_F(LiveReferenceTest, AccumulatesWhatOneRunTraces) {
   LiveReference live(kSeed);
   EXPECT_EQ(live.take(true), nullptr) << "nothing was asked for";

@@ -1,0 +1,61 @@
+// Text that reports are made of: tables in Markdown, CSV and HTML, and the files that hold them.
+#pragma once
+
+#include "engine/core/image.h"
+#include "tools/lambent/value.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lambent {
+
+class GlContext;
+struct OutputOptions;
+
+/// As printf, up to 255 characters.
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+/// The name of a scene or shot: its file's, without folder and extension.
+std::string nameOf(const std::string& file);
+
+/// A column of a table whose rows are objects. Texts are taken as they are, lists are joined by commas, and what lacks
+/// stays empty.
+struct TableColumn {
+  const char *key, *title;
+  const char* pattern = "%g";   // of one number
+  double factor = 1;            // on it, as 100 for per cent
+  const char* ofZero = nullptr; // what stands for 0
+};
+/// In Markdown.
+std::string tableText(const std::vector<TableColumn>& columns, const Value& rows);
+/// All that is one number or text, by key.
+std::string csvText(const Value& rows);
+
+/// For text inside HTML and SVG.
+std::string escaped(const std::string& text);
+/// Of a page with everything inside it, up to and with the heading.
+std::string htmlHead(const std::string& title);
+std::string htmlTable(const std::vector<TableColumn>& columns, const Value& rows);
+/// A picture (values as shown, 0 to 1) inside the page, and as folder/NAME.png.
+std::string htmlPicture(const std::filesystem::path& folder, const std::string& name, const Image& shown,
+                        const std::string& under);
+
+/// Processor, OpenGL renderer, day.
+std::string machineText(const GlContext& context);
+
+/// In one step: the file is the old or the new one. Throws RunError.
+void writeText(const std::filesystem::path& file, const std::string& text);
+/// Writes figures for programs; nothing when `file` is empty.
+void writeJson(const std::string& file, const Value& figures);
+/// Everything in a file; empty where there is none.
+std::string readText(const std::filesystem::path& file);
+
+/// NAME.md with the heading and the text, NAME.csv, and the figures for programs, all in the folder; the text is
+/// printed too, unless quiet.
+void writeReport(const OutputOptions& output, const std::filesystem::path& folder, const std::string& name,
+                 const std::string& heading, const std::string& text, const std::string& csv, const Value& figures);
+
+/// The folder that a report goes to: `out`, or `unnamed` where that is empty; made where it lacks. Throws RunError.
+std::filesystem::path reportFolder(const std::string& out, const std::string& unnamed);
+
+} // namespace lambent
