@@ -197,7 +197,8 @@ TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
 
 /// An edge along a border that patches of every size share: the pyramid alone would end the largest ones there.
 TEST_F(MultiresTest, PatchesBesideAnEdgeStaySmallWithBalanceOrWithout) {
-  const GBuffer gbuffer = surfaces(Panels().scene);
+  const Panels panels;
+  const GBuffer gbuffer = surfaces(panels.scene);
   for (const bool balance : {true, false})
     for (const bool edges : {true, false}) {
       multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance, .edges = edges});
