@@ -29,6 +29,7 @@ TEST(Settings, TextsAndValuesOfEveryRowAgree) {
   }
   EXPECT_THROW(settingRow("smc.vlps"), InputError);
   EXPECT_EQ(settingRow("gather").name, "gather.mode");
+  EXPECT_EQ(settingRow("cube.sights").name, "cube.visibility") << "a name of before";
 }
 
 TEST(Settings, RangesReadAsTheyAreTyped) {

@@ -133,6 +133,104 @@ TEST_F(TechniqueTest, AProgressivePathTracerIsAFileAndARow) {
   EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw));
 }
 
+TEST_F(TechniqueTest, DirectLightIsAProviderThatAHostLeavesOut) {
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  const Image indirect = gi.read(Buffer::Irradiance);
+  EXPECT_GT(meanLuminance(gi.read(Buffer::Direct)), 0.01);
+  gi.settings().direct.on = false;
+  EXPECT_EQ(gi.run(still()).lightMapsDrawn, 0u);
+  EXPECT_EQ(gi.gi().directIrradiance(), 0u);
+  EXPECT_NE(gi.gi().indirectIrradiance(), 0u);
+  EXPECT_EQ(meanLuminance(gi.read(Buffer::Direct)), 0);
+  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(indirect), 0.1 * meanLuminance(indirect));
+  // What changes while it is off is not told to it.
+  room.scene.lights[0].position = {-0.4f, 0.5f, 0.3f};
+  SceneView moved = room.scene.view();
+  moved.changes = {false, false, true, false, false};
+  gi.run(moved);
+  gi.settings().direct.on = true;
+  gi.run(still());
+  Viewer fresh(settings);
+  fresh.run(room.scene.view());
+  EXPECT_EQ(gi.read(Buffer::Direct).pixels, fresh.read(Buffer::Direct).pixels);
+}
+
+TEST_F(TechniqueTest, TexturesHoldWhatIsReadBack) {
+  room.scene.quad({-0.2f, 0.95f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, room.scene.material(vec3(0), vec3(2)));
+  Viewer gi(settings);
+  EXPECT_EQ(gi.texture(Buffer::Beauty), 0u) << "there is no frame yet";
+  gi.run(room.scene.view());
+  for (Buffer buffer : {Buffer::Beauty, Buffer::Direct, Buffer::Indirect, Buffer::Irradiance, Buffer::Albedo,
+                        Buffer::Normal, Buffer::Emission}) {
+    SCOPED_TRACE(bufferNames()[size_t(buffer)]);
+    const uint32_t name = gi.texture(buffer);
+    ASSERT_NE(name, 0u);
+    const Image image = gi.read(buffer);
+    std::vector<vec4> texels(image.pixels.size());
+    glGetTextureImage(name, 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(vec4)), texels.data());
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const vec3 texel = vec3(texels[size_t(image.height - 1 - y) * image.width + x]);
+        ASSERT_LE(maxComponent(glm::abs(texel - image.at(x, y))), 1e-4f * (1 + maxComponent(image.at(x, y))))
+            << x << ' ' << y;
+      }
+  }
+  EXPECT_EQ(gi.texture(Buffer::Depth), 0u);
+}
+
+namespace {
+
+/// Notes the depth of the middle of the frame before.
+class PreviousDepth : public LightProvider {
+ public:
+  SurfaceLighting run(const Frame& frame, FrameStats&) override {
+    seen = -1;
+    if (frame.previous) {
+      const std::vector<float> depth = depthOf(*frame.previous->depth);
+      seen = depth[depth.size() / 2 + size_t(frame.previous->width) / 2];
+    }
+    return {};
+  }
+  static std::vector<float> depthOf(const gl::Texture& texture) {
+    std::vector<float> values(size_t(texture.width()) * texture.height());
+    texture.read(std::span(values), GL_DEPTH_COMPONENT, GL_FLOAT);
+    return values;
+  }
+  static inline float seen = -1;
+};
+
+constexpr Technique kPrevious{
+    .name = "previous",
+    .help = "the frame before",
+    .axes = {VplSource::None, VplVisibility::None, GatherMode::Own, Reconstruction::None},
+    .make = [](PassContext) -> std::unique_ptr<LightProvider> { return std::make_unique<PreviousDepth>(); },
+    .needs = {.previousSurfaces = true},
+};
+
+} // namespace
+
+TEST_F(TechniqueTest, SurfacesOfTheFrameBeforeAreThereOnDemand) {
+  applyTechnique(settings, kPrevious);
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  EXPECT_EQ(PreviousDepth::seen, -1) << "there is none";
+  const auto depthNow = [&] {
+    const std::vector<float> depth = PreviousDepth::depthOf(*gi.gi().outputs().surfaces.depth);
+    return depth[depth.size() / 2 + size_t(gi.gi().outputs().surfaces.width) / 2];
+  };
+  const float first = depthNow();
+  SceneView moved = room.scene.view();
+  moved.camera.worldFromView[3].z -= 0.5f;
+  moved.changes = {false, true, false, false, false};
+  gi.run(moved);
+  EXPECT_EQ(PreviousDepth::seen, first);
+  EXPECT_NE(depthNow(), first);
+  moved.camera.width /= 2;
+  gi.run(moved);
+  EXPECT_EQ(PreviousDepth::seen, -1) << "of another size";
+}
+
 TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
   const auto refused = [&](const std::function<void(Settings&)>& edit) -> std::string {
     Settings s = settings;
