@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTestFrameSeconds = 1.0 / 30; // scene time per frame under --frames
 constexpr double kTurnSeconds = 1.0 / 60;      // of the window while nothing is played
-constexpr double kProgressSeconds = 0.1;       // between pictures of the progress: the CPU draws them, too
+constexpr double kProgressSeconds = 0.1;       // between frames of the progress: the CPU draws them, too
 using Clock = std::chrono::steady_clock;
 
 constexpr std::pair kWindow = {1280, 720};
@@ -50,7 +50,7 @@ App::App(const GameOptions& options)
     auto& dropped = *static_cast<std::deque<std::string>*>(glfwGetWindowUserPointer(window));
     for (int i = 0; i < count; ++i) dropped.push_back(files[i]);
   });
-  if (!options_.frames) glfwSwapInterval(1); // a still picture need not be shown a thousand times a second
+  if (!options_.frames) glfwSwapInterval(1); // a still frame need not be shown a thousand times a second
 }
 
 App::~App() = default;
@@ -144,7 +144,7 @@ void App::load() {
   }
 }
 
-/// The first pictures, the window going on between their parts.
+/// Draws the first frames, the window going on between their parts.
 void App::prepare(LoadedScene loaded) {
   gap_.at("player");
   preparing_ = true;
@@ -154,7 +154,7 @@ void App::prepare(LoadedScene loaded) {
   play_->prepare(
       [&](const Progressed& progress) {
         const bool quietly = progress.at.empty();
-        gap_.at(quietly ? "second picture" : progress.at);
+        gap_.at(quietly ? "second frame" : progress.at);
         const auto passed = [](Clock::time_point since, double seconds) {
           return Clock::now() - since >= std::chrono::duration<double>(seconds);
         };
@@ -166,10 +166,10 @@ void App::prepare(LoadedScene loaded) {
         showProgress(progress);
         shown = Clock::now();
       },
-      [&] { hud_.keepPicture(); });
+      [&] { hud_.keepFrame(); });
   preparing_ = false;
   gap_.end();
-  hud_.forgetPicture();
+  hud_.forgetFrame();
 }
 
 void App::showProgress(const Progressed& progress) {

@@ -18,7 +18,7 @@ class App {
   ~App();
   App(const App&) = delete;
 
-  /// Until the window is closed. Throws what the scene of the command line is refused for.
+  /// Runs until the window is closed. Throws what the scene of the command line is refused for.
   void run();
 
  private:

@@ -9,7 +9,7 @@ namespace lambent {
 
 class FrameTimes {
  public:
-  /// A frame that came `seconds` after the one before.
+  /// Adds a frame that came `seconds` after the one before.
   void add(double seconds, const FrameStats& stats);
 
   struct Frame {

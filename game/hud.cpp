@@ -25,9 +25,9 @@ constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindo
 constexpr ImGuiWindowFlags kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                      ImGuiWindowFlags_AlwaysAutoResize;
 
-/// What each buffer shows, in words; beside bufferNames().
+/// What each buffer shows, in words; in the order of bufferNames().
 constexpr std::array<const char*, 13> kViews = {
-    "the picture",
+    "the image",
     "light that comes straight from lamps, sun and sky",
     "light that has bounced, as surfaces send it on",
     "light that has bounced, as it arrives",
@@ -108,8 +108,8 @@ void Hud::draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, cons
 
 void Hud::drawProgress(const std::string& scene, const std::string& at, float share) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  if (picture_) {
-    const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(picture_->name()));
+  if (keptFrame_) {
+    const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(keptFrame_->name()));
     ImGui::GetBackgroundDrawList()->AddImage(texture, {0, 0}, size, {0, 1}, {1, 0}); // GL's first row is the lowest
   }
   centre(360 * scale_);
@@ -129,7 +129,7 @@ MenuChoice Hud::drawMenu(const std::vector<std::string>& scenes, bool playing) {
   if (playing) {
     choice.resume = button("go on (Esc)");
     choice.home = button("back to where you began (H)");
-    choice.restart = button("begin anew (F2)");
+    choice.restart = button("start again (F2)");
     ImGui::Separator();
   }
   ImGui::TextDisabled("open a scene, or drop a .gltf, .glb or shot here");
@@ -146,16 +146,16 @@ MenuChoice Hud::drawMenu(const std::vector<std::string>& scenes, bool playing) {
   return choice;
 }
 
-void Hud::keepPicture() {
+void Hud::keepFrame() {
   const ImVec2 size = ImGui::GetIO().DisplaySize, pixels = ImGui::GetIO().DisplayFramebufferScale;
   const int width = int(size.x * pixels.x), height = int(size.y * pixels.y);
-  picture_ = std::make_unique<gl::Texture>(
-      "hud/first picture", gl::TextureDesc{.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+  keptFrame_ = std::make_unique<gl::Texture>(
+      "hud/kept frame", gl::TextureDesc{.format = GL_RGBA8, .width = width, .height = height, .linear = true});
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glCopyTextureSubImage2D(picture_->name(), 0, 0, 0, 0, 0, width, height);
+  glCopyTextureSubImage2D(keptFrame_->name(), 0, 0, 0, 0, 0, width, height);
 }
 
-void Hud::forgetPicture() { picture_.reset(); }
+void Hud::forgetFrame() { keptFrame_.reset(); }
 
 /// Frames per second, and what the last ones spent their time on.
 void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
@@ -195,7 +195,7 @@ void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
     ImGui::SameLine();
     ImGui::TextDisabled("of %.0f ms", most);
   }
-  if (model.pacer.scale() < 1) ImGui::TextDisabled("picture at %.0f %%", 100 * double(model.pacer.scale()));
+  if (model.pacer.scale() < 1) ImGui::TextDisabled("image at %.0f %%", 100 * double(model.pacer.scale()));
   if (model.goal) drawGoal(*model.goal);
   ImGui::End();
 }
@@ -214,14 +214,14 @@ void Hud::drawGoal(const GoalShown& goal) const {
   ImGui::TextColored(color, goal.reached ? "done" : "bring daylight here");
 }
 
-/// What the picture shows, where it is not the picture.
+/// Says what the window shows, where it is not the image.
 void Hud::drawViewLegend(const HudModel& model) {
   if (model.buffer == Buffer::Beauty) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, size.y - 8}, ImGuiCond_Always, {0.5f, 1});
   ImGui::SetNextWindowBgAlpha(0.6f);
   ImGui::Begin("view", nullptr, kOverlay);
-  ImGui::Text("%s: %s (1: the picture)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
+  ImGui::Text("%s: %s (1: the image)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
   ImGui::End();
 }
 

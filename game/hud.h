@@ -1,4 +1,4 @@
-// What is drawn over the picture: the panel, the frame rate, messages, the menu, and how far loading is.
+// What is drawn over the image: the panel, the frame rate, messages, the menu, and how far loading is.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -50,7 +50,7 @@ struct HudModel {
   std::string offer = {};  // what using would do now
   Gait gait = Gait::Walk;  // shown
   float speed = 1;         // of the player, times the usual
-  Pacer pacer{{}, false};  // of frames, by the picture's scale
+  Pacer pacer{{}, false};  // of frames, by the image's scale
   std::optional<GoalShown> goal = {};
 };
 
@@ -66,11 +66,11 @@ class Hud {
   ~Hud();
   Hud(const Hud&) = delete;
 
-  /// Whether a text field or a slider uses the keys or the mouse at the moment.
+  /// Says whether a text field or a slider uses the keys or the mouse at the moment.
   bool keysTaken() const;
   bool mouseTaken() const;
 
-  /// One line at the bottom, for some seconds.
+  /// Shows one line at the bottom for some seconds.
   void say(std::string message);
   const std::string& lastSaid() const { return lastSaid_; }
   float scale() const { return scale_; } // of letters, by the display's pixels per inch
@@ -78,22 +78,22 @@ class Hud {
   // Between these two, what is to be drawn into the framebuffer that is bound at the end.
   void begin();
   void end();
-  /// Over the picture of the last Viewer::run.
+  /// Draws over the image of the last Viewer::run.
   void draw(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats,
             const FrameTimes& times);
   void drawProgress(const std::string& scene, const std::string& at, float share);
   /// `playing`: there is a scene to go back to.
   MenuChoice drawMenu(const std::vector<std::string>& scenes, bool playing);
 
-  /// Keeps what the window's next picture is so far, to stand behind drawProgress.
-  void keepPicture();
-  void forgetPicture();
+  /// Keeps the window's next frame as it is so far, to stand behind drawProgress.
+  void keepFrame();
+  void forgetFrame();
 
  private:
   void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
   void drawDay(HudModel& model);
   void drawLights(Scene& scene);
-  void drawPicture(HudModel& model, Viewer& gi);
+  void drawImageSection(HudModel& model, Viewer& gi);
   void drawPlayer(HudModel& model);
   void drawTime(HudModel& model);
   void drawQuality(HudModel& model, Viewer& gi);
@@ -118,7 +118,7 @@ class Hud {
   std::deque<Message> messages_;
   std::optional<bool> wasFolded_; // the panel
   std::string lastSaid_;
-  std::unique_ptr<gl::Texture> picture_;
+  std::unique_ptr<gl::Texture> keptFrame_;
   float scale_ = 1;                                          // of the display's pixels
   std::map<uint16_t, std::pair<double, double>> smoothedMs_; // CPU and GPU by stage
   std::map<std::string, std::string> edited_;                // settings in the middle of being typed

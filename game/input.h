@@ -36,10 +36,10 @@ class Input {
  public:
   explicit Input(GLFWwindow* window);
 
-  /// `keysTaken`, `mouseTaken`: the panel uses them at the moment. `mayCapture`: a click into the picture catches the
+  /// `keysTaken`, `mouseTaken`: the panel uses them at the moment. `mayCapture`: a click into the image catches the
   /// pointer. `seconds` since the last call.
   Wishes read(bool keysTaken, bool mouseTaken, bool mayCapture, float seconds);
-  /// Only whether Escape went down: while nothing can be played.
+  /// Reads only whether Escape went down, while nothing can be played.
   bool escape();
 
   /// For tests, keys that go down and up by themselves: "R@1 W@2-40", by calls of read, the first being 1.

@@ -35,7 +35,7 @@ struct Cancelled {};
 /// The longest time between two signs of life, and what was done meanwhile.
 class LongestGap {
  public:
-  /// The work is at `what` now; and is over.
+  /// Notes that the work is at `what` now (at) or over (end).
   void at(const std::string& what);
   void end();
   void add(const LongestGap& other);
@@ -59,9 +59,9 @@ class Loading {
   bool done() const { return done_; }
   Progressed progress() const;
   LongestGap gap() const;
-  /// Once done. Throws what ended the loading: InputError, RunError.
+  /// Takes the scene once it is loaded. Throws what ended the loading: InputError, RunError.
   LoadedScene take();
-  /// The thread ends at its next step: a mesh or a texture.
+  /// Makes the thread end at its next step: a mesh or a texture.
   void cancel() { cancelled_ = true; }
   const std::string& file() const { return options_.scene; }
 

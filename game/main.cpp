@@ -15,13 +15,13 @@ namespace {
 std::optional<GameOptions> readOptions(int argc, char** argv) {
   GameOptions options;
   CLI::App app{"Walk through a scene under global illumination that follows its moving lights and objects.\n"
-               "W A S D walk, a click into the picture lets the mouse look around; F1 shows all keys.",
+               "W A S D walk, a click into the image lets the mouse look around; F1 shows all keys.",
                "walkthrough"};
   app.add_option("SCENE", options.launch.scene, "glTF or shot file (default: the bundled hall)");
   addLaunchOptions(app, options.launch);
   app.add_option("--buffer", options.buffer, "what to show first: beauty, indirect, vpls, ...");
   app.add_option("--target-ms", options.targetMs,
-                 "choose the preset (where none is given) that fits this time of a frame, and hold it by the picture's "
+                 "choose the preset (where none is given) that fits this time of a frame, and hold it by the image's "
                  "scale; without, only where frames take longer than 90 ms")
       ->check(CLI::Range(1.0, 10000.0));
   app.add_option("--fps", options.fps,

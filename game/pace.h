@@ -13,17 +13,18 @@ class Pacer {
   /// Without a target, frames are held at kUsable where they would take longer.
   Pacer(std::optional<double> targetMs, bool choosesPreset);
 
-  /// Scale and preset to begin with, where a frame at full scale and with these settings is expected to take so long.
+  /// Chooses scale and preset to begin with, where a frame at full scale and with these settings is expected to take so
+  /// long.
   void expect(double fullMs, Settings& settings);
 
-  /// For the next frame. Where nothing has moved for a while as large as half a second draws, so that whoever moves
-  /// again need not wait; in the end 1.
+  /// Scale of the next frame. Where nothing has moved for a while, as large as can be drawn in half a second, so that
+  /// whoever moves again need not wait; in the end 1.
   float scale() const { return moving() ? governed_.scale : stillFrames_ < 2 * kStillFrames ? halfway_ : 1.0f; }
-  /// After a frame: what it took, at least `wholeMs` from its beginning to the next one's, and whether anything had
-  /// moved for it. `settings` may get another preset.
+  /// Notes after a frame what it took, at least `wholeMs` from its beginning to the next one's, and whether anything
+  /// had moved for it. `settings` may get another preset.
   void took(const FrameStats& stats, double wholeMs, bool moved, Settings& settings);
 
-  /// A person sets the scale, and nothing else does until `govern`.
+  /// Sets the scale by hand; nothing else changes it until `govern`.
   void hold(float scale);
   void govern(double targetMs);
 

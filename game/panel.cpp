@@ -57,7 +57,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   const auto section = [&](const char* name, bool open) {
     return ImGui::CollapsingHeader(name, open && size.y >= kLow * scale_ ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   };
-  if (section("Picture", true)) drawPicture(model, gi);
+  if (section("Image", true)) drawImageSection(model, gi);
   if (section("You", true)) drawPlayer(model);
   if (section("Time", false)) drawTime(model);
   if (section("Time of day", true)) drawDay(model);
@@ -73,13 +73,13 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   ImGui::End();
 }
 
-void Hud::drawPicture(HudModel& model, Viewer& gi) {
+void Hud::drawImageSection(HudModel& model, Viewer& gi) {
   std::string view = bufferNames()[size_t(model.buffer)];
   if (choose("show (1 ... 0)", bufferNames(), view)) model.buffer = bufferByName(view);
   float ev = std::log2(std::max(gi.exposure(), 1e-6f));
   if (ImGui::SliderFloat("exposure, EV", &ev, -12, 12, "%+.1f")) gi.settings().image.exposure = std::exp2(ev);
   if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first picture measures it.");
+    ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first frame measures it.");
   if (model.buffer != Buffer::Vpls && !model.lightsStay) return;
   ImGui::Checkbox("virtual lights stay where they are", &model.lightsStay);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("fly off and look at them from elsewhere");
@@ -117,7 +117,7 @@ void Hud::drawQuality(HudModel& model, Viewer& gi) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("all settings, exposure and speed; those of the command line stay");
 }
 
-/// The governor with its target, or the picture's scale by hand.
+/// The governor with its target, or the image's scale by hand.
 void Hud::drawPace(Pacer& pacer) {
   bool governs = pacer.governs();
   if (ImGui::Checkbox("hold the time of a frame", &governs)) {
@@ -129,7 +129,7 @@ void Hud::drawPace(Pacer& pacer) {
   float value = governs ? float(pacer.targetMs()) : pacer.scale();
   if (governs && ImGui::SliderFloat("target, ms", &value, 4, 500, "%.0f", ImGuiSliderFlags_Logarithmic))
     pacer.govern(double(value));
-  if (!governs && ImGui::SliderFloat("picture scale", &value, 0.1f, 1, "%.2f")) pacer.hold(value);
+  if (!governs && ImGui::SliderFloat("image scale", &value, 0.1f, 1, "%.2f")) pacer.hold(value);
   ImGui::TextDisabled("%s", pacer.text().c_str());
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 // A slow frame must not turn one key press into a jump through a door.
 constexpr float kLongestStep = 0.25f; // seconds
-constexpr int kRoughWarmup = 12;      // iterations before the first picture
+constexpr int kRoughWarmup = 12;      // iterations before the first frame
 constexpr float kRoughScale = 0.35f;  // of its width and height
 
 constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
@@ -112,7 +112,7 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
     pulse.emplace([&] { progress({}); }); // what follows is timed
     gi_.present(model_.buffer, 0, width, height);
     shown();
-    // The second of a kind says what pictures cost: shaders are compiled, maps are drawn.
+    // The second of a kind says what frames cost: shaders are compiled, maps are drawn.
     gi_.settings() = rough;
     const FrameStats& stats = gi_.run(viewAt(0.99f * kRoughScale));
     const double gather = stats.ms(StageId::Gather), lights = double(wanted.smc.vpls) / rough.smc.vpls;
@@ -133,12 +133,12 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
 
 /// Somebody who sees nothing must not think that nothing works.
 void Play::tellWhereItIsDark() {
-  const Image picture = gi_.read(Buffer::Beauty);
+  const Image image = gi_.read(Buffer::Beauty);
   double sum = 0;
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) sum += double(luminance(vec3(picture.at(x, y))));
-  if (sum * double(gi_.exposure()) < 2e-3 * picture.width * picture.height)
-    hud_.say("it is dark here: Q is a flashlight, L a lamp, E opens doors, ] brightens the picture");
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += double(luminance(vec3(image.at(x, y))));
+  if (sum * double(gi_.exposure()) < 2e-3 * image.width * image.height)
+    hud_.say("it is dark here: Q is a flashlight, L a lamp, E opens doors, ] brightens the image");
 }
 
 namespace {
@@ -378,8 +378,8 @@ void Play::showTruth(TruthMode mode) {
 void Play::carryTorch() {
   if (!model_.torch) return props_.setTorch(std::nullopt);
   const float height = player_.body().size().height;
-  const vec3 beside(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
-  props_.setTorch(PlayedMoment::Torch{player_.position() + 0.04f * height * beside, player_.forward(),
+  const vec3 sideways(std::cos(player_.yaw()), -1, -std::sin(player_.yaw()));
+  props_.setTorch(PlayedMoment::Torch{player_.position() + 0.04f * height * sideways, player_.forward(),
                                       kTorch * vec3(luminance(model_.lampIntensity))});
 }
 
@@ -387,7 +387,7 @@ void Play::measureGoal() {
   const bool before = goal_->reached();
   goal_->update();
   if (goal_->reached() && !before)
-    hud_.say("it is done: the " + goal_->what() + " has the daylight that it waited for (F2 begins anew)");
+    hud_.say("it is done: the " + goal_->what() + " has the daylight that it waited for (F2 starts again)");
   model_.goal = GoalShown{goal_->what(), goal_->irradiance(), goal_->wanted(), goal_->reached()};
 }
 

@@ -40,17 +40,17 @@ class Play {
   ~Play();
   Play(const Play&) = delete;
 
-  /// Draws the first pictures: a rough one, which `shown` is told of, then that of all lights. `progress` hears of
-  /// both, and may throw to end it; the play is then of no more use. Where it is told of nothing, nothing may be drawn.
+  /// Draws the first frames: a rough one, which `shown` is called for, then that of all lights. `progress` hears of
+  /// both, and may throw to end it; the play is then of no more use. Where it is given nothing, nothing may be drawn.
   void prepare(const std::function<void(const Progressed&)>& progress, const std::function<void()>& shown);
-  /// One frame of so many seconds, in the window and not yet swapped.
+  /// Draws one frame of so many seconds into the window, not yet swapped.
   void frame(const Wishes& wishes, double seconds);
 
-  /// Back to how it began.
+  /// Goes back to how the scene began.
   void restart();
   void home();
   void writeScreenshot(const std::filesystem::path& png) const;
-  /// A click into the picture belongs to the divider.
+  /// Says whether a click into the image belongs to the divider.
   bool mouseDivides() const { return truth_.mode() == TruthMode::Split; }
   const std::string name() const { return scene_.file.stem().string(); }
   /// For tests: name and value of what is going on, as JSON members.

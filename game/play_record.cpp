@@ -13,7 +13,7 @@ namespace {
 constexpr double kRecordedFps = 30; // of a walk, when lambent record plays it
 } // namespace
 
-/// Tells the person what `action` did, or why it failed; a full disk must not end the walk.
+/// Shows the person what `action` did, or why it failed; a full disk must not end the walk.
 template <class Action> void Play::report(Action&& action) {
   try {
     hud_.say(action());
@@ -80,22 +80,22 @@ void Play::toggleRecording() {
     model_.followPath = true;
     model_.time = 0;
     return std::to_string(walk->camera.size()) + " frames in " + fs::absolute(walk->file).string() +
-           ": shown now (any step ends it), lambent record makes pictures of it";
+           ": shown now (any step ends it), lambent record makes images of it";
   });
 }
 
 /// What the window shows now, the panel included.
 void Play::writeScreenshot(const fs::path& png) const {
   const auto [width, height] = context_.framebufferSize();
-  Image8 picture;
-  picture.width = width;
-  picture.height = height;
-  picture.rgb = gl::readWindow(width, height);
+  Image8 image;
+  image.width = width;
+  image.height = height;
+  image.rgb = gl::readWindow(width, height);
   const size_t row = size_t(3) * width;
   for (int y = 0; y < height / 2; ++y) // GL's first row is the lowest
-    std::swap_ranges(picture.rgb.begin() + y * row, picture.rgb.begin() + (y + 1) * row,
-                     picture.rgb.begin() + (height - 1 - y) * row);
-  writePng(png, picture);
+    std::swap_ranges(image.rgb.begin() + y * row, image.rgb.begin() + (y + 1) * row,
+                     image.rgb.begin() + (height - 1 - y) * row);
+  writePng(png, image);
 }
 
 void Play::saveScreenshot() {
@@ -111,7 +111,7 @@ std::string Play::screenshotFile() const {
   const fs::path png = name();
   writeScreenshot(png);
   writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
-  return "screenshot in " + png.string() + ", its light beside it as .exr";
+  return "screenshot in " + png.string() + ", its light next to it as .exr";
 }
 
 } // namespace lambent

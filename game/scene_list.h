@@ -6,7 +6,7 @@
 
 namespace lambent {
 
-/// Files of the bundled scenes, and of those that `lambent content` has made beside them: content/NAME/NAME.gltf, by
+/// Files of the bundled scenes, and of those that `lambent content` has made next to them: content/NAME/NAME.gltf, by
 /// name. Empty where there is no such folder.
 std::vector<std::string> bundledScenes();
 

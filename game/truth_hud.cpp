@@ -1,4 +1,4 @@
-// What the panel and the picture tell of the truth.
+// What the panel and the window show of the truth.
 #include "game/truth_view.h"
 #include "shaders/shared/error_color.h"
 
@@ -25,13 +25,13 @@ std::string percent(double share, const char* format = "%.2f %%") {
   return text;
 }
 
-void row(const char* name, const std::string& picture, const std::string& truth, const char* help) {
+void row(const char* name, const std::string& own, const std::string& truth, const char* help) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(name);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
   ImGui::TableNextColumn();
-  ImGui::TextUnformatted(picture.c_str());
+  ImGui::TextUnformatted(own.c_str());
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(truth.c_str());
 }
@@ -45,7 +45,7 @@ const std::string& nameOf(ReferenceBuffer buffer) {
   return bufferNames()[0];
 }
 
-/// What may be said of the picture's error for the present.
+/// What may be said of the image's error for the present.
 std::string verdict(const AgainstTruth& against) {
   if (const std::optional<double> own = against.pictureRmse())
     return "GI's own RMSE: " + percent(*own / against.error.meanTruth) + " of the mean";
@@ -77,7 +77,7 @@ void textAt(float at, float width, const std::string& text) {
 void drawTruthFigures(TruthView& view) {
   const LiveTruth* truth = view.truth();
   if (!truth) {
-    ImGui::TextWrapped("the truth starts anew once all stands still: %s", view.reason().c_str());
+    ImGui::TextWrapped("the truth starts again once all stands still: %s", view.reason().c_str());
     return;
   }
   const AgainstTruth& a = view.against();
@@ -91,7 +91,7 @@ void drawTruthFigures(TruthView& view) {
     ImGui::TableHeadersRow();
     const auto own = [&](const std::string& text) { return single ? "?" : text; };
     row("RMSE", number(a.error.rmse), own(number(a.truthRmse)),
-        "root of the mean squared difference, over all pixels and channels; beside it what to expect of\n"
+        "root of the mean squared difference, over all pixels and channels; next to it what to expect of\n"
         "the truth by its standard error. GI's figure holds both.");
     const double mean = a.error.meanTruth;
     row("of the mean", percent(a.error.rmseShare()), own(percent(a.truthRmse / mean)), "RMSE over the truth's mean");
@@ -100,8 +100,8 @@ void drawTruthFigures(TruthView& view) {
         "mean of the difference over the truth's mean");
     row("ms", spent.drawn ? number(spent.typicalMs(), " a frame") : "no frame drawn",
         number(truth->ms / truth->samples, " a sample"),
-        "median of the frames that drew a picture since anything changed, a settled one stays. Paths that are\n"
-        "traced beside them take their share of the machine: lambent bench tells times alone.");
+        "median of the frames that were drawn since anything changed; a settled one stays. Paths that are\n"
+        "traced meanwhile take their share of the machine: lambent bench measures times alone.");
     row("s in all", number(1e-3 * spent.ms), number(1e-3 * truth->ms), "spent on this view so far");
     row("in", plural(spent.drawn, "frame"), plural(int(truth->samples), "sample"), "what that was spent for");
     ImGui::EndTable();
@@ -128,7 +128,7 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
   ImGui::SetNextWindowBgAlpha(0.6f);
   // A window of its own for each: one that grows would be cut off for a frame.
   const LiveTruth* truth = view.truth();
-  const char* id = !referenceOf(shown) ? "no truth" : !truth ? "truth anew" : heat ? "truth heat" : "truth split";
+  const char* id = !referenceOf(shown) ? "no truth" : !truth ? "truth again" : heat ? "truth heat" : "truth split";
   ImGui::Begin(id, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
@@ -137,7 +137,7 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
     ImGui::Text("no truth of %s:", bufferNames()[size_t(shown)].c_str());
     ImGui::TextUnformatted("show beauty, direct, indirect or irradiance");
   } else if (!truth) {
-    ImGui::Text("the truth starts anew\nonce all stands still:\n%s", view.reason().c_str());
+    ImGui::Text("the truth starts again\nonce all stands still:\n%s", view.reason().c_str());
   } else {
     const AgainstTruth& a = view.against();
     if (!heat) {

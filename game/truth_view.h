@@ -1,5 +1,5 @@
-// The path-traced truth beside the picture: traced in the background while the view is on, shown in one half of the
-// window or as the picture's error, with the figures that go with it.
+// The path-traced truth next to the image: traced in the background while the view is on, shown in one half of the
+// window or as the image's error, with the figures that go with it.
 #pragma once
 
 #include "gi/measure/against_truth.h"
@@ -11,10 +11,10 @@ namespace lambent {
 enum class TruthMode { Off, Split, Heat };
 constexpr TruthMode nextMode(TruthMode mode) { return TruthMode((int(mode) + 1) % 3); }
 
-/// The truth of what a buffer shows; none of those that are no light.
+/// Returns the reference buffer of what a buffer shows; none for those that are no light.
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer);
 
-/// Frames that drew a picture (a settled one stays) since anything about the view or its light last changed.
+/// Frames that were drawn (a settled one stays) since anything about the view or its light last changed.
 struct FramesSpent {
   int drawn = 0;
   double ms = 0;                // wall time of all
@@ -31,17 +31,17 @@ class TruthView {
   void set(TruthMode mode);
   void moveDivider(float share) { divider = glm::clamp(divider + share, 0.0f, 1.0f); }
 
-  /// To be told of every frame, on or off, after it ran. Reads the picture back where a new truth has come. With `wait`
+  /// Must be called after every frame, on or off. Reads the image back where a new truth has come. With `wait`
   /// every frame waits for one: tests then see as many passes as frames. Throws what ended the tracing.
   void update(const SceneView& view, Viewer& gi, const FrameStats& stats, Buffer shown, bool wait);
-  /// Draws the picture into the window, as the mode asks.
+  /// Draws the image into the window, as the mode asks.
   void present(const Viewer& gi, Buffer shown, int width, int height) const;
 
   // Of what is shown. Null until a truth has come.
   const LiveTruth* truth() const { return truth_.get(); }
   const AgainstTruth& against() const { return against_; }
   const FramesSpent& spent() const { return spent_; }
-  /// As chosen, or a round number from twice the RMSE on.
+  /// Returns the full error as chosen, or a round number of at least twice the RMSE.
   double fullErrorNow() const;
   /// Why there is no truth yet, in words.
   const std::string& reason() const { return reason_; }
@@ -64,7 +64,7 @@ class TruthView {
 
 /// The figures, side by side, as a part of the panel.
 void drawTruthFigures(TruthView& truth);
-/// What is where, and what colours mean, over the picture.
+/// Draws over the image what is where and what colours mean.
 void drawTruthLegend(const TruthView& truth, Buffer shown);
 
 } // namespace lambent

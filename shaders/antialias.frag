@@ -1,9 +1,9 @@
 #version 450
-// The picture without stairs along its edges. An edge that is seen at pixel centres only is made of straight runs, each
-// a pixel beside the next; the line through the middles of their ends is near the edge that made them, and what it cuts
+// The image without stairs along its edges. An edge that is seen at pixel centres only is made of straight runs, each
+// a pixel from the next; the line through the middles of their ends is near the edge that made them, and what it cuts
 // off a pixel takes the colour of the pixel beyond (morphological antialiasing: Reshetov 2009; which way the edge runs,
 // as FXAA: Lottes 2009). Ours: both sides of a line at once, so that thin ones stay as bright as they are; runs whose
-// end is out of reach. Pixels beside no edge are discarded, which keeps their bytes and, on software Mesa, saves the
+// end is out of reach. Pixels next to no edge are discarded, which keeps their bytes and, on software Mesa, saves the
 // time that a branch does not.
 layout(binding = 0) uniform sampler2D shown; // display-encoded; a: luma before clipping, 0: a mark, no colour
 layout(location = 0) out vec4 outColor;

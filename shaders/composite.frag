@@ -31,7 +31,7 @@ void main() {
   // Textures of one texel stand for a constant (black where a stage did not run).
   vec3 irradiance = texelFetch(direct, min(pixel, textureSize(direct, 0) - 1), 0).rgb +
                     texelFetch(indirect, min(pixel, textureSize(indirect, 0) - 1), 0).rgb;
-  irradiance = mix(irradiance, vec3(0.0), lessThan(irradiance, vec3(0.0))); // noise of single pictures; NaN stays
+  irradiance = mix(irradiance, vec3(0.0), lessThan(irradiance, vec3(0.0))); // noise of single frames; NaN stays
 #ifdef GLOSSY
   vec3 glossy = texelFetch(directGlossy, min(pixel, textureSize(directGlossy, 0) - 1), 0).rgb +
                 texelFetch(indirectGlossy, min(pixel, textureSize(indirectGlossy, 0) - 1), 0).rgb;

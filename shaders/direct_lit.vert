@@ -3,12 +3,12 @@
 layout(binding = 3) uniform usamplerBuffer litPairs; // r: pixel, as ShadowDoubt's; g: light
 uniform int firstPair;
 uniform int firstLight; // of the block
-uniform vec2 pictureSize;
+uniform vec2 frameSize;
 layout(location = 0) flat out int litLight;
 
 void main() {
   uvec2 pair = texelFetch(litPairs, firstPair + gl_VertexID).rg;
   vec2 pixel = vec2(pair.r & 0xffffu, pair.r >> 16) + 0.5;
-  gl_Position = vec4(pixel / pictureSize * 2.0 - 1.0, 0.0, 1.0);
+  gl_Position = vec4(pixel / frameSize * 2.0 - 1.0, 0.0, 1.0);
   litLight = int(pair.g) - firstLight;
 }

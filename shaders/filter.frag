@@ -1,7 +1,7 @@
 #version 450
 // Puts the 4×4 subsets back in their places (SUBSETS) and filters (FILTER): a cross-bilateral tent of 7×7, weights
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
-// the mean over all 16 subsets exactly; the more pictures a pixel holds, the less its neighbours count. GLOSSY: glossy light too, with weights by roughness and metalness besides.
+// the mean over all 16 subsets exactly; the more frames a pixel holds, the less its neighbours count. GLOSSY: glossy light too, with weights by roughness and metalness as well.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 
@@ -18,10 +18,10 @@ layout(location = 0) out vec4 outIrradiance;
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
-uniform bool fresh; // light of one picture, whatever its a
+uniform bool fresh; // light of one frame, whatever its a
 
-/// What a neighbour counts for, by the pictures in this pixel's mean: one that holds every class needs none.
-float shareOf(float pictures) { return fresh ? 1.0 : clamp((16.0 - pictures) / 15.0, 0.0, 1.0); }
+/// What a neighbour counts for, by the frames in this pixel's mean: one that holds every class needs none.
+float shareOf(float frames) { return fresh ? 1.0 : clamp((16.0 - frames) / 15.0, 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

@@ -24,14 +24,14 @@ layout(location = 0) out vec4 outIrradiance;
 layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
 #endif
 #ifdef CHECKED
-uniform int turn; // another one for each picture of those that are averaged, and each 2048 lights
+uniform int turn; // another one for each frame of those that are averaged, and each 2048 lights
 #ifdef GLOSSY
 layout(location = 2) out uvec4 outDrawn; // as DrawnPair in gi/gather/map_checks.cpp
 #else
 layout(location = 1) out uvec4 outDrawn;
 #endif
 
-/// Uniform in [0, 1), evenly spread over neighbours and over pictures (additive recurrences, Roberts 2018).
+/// Uniform in [0, 1), evenly spread over neighbours and over frames (additive recurrences, Roberts 2018).
 float numberOf(uvec2 pixel) {
   uint bits = pixel.x * 3242174889u + pixel.y * 2447445414u + uint(turn) * 2654435769u;
   return float(bits >> 8) / 16777216.0;

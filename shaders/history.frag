@@ -1,36 +1,36 @@
 #version 450
-// Mean of the light that fell on the place of a pixel, in this picture and those before it. The place is looked up where
+// Mean of the light that fell on the place of a pixel, in this frame and those before it. The place is looked up where
 // the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
-// picture's light is de-interleaved), CHANGES (what is kept, and this picture's difference to it, for
+// frame's light is de-interleaved), CHANGES (what is kept, and this frame's difference to it, for
 // history_follow.frag), GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 #include "shared/octahedral.h"
 
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
-layout(binding = 2) uniform sampler2D irradiance; // of this picture
+layout(binding = 2) uniform sampler2D irradiance; // of this frame
 layout(binding = 3) uniform sampler2D keptIrradiance;
-layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, pictures in the mean (0: nothing)
-uniform float pictures; // of those before that count at most; 0: there are none
+layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames in the mean (0: nothing)
+uniform float mostFrames; // of those before that count at most; 0: there are none
 uniform bool stands;    // the camera is where it was
-layout(location = 0) out vec4 outIrradiance; // a: pictures in the mean
+layout(location = 0) out vec4 outIrradiance; // a: frames in the mean
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
 #else
 layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy;
-layout(binding = 8) uniform sampler2D keptGlossy; // a: pictures in its mean
-uniform float glossyPictures; // as `pictures`
+layout(binding = 8) uniform sampler2D keptGlossy; // a: frames in its mean
+uniform float mostGlossyFrames; // as `mostFrames`
 layout(location = 2) out vec4 outGlossy;
 #endif
 #endif
 
 const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
 const float kAlike = 0.3;    // cosine between normals: mouldings mix, corners do not
-const float kMoving = 16.0;  // pictures in the mean of a place that moves over the pixels: looking up blurs a little
+const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
 
-/// Position that a pixel of the picture before saw.
+/// Position that a pixel of the frame before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
   vec2 ndc = (vec2(pixel) + 0.5) * before.size.zw * 2.0 - 1.0;
   vec2 xy = ndc * before.lens.xy * (before.lens.w > 0.0 ? 1.0 : viewDistance);
@@ -59,7 +59,7 @@ void main() {
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
-  if (pictures > 0.0 && clip.w > 0.0 && all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, before.size.xy))) {
+  if (mostFrames > 0.0 && clip.w > 0.0 && all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, before.size.xy))) {
     float metresPerPixel = 2.0 * before.lens.y * before.size.w * (before.lens.w > 0.0 ? 1.0 : clip.w);
     vec2 corner = floor(at), inside = at - corner;
     for (int i = 0; i < 4; ++i) {
@@ -79,10 +79,10 @@ void main() {
   }
   vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
   kept = weights > 0.0 ? kept / weights : vec4(now, 0.0);
-  if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one picture, not of all that follow
-  // Of a smaller picture a pixel is a blur of several of ours: it counts as fewer.
+  if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one frame, not of all that follow
+  // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
-  kept.a = min(kept.a, stands ? pictures : min(pictures, (kMoving - 1.0) * finer * finer));
+  kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
 #ifdef CHANGES
   outIrradiance = kept;
   bool known = !any(isnan(now)) && !any(isinf(now));
@@ -93,7 +93,7 @@ void main() {
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
-  keptLobe.a = min(keptLobe.a, glossyPictures);
+  keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
 #endif

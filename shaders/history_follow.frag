@@ -1,20 +1,20 @@
 #version 450
-// What history.frag found where light changes: its coarse part follows the filtered difference to this picture by `follow`,
+// What history.frag found where light changes: its coarse part follows the filtered difference to this frame by `follow`,
 // its fine part is averaged on. Glossy light is this
-// picture's own. Variants: SUBSETS, GLOSSY.
+// frame's own. Variants: SUBSETS, GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 #include "shared/octahedral.h"
 
-layout(binding = 2) uniform sampler2D kept;     // a: pictures in the mean
-layout(binding = 3) uniform sampler2D change;   // this picture - kept
+layout(binding = 2) uniform sampler2D kept;     // a: frames in the mean
+layout(binding = 3) uniform sampler2D change;   // this frame - kept
 layout(binding = 4) uniform sampler2D filtered; // of change
 layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag
 uniform float follow;
 layout(location = 0) out vec4 outIrradiance;
 layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
-layout(binding = 5) uniform sampler2D glossy; // of this picture
+layout(binding = 5) uniform sampler2D glossy; // of this frame
 layout(location = 2) out vec4 outGlossy;
 #endif
 

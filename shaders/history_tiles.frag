@@ -1,8 +1,8 @@
 #version 450
-// By how much light changes in each tile of 16×16 pixels: the sum of the differences between this picture and what was kept,
+// By how much light changes in each tile of 16×16 pixels: the sum of the differences between this frame and what was kept,
 // in which their noise cancels out, over the sum of the larger of the two; luminance.
 layout(binding = 2) uniform sampler2D kept;
-layout(binding = 3) uniform sampler2D change; // this picture - kept
+layout(binding = 3) uniform sampler2D change; // this frame - kept
 layout(location = 0) out vec4 outShare;
 
 void main() {

@@ -21,7 +21,7 @@ float slopeOf(float a, float b, float centre) {
 }
 
 /// Reversed depth at `place`, texels. It is linear on a plane, so the nearest texel's value goes on by its slope: that of
-/// the side where no other surface begins. (Without, a texel beside the receiver answers for its plane, and grazing light
+/// the side where no other surface begins. (Without, a texel next to the receiver answers for its plane, and grazing light
 /// is striped: lookups expect distances through the centres of the map's texels.)
 float depthAt(vec2 place, int face) {
   ivec2 texel = ivec2(floor(place));

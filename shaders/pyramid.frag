@@ -1,8 +1,8 @@
 #version 450
 // One level of the pyramid of patches, from the level below; FIRST: from pixels. A patch keeps the plane that fits it, as
-// inverse depth over the picture (affine for every plane, however steep), a bound of how far its pixels lie from that
-// plane, and the range of their normals. It is split where these pass the thresholds, for balance where a patch beside it is
-// split twice over (2:1), and, if larger than 2 × 2 pixels, where an edge runs along it. Serves the camera's picture, and
+// inverse depth over the image (affine for every plane, however steep), a bound of how far its pixels lie from that
+// plane, and the range of their normals. It is split where these pass the thresholds, for balance where a patch next to it is
+// split twice over (2:1), and, if larger than 2 × 2 pixels, where an edge runs along it. Serves the camera's image, and
 // light maps that lie side by side (cells). Variant DEPTH_RANGE: a patch keeps its least and largest inverse depth instead
 // of a plane, and is split where the range of its depths is too large (papers 2 and 3).
 layout(binding = 0) uniform sampler2D depthMap;  // FIRST: reversed depth, 0 where nothing is seen
@@ -10,7 +10,7 @@ layout(binding = 1) uniform sampler2D normalMap; // FIRST
 layout(binding = 0) uniform sampler2D planes;    // else: the level below
 layout(binding = 1) uniform sampler2D normalsLo;
 layout(binding = 2) uniform sampler2D normalsHi;
-uniform ivec2 size;           // of the picture, pixels
+uniform ivec2 size;           // of the image, pixels
 uniform ivec2 cell;           // of one map, children; patches never span two
 uniform int childPixels;      // 2^(level − 1)
 uniform int mayBeSplit;       // 0: not at this level, whatever it holds
@@ -82,13 +82,13 @@ vec4 mergedPlane(Child children[4], int surfaces, int inside) {
 }
 
 #ifdef FIRST
-/// How far a pixel beside the patch is from continuing it, as relativeTo.
-float offThePatch(float beside, vec2 step, ivec2 map) {
+/// How far a pixel next to the patch is from continuing it, as relativeTo.
+float offThePatch(float neighbour, vec2 step, ivec2 map) {
 #ifdef DEPTH_RANGE
-  float least = min(beside, outPlane.y);
-  return relativeTo(max(beside, outPlane.z) - least, least, map);
+  float least = min(neighbour, outPlane.y);
+  return relativeTo(max(neighbour, outPlane.z) - least, least, map);
 #else
-  return relativeTo(abs(beside - outPlane.x - dot(outPlane.yz, step - 0.5)), outPlane.x, map);
+  return relativeTo(abs(neighbour - outPlane.x - dot(outPlane.yz, step - 0.5)), outPlane.x, map);
 #endif
 }
 
@@ -157,10 +157,10 @@ void main() {
       bool edge = false;
       for (int i = 0; i < 16; ++i) {
         ivec2 step = ivec2(i & 3, i >> 2) - 1;
-        float beside = depthAt(first + step, origin);
-        if (beside < 0.0) continue;
+        float neighbour = depthAt(first + step, origin);
+        if (neighbour < 0.0) continue;
         vec3 normal = texelFetch(normalMap, first + step, 0).xyz;
-        edge = edge || beside == 0.0 || offThePatch(beside, vec2(step), map) >= depthThreshold ||
+        edge = edge || neighbour == 0.0 || offThePatch(neighbour, vec2(step), map) >= depthThreshold ||
                turns(min(lo, normal), max(hi, normal));
       }
       outNormalHi.a = edge ? 1.0 : 0.0;
@@ -169,7 +169,7 @@ void main() {
   }
 #ifndef FIRST
   // A child that is split, or would be if it might, makes this one split, as does one with an edge along its border, and,
-  // for balance, a split one beside.
+  // for balance, a split one next to it.
   ivec2 origin = first / cell * cell;
   int ring = balance;
   for (int y = -ring; y < 2 + ring; ++y) {

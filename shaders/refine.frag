@@ -10,7 +10,7 @@ uniform ivec2 base;    // size of level 0, texels
 uniform int coarsest;  // level
 uniform int grid;      // see shared/patches.h
 uniform int gridLevel; // log2(grid)
-uniform ivec2 size;    // of the picture, pixels
+uniform ivec2 size;    // of the image, pixels
 
 bool split(int level, ivec2 texel) { return texelFetch(normalsLo, texel, level + gridLevel - 1).a > 0.5; }
 

@@ -3,7 +3,7 @@
 // at this level it stays; where it belongs to a coarser one, that level is interpolated; where it is split it stays empty.
 // What is interpolated holds light and lies on the same surface: weights as in filter.frag. A neighbour that was split
 // counts with its parts. Weights are divided by their sum, so a constant stays one. FINAL: to the pixels themselves. GLOSSY:
-// glossy light too, with weights by roughness and metalness besides. BILINEAR: without weights for surfaces, and between
+// glossy light too, with weights by roughness and metalness as well. BILINEAR: without weights for surfaces, and between
 // whole patches only, as the paper.
 #include "lib/gbuffer.glsl"
 #include "lib/patch_sample.glsl"

@@ -39,7 +39,7 @@ void main() {
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 x = (position - corner) / cell + kVolumeShift * normal;
   ivec3 base = ivec3(floor(x - 0.5));
-  // What sees the pixel is asked for a place a little on the way to the camera, which no surface lies between: beside
+  // What sees the pixel is asked for a place a little on the way to the camera, which no surface lies between: next to
   // another surface the half cell that the pixel lies in may have its middle behind that.
   vec3 towardsViewer =
       camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);

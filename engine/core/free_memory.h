@@ -6,11 +6,11 @@
 
 namespace lambent {
 
-/// Bytes that may still be taken: what is free, or left to the group of processes that this one runs in.
+/// Returns the bytes that may still be taken: what is free, or left to the group of processes that this one runs in.
 size_t freeMemory();
 
-/// The same of a group alone, whose limits and statistics lie in `folder` (cgroup 2, or 1 below memory/); files that
-/// the system keeps in memory count as free. The largest number where it has no limit.
+/// Returns the same for a group of processes alone, whose limits and statistics lie in `folder` (cgroup 2, or 1 below
+/// memory/); files that the system keeps in memory count as free. The largest number where it has no limit.
 size_t freeOfGroup(const std::filesystem::path& folder);
 
 } // namespace lambent

@@ -81,19 +81,19 @@ Image8 resized(const Image8& image, int width, int height) {
   const bool made = stbir_resize_uint8_generic(image.rgb.data(), image.width, image.height, 0, out.rgb.data(), width,
                                                height, 0, 3, STBIR_ALPHA_CHANNEL_NONE, 0, STBIR_EDGE_CLAMP,
                                                STBIR_FILTER_TRIANGLE, STBIR_COLORSPACE_LINEAR, nullptr) != 0;
-  if (!made) throw RunError("no memory for a picture of " + std::to_string(width) + "x" + std::to_string(height));
+  if (!made) throw RunError("no memory for an image of " + std::to_string(width) + "x" + std::to_string(height));
   return out;
 }
 
 void writePng(const fs::path& file, const Image8& image) {
   CHECK_EQ(image.rgb.size(), size_t(image.width) * image.height * 3);
-  stbi_write_png_compression_level = 4; // a third of the default's time for pictures 5 % larger
+  stbi_write_png_compression_level = 4; // a third of the default's time for images 5 % larger
   std::string bytes;                    // stb itself does not look whether its file took them
   const auto append = [](void* to, void* data, int size) {
     static_cast<std::string*>(to)->append(static_cast<const char*>(data), size_t(size));
   };
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), image.width * 3))
-    throw RunError(file.string() + ": the picture cannot be encoded (out of memory?)");
+    throw RunError(file.string() + ": the image cannot be encoded (out of memory?)");
   writeAtomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(bytes.data(), std::streamsize(bytes.size()));
@@ -110,9 +110,9 @@ Image readPfm(const fs::path& file) {
   float scale = 0;
   in >> kind >> width >> height >> scale;
   if (!in || (kind != "PF" && kind != "Pf"))
-    throw InputError(file.string(), "is not a PFM picture (the header would be: PF, width height, scale)");
+    throw InputError(file.string(), "is not a PFM image (the header would be: PF, width height, scale)");
   if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
-    throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
+    throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
                                         " (1 to " + std::to_string(kMaxImageSide) + " each way)");
   if (scale == 0 || !std::isfinite(scale))
     throw InputError(file.string(), "the scale in the PFM header is not a number");

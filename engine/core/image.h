@@ -1,4 +1,4 @@
-// Images on disk. Outputs go to a temporary name beside the target and are renamed, so nothing is ever half-written.
+// Images on disk. Outputs go to a temporary name next to the target and are renamed, so nothing is ever half-written.
 #pragma once
 
 #include "engine/core/math.h"
@@ -9,7 +9,7 @@
 
 namespace lambent {
 
-/// Larger pictures are refused on reading, so that a damaged header cannot ask for all memory.
+/// Larger images are refused on reading, so that a damaged header cannot ask for all memory.
 inline constexpr int kMaxImageSide = 32768;
 
 /// Linear RGB float image, row 0 at the top.
@@ -29,31 +29,31 @@ struct Image8 {
   std::vector<uint8_t> rgb;
 };
 
-/// Bilinear, on the encoded values.
+/// Resizes bilinearly, on the encoded values.
 Image8 resized(const Image8& image, int width, int height);
 
 float srgbFromLinear(float linear);
 float linearFromSrgb(float encoded);
 
-/// 32-bit float RGB, ZIP.
+/// Writes 32-bit float RGB, ZIP-compressed.
 void writeExr(const std::filesystem::path& file, const Image& image);
 /// Reads R,G,B (or `layer`.R, …). Throws InputError naming what the file has instead.
 Image readExr(const std::filesystem::path& file, const std::string& layer = {});
-/// Portable float map, colour or grey (grey is repeated in all three channels). The header's scale is taken as byte
-/// order only.
+/// Reads a portable float map, colour or grey (grey is repeated in all three channels). The header's scale is taken as
+/// byte order only.
 Image readPfm(const std::filesystem::path& file);
 void writePng(const std::filesystem::path& file, const Image8& image);
 
-/// Throws RunError where a file could not be written: no such folder, one that is not writable, a folder by its name.
-/// To ask before long work.
+/// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
+/// writable, a folder by its name.
 void checkWritable(const std::filesystem::path& file);
 
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
 /// the folder cannot be written.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 
-/// Removes temporaries of `file` that a program left which was killed while it wrote. For who knows that nobody else is
-/// at it: one that goes on with what was begun.
+/// Removes temporaries of `file` left by a program that was killed while it wrote. Call it only where no other program
+/// writes the file, as when a run is resumed.
 void removeLeftovers(const std::filesystem::path& file);
 
 } // namespace lambent

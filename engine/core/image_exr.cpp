@@ -36,7 +36,7 @@ std::string channelNames(const Imf::ChannelList& channels) {
 
 void writeExr(const std::filesystem::path& file, const Image& image) {
   CHECK_EQ(image.pixels.size(), size_t(image.width) * image.height);
-  if (image.pixels.empty()) throw RunError(file.string() + ": cannot be written: the picture has no pixels");
+  if (image.pixels.empty()) throw RunError(file.string() + ": cannot be written: the image has no pixels");
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -52,7 +52,7 @@ void writeExr(const std::filesystem::path& file, const Image& image) {
         Imf::OutputFile out(to, header);
         out.setFrameBuffer(frame);
         out.writePixels(image.height);
-      } // its destructor writes the table of lines, and tells nobody when it cannot
+      } // its destructor writes the table of lines, and reports nothing when it cannot
       stream.close();
       if (!stream) throw RunError("is the folder writable, the disk full?");
     } catch (const std::exception& e) {
@@ -69,7 +69,7 @@ Image readExr(const std::filesystem::path& file, const std::string& layer) {
     const auto window = in.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
-      throw InputError(file.string(), "the picture's size is " + std::to_string(width) + "x" + std::to_string(height) +
+      throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
                                           " (1 to " + std::to_string(kMaxImageSide) + " each way)");
     // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
     // memory.

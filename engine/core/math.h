@@ -56,7 +56,7 @@ inline Aabb transformed(const Aabb& box, const mat4& m) {
 /// Rec.709 luminance of a linear colour.
 inline float luminance(const vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-/// Of the fourth row, to what rounding in files leaves of it.
+/// Says whether the fourth row is that of an affine matrix, to what rounding in files leaves of it.
 inline bool isAffine(const mat4& m) {
   return std::abs(m[0][3]) + std::abs(m[1][3]) + std::abs(m[2][3]) + std::abs(m[3][3] - 1) < 1e-3f;
 }

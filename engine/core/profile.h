@@ -7,7 +7,7 @@
 
 namespace lambent {
 
-/// Which stage a time is of: a row of a list that whoever measures keeps (gi/plan/stages.h).
+/// Says which stage a time belongs to: a row of the measuring module's list (gi/plan/stages.h).
 struct StageKey {
   uint16_t id = 0;
   const char* name = ""; // of static storage

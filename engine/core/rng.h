@@ -43,7 +43,7 @@ class Rng {
                    mix64((uint64_t(frame) << 32 | id) + 1))) {}
 
   uint32_t nextUint() { return uint32_t(mix64(key_ += kStep) >> 32); }
-  /// Passes over `n` numbers.
+  /// Skips `n` numbers.
   void skip(uint32_t n) { key_ += n * kStep; }
   /// Uniform in [0, 1).
   float next() { return float(nextUint() >> 8) * 0x1p-24f; }

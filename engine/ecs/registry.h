@@ -84,7 +84,7 @@ template <class T> class Pool final : public PoolBase {
   T& at(uint32_t place) { return values_[place]; }
 
  private:
-  std::vector<T> values_; // beside dense_
+  std::vector<T> values_; // parallel to dense_
 };
 
 uint32_t nextTypeIndex();

@@ -38,7 +38,7 @@ Counts& countsSoFar(); // contexts are used from one thread
 } // namespace detail
 
 void drawArrays(GLenum mode, int count);
-/// As many vertices as `feedback` was given last.
+/// Draws as many vertices as were last captured into `feedback`.
 void drawFeedback(GLenum mode, const TransformFeedback& feedback, int instances = 1);
 
 /// Triangles of 32-bit indices of the bound vertex array, as GL reads them from a buffer.
@@ -48,18 +48,19 @@ struct IndexedDraw {
   uint32_t baseInstance = 0;
 };
 static_assert(sizeof(IndexedDraw) == 20);
-/// One call for `count` of the IndexedDraws that a slice holds, from `first` on, in their order.
+/// Draws in one call `count` of the IndexedDraws that a slice holds, from `first` on, in their order.
 void drawIndexed(const BufferSlice& draws, size_t first, size_t count);
 
-/// One triangle over the viewport; the bound program makes its corners from gl_VertexID (shaders/fullscreen.vert).
+/// Draws one triangle over the viewport; the bound program makes its corners from gl_VertexID
+/// (shaders/fullscreen.vert).
 void drawFullscreen();
-/// Points that the bound program makes from gl_VertexID.
+/// Draws points that the bound program makes from gl_VertexID.
 void drawPoints(int count);
-/// The bound compute program, so many groups of it; counted as a draw.
+/// Runs so many groups of the bound compute program; counted as a draw.
 void dispatch(int groupsX, int groupsY = 1, int groupsZ = 1);
 
-/// Ends all that was asked of the GPU, so that a clock beside it tells the truth. For measuring only: a frame that is
-/// not measured never does this, so it is not counted.
+/// Waits until the GPU has done all that it was asked for, so that a clock on the CPU measures it. For measuring only:
+/// a frame that is not measured never does this, so it is not counted.
 void finishToMeasure();
 
 } // namespace lambent::gl

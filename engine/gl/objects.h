@@ -75,11 +75,11 @@ class Texture : public detail::Object {
  public:
   Texture() = default;
   Texture(const std::string& label, const TextureDesc& desc);
-  /// A texture of somebody else, who keeps it alive: never deleted, its memory not counted.
+  /// Wraps a texture that another owner keeps alive: never deleted, its memory not counted.
   static Texture borrowed(GLuint name);
-  /// Whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
+  /// Says whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
   bool readsAsFlat() const;
-  /// Whether its depths, or its red, are numbers of 32 bits.
+  /// Says whether its depths, or its red, are numbers of 32 bits.
   bool holdsSinglePrecision() const;
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
@@ -88,7 +88,7 @@ class Texture : public detail::Object {
   int width() const { return desc_.width; }
   int height() const { return desc_.height; }
   void bind(int unit) const;
-  /// All texels of level 0 to zero. Colour formats only.
+  /// Sets all texels of level 0 to zero. Colour formats only.
   void clear() const;
   /// Samplers see only these levels, numbered from `first`: while another one is drawn into, reading is well defined.
   void limitLevels(int first, int last) const;
@@ -98,7 +98,7 @@ class Texture : public detail::Object {
   template <class T> void read(std::span<T> texels, GLenum format, GLenum type, int level = 0) const {
     readBytes(level, kAllLayers, format, type, texels.size_bytes(), texels.data());
   }
-  /// The same of one layer of level 0.
+  /// Copies the texels of one layer of level 0.
   template <class T> void readLayer(int layer, std::span<T> texels, GLenum format, GLenum type) const {
     readBytes(0, layer, format, type, texels.size_bytes(), texels.data());
   }
@@ -133,7 +133,7 @@ class Buffer : public detail::Object {
   }
   void bindUniform(int binding) const;
   void bindUniform(int binding, uint64_t offset, uint64_t bytes) const;
-  /// For shaders to write into. What reads it next needs a barrier.
+  /// Binds the buffer for shaders to write into. What reads it next needs a barrier.
   void bindStorage(int binding) const;
 
  private:
@@ -185,10 +185,10 @@ class Query : public detail::Object {
   Query() = default;
   explicit Query(GLenum target);
 
-  /// The result if the GPU has come to it.
+  /// Returns the result if the GPU has come to it.
   std::optional<uint64_t> known() const;
-  /// The result; waits for it, and counts as a wait whether the GPU was there already or not: on another machine it
-  /// would not have been.
+  /// Returns the result; waits for it, and counts as a wait whether the GPU was there already or not: on another
+  /// machine it would not have been.
   uint64_t result() const;
 };
 
@@ -209,7 +209,7 @@ struct PipelineState {
   void apply() const;
 };
 
-/// RGB of the lower left width × height pixels of what the window is about to show, from the lowest row up.
+/// Reads RGB of the lower left width × height pixels of what the window is about to show, from the lowest row up.
 std::vector<uint8_t> readWindow(int width, int height);
 
 } // namespace lambent::gl

@@ -14,21 +14,21 @@ namespace lambent::gl {
 /// Finish: glFinish around each pass; exact everywhere, but the CPU waits.
 enum class Timing { Queries, Finish };
 
-/// Of some work, the GPU's included. Waits for all that it does.
+/// Times some work, the GPU's included. Waits for all that it does.
 double secondsOf(const std::function<void()>& work);
 
 class GpuProfiler {
  public:
   explicit GpuProfiler(Timing timing = Timing::Finish) : timing_(timing) {}
 
-  /// Finds out whether timestamps tell the truth here, by timing some drawing both ways (5 to 20 ms). llvmpipe's
+  /// Finds out whether timestamps can be trusted here, by timing some drawing both ways (5 to 20 ms). llvmpipe's
   /// queries cover about one tile of the work. Chooses Queries when they agree within a factor of two, else Finish;
   /// returns the choice.
   Timing calibrate();
   void choose(Timing timing) { timing_ = timing; }
   Timing timing() const { return timing_; }
 
-  /// Rows since the last call, in the order the scopes ended; clears them.
+  /// Returns the rows since the last call, in the order the scopes ended, and clears them.
   std::vector<StageTime> takeRows();
 
  private:

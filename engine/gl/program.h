@@ -61,12 +61,12 @@ struct ShaderText {
   std::string text;
   std::vector<std::filesystem::path> files;
 };
-/// `#include "name"` is looked for beside the including file, then in `folder`. `defines` go below #version.
+/// `#include "name"` is looked for next to the including file, then in `folder`. `defines` go below #version.
 /// Throws RunError naming file and line of an include that is not there.
 ShaderText loadShader(const std::filesystem::path& folder, const std::string& file,
                       const std::vector<std::string>& defines);
 
-/// LAMBENT_SHADERS, else ../share/lambent/shaders beside the executable, else shaders of the source tree. Throws
+/// LAMBENT_SHADERS, else ../share/lambent/shaders next to the executable, else shaders of the source tree. Throws
 /// RunError naming the places when none exists.
 std::filesystem::path findShaderFolder();
 
@@ -81,7 +81,7 @@ class ProgramCache {
   /// Throws RunError with the compiler's log when the program has never compiled.
   const Program& get(const ProgramDesc& desc);
 
-  /// Compiles anew what changed on disk. A program that fails keeps its last good version. Returns one message per
+  /// Recompiles what changed on disk. A program that fails keeps its last good version. Returns one message per
   /// program touched: "reloaded gather.frag", or the file and the compiler's log.
   std::vector<std::string> reloadChanged();
 

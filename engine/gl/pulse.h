@@ -18,7 +18,7 @@ class Pulse {
   std::function<void()> before_;
 };
 
-/// Calls it, where there is one and it is not what calls.
+/// Calls the pulse, where there is one and it is not itself the caller.
 void pulse();
 
 } // namespace lambent::gl

@@ -12,7 +12,7 @@ class QueryRing {
   explicit QueryRing(GLenum target) : target_(target) {}
 
   /// What is drawn between these two is counted. Asks nothing where every query still waits for the GPU: a result that
-  /// is on its way is never given up for a newer one, so that a GPU far behind still tells something.
+  /// is on its way is never given up for a newer one, so that a GPU far behind still reports something.
   void begin();
   void end();
 

@@ -1,5 +1,5 @@
-// Memory for what the CPU tells the GPU in every frame. Writing into a buffer that the GPU still reads makes the driver
-// wait or copy; here each value gets a place of its own, and a place comes round again frames later.
+// Memory for what the CPU sends to the GPU in every frame. Writing into a buffer that the GPU still reads makes the
+// driver wait or copy; here each value gets a place of its own, and a place comes round again frames later.
 #pragma once
 
 #include "engine/gl/objects.h"

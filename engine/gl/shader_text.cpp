@@ -56,7 +56,7 @@ void expand(Expansion& expansion, const fs::path& file, const std::vector<std::s
     if (!fs::exists(target)) target = (expansion.folder / name).lexically_normal();
     if (!fs::exists(target))
       throw RunError("shader " + file.string() + ":" + std::to_string(number) + ": no file \"" + name +
-                     "\" beside it or in " + expansion.folder.string());
+                     "\" next to it or in " + expansion.folder.string());
     // Each file goes in once: shared headers include one another, and GLSL has no use for a second copy.
     if (std::find(expansion.files.begin(), expansion.files.end(), target) == expansion.files.end()) {
       expansion.out << "#line 1 " << expansion.files.size() << '\n';

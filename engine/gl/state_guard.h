@@ -1,4 +1,4 @@
-// Lambent beside a renderer of somebody else: what it finds, it leaves.
+// Lambent in one context with another renderer: leaves all GL state as it found it.
 #pragma once
 
 #include <functional>

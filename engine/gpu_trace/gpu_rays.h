@@ -16,10 +16,10 @@ class GpuRays final : public RayQuery {
 
   /// Takes over instances and transforms, and uploads what they changed.
   void update(const SceneView& view);
-  /// Masked at the start; All is as Masked, which tells the same.
+  /// Sets the alpha test of rays; Masked at the start. All gives the same results as Masked.
   void setAlphaTest(AlphaTest test) { alphaTest_ = test; }
 
-  /// For a program that includes lib/rays.glsl, in use.
+  /// Binds the hierarchies for the program in use, which includes lib/rays.glsl.
   void bind(const gl::Program& program) const;
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;

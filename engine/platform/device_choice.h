@@ -34,7 +34,7 @@ struct DeviceAttempt {
   bool operator==(const DeviceAttempt&) const = default;
 };
 
-/// GPUs first. Software when it is asked for or all that there is, never because a GPU failed: a picture would then
+/// GPUs first. Software when it is asked for or all that there is, never because a GPU failed: an image would then
 /// take a hundred times as long, and nobody would know why. Throws InputError when the wish is for a device that is not
 /// there.
 std::vector<DeviceAttempt> deviceAttempts(std::span<const DeviceDescription> devices, const DeviceWish& wish);

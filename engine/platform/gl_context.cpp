@@ -55,7 +55,7 @@ DeviceDescription describe(EGLDeviceEXT device) {
 }
 
 /// A current context on `display`, or nothing with the reason in `why`. The display stays as it is for those who use it
-/// beside us.
+/// next to us.
 EGLContext contextOn(EGLDisplay display, Drawn drawn, std::string& why) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
     why = "no display";

@@ -13,7 +13,7 @@ struct GLFWwindow;
 
 namespace lambent {
 
-/// When the driver tells what it has to say: as it likes, perhaps on a thread of its own; or before the call that it is
+/// When the driver sends its messages: as it likes, perhaps on a thread of its own; or before the call that it is
 /// about returns, which keeps drivers from running ahead.
 enum class DebugOutput { Asynchronous, AtOnce };
 

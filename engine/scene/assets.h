@@ -53,7 +53,7 @@ struct Material {
   bool doubleSided = false;
 
   bool emits() const { return maxComponent(emission) > 0; }
-  /// Whether it is anything but Lambert; a texture may make it so.
+  /// Says whether the material is anything but Lambert; a texture may make it so.
   bool glossy() const { return roughness < 1 || metalness > 0 || roughnessMetalnessTexture.image != kNone; }
 };
 
@@ -62,7 +62,7 @@ struct Primitive {
   uint32_t firstTriangle = 0, triangleCount = 0;
   uint32_t material = 0;
   Aabb boundsObject;
-  bool flat = false; // normals are the triangles', each with vertices of its own: made anew when the mesh is deformed
+  bool flat = false; // normals are the triangles', each with vertices of its own: made again when the mesh is deformed
 };
 
 /// Up to four joints per vertex, as indices into the joints of the skin that the mesh is shown with. The weights of a

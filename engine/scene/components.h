@@ -53,7 +53,7 @@ struct MeshInstance {
 /// (glTF 2.0, 3.7.3.1).
 struct Skin {
   std::vector<Entity> joints;
-  std::vector<mat4> jointFromBind; // beside `joints`
+  std::vector<mat4> jointFromBind; // parallel to `joints`
 };
 
 /// How much of each morph target of the entity's mesh is added; missing ones count as zero.
@@ -61,7 +61,7 @@ struct MorphWeights {
   std::vector<float> weights;
 };
 
-/// The most of a light in any channel: what a picture sums up must stay finite.
+/// The most of a light in any channel: what an image sums up must stay finite.
 inline constexpr float kMostLight = 1e30f;
 
 /// Stands at the entity's origin and shines along its -Z. Units as in LightView.

@@ -1,4 +1,4 @@
-// The first picture of a file that has no camera. The rule:
+// The first image of a file that has no camera. The rule:
 //
 // 1. Stand on each of 3x3 places spread over the plan, at eye height (1.6 m above the floor found there, or half of the
 //    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these
@@ -201,7 +201,7 @@ CameraView viewFromOutside(const Aabb& bounds) {
 CameraView viewThroughSide(const Aabb& bounds, const vec3& side) {
   const float depth = std::abs(glm::dot(bounds.size(), side));
   const float width = std::abs(glm::dot(bounds.size(), vec3(side.z, 0, side.x)));
-  // The opening fills nine tenths of the picture's height, or of a 16:9 picture's width.
+  // The opening fills nine tenths of the image's height, or of a 16:9 image's width.
   const float height = std::max(bounds.size().y, width * 9 / 16) / 0.9f;
   const float distance = 0.5f * depth + 0.5f * height / std::tan(0.5f * kFovY);
   CameraView view = lookAt(bounds.centre() + distance * side, bounds.centre(), kFovY);

@@ -34,7 +34,7 @@ uint64_t nextRevision() {
 
 } // namespace
 
-/// Poses every instance that is skinned or morphed, anew where its pose changed. A changed shape is a new object: who
+/// Poses every instance that is skinned or morphed, again where its pose changed. A changed shape is a new object: who
 /// holds the old one may still read it.
 std::vector<InstanceView> SceneExtractor::placeInstances(const Scene& scene) {
   std::vector<InstanceView> instances;

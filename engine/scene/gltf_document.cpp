@@ -76,7 +76,7 @@ bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const st
   }
 }
 
-/// Keeps the encoded bytes: only pictures in use are decoded, and several at a time (gltf_image.cpp).
+/// Keeps the encoded bytes: only images in use are decoded, and several at a time (gltf_image.cpp).
 bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
   if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
@@ -321,7 +321,7 @@ Document readDocument(const fs::path& file) {
   parser.SetImageLoader(keepEncoded, nullptr);
   parser.SetFsCallbacks({fileExists, rightPath, readWholeFile, nullptr, &reading});
   tinygltf::Model model;
-  std::string error, warning; // warnings only tell of pictures that could not be read: reported where they are used
+  std::string error, warning; // warnings only concern images that could not be read: reported where they are used
   const std::string folder = file.parent_path().empty() ? "." : file.parent_path().string();
   bool parsed = false;
   try {

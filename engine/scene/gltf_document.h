@@ -125,7 +125,7 @@ struct Budget {
   static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
   size_t read = 0;  // bytes of the file and of those that it names, each once
   size_t spent = 0; // bytes
-  /// False where that is too much.
+  /// Takes from the budget; returns false where that is too much.
   bool take(size_t count, size_t each) {
     const size_t left = limit() - std::min(spent, limit());
     const bool fits = each == 0 || count <= left / each;
@@ -154,13 +154,13 @@ struct Document {
   int defaultScene = -1;
   std::vector<std::string> warnings;
 
-  /// Throws InputError: `place` in this file, for example "mesh 3 'Wall', primitive 0".
+  /// Throws an InputError for `place` in this file, for example "mesh 3 'Wall', primitive 0".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
   /// Takes from the budget, or throws InputError.
   void spend(size_t count, size_t each, const std::string& place) const;
   void warn(std::string text) { warnings.push_back(std::move(text)); }
 
-  /// items[index], or an InputError that says which index of `what` is out of range at `place`.
+  /// Returns items[index], or throws an InputError that says which index of `what` is out of range at `place`.
   template <class T>
   const T& at(const std::vector<T>& items, int index, const char* what, const std::string& place) const {
     checkIndex(index, items.size(), what, place);
@@ -175,7 +175,7 @@ Document readDocument(const std::filesystem::path& file);
 /// "mesh 3 'Wall'" or "mesh 3".
 std::string label(const char* what, size_t index, const std::string& name);
 
-/// The bytes of a file; InputError when it cannot be read.
+/// Reads the bytes of a file. Throws InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const std::filesystem::path& file);
 
 /// Checks what the parser takes on trust: a .glb's chunk sizes, JSON nested so deeply that a parser may run out of
@@ -188,10 +188,10 @@ Container checkContainer(const std::filesystem::path& file, const std::vector<ui
 
 // Accessors -----------------------------------------------------------------------------------------------------------
 
-/// Elements as floats: V is float, vec2, vec3, vec4 or mat4 and must match the accessor's type. Normalised integers are
-/// scaled to [0,1] or [-1,1], others converted; zeros where there is no buffer view; sparse values put in.
+/// Reads elements as floats: V is float, vec2, vec3, vec4 or mat4 and must match the accessor's type. Normalised
+/// integers are scaled to [0,1] or [-1,1], others converted; zeros where there is no buffer view; sparse values put in.
 template <class V> std::vector<V> readAccessor(const Document& doc, int accessor, const std::string& place);
-/// Elements as unsigned integers (indices, joints), `components` each.
+/// Reads elements as unsigned integers (indices, joints), `components` each.
 std::vector<uint32_t> readIndices(const Document& doc, int accessor, int components, const std::string& place);
 
 /// The bytes of a buffer view, checked against its buffer.

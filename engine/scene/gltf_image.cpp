@@ -1,4 +1,4 @@
-// Encoded pictures to RGBA8 texels, several at a time.
+// Encoded images to RGBA8 texels, several at a time.
 
 #include "engine/core/parallel.h"
 #include "engine/scene/gltf_import.h"

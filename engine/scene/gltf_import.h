@@ -29,13 +29,13 @@ struct Import {
 
   bool reached(int node) const { return entities[size_t(node)] != Entity(); }
 
-  // Shares of the time that loading takes: of Sponza, with 69 pictures, 4 %, 6 % and 90 %.
+  // Shares of the time that loading takes: of Sponza, with 69 images, 4 %, 6 % and 90 %.
   static constexpr float kRead = 0.04f, kMeshes = 0.1f;
   void tell(const char* at, float from, float to, size_t done, size_t of) const {
     if (step) step(at, from + (to - from) * float(done) / float(std::max<size_t>(of, 1)));
   }
 
-  // Told once each, with their counts, when the import is done.
+  // Reported once each, with their counts, when the import is done.
   std::map<std::string, size_t> counted; // text → how often
 };
 

@@ -42,7 +42,7 @@ std::vector<uvec3> readTriangles(const Document& doc, const Primitive& primitive
 }
 
 /// Takes out triangles that have no area or no position. The test is what later code computes to get a normal, in the
-/// same precision, so that no later normal is NaN. Where the mesh deforms, only a pose tells whether there is an area.
+/// same precision, so that no later normal is NaN. Where the mesh deforms, only a pose shows whether there is an area.
 void dropDefects(Import& import, std::vector<uvec3>& triangles, const std::vector<vec3>& positions, bool deforms) {
   size_t notFinite = 0, noArea = 0;
   std::erase_if(triangles, [&](const uvec3& t) {

@@ -12,7 +12,7 @@ namespace lambent {
 struct JsonText {
   std::vector<std::string> uris; // values of keys "uri" that are not data themselves, as written
 };
-/// Throws InputError. Whether the text is JSON at all is the parser's to say.
+/// Checks the text. Throws InputError. Whether it is JSON at all is left to the parser.
 JsonText checkJson(const std::filesystem::path& file, std::string_view text);
 
 } // namespace lambent

@@ -22,10 +22,10 @@ struct Scene {
   SceneAssets assets;
   std::vector<AnimationClip> animations; // from the file; all play, looped
   Sky sky;
-  /// Of a scene that lies farther from its file's origin than 16 times its size: where its middle is, roughly; else
-  /// zero. Transforms and what a person types are in the file's coordinates and double precision; cameras, views, boxes
-  /// and all that follows count from here, so that single precision is as good there as at home. Whole steps of 8 m, of
-  /// less in scenes below half a metre, of 1000 m above 60 m.
+  /// Origin of a scene that lies farther from its file's origin than 16 times its size: where its middle is, roughly;
+  /// else zero. Transforms and what a person types are in the file's coordinates and double precision; cameras, views,
+  /// boxes and all that follows count from here, so that single precision is as good there as at home. Whole steps of 8
+  /// m, of less in scenes below half a metre, of 1000 m above 60 m.
   dvec3 origin{0};
   std::filesystem::path file;
 
@@ -38,7 +38,8 @@ struct Scene {
   std::vector<std::string> warnings; // one line each: what the file holds that is shown differently or left out
 };
 
-/// Told what loading is at, and the share of it that is done, from any thread. May throw, which ends the loading.
+/// Called with what loading is at, and the share of it that is done, from any thread. May throw, which ends the
+/// loading.
 using LoadStep = std::function<void(const char* at, float share)>;
 
 /// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).
@@ -47,13 +48,13 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName 
 
 /// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
 void animate(Scene& scene, double time);
-/// Only the second half: for callers that changed Transform components themselves.
+/// Updates world transforms only: for callers that changed Transform components themselves.
 void updateWorldTransforms(Scene& scene);
 
 /// Adds a light that is not in the file; its position counts from the scene's origin, as those of views.
 Entity addLight(Scene& scene, const LightView& light, const std::string& name);
 
-/// Node called `name`, else nothing.
+/// Finds the node called `name`; nothing if there is none.
 std::optional<Entity> findByName(const Scene& scene, const std::string& name);
 
 /// Box around all mesh instances at their present transforms, from the scene's origin.
@@ -78,7 +79,7 @@ CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
 /// the direction has no length.
 quat rotationTowards(const vec3& direction);
 
-/// Turns the registry into a SceneView; keeps what it needs to tell what moved since its last call.
+/// Turns the registry into a SceneView; keeps what it needs to find what moved since its last call.
 /// Spans stay valid until the next call.
 class SceneExtractor {
  public:

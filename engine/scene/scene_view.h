@@ -10,11 +10,11 @@
 
 namespace lambent {
 
-/// Vertices of an instance whose mesh is skinned or morphed, as posed now: beside those of its Mesh, in the same object
-/// space, with unit normals. Triangles, texture coordinates and colours stay the mesh's.
+/// Vertices of an instance whose mesh is skinned or morphed, as posed now: next to those of its Mesh, in the same
+/// object space, with unit normals. Triangles, texture coordinates and colours stay the mesh's.
 struct DeformedMesh {
   std::vector<vec3> positions, normals;
-  std::vector<Aabb> primitiveBoundsObject; // beside Mesh::primitives
+  std::vector<Aabb> primitiveBoundsObject; // parallel to Mesh::primitives
   Aabb boundsObject;
   /// Different for every shape that any extraction of this process has made: who keeps a copy knows by it whether the
   /// copy still holds. Says nothing else, and so may not enter a result.
@@ -64,7 +64,7 @@ struct CameraView {
 
   vec3 position() const { return vec3(worldFromView[3]); }
   float aspect() const { return float(width) / float(height); }
-  /// Of a picture so many times as wide and as high, in whole pixels; one at least.
+  /// Returns the camera of an image `side` times as wide and as high, in whole pixels, at least one.
   CameraView scaled(float side) const;
 };
 
@@ -90,7 +90,7 @@ struct SceneView {
   double time = 0; // seconds
 };
 
-/// World direction through the point (u, v) of the picture, u to the right and v down in [0,1], and its origin.
+/// World direction through the point (u, v) of the image, u to the right and v down in [0,1], and its origin.
 struct CameraRay {
   vec3 origin, direction; // direction is unit
 };

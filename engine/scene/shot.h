@@ -60,19 +60,21 @@ struct Shot {
   int frameCount() const;
 };
 
-/// Throws InputError for a missing file, bad JSON (with line), unknown key, wrong type, keys out of time order.
+/// Loads a shot. Throws InputError for a missing file, bad JSON (with line), unknown key, wrong type, keys out of time
+/// order.
 Shot loadShot(const std::filesystem::path& file);
-/// Written to a temporary name, then renamed.
+/// Saves a shot: written to a temporary name, then renamed.
 void saveShot(const Shot& shot, const std::filesystem::path& file);
 
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
 /// after the last, counted from `origin`: the scene's. Requires shot.camera not empty.
 CameraView shotCamera(const Shot& shot, double t, const dvec3& origin);
 
-/// What was played at time t: between two moments what both have is mixed. Requires shot.played not empty.
+/// Returns what was played at time t; between two moments, what both have is interpolated. Requires shot.played not
+/// empty.
 PlayedMoment playedAt(const Shot& shot, double t);
 
-/// animate(scene, t), then the shot's light and object keys (linear between keys), then world transforms.
+/// Applies animate(scene, t), then the shot's light and object keys (linear between keys), then world transforms.
 /// Throws InputError for a node that the scene lacks (nearest name given).
 void poseShot(Scene& scene, const Shot& shot, double t);
 

@@ -292,7 +292,7 @@ Shot loadShot(const fs::path& file) {
   if (root.has("pixels"))
     root["pixels"].elements([&](const Field& p) {
       const vec2 uv = p.vector<2>();
-      if (glm::min(uv.x, uv.y) < 0 || glm::max(uv.x, uv.y) > 1) p.fail("is outside the picture (0 to 1)");
+      if (glm::min(uv.x, uv.y) < 0 || glm::max(uv.x, uv.y) > 1) p.fail("is outside the image (0 to 1)");
       shot.pixels.push_back(uv);
     });
   if (root.has("set"))

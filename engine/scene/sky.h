@@ -38,22 +38,22 @@ class Sky {
   bool black() const { return !daylight_ && luminance(constantRadiance_) <= 0; }
   bool constant() const { return !daylight_; }
   float meanLuminance() const; // over the sphere
-  /// Of an open horizontal plane, from above.
+  /// Irradiance of an open horizontal plane from above, W/m².
   vec3 irradiance() const;
 
-  /// Directions in proportion to luminance, from numbers in [0, 1): uniform over the sphere where the sky is constant,
-  /// else over each of 32×32 cells of equal solid angle.
+  /// Draws directions in proportion to luminance, from numbers in [0, 1): uniform over the sphere where the sky is
+  /// constant, else over each of 32×32 cells of equal solid angle.
   SkySample sample(vec2 u) const;
   float pdf(const vec3& direction) const;
 
-  /// The same in proportion to what a surface of unit `normal` gets from there: luminance times cosine, by the cells'
-  /// middles and for one of 81 normals, so that a direction below the surface may be drawn, and one just above
+  /// Draws directions in proportion to what a surface of unit `normal` gets from there: luminance times cosine, by the
+  /// cells' middles and for one of 81 normals, so that a direction below the surface may be drawn, and one just above
   /// it may not. Where the sky is constant, by the cosine.
   SkySample sampleFacing(const vec3& normal, vec2 u) const;
   float pdfFacing(const vec3& normal, const vec3& direction) const;
 
   const DaylightModel* model() const; // null: constant
-  /// What the sky follows from: a colour, or direction and turbidity. Equal numbers are equal skies.
+  /// Returns what the sky follows from: a colour, or direction and turbidity. Equal numbers mean equal skies.
   std::vector<float> numbers() const;
   friend bool operator==(const Sky& a, const Sky& b) { return a.numbers() == b.numbers(); }
 

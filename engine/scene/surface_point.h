@@ -18,7 +18,7 @@ struct SurfacePoint {
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
                           vec2 barycentric);
 
-/// How a surface reflects besides its colour: factors times texture.
+/// How a surface reflects, apart from its colour: factors times texture.
 struct RoughnessMetalness {
   float roughness = 1, metalness = 0; // roughness is perceptual
 };

@@ -1,4 +1,4 @@
-// A view that outlives the scene's next extraction: for whoever keeps it, or works on it beside the frame.
+// A view that outlives the scene's next extraction: for whoever keeps it, or works on it while frames run.
 #pragma once
 
 #include "engine/scene/scene_view.h"

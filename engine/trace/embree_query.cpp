@@ -157,7 +157,7 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
   BottomLevel out{rtcNewScene(device)};
   // Without it one ray of 700 at the joints of a closed box slips out. Path tracing takes 4 to 8 % longer.
   rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_ROBUST);
-  if (refits) { // without these two Embree builds anew whatever the geometries ask for
+  if (refits) { // without these two Embree rebuilds, whatever the geometries ask for
     rtcSetSceneFlags(out.scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(out.scene, RTC_BUILD_QUALITY_LOW);
   }

@@ -13,15 +13,15 @@ class EmbreeQuery final : public RayQuery {
   ~EmbreeQuery() override;
 
   /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went, and refits the
-  /// bottom level of what was reshaped. With `all` every instance is placed anew. Returns how many were.
+  /// bottom level of what was reshaped. With `all` every instance is placed again. Returns how many were.
   uint32_t update(const SceneView& view, bool all = false);
 
-  /// Masked at the start.
+  /// Sets the alpha test of rays; Masked at the start.
   void setAlphaTest(AlphaTest test);
-  /// Whether a hit's albedo has the texel's colour, as at the start, or the texture's mean.
+  /// Sets whether a hit's albedo has the texel's colour, as at the start, or the texture's mean.
   void setTextures(bool on);
 
-  /// Work since the last call, of all threads.
+  /// Work of all threads since the last call.
   struct Work {
     uint64_t alphaTests = 0, textureLookups = 0;
   };

@@ -106,7 +106,7 @@ void FlatScene::place(Shape& shape, uint32_t meshIndex, std::span<const vec3> po
   }
 }
 
-/// Lays out anew what lies behind the static arrays.
+/// Lays out again what lies behind the static arrays.
 void FlatScene::reshape(const SceneView& view, Changed& changed) {
   const size_t count = view.instances.size();
   bool any = meshOf_.size() != count;

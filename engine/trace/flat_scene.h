@@ -16,7 +16,7 @@ class FlatScene {
     bool top = false;    // instances, and the hierarchy above them
     bool shapes = false; // nodes and triangles from staticNodes() and staticTriangles() on: of deformed instances
   };
-  /// Takes over instances and transforms. The hierarchy above them is refitted, and built anew where instances come,
+  /// Takes over instances and transforms. The hierarchy above them is refitted, and rebuilt where instances come,
   /// go, or have strayed (see kStrayed); those of reshaped instances are refitted.
   Changed update(const SceneView& view);
 

@@ -5,7 +5,7 @@
 
 namespace lambent {
 
-/// Whether paths from `eye` that surfaces reflect up to three times get out to the sky: false in a room without
+/// Says whether paths from `eye` that surfaces reflect up to three times get out to the sky: false in a room without
 /// openings, true under a balcony of an open court. The same for the same scene.
 bool skyReaches(const RayQuery& rays, const vec3& eye);
 

@@ -50,14 +50,14 @@ class RayQuery {
  public:
   virtual ~RayQuery() = default;
 
-  /// Closest hits; hits.size() == rays.size(). Coherent neighbours are traced faster. NaN rays count as misses.
+  /// Finds closest hits; hits.size() == rays.size(). Coherent neighbours are traced faster. NaN rays count as misses.
   virtual void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const = 0;
-  /// Distance only, in units of each ray's direction, kInfinity where nothing is met.
+  /// Finds distances only, in units of each ray's direction, kInfinity where nothing is met.
   virtual void distances(std::span<const Ray> rays, std::span<float> t) const = 0;
-  /// 1 where something lies on the segment (0, tMax), else 0.
+  /// Sets `blocked` to 1 where something lies on the segment (0, tMax), else to 0.
   virtual void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const = 0;
 
-  /// Whether only the thread that made it may ask; such a one answers long lists best.
+  /// Says whether only the thread that made the query may use it; such a query answers long lists best.
   virtual bool ownThread() const { return false; }
 
   SurfaceHit closest(const Ray& ray) const {

@@ -19,12 +19,13 @@ struct TriangleMet {
   vec2 barycentric{0};
 };
 
-/// Of a triangle that the instance's scale squashed to nothing: a hit that is not valid. With `textures` the albedo has
-/// the texel's colour, else the texture's mean; `lookups` counts the former.
+/// Returns the surface where a ray met a triangle. The hit is not valid if the instance's scale has squashed the
+/// triangle to nothing. With `textures` the albedo has the texel's colour, else the texture's mean; `lookups` counts
+/// the former.
 SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, const TriangleMet& met, const Ray& ray,
                      bool textures, uint64_t& lookups);
 
-/// Of a primitive's triangle: base colour's alpha × texture's × vertices'.
+/// Returns alpha on a primitive's triangle: base colour's × texture's × vertices'.
 float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
               const vec2& barycentric);
 

@@ -36,12 +36,12 @@ class Body {
 
   /// Puts the eye there, at rest. A walker then falls to the floor.
   void place(const vec3& eye);
-  /// The same, on its feet; false where there is no floor near, or no room to stand.
+  /// Puts the body there on its feet; returns false where there is no floor near, or no room to stand.
   bool stand(const RayQuery& rays, const vec3& eye);
 
   /// Goes along with what it stands on, as that moved since the last extraction.
   void ride(const SceneView& view);
-  /// Moves for so many seconds. Frames of any length give the same way, in steps of at most kStepSeconds.
+  /// Moves for so many seconds. Frames of any length give the same path, in steps of at most kStepSeconds.
   void move(const RayQuery& rays, const SceneView& view, const BodyWish& wish, float seconds);
 
   Gait gait() const { return gait_; }
@@ -50,7 +50,7 @@ class Body {
   vec3 eye() const { return feet_ + vec3(0, size_.eye() + eyeLag_, 0); }
   const vec3& feet() const { return feet_; }
   const BodySize& size() const { return size_; }
-  /// Whether something is where it is: it stands in the way of what moves.
+  /// Says whether something is where the body is: it stands in the way of what moves.
   bool cramped(const RayQuery& rays) const;
   bool grounded() const { return grounded_; }
   uint32_t ground() const { return ground_; } // id of the instance that it stands on; kNone in the air

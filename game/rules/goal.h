@@ -1,5 +1,5 @@
 // A thing that waits for daylight: a node whose name says how much, "altar, goal 0.02" in W/m². What it gets is
-// measured by light paths of its own, whatever the picture shows, with all that is carried about. Sun, sky and what
+// measured by light paths of its own, whatever the image shows, with all that is carried about. Sun, sky and what
 // glows count; lamps do not, so that light has to be led there.
 #pragma once
 
@@ -15,9 +15,9 @@ class Goal {
   /// The scene's goal; null where no node is one. `scene` must outlive it. After all meshes were added.
   static std::unique_ptr<Goal> find(const Scene& scene);
 
-  /// Takes more paths, of the scene as it stands now; those of another scene count no more.
+  /// Takes more paths, of the scene as it stands now; those of an earlier state of the scene no longer count.
   void update();
-  /// As at the start.
+  /// Resets the goal to how it was at the start.
   void reset();
 
   const std::string& what() const { return what_; }
@@ -25,7 +25,8 @@ class Goal {
   /// Mean over the thing's surface, W/m²: the latest frames' while anything moves, else of all since then.
   float irradiance() const { return float(shown_); }
   float error() const; // standard error of what was measured since anything moved
-  /// By three standard errors, asked whenever the number of passes has doubled; once it was, it stays so.
+  /// Says whether the goal is reached by three standard errors, checked whenever the number of passes has doubled. Once
+  /// reached, it stays so.
   bool reached() const { return reached_; }
 
  private:

@@ -15,20 +15,20 @@ class Movers {
   /// Finds them in the scene and adds their buttons. Before anything is built from the scene's assets.
   explicit Movers(Scene& scene);
 
-  /// What using the instance would do, in words; empty: nothing.
+  /// Says what using the instance would do, in words; empty: nothing.
   std::string offer(uint32_t instance) const;
   /// Sets what the instance is, or is a button of, in motion. Says whether there is such a thing.
   bool use(uint32_t instance);
 
   /// Moves what moves, for so many seconds: to be called after the scene was animated. Says whether anything moves.
   bool update(double seconds);
-  /// Somebody is in the way of what moves: it goes back.
+  /// Turns back what moves: somebody is in its way.
   void turnBack();
 
-  /// All as at the start.
+  /// Puts all back as at the start.
   void reset();
 
-  /// Where those are that somebody used, in stops, by their nodes' names.
+  /// Returns where the used movers are, in stops, by their nodes' names.
   std::map<std::string, double> used() const;
   /// Throws InputError, with `file`, where there is no mover of a name.
   void check(const std::map<std::string, double>& places, const std::string& file) const;

@@ -16,7 +16,7 @@ enum class PadButton { Jump, Gait, Use, Torch, Run, Hurl, Home, Menu, Lamp, Box 
 inline constexpr size_t kPadButtons = size_t(PadButton::Box) + 1;
 using PadButtons = std::array<bool, kPadButtons>;
 
-/// Without the middle, where sticks never rest quite at zero; finer near it, and 1 at the rim.
+/// Shapes a stick's tilt: zero near the middle, where sticks never rest quite at zero; finer near it, and 1 at the rim.
 vec2 stick(const vec2& tilt);
 
 /// Adds what the pad asks for to the keys' wishes.

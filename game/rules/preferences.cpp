@@ -163,7 +163,7 @@ void KeptPreferences::passed(double seconds) {
 
 void KeptPreferences::save() {
   if (file_.empty() || now == saved_) return;
-  saved_ = now; // also where it fails: told once, tried again when something else changes
+  saved_ = now; // also where it fails: reported once, tried again when something else changes
   try {
     savePreferences(now, file_);
   } catch (const RunError& e) {

@@ -40,7 +40,7 @@ struct Preferences {
   using ApplyTechnique = std::function<void(Settings&, const std::string&)>;
   Settings over(const Settings& settings, const AskedFor& asked, const ApplyTechnique& apply,
                 std::string& complaint) const;
-  /// Whether they say how good pictures are to be, so that nothing else chooses.
+  /// Whether they say how good images are to be, so that nothing else chooses.
   bool chooseQuality() const;
 };
 

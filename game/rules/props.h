@@ -22,7 +22,7 @@ class Props {
   /// Where the flashlight shines from and to; none: it is off.
   void setTorch(const std::optional<PlayedMoment::Torch>& torch);
 
-  /// As it is now.
+  /// Returns the moment as it is now.
   PlayedMoment moment(double t) const;
   /// Throws InputError where the shot has what this scene or this program has not, or too much: before it is shown.
   void check(const Shot& shot) const;

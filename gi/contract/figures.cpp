@@ -35,7 +35,7 @@ constexpr FigureRow kRows[] = {
     {"paths.traced", "light paths traced", [](const S& s) -> Figure { return s.pathsTraced; }},
     {"paths.retraced", "of these, paths that had been traced before",
      [](const S& s) -> Figure { return s.pathsRetraced; }},
-    {"patches", "gathered at, as far as the GPU has told", [](const S& s) -> Figure { return s.patches; }},
+    {"patches", "gathered at, as far as the GPU has reported", [](const S& s) -> Figure { return s.patches; }},
     {"area_fragments", "patches that asked rays about emissive surfaces, single pixels in them too",
      [](const S& s) -> Figure { return s.areaFragments; }},
     {"maps_drawn", "shadow maps of VPLs and lamps, in part or whole",

@@ -15,17 +15,17 @@
 
 namespace lambent {
 
-/// With frame.overlap, what concerns the update of the VPLs is of the update that ended before this frame's picture:
-/// that of the frame before.
+/// Figures of one frame. With frame.overlap, those of the VPL update are of the update that ended before this frame:
+/// the last frame's.
 struct FrameStats {
   uint32_t frame = 0;
   std::vector<StageTime> stages;   // CPU and GPU, in order
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
       raysMapTests, raysShadows, raysArea, raysVolume, raysCube;
-  uint64_t patches = 0;                      // of the multiresolution buffer that gathered, as far as the GPU has told
-  uint64_t areaFragments = 0;                // of area lights
-  uint64_t cubes = 0, cubeEntries = 0;       // layered depth cubes, and entries of these that light reaches
+  uint64_t patches = 0;                // of the multiresolution buffer that gathered, as far as the GPU has reported
+  uint64_t areaFragments = 0;          // of area lights
+  uint64_t cubes = 0, cubeEntries = 0; // layered depth cubes, and entries of these that light reaches
   uint64_t cubeBytes = 0, cubeKeptBytes = 0; // of these, and of what brings them up to date
   uint32_t vplsKept = 0, vplsMoved = 0, vplsInvalid = 0, vplsRelit = 0, vplsAlive = 0, vplsStrong = 0;
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
@@ -44,7 +44,7 @@ struct FrameStats {
   std::string warning;                   // one line for whoever started the program; empty: nothing to say
 
   uint64_t& of(EffectId id) { return work[size_t(id)]; }
-  /// Milliseconds that the machine was at it: the longer of the frame's wall time and the GPU's passes.
+  /// Milliseconds that the machine worked on the frame: the longer of the frame's wall time and the GPU's passes.
   double costMs() const;
   /// Milliseconds of a stage, the longer of CPU and GPU; 0 if it did not run.
   double ms(StageId stage) const;

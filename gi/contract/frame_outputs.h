@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-/// Valid until the next run. Null where a stage did not run.
+/// What a frame made. Valid until the next run; textures are null where a stage did not run.
 struct FrameOutputs {
   GBuffer surfaces;
   SurfaceLighting direct, indirect;

@@ -19,7 +19,7 @@ struct GatherInputs {
 class Gather {
  public:
   virtual ~Gather() = default;
-  /// Irradiance at the surfaces, valid until the next run. Adds its rays and counts to the figures.
+  /// Computes irradiance at the surfaces, W/m², valid until the next run. Adds its rays and counts to the figures.
   virtual SurfaceLighting run(const GatherInputs& in, FrameStats& stats) = 0;
 };
 

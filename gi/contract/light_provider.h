@@ -16,7 +16,7 @@ namespace lambent {
 struct FrameStats; // gi/contract/figures.h
 struct VplSet;     // gi/vpl/vpl_set.h
 
-/// Called in what takes long with what is done and the total; it may throw, which ends the work. May be empty.
+/// Called during long work with the steps done and the total. May be empty. May throw, which ends the work.
 using Progress = std::function<void(int, int)>;
 inline const Progress kNoProgress;
 
@@ -40,7 +40,7 @@ struct Frame : FrameWorld {
   int bounces = 1; // that its light may be reflected
 };
 
-/// What a provider shows of its inside, to debug views. Valid until its next run; null where it has none.
+/// What a provider shows debug views of its internals. Valid until its next run; null where it has none.
 struct ProviderInside {
   SurfaceLighting gathered; // before the mean over frames and the filter
   ParaboloidMaps maps;
@@ -51,18 +51,18 @@ class LightProvider {
  public:
   virtual ~LightProvider() = default;
 
-  /// Returns when nothing of it runs next to the GPU any more.
+  /// Waits until nothing of it runs in parallel with the GPU any more.
   virtual void wait() {}
-  /// A frame of this view begins; nothing of it runs.
+  /// Called when a frame of this view begins, while nothing of the provider runs.
   virtual void begin(const SceneView&, const Settings&) {}
-  /// Another scene: nothing of the last one may be used.
+  /// Drops all that belongs to the last scene: another one follows.
   virtual void forget() {}
-  /// How far the last frame brought it. The plan draws again while something is pending.
+  /// Returns how far the last frame brought it. The plan draws again while something is pending.
   virtual ProviderStatus status() const { return {}; }
-  /// Brings what outlives frames up to date, in every frame, before surfaces are drawn; adds its work to the figures.
+  /// Updates what outlives frames, in every frame, before surfaces are drawn. Adds its work to the figures.
   virtual void update(const FrameWorld&, FrameStats&) {}
-  /// Irradiance at the frame's surfaces, W/m², rows from the bottom; valid until the next run. Not called where nothing
-  /// is to be drawn, or the plan has no such light. Adds its rays and counts to the figures.
+  /// Computes irradiance at the frame's surfaces, W/m², rows from the bottom; valid until the next run. Not called
+  /// where nothing is to be drawn or the plan has no such light. Adds its rays and counts to the figures.
   virtual SurfaceLighting run(const Frame&, FrameStats&) = 0;
   virtual ProviderInside inside() const { return {}; }
 };

@@ -10,17 +10,18 @@ namespace lambent {
 class LightSource {
  public:
   virtual ~LightSource() = default;
-  /// This frame's lights, valid until the next run; none of them is packed or listed where nothing is redrawn.
+  /// Returns this frame's lights, valid until the next run; none of them is packed or listed where nothing is redrawn.
   virtual VirtualLights run(const FrameWorld& in, const Needs& needs, FrameStats& stats) = 0;
 
-  /// Waits for an update that still runs next to the GPU. `arrived` afterwards: lights that no frame shows yet.
+  /// Waits for an update that still runs in parallel with the GPU. Afterwards `arrived` says whether there are lights
+  /// that no frame shows yet.
   virtual void wait() {}
   virtual bool arrived() const { return false; }
-  /// No better lights are in reach (gi/vpl/settling.h).
+  /// Says whether no better lights are in reach (gi/vpl/settling.h).
   virtual bool settled() const { return false; }
-  /// The set on the CPU, if the source keeps one; call wait() before.
+  /// Returns the set on the CPU if the source keeps one, else null. Call wait() before.
   virtual const VplSet* set() const { return nullptr; }
-  /// The scene is another.
+  /// Drops all that belongs to the last scene.
   virtual void forget() {}
 };
 

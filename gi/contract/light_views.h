@@ -6,17 +6,17 @@
 
 namespace lambent {
 
-/// Six faces around a point; one square around a cone; parallel rays.
+/// Which views a light takes: six faces around a point; one square around a cone; parallel rays.
 enum class LightKind { Cube, Spot, Sun };
 
 /// Spots wider than 70° from their axis take a cube: one perspective would have hardly any texels in the middle.
 LightKind kindOf(const LightView& light);
 
-/// Whether it brings any light at all.
+/// Says whether the light brings any light at all.
 bool shines(const LightView& light);
 
-/// Of views from lights in a scene of these bounds, metres. What is nearer is the lamp's own housing as often as not;
-/// relative, since scenes come in all sizes.
+/// Near plane of views from lights in a scene of these bounds, metres. What is nearer is the lamp's own housing as
+/// often as not. Relative to the bounds, since scenes come in all sizes.
 float nearPlane(const Aabb& bounds);
 
 // Reference formulas of KHR_lights_punctual.

@@ -1,4 +1,4 @@
-// What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are drawn anew.
+// What is drawn into paraboloid shadow maps: where a light stands, and which of its texels are redrawn.
 #pragma once
 
 #include "engine/trace/ray_query.h"
@@ -39,14 +39,14 @@ struct TexelRect {
   }
 };
 
-/// Texels of the map of one slot that are drawn anew.
+/// Texels of the map of one slot that are redrawn.
 struct MapJob {
   uint32_t slot = 0;
   TexelRect texels;
   bool coarse = false; // every second texel of every second row is traced, and those between follow from them
 };
 
-/// Texels that are traced for a rectangle.
+/// Number of texels that are traced for a rectangle.
 inline int64_t texelsTraced(const TexelRect& t, bool coarse) {
   return coarse ? int64_t((t.x1 - t.x0 + 1) / 2) * ((t.y1 - t.y0 + 1) / 2) : t.area();
 }

@@ -7,12 +7,12 @@
 
 namespace lambent {
 
-/// Must outlive the passes.
+/// References that every pass holds: the objects must outlive the passes.
 struct PassContext {
   gl::ProgramCache& programs;
   gl::GpuProfiler& profiler;
 
-  /// What all GL commands of a stage run inside.
+  /// Opens the scope that all GL commands of a stage run inside.
   gl::PassScope scope(StageId stage) const { return {profiler, key(stage)}; }
 };
 

@@ -1,4 +1,4 @@
-// Smooth patches of a picture, or of maps side by side.
+// Smooth patches of an image, or of maps side by side.
 #pragma once
 
 #include "engine/core/math.h"
@@ -23,7 +23,7 @@ struct PatchPyramid {
   glm::ivec2 padded{0};                  // pixels
 };
 
-/// The pyramid of a frame's picture: made when somebody first asks, the same for everybody who does.
+/// The pyramid of a frame's image: made when somebody first asks, the same for everybody who does.
 class Patches {
  public:
   Patches() = default;
@@ -33,7 +33,7 @@ class Patches {
     if (!made_) made_ = make_();
     return *made_;
   }
-  /// As far as anybody asked.
+  /// Returns the pyramid if anybody has asked for it.
   const std::optional<PatchPyramid>& made() const { return made_; }
 
  private:

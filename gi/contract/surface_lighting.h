@@ -1,4 +1,4 @@
-// Light that surfaces of the picture receive: what every stage of direct and indirect light gives.
+// Light that surfaces of the image receive: what every stage of direct and indirect light gives.
 #pragma once
 
 #include "engine/gl/ring.h"
@@ -16,12 +16,12 @@ struct SurfaceLighting {
   bool subsets = deinterleaved; // pixels side by side were lit by other classes
 };
 
-/// A stage's own textures for that, and the framebuffer that draws into them.
+/// A stage's own textures for SurfaceLighting, and the framebuffer that draws into them.
 class LightTarget {
  public:
   explicit LightTarget(std::string label) : label_(std::move(label)) {}
 
-  /// Makes them anew where size, or whether surfaces are glossy, changed.
+  /// Makes them again where size, or whether surfaces are glossy, changed.
   void fit(const GBuffer& surfaces, const glm::ivec2& size);
   void fit(const GBuffer& surfaces) { fit(surfaces, {surfaces.width, surfaces.height}); }
   /// Binds the framebuffer, sets the viewport, and makes everything black.

@@ -12,7 +12,7 @@ class Texture;
 struct BufferSlice;
 } // namespace gl
 
-/// World position follows from `depth` and `camera` (shaders/lib/gbuffer.glsl).
+/// What a camera sees. World positions follow from `depth` and `camera` (shaders/lib/gbuffer.glsl).
 struct GBuffer {
   const gl::Texture* depth = nullptr;    // DEPTH32F, reversed: 0 where nothing is seen
   const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer

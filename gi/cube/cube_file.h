@@ -7,15 +7,15 @@
 
 namespace lambent {
 
-/// Hash of what entries and sights depend on: where surfaces are and what they are made of. Which lights are in it the
-/// cube knows itself.
+/// Hash of what entries and sights depend on: where surfaces are and what they are made of. The cube itself
+/// knows which lights are in it.
 uint64_t cubeKey(const SceneView& view);
 
-/// Replaces the file in one step. Throws RunError where it cannot be written.
+/// Saves the cube, replacing the file in one step. Throws RunError where it cannot be written.
 void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64_t key);
-/// Whether a file claims to be one, of whatever version.
+/// Says whether a file claims to be a cube, of any version.
 bool isCube(const std::filesystem::path& file);
-/// Throws InputError for a file that is no cube, is damaged, of another version, or of other geometry.
+/// Loads a cube. Throws InputError for a file that is no cube, is damaged, of another version, or of other geometry.
 LayeredCube loadCube(const std::filesystem::path& file, uint64_t key);
 
 } // namespace lambent

@@ -15,10 +15,10 @@ class CubeSurfaces {
   bool empty() const { return nodes_.empty(); }
   /// Casts all columns.
   void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts);
-  /// Casts what `moved` touches: then it is what build() would make. Gives by entry its number before, kNone where it
-  /// is new.
+  /// Casts what `moved` touches; the result is what build() would make. Returns for each entry its number before, kNone
+  /// where it is new.
   std::vector<uint32_t> update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
-  /// Whether the box holds the scene, and not much more.
+  /// Says whether the box holds the scene, and not much more.
   bool holds(const Aabb& boundsWorld) const;
 
   float texel() const { return edge_ / float(resolution_ - 2); } // metres, the widest
@@ -34,7 +34,7 @@ class CubeSurfaces {
 
  private:
   friend struct CubeFile; // gi/cube/cube_file.cpp
-  struct Growth;          // of a tree, beside the one before
+  struct Growth;          // of a tree, next to the one before
 
   DepthCube cubeOf(uint32_t index) const;
   Growth grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const;

@@ -108,7 +108,7 @@ DepthCube DepthCube::cast(const CubeGrid& grid, const RayQuery& rays, RayCounts&
 
 void DepthCube::refresh(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts) {
   std::vector<uint32_t> stale, near;
-  for (size_t c = 0; c < grid.columns(); c += kBlock) { // whole blocks: few are beside one that is touched
+  for (size_t c = 0; c < grid.columns(); c += kBlock) { // whole blocks: few are next to one that is touched
     const CubeGrid::Place at = grid.placeOf(c);
     const auto touched = [&](float texels) {
       Aabb box;

@@ -20,7 +20,7 @@ struct CubeEntry {
 /// Steps in an image's two directions to neighbour k.
 inline constexpr int kCubeNeighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
 
-/// Whether an entry is the surface at a place with this normal (paper 5, section 3.1), `within` metres.
+/// Says whether an entry is the surface at a place with this normal, `within` metres (paper 5, section 3.1).
 bool matches(const CubeEntry& entry, const vec3& position, const vec3& normal, float within);
 /// Images that hold a surface of this normal: where two axes are nearly as near, both. Bit a: axis a.
 int axesOf(const vec3& normal);
@@ -32,8 +32,8 @@ struct CubeGrid {
   float texel = 0; // metres
   int resolution = 0;
 
-  /// Over a box of this edge and a texel around it: rays start outside of it, and pixels at its border find light
-  /// around them.
+  /// Makes a grid over a box of this edge and a texel around it: rays start outside of it, and pixels at its border
+  /// find light around them.
   static CubeGrid over(const vec3& lo, float edge, int resolution);
   size_t columns() const { return 3 * size_t(resolution) * size_t(resolution); }
   /// Columns lie in blocks of 8×8: neighbours in space mostly are in memory.
@@ -41,12 +41,12 @@ struct CubeGrid {
     const size_t blocks = size_t(resolution) / 8;
     return ((size_t(axis) * blocks + size_t(v) / 8) * blocks + size_t(u) / 8) * 64 + size_t(v % 8) * 8 + size_t(u % 8);
   }
-  /// Its inverse.
+  /// Inverse of column().
   struct Place {
     int axis, u, v;
   };
   Place placeOf(size_t column) const;
-  /// On the near side; `within` the texel, 0..1.
+  /// Point of a column on the near side; `within` the texel, 0..1.
   vec3 pointOf(const Place& at, vec2 within) const;
   float edge() const { return float(resolution) * texel; }
   Aabb box() const { return {corner, corner + edge()}; }
@@ -61,7 +61,7 @@ struct DepthCube {
 
   /// Casts all columns.
   static DepthCube cast(const CubeGrid& grid, const RayQuery& rays, RayCounts& counts);
-  /// Casts columns that `moved` touches.
+  /// Casts the columns that `moved` touches again.
   void refresh(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
   /// Share of the entries whose surface does not go on in all four directions, 0..1: edges, and all that is about as
   /// small as a texel.

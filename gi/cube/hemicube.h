@@ -13,7 +13,7 @@ struct HemicubeTexel {
   vec3 normal{0};             // geometric, unit, towards the light
 };
 
-/// Of one of its five images, in the light's frame: the directions of its middle, of its columns and of its rows.
+/// One of a hemicube's five images, in the light's frame: the directions of its middle, of its columns and of its rows.
 struct HemicubeFace {
   vec3 forward, right, up;
 };
@@ -33,34 +33,35 @@ struct Hemicube {
 
   size_t size() const { return 3 * size_t(resolution) * resolution; }
   int rows(int face) const { return face == 0 ? resolution : resolution / 2; }
-  /// Of all rows, one face after the other.
+  /// First row of a face, among the rows of all faces one after the other.
   int firstRow(int face) const { return face == 0 ? 0 : resolution + (face - 1) * (resolution / 2); }
   HemicubeTexel& at(int face, int x, int y) { return texels[index(face, x, y)]; }
   const HemicubeTexel& at(int face, int x, int y) const { return texels[index(face, x, y)]; }
-  /// Unit, through texel coordinates of a face (0, 0 is the corner of the first texel).
+  /// Unit direction through texel coordinates of a face (0, 0 is the corner of the first texel).
   vec3 direction(int face, vec2 at) const;
-  /// Face and texel coordinates of a direction; false below the horizon.
+  /// Finds face and texel coordinates of a direction; false below the horizon.
   bool find(const vec3& direction, int& face, vec2& at) const;
 
  private:
   size_t index(int face, int x, int y) const { return size_t(firstRow(face) + y) * size_t(resolution) + size_t(x); }
 };
 
-/// `light` looks around, from just off its surface.
+/// Sets up an empty hemicube of `light`, from just off its surface.
 Hemicube hemicubeAt(const VirtualLight& light, int resolution, float rayEpsilon);
-/// Fills one with rays. Thread-safe.
+/// Fills a hemicube with rays. Thread-safe.
 void castHemicube(Hemicube& hemicube, const RayQuery& rays, RayCounts& counts);
 
-/// Who draws hemicubes otherwise.
+/// Makes hemicubes in another way than with rays on the CPU.
 class HemicubeMaker {
  public:
   virtual ~HemicubeMaker() = default;
-  /// From the main thread.
+  /// Fills the hemicubes. Called from the main thread.
   virtual void make(std::span<Hemicube> hemicubes) = 0;
 };
 
-/// Marks the entries that it sees: each texel those of its surface that lie in it, as the light sees them, and half a
-/// texel around (the splats of paper 5, section 4.3; texels that the same hemicube wrote already are marked already).
+/// Marks the entries that a hemicube sees: each texel marks those of its surface that lie in it, as the light sees
+/// them, and half a texel around (the splats of paper 5, section 4.3; texels that the same hemicube wrote already are
+/// marked already).
 void splat(const Hemicube& hemicube, const CubeSurfaces& surfaces, std::vector<uint8_t>& seen);
 
 } // namespace lambent

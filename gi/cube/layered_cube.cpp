@@ -64,9 +64,9 @@ dvec3 LayeredCube::bring(const CubeEntry& entry, const VirtualLight& light) cons
 
 CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   CubeWork work;
-  const bool anew = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
-                    !surfaces_.holds(in.boundsWorld) || in.lights.size() != in_.size();
-  if (anew) {
+  const bool fresh = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
+                     !surfaces_.holds(in.boundsWorld) || in.lights.size() != in_.size();
+  if (fresh) {
     settings_ = in.settings;
     gather_ = in.gather;
     surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays);
@@ -123,8 +123,9 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
 /// Looks at the entries from lights `which` of a word, and brings bits and sums up to date.
 void LayeredCube::put(const CubeInputs& in, size_t word, Word which, CubeWork& work,
                       const std::vector<uint8_t>* isNew) {
-  const std::vector<Word> seen = settings_.visibility == CubeVisibility::Rays ? byRays(in, word, which, work.rays, isNew)
-                                                                      : byHemicubes(in, word, which, work.rays);
+  const std::vector<Word> seen = settings_.visibility == CubeVisibility::Rays
+                                     ? byRays(in, word, which, work.rays, isNew)
+                                     : byHemicubes(in, word, which, work.rays);
   parallelFor(sums_.size(), kRun, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
       Word& before = seen_[e * words() + word];
@@ -140,7 +141,7 @@ void LayeredCube::put(const CubeInputs& in, size_t word, Word which, CubeWork& w
 }
 
 /// By entry: bits of the lights `which` of a word that see it. With `isNew`: only entries that are, and segments where
-/// something moved, are asked anew.
+/// something moved, are asked again.
 std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t word, Word which, RayCounts& counts,
                                                    const std::vector<uint8_t>* isNew) const {
   const std::span<const CubeEntry> entries = surfaces_.entries();
@@ -225,17 +226,17 @@ void LayeredCube::adoptSurfaces(const CubeInputs& in, CubeWork& work) {
   work.changed = true;
   std::vector<uint8_t> isNew(from.size());
   std::vector<Aabb> places(in.moved.boxes().begin(), in.moved.boxes().end());
-  Aabb anew; // also behind what moved, and where a tree grew
+  Aabb grown; // also behind what moved, and where a tree grew
   for (size_t e = 0; e < from.size(); ++e) {
     isNew[e] = from[e] == kNone;
-    if (isNew[e]) anew.add(surfaces_.entries()[e].position);
+    if (isNew[e]) grown.add(surfaces_.entries()[e].position);
   }
-  if (!anew.empty()) places.push_back(anew);
+  if (!grown.empty()) places.push_back(grown);
   for (size_t w = 0; w < words(); ++w) {
     Word which = 0;
     for (size_t b = 0; b < kBatch && w * kBatch + b < in_.size(); ++b) {
       const VirtualLight& light = in_[w * kBatch + size_t(b)];
-      // A hemicube that sees the place of a mover, or entries that are new beside it, is made anew.
+      // A hemicube that sees the place of a mover, or new entries next to it, is made again.
       const auto inFront = [&](const Aabb& box) { return sees(light, box, 4 * surfaces_.texel()); };
       if (light.alive && (settings_.visibility == CubeVisibility::Rays || std::ranges::any_of(places, inFront)))
         which |= Word(1) << b;

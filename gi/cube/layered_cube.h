@@ -33,7 +33,7 @@ struct CubeInputs {
 
 /// What an update did.
 struct CubeWork {
-  uint32_t lightsIn = 0, lightsOut = 0; // put in, taken out: 64 that were lit anew count in both
+  uint32_t lightsIn = 0, lightsOut = 0; // put in, taken out: 64 that were lit again count in both
   uint32_t entriesAnew = 0;
   bool changed = false; // the irradiance of any entry may be other than before
   RayCounts rays;
@@ -51,7 +51,7 @@ class LayeredCube {
   const CubeSurfaces& surfaces() const { return surfaces_; }
   /// Irradiance of an entry of surfaces(), W/m², under its shading normal.
   vec3 irradiance(size_t entry) const { return vec3(sums_[entry]); }
-  /// Of what keeps it up to date: entries, their sums, and who sees whom.
+  /// Bytes of what keeps the cube up to date: entries, their sums, and who sees whom.
   size_t bytesKept() const;
 
  private:

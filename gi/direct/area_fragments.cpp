@@ -80,7 +80,7 @@ bool differsBeyondBorders(const Fragment& f, std::span<const Fragment> fragments
 
 /// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it,
 /// whether or not these are fragments; says which fragments are split. `level` above 0.
-std::vector<uint8_t> askAround(const AreaVisibility& visibility, const PictureSurfaces& surfaces, int level,
+std::vector<uint8_t> askAround(const AreaVisibility& visibility, const FrameSurfaces& surfaces, int level,
                                const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments,
                                uint64_t& rays) {
   std::vector<int> numbers(size_t(size.x) * size_t(size.y), -1); // of what is asked, by texel
@@ -149,11 +149,11 @@ void markBorders(std::span<FragmentLevel> levels) {
   }
 }
 
-/// The fragments of a picture: tested from the coarsest level down, split, kept.
+/// The fragments of an image: tested from the coarsest level down, split, kept.
 class Fragments {
  public:
-  Fragments(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
-            const AreaSettings& settings, std::span<FragmentLevel> levels)
+  Fragments(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, const AreaSettings& settings,
+            std::span<FragmentLevel> levels)
       : visibility_(rays, lights, surfaces, settings.rays), surfaces_(surfaces), settings_(settings), levels_(levels),
         neighbours_(settings.refinement == AreaRefinement::Neighbours),
         byCounts_(settings.refinement == AreaRefinement::Counts), states_(levels.size()), open_(levels.size()) {
@@ -167,11 +167,11 @@ class Fragments {
 
   FragmentCounts run() {
     descend();
-    // Fragments of other levels beside one, and the single pixels in it, may tell what its own rays missed.
-    while (byCounts_ && splitBesideOthers()) descend();
+    // Adjacent fragments of other levels, and the single pixels in it, may show what its own rays missed.
+    while (byCounts_ && splitNextToOthers()) descend();
     while (askExtra()) {
       descend();
-      while (splitBesideOthers()) descend();
+      while (splitNextToOthers()) descend();
     }
     return counts_;
   }
@@ -274,7 +274,7 @@ class Fragments {
     }
   }
 
-  /// By as many rays as the threshold; beside what is dark, by one: a step from nothing is seen however small.
+  /// By as many rays as the threshold; next to what is dark, by one: a step from nothing is seen however small.
   bool apart(float a, float b) const {
     if (a < 0 || b < 0) return false;
     const float rays = std::abs(a - b) * float(settings_.rays);
@@ -282,7 +282,7 @@ class Fragments {
   }
 
   /// Splits fragments whose sub-fragments see other shares than finer ones, or others as large, across a border.
-  bool splitBesideOthers() {
+  bool splitNextToOthers() {
     std::vector<std::pair<int, glm::ivec2>> found;
     for (int level = 1; level < int(levels_.size()); ++level) {
       const glm::ivec2 size = levels_[size_t(level)].size;
@@ -334,7 +334,7 @@ class Fragments {
     return -1;
   }
 
-  /// Single pixels in large fragments that have none yet. Says whether one of them tells otherwise than the fragment
+  /// Single pixels in large fragments that have none yet. Says whether one of them differs from the fragment
   /// around it, which is then split.
   bool askExtra() {
     if (!settings_.extra || settings_.upsample != AreaUpsample::Rbf || neighbours_) return false;
@@ -401,7 +401,7 @@ class Fragments {
   }
 
   const AreaVisibility visibility_;
-  const PictureSurfaces& surfaces_;
+  const FrameSurfaces& surfaces_;
   const AreaSettings& settings_;
   const std::span<FragmentLevel> levels_;
   const bool neighbours_, byCounts_;
@@ -412,7 +412,7 @@ class Fragments {
 
 } // namespace
 
-FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces,
+FragmentCounts shareVisible(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces,
                             const AreaSettings& settings, std::span<FragmentLevel> levels) {
   CHECK(!levels.empty() && settings.rays <= kMostAreaRays);
   const FragmentCounts counts = Fragments(rays, lights, surfaces, settings, levels).run();

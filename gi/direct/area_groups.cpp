@@ -27,7 +27,7 @@ AreaLights only(const AreaLights& all, std::span<const uint32_t> which) {
 
 } // namespace
 
-std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const PictureSurfaces& surfaces,
+std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
                                  RayCounts& counts) {
   constexpr size_t kTests = 1 << 15, kMostPixels = 256, kLeastPixels = 32;
   constexpr float kAlike = 16; // as bright

@@ -6,9 +6,9 @@
 
 namespace lambent {
 
-/// The lights in groups: of those that a few rays from the picture reach, each within a factor of 16 of the next in
+/// The lights in groups: of those that a few rays from the image reach, each within a factor of 16 of the next in
 /// what they bring to it; and of those that no ray reached, which may be seen by a few pixels all the same.
-std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const PictureSurfaces& surfaces,
+std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
                                  RayCounts& counts);
 
 } // namespace lambent

@@ -43,7 +43,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   plain.roughnessMetalness = nullptr;
   atlas_.fit(plain, pyramid, false);
   readSurfaces(surfaces, pyramid);
-  const PictureSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+  const FrameSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
   const RayQuery& rays = tracerFor(world, seen, settings.area);
   stats.areaTracer = tracer_.report();
   std::vector<AreaLights> groups;
@@ -67,7 +67,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   }
 }
 
-/// The lights anew where emitters changed: what else moves does not change them.
+/// Collects the lights again where emitters changed: what else moves does not change them.
 void AreaLightPass::collect(const World& world) {
   const std::vector<EmitterTriangle>& now = world.lights.triangles;
   const bool same = now.size() == triangles_.size() &&
@@ -80,7 +80,7 @@ void AreaLightPass::collect(const World& world) {
 }
 
 /// Embree or the GPU.
-const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfaces& surfaces,
+const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces& surfaces,
                                          const AreaSettings& settings) {
   const bool automatic = settings.tracer == AreaTracer::Auto, measures = automatic && !tracer_.measured();
   const bool gpu = settings.tracer == AreaTracer::Gpu || (automatic && tracer_.gpu());
@@ -104,14 +104,14 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const PictureSurfac
   };
   msPerMillion(*gpuRays_); // compiles
   const double onGpu = msPerMillion(*gpuRays_), onCpu = msPerMillion(world.rays);
-  if (onCpu == 0) return world.rays; // no light reaches the frame: another one tells
+  if (onCpu == 0) return world.rays; // no light reaches the frame: another one decides
   tracer_.measure(onCpu, onGpu, "a million rays");
   if (tracer_.gpu()) return *gpuRays_;
   gpuRays_.reset();
   return world.rays;
 }
 
-/// What the CPU has to know of the picture. Waits for the GPU.
+/// What the CPU has to know of the image. Waits for the GPU.
 void AreaLightPass::readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid) {
   const size_t pixels = size_t(surfaces.width) * size_t(surfaces.height);
   depth_.resize(pixels);

@@ -1,4 +1,4 @@
-// Direct light of emissive surfaces by patches of the picture (paper 4): what they bring where nothing is between, in
+// Direct light of emissive surfaces by patches of the image (paper 4): what they bring where nothing is between, in
 // closed form at every pixel, times the share of it that rays from patches find open.
 #pragma once
 
@@ -21,17 +21,17 @@ class AreaLightPass {
  public:
   explicit AreaLightPass(PassContext context) : context_(context) {}
 
-  /// Adds to the target, which is as large as the picture.
+  /// Adds the light to the target, which is as large as the image.
   void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
            const LightTarget& target, FrameStats& stats);
-  /// It is not asked for a while: what lights come to be meanwhile is not told.
+  /// Drops the collected lights. Call it when the pass is not run for a while: changes of lights are then not reported.
   void forget() {
     lights_ = {};
     gpuRays_.reset();
   }
 
  private:
-  const RayQuery& tracerFor(const World& world, const PictureSurfaces& surfaces, const AreaSettings& settings);
+  const RayQuery& tracerFor(const World& world, const FrameSurfaces& surfaces, const AreaSettings& settings);
   void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void collect(const World& world);

@@ -15,7 +15,7 @@ constexpr int kMostAll = 4 * kMostAreaRays;
 
 } // namespace
 
-std::vector<glm::ivec2> PictureSurfaces::some(size_t count) const {
+std::vector<glm::ivec2> FrameSurfaces::some(size_t count) const {
   std::vector<glm::ivec2> pixels;
   for (uint32_t i = 0; i < count; ++i) {
     const vec3 at = additiveRecurrence3(i, vec3(0.5f));
@@ -41,7 +41,7 @@ struct AreaVisibility::Question {
 };
 
 AreaVisibility::Place AreaVisibility::placeAt(const glm::ivec2& pixel) const {
-  const PictureSurfaces& s = surfaces_;
+  const FrameSurfaces& s = surfaces_;
   const vec3 view = positionViewFromDepth(s.camera, vec2(pixel) + 0.5f, s.depth[s.at(pixel)]);
   return {vec3(s.camera.worldFromView * vec4(view, 1)), glm::normalize(vec3(s.normal[s.at(pixel)]))};
 }

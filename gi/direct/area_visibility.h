@@ -1,4 +1,4 @@
-// What a fragment of a picture sees of the area lights: rays towards them from its parts, and which share of their
+// What a fragment of an image sees of the area lights: rays towards them from its parts, and which share of their
 // light these find open.
 #pragma once
 
@@ -16,15 +16,15 @@ namespace lambent {
 
 inline constexpr int kMostAreaRays = 64; // from a quarter: bits of a word
 
-/// A picture's surfaces on the CPU, rows from the bottom.
-struct PictureSurfaces {
+/// An image's surfaces on the CPU, rows from the bottom.
+struct FrameSurfaces {
   int width = 0, height = 0;
   std::span<const float> depth; // as GBuffer
   std::span<const vec4> normal;
   CameraBlock camera;
 
   bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
-  /// Up to `count` pixels that show a surface, spread over the picture.
+  /// Up to `count` pixels that show a surface, spread over the image.
   std::vector<glm::ivec2> some(size_t count) const;
   size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
 };
@@ -47,20 +47,20 @@ struct AreaSeen {
 /// Asks the rays of many fragments: from all threads, or where the query belongs to one, in long lists.
 class AreaVisibility {
  public:
-  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const PictureSurfaces& surfaces, int raysPerPart)
+  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, int raysPerPart)
       : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
 
-  /// Of patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
+  /// Asks for patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
   std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
-  /// Of pixels. Unless all rays are asked for: where a quarter of them is open, the others are not asked.
+  /// Asks for pixels. Unless `askAll`: where a quarter of a pixel's rays is open, the others are not traced.
   std::vector<AreaSeen> ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const;
-  /// Of the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the patches'
-  /// are a quarter.
+  /// Asks for the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the
+  /// patches' are a quarter.
   std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
-  /// Whether two pixels beside each other show one smooth surface.
+  /// Says whether two adjacent pixels show one smooth surface.
   bool oneSurface(const glm::ivec2& a, const glm::ivec2& b) const;
-  /// Of a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to `asked` a
-  /// ray to each that brings any.
+  /// Looks from a pixel: adds to `brought` what each light brings where nothing is between, as a luminance, and to
+  /// `asked` a ray to each that brings any.
   void askEach(const glm::ivec2& pixel, std::span<double> brought, std::vector<std::pair<uint32_t, Ray>>& asked) const;
   /// Pixel in the middle of a patch.
   glm::ivec2 middleOf(const glm::ivec2& texel, int level) const {
@@ -97,7 +97,7 @@ class AreaVisibility {
 
   const RayQuery& rays_;
   const AreaLights& lights_;
-  const PictureSurfaces& surfaces_;
+  const FrameSurfaces& surfaces_;
   int count_; // of a quarter
 };
 

@@ -31,9 +31,9 @@ Aabb boxOf(std::span<const vec3> places, const Aabb& scene) {
   return box;
 }
 
-/// With the resolutions that follow the picture filled in.
-ShadowSettings resolved(ShadowSettings shadow, int pictureWidth) {
-  const int width = int(std::bit_ceil(unsigned(pictureWidth)));
+/// With the resolutions that follow the frame filled in.
+ShadowSettings resolved(ShadowSettings shadow, int frameWidth) {
+  const int width = int(std::bit_ceil(unsigned(frameWidth)));
   if (shadow.sunResolution == 0) shadow.sunResolution = 2 * width;
   if (shadow.pointResolution == 0) shadow.pointResolution = std::max(1, width / 2);
   if (shadow.spotResolution == 0) shadow.spotResolution = width;
@@ -106,7 +106,7 @@ void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
   }
   if (!rays || answer(in, blocks, stats)) return;
 
-  // There are more doubts than the list holds: block by block, and in parts of the picture so small that it does.
+  // There are more doubts than the list holds: block by block, and in parts of the frame so small that it does.
   for (const LightBlock& block : blocks) {
     std::vector<Area> areas{whole};
     while (!areas.empty()) {
@@ -233,7 +233,7 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
     const gl::Program& program = programFor(surfaces, block, "direct_lit.vert", "LIT");
     program.set("firstLight", int(block.first));
     program.set("firstPair", int(first));
-    program.set("pictureSize", vec2(surfaces.width, surfaces.height));
+    program.set("frameSize", vec2(surfaces.width, surfaces.height));
     gl::drawPoints(int(pair - first));
   }
 }

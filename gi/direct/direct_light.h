@@ -14,9 +14,9 @@ namespace lambent {
 class DirectLight : public LightProvider {
  public:
   explicit DirectLight(PassContext context, uint32_t mostDoubts = ShadowRayPass::kMost);
-  /// The light of the last run where neither surfaces nor light can have changed.
+  /// Returns the light of the last run where neither surfaces nor light can have changed.
   SurfaceLighting run(const Frame& frame, FrameStats& stats) override;
-  /// Also where it is not asked for a while: what changes meanwhile is not told.
+  /// Drops the last light. Call it also when this is not run for a while: changes are then not reported.
   void forget() override { stale_ = true; }
 
   struct Area {
@@ -24,7 +24,7 @@ class DirectLight : public LightProvider {
   };
 
  private:
-  /// Whether doubts are noted, and light is drawn.
+  /// Says whether doubts are noted and whether light is drawn.
   enum class Noting { Off, AlsoLight, Only };
 
   static bool byPatches(const Frame& in);

@@ -11,9 +11,9 @@ namespace lambent {
 class EmitterShadowPass {
  public:
   explicit EmitterShadowPass(PassContext context) : context_(context), maps_(context, StageId::EmitterMaps) {}
-  /// About `samples` of all emitters together. Draws only maps whose sample or casters changed.
+  /// Returns about `samples` samples of all emitters together. Draws only maps whose sample or casters changed.
   std::vector<LightBlock> run(const World& world, const ShadowSettings& shadow, int samples, FrameStats& stats);
-  /// There are none: what they come to see meanwhile is not told.
+  /// Drops the maps. Call it while there are no samples: changes of what they see are then not reported.
   void forget() { poses_.clear(); }
   uint32_t samples() const { return uint32_t(poses_.size()); } // in the last run
 

@@ -212,7 +212,7 @@ void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFr
   drawInto(block.maps, layer, clipFromWorld, scene, Instances::Moving);
 }
 
-/// Over what the map shows already, where only the restless are drawn.
+/// Draws a map; where only moving objects are drawn, over what the map shows already.
 void LightShadowState::drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene,
                                 Instances which) {
   framebuffer.bind();

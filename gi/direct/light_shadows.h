@@ -29,7 +29,7 @@ struct LightBlock {
 /// Light records on the GPU: those that differ from what it has are uploaded.
 class LightRecords {
  public:
-  /// At most kLightsPerBlock.
+  /// Takes at most kLightsPerBlock lights.
   void hold(std::vector<LightRecord> lights, gl::Ring& uploads);
   const gl::Buffer& buffer() const { return buffer_; }
   std::span<const LightRecord> held() const { return held_; }
@@ -52,7 +52,7 @@ struct SunFit {
 /// than twice as large as needed, so that a slow camera redraws nothing; a new fit has a tenth to spare on each side.
 SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous);
 
-/// Places without those, at most a thirtieth, that make their box much larger than the rest needs.
+/// Leaves out places, at most a thirtieth, that make their box much larger than the rest needs.
 std::vector<vec3> withoutOutliers(std::vector<vec3> places);
 
 /// `count` directions that stand for the sky, each with the irradiance that it brings to a surface facing it. Of a
@@ -81,7 +81,7 @@ class LightShadowPass {
  public:
   explicit LightShadowPass(PassContext context);
   ~LightShadowPass();
-  /// Draws only maps whose light, fit or casters changed, and of cubes only the faces.
+  /// Draws only maps whose light, fit or casters changed, and of cubes only the changed faces.
   std::vector<LightBlock> run(const LightShadowInputs& in);
   uint32_t mapsDrawn() const;    // in the last run
   uint32_t skyMapsDrawn() const; // of these

@@ -13,18 +13,18 @@ namespace lambent {
 class ShadowRayPass {
  public:
   static constexpr uint32_t kMost = 524287; // 16 MiB: what every OpenGL lets shaders write into
-  /// `most`: doubts that the list may come to hold.
+  /// `most`: doubts that the list may grow to hold.
   explicit ShadowRayPass(uint32_t most = kMost) : most_(most), room_(std::min(most, 1u << 14)) {}
   /// Empties the list and binds it for shaders (shaders/lib/shadow_doubt.glsl).
   void begin();
-  /// Takes the list over from the GPU. False where there were more doubts than it has room for: then what is noted is
-  /// to be noted again in parts. It has grown then, as far as it may.
+  /// Takes the list over from the GPU. Returns false where there were more doubts than it has room for. The list has
+  /// then grown as far as it may, and doubts must be noted again in parts.
   bool collect();
   /// Traces the rays that `towards` gives for each doubt. Afterwards `lit` holds the pairs that see one another, by
   /// light and pixel.
   void trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&)>& towards, RayCounts& counts);
 
-  /// Pixel, as ShadowDoubt's, and light.
+  /// Pairs of a pixel (as ShadowDoubt's) and a light that see one another.
   std::span<const uvec2> lit() const { return lit_; }
   void bindLit(int unit);
 

@@ -15,7 +15,7 @@ namespace lambent {
 // The parts that the axes name: compose.cpp, the only file that branches on them.
 std::unique_ptr<LightSource> makeSource(const Axes& axes, PassContext context); // null: no virtual lights
 std::unique_ptr<Gather> makeGather(const Axes& axes, PassContext context);
-/// Whether one source, or gather, serves both.
+/// Says whether one source, or one gather, serves both.
 bool sameSource(const Axes& a, const Axes& b);
 bool sameGather(const Axes& a, const Axes& b);
 

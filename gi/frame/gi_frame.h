@@ -28,7 +28,7 @@ class GiFrame {
   explicit GiFrame(const Settings& settings, uint32_t seed = 1);
   ~GiFrame();
 
-  /// As a new one with the present settings: nothing is known of frames before.
+  /// Makes this as a new GiFrame with the present settings: nothing of earlier frames is kept.
   void restart();
 
   Settings& settings(); // may be changed between frames; takes effect at the next one
@@ -43,26 +43,27 @@ class GiFrame {
   const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
                         const HostSurfaces* host = nullptr);
 
-  /// Irradiance of the last frame at its surfaces, W/m², albedo not included: names of RGBA32F textures of the view's
-  /// size, rows from the bottom, valid until the next run. 0: there is no such light.
+  /// Returns the irradiance of the last frame at its surfaces, W/m², albedo not included: names of RGBA32F textures of
+  /// the view's size, rows from the bottom, valid until the next run. 0: there is no such light.
   uint32_t directIrradiance() const;
   uint32_t indirectIrradiance() const;
-  /// All that the last frame made.
+  /// Returns all that the last frame made.
   const FrameOutputs& outputs() const;
 
-  /// Shadow maps of the present VPLs compared with each other and with rays, as `view` (the last one run) sees them.
+  /// Compares the shadow maps of the present VPLs with each other and with rays, as `view` (the last one run) sees
+  /// them.
   ShadowAgreement compareShadowMaps(const SceneView& view, int slots, int points,
                                     const std::function<void(int, int)>& progress = {});
 
-  /// Compiles shaders again that changed on disk; one message per program touched. A failed one keeps its last good
-  /// version.
+  /// Compiles again the shaders that changed on disk; returns one message per program touched. A failed one keeps its
+  /// last good version.
   std::vector<std::string> reloadShaders();
 
   const FrameStats& stats() const; // of the last frame
-  /// Waits for an update that still runs next to the GPU.
+  /// Returns the VPLs. Waits for an update that still runs in parallel with the GPU.
   const VplSet& vpls() const;
   const RayQuery& rays() const;
-  /// Programs and timers, for who draws with what this gives.
+  /// Returns programs and timers, for code that draws with these outputs.
   PassContext context() const;
 
  private:

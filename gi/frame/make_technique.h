@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-/// The row's own, or one that is composed of the axes and serves all settings without a row of its own.
+/// Makes the row's own provider, or one that is composed of the axes and serves all settings without a row of its own.
 std::unique_ptr<LightProvider> makeTechnique(const Settings& settings, PassContext context);
 
 } // namespace lambent

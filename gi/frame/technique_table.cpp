@@ -36,7 +36,7 @@ constexpr Technique kTechniques[] = {
      "smc, with direct light of emissive surfaces at patches (paper 4)",
      {Smc, V::Maps, Interleaved, R::Filter},
      EmitterShadows::Patches,
-     "the picture's surfaces, where anything glows"},
+     "the visible surfaces, where anything glows"},
     {"lpv",
      "light propagation volume lit by Poisson samples over all surfaces (paper 4)",
      {Poisson, V::None, Volume, R::None}},

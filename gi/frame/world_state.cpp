@@ -9,7 +9,7 @@ namespace {
 
 constexpr SceneChanges kAllChanged{true, true, true, true, true};
 
-/// All maps are drawn anew when their far distance changes, so it leaves room to grow.
+/// All maps are redrawn when their far distance changes, so it leaves room to grow.
 float farDistanceOf(const SceneView& view, float before) {
   const float wanted = std::max(view.boundsWorld.diameter(), 1e-20f); // all in one place, as far as floats tell
   if (wanted <= before && wanted >= 0.5f * before) return before;
@@ -40,9 +40,9 @@ void WorldState::take(const SceneView& given, const Settings& settings) {
 }
 
 EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
-  const bool anew = before_.effects != settings.effects || in.first;
-  lightingStale_ |= anew;
-  surfacesStale_ |= anew;
+  const bool fresh = before_.effects != settings.effects || in.first;
+  lightingStale_ |= fresh;
+  surfacesStale_ |= fresh;
   Settings gather = settings; // but for what does not touch what pixels gather
   gather.history = before_.history;
   gather.filter = before_.filter;

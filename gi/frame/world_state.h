@@ -13,7 +13,7 @@
 
 namespace lambent {
 
-/// What a plan depends on besides the view and the settings.
+/// What a plan depends on, apart from the view and the settings.
 struct PlanInputs {
   bool first = true; // there is no frame yet
   bool host = false; // the surfaces are a host's, who may have drawn them again
@@ -25,22 +25,22 @@ class WorldState {
  public:
   explicit WorldState(gl::ProgramCache& programs) : programs_(programs) {}
 
-  /// Makes ready for another scene. Says whether it is one.
+  /// Prepares for a scene. Returns whether it is another one.
   bool open(const SceneAssets& assets, FrameStats& stats);
   /// Takes the view over.
   void take(const SceneView& given, const Settings& settings);
   const SceneView& view() const { return view_.view(); }
-  /// Decides what is done in this frame. What no stage was told of stays a change until all hear of it.
+  /// Decides what is done in this frame. A change stays one until every stage has seen it.
   EffectPlan plan(const Settings& settings, const PlanInputs& in);
-  /// The view as the plan lets it be; valid until the next plan.
+  /// Places the view as the plan allows; valid until the next plan.
   World place(const EffectPlan& plan, FrameStats& stats);
-  /// Figures of what rays and draws met since the last call.
+  /// Adds to the figures what rays and draws met since the last call.
   void countWork(FrameStats& stats);
 
   bool settingsChanged() const { return settingsChanged_; } // of VPLs or effects
   bool gatherChanged() const { return gatherChanged_; }     // settings or shaders: pixels gather other light
   void shadersChanged() { shadersChanged_ = true; }
-  /// As last placed.
+  /// Returns the world as last placed.
   World current() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, farDistance_}; }
 
  private:
@@ -57,7 +57,7 @@ class WorldState {
   bool settingsChanged_ = true, gatherChanged_ = true, shadersChanged_ = false;
   bool hosted_ = false;        // the last surfaces were a host's
   bool frozen_ = false;        // objects stand where they stood
-  bool lightingStale_ = false; // something changed that not all stages were told of
+  bool lightingStale_ = false; // something changed that not all stages have seen
   bool surfacesStale_ = false; // nor those of surfaces and direct light
 };
 

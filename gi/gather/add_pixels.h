@@ -11,7 +11,7 @@ namespace lambent {
 class PixelAdder {
  public:
   PixelAdder(PassContext context, StageId stage) : context_(context), stage_(stage), pixels_(key(stage).name) {}
-  /// Pixels row by row from the top; `glossy` may be empty. `grid`: sub-images per axis of the target, 4 or 1.
+  /// Adds pixels, row by row from the top; `glossy` may be empty. `grid`: sub-images per axis of the target, 4 or 1.
   void add(std::span<const vec3> irradiance, std::span<const vec3> glossy, const GBuffer& surfaces,
            const LightTarget& target, int grid);
 

@@ -14,25 +14,25 @@ namespace lambent {
 
 glm::ivec2 tileSize(const GBuffer& gbuffer) { return {(gbuffer.width + 3) / 4, (gbuffer.height + 3) / 4}; }
 
-// Each cycle of 16 pictures has an order of its own, so that nothing that moves over the pixels keeps step with it.
-int lightClassOf(const glm::ivec2& subset, uint32_t picture) {
+// Each cycle of 16 frames has an order of its own, so that nothing that moves over the pixels keeps step with it.
+int lightClassOf(const glm::ivec2& subset, uint32_t sample) {
   std::array<int, kLightClasses> turns;
   std::iota(turns.begin(), turns.end(), 0);
-  Rng rng(0, Stream::Turns, picture / kLightClasses);
+  Rng rng(0, Stream::Turns, sample / kLightClasses);
   for (uint32_t i = kLightClasses; i > 1; --i) std::swap(turns[i - 1], turns[rng.below(i)]);
-  const int first = picture < kLightClasses ? turns[0] : 0; // the very first picture is that of paper 1
-  const int turn = turns[picture % kLightClasses] ^ first;
+  const int first = sample < kLightClasses ? turns[0] : 0; // the very first frame is that of paper 1
+  const int turn = turns[sample % kLightClasses] ^ first;
   return ((subset.x + turn) & 3) + 4 * ((subset.y + (turn >> 2)) & 3);
 }
 
-std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture) {
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t sample) {
   if (grid == 1) return {{.origin = {0, 0}, .size = {gbuffer.width, gbuffer.height}}};
   std::vector<GatherArea> areas;
   const glm::ivec2 tile = tileSize(gbuffer);
   for (int c = 0; c < kLightClasses; ++c) {
     const glm::ivec2 subset(c % grid, c / grid);
     areas.push_back(
-        {.origin = subset * tile, .size = tile, .subset = subset, .lightClass = lightClassOf(subset, picture)});
+        {.origin = subset * tile, .size = tile, .subset = subset, .lightClass = lightClassOf(subset, sample)});
   }
   return areas;
 }
@@ -103,7 +103,7 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
     }
     if (!in.checks.empty()) {
       in.checks[chunk].bind();
-      program.set("turn", int(in.picture * chunks + chunk));
+      program.set("turn", int(in.sample * chunks + chunk));
     }
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
       packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);

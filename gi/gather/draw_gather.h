@@ -26,34 +26,34 @@ struct GatherDraw {
   bool addToTarget = false; // instead of overwriting it
   float biasTexels = 1;
   std::span<const gl::Framebuffer> checks = {}; // MapChecks::begin
-  uint32_t picture = 0;                         // of those that are averaged, for checks
+  uint32_t sample = 0;                          // of those that are averaged, for checks
   GatherSettings bounds = {};                   // of near lights, and of lobes; the mode is not read
 };
 
-/// Size of one of the 16 sub-images of a de-interleaved picture.
+/// Size of one of the 16 sub-images of a de-interleaved frame.
 glm::ivec2 tileSize(const GBuffer& gbuffer);
 
-/// The class of lights that a sub-image of 4×4 gathers in a picture: each in turn, within 16 pictures.
-int lightClassOf(const glm::ivec2& subset, uint32_t picture);
+/// The class of lights that a sub-image of 4×4 gathers in a frame: each in turn, within 16 frames.
+int lightClassOf(const glm::ivec2& subset, uint32_t sample);
 
-/// Pixels of the picture as they are, or as 16 tiles.
-std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t picture = 0);
+/// Returns the frame's pixels as one area, or as 16 tiles.
+std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t sample = 0);
 
 /// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
 /// G-buffer has roughness and metalness, else none.
 std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);
 
-/// What shaders/lib/vpl_shading.glsl reads besides lights and surfaces.
+/// Sets the uniforms that shaders/lib/vpl_shading.glsl reads, apart from lights and surfaces.
 void setShading(const gl::Program& program, const GatherDraw& draw);
 
-/// One area by a program that gathers. `patches`: only those that the stencil marks.
+/// Draws one area with a gathering program. `patches`: only those that the stencil marks.
 void drawArea(const gl::Program& program, const GatherArea& area, bool patches, bool add);
 
 /// Gathers into the areas of the framebuffer. Its second target, wanted when the G-buffer has roughness and metalness,
 /// gets the glossy light. From trees patches must be black before.
 void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
-/// The draw of lights that are trees.
+/// Draws the light of lights that are trees.
 void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const GatherDraw& in);
 
 } // namespace lambent

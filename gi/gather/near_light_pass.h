@@ -10,7 +10,7 @@ namespace lambent {
 class NearLightPass {
  public:
   explicit NearLightPass(PassContext context) : traced_(context, StageId::NearLight) {}
-  /// `grid`: sub-images per axis of the target, 4 or 1.
+  /// Traces near light and adds it. `grid`: sub-images per axis of the target, 4 or 1.
   void add(const GatherInputs& in, const LightTarget& target, int grid, FrameStats& stats);
 
  private:

@@ -24,19 +24,19 @@ class PatchAtlas {
  public:
   explicit PatchAtlas(PassContext context) : context_(context) {}
 
-  /// Lays the atlas out for the picture's patches, or with `subsets` for those of each of the 16 sub-images.
+  /// Lays the atlas out for the image's patches, or with `subsets` for those of each of the 16 sub-images.
   void fit(const GBuffer& surfaces, const PatchPyramid& patches, bool subsets);
   const AtlasShape& shape() const { return shape_; }
   const gl::Framebuffer& framebuffer() const { return framebuffer_; } // with the stencil
   const gl::Texture& stencil() const { return stencil_; }
 
-  /// Black everywhere.
+  /// Makes the atlas black.
   void clear() const;
-  /// What the patches of a level hold, row by row over the padded picture.
+  /// Sets what the patches of a level hold, row by row over the padded image.
   void put(int level, std::span<const vec4> values) const;
   void bind(int unit) const { atlas_.bind(unit); }
   void clearLight() const { target_.clear(); }
-  /// From the patches to pixels, coarse to fine; `add`: to what the pixels hold.
+  /// Upsamples from the patches to pixels, coarse to fine; `add`: adds to what the pixels hold.
   void upsample(const GBuffer& surfaces, const Settings& settings, bool add = false);
   SurfaceLighting light() const { return target_.light(shape_.grid > 1); }
   const LightTarget& target() const { return target_; } // of the pixels
@@ -45,7 +45,7 @@ class PatchAtlas {
   PassContext context_;
   AtlasShape shape_;
   gl::Texture atlas_, stencil_, levels_;   // levels_: level l ≥ 1 made whole is mip level l − 1
-  gl::Texture atlasGlossy_, levelsGlossy_; // beside them, when the G-buffer has roughness and metalness
+  gl::Texture atlasGlossy_, levelsGlossy_; // with them, when the G-buffer has roughness and metalness
   gl::Framebuffer framebuffer_;
   std::vector<gl::Framebuffer> levelFramebuffers_;
   LightTarget target_{"multires"};

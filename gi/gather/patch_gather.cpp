@@ -1,7 +1,7 @@
 // Indirect irradiance gathered at patches. Paper 3, section 3.2: one pass marks the patches in a stencil buffer, the
 // gather runs on these only. Beyond the paper: neighbours differ by one level at most, any set of lights with its
 // shadow maps, and subsets of interleaved sampling (paper 1, 4.5), each with a multiresolution buffer of its own over
-// every fourth pixel; a patch of such a buffer lies within a smooth block of the picture, so that all subsets have the
+// every fourth pixel; a patch of such a buffer lies within a smooth block of the image, so that all subsets have the
 // same patches.
 #include "engine/gl/query_ring.h"
 #include "gi/gather/gathers.h"

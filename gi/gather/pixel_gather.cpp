@@ -32,7 +32,7 @@ class PixelGather : public Gather {
                 .grid = grid_,
                 .biasTexels = in.frame.settings.shadow.bias,
                 .checks = checks,
-                .picture = in.sample,
+                .sample = in.sample,
                 .bounds = in.frame.settings.gather});
     return checks;
   }

@@ -48,8 +48,8 @@ LightSet byParts(const LightSet& lights) {
     for (uint32_t i = 0; i < of.size(); ++i)
       for (const vec3& c : {of[i].p0, of[i].p0 + of[i].e1, of[i].p0 + of[i].e2}) {
         const vec3 place = glm::round((c - box.lo) / step);
-        const auto [known, anew] = at.try_emplace({int(place.x), int(place.y), int(place.z)}, i);
-        if (!anew) part[root(i)] = root(known->second);
+        const auto [known, added] = at.try_emplace({int(place.x), int(place.y), int(place.z)}, i);
+        if (!added) part[root(i)] = root(known->second);
       }
     constexpr size_t kMostParts = 512; // of an emitter; with more it stays whole
     std::map<uint32_t, std::vector<EmitterTriangle>> triangles;

@@ -7,7 +7,7 @@
 
 namespace lambent {
 
-/// Where rays end: in proportion to brightness. World space.
+/// A point where rays end, drawn in proportion to brightness. World space.
 struct AreaSample {
   vec3 position, normal; // on the surface; unit, to the front
   vec3 radiance;         // there, times the area that it stands for over the mean sample's: all are equally bright
@@ -31,7 +31,7 @@ struct AreaLights {
   static constexpr uint32_t kAllSamples = 1u << 18; // of all lights, but for kLeastSamples of each
   static constexpr uint32_t kLeastSamples = 16;
 };
-/// Of all emitters that bring light.
+/// Collects all emitters that bring light.
 AreaLights areaLights(const LightSet& lights);
 
 /// Irradiance from a light where nothing is between.

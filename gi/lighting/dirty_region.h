@@ -14,7 +14,7 @@ class DirtyRegion {
  public:
   DirtyRegion() = default;                                                 // nothing moved
   explicit DirtyRegion(std::span<const Aabb> boxes, float margin = 1e-3f); // metres, beyond float steps
-  /// Old and new bounds of the instances that moved.
+  /// Holds the old and new bounds of the instances that moved.
   explicit DirtyRegion(const SceneView& view);
 
   bool empty() const { return nodes_.empty(); }
@@ -35,10 +35,10 @@ class DirtyRegion {
   std::vector<Node> nodes_;
 };
 
-/// For whoever asks where nothing moved.
+/// The empty region: nothing moved.
 extern const DirtyRegion kNothingMoved;
 
-/// Whether the ray passes through the box within its tMax.
+/// Says whether the ray passes through the box within its tMax.
 bool crosses(const Ray& ray, const Aabb& box);
 
 } // namespace lambent

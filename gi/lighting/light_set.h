@@ -34,7 +34,7 @@ struct LightSet {
   std::vector<Emitter> emitters;
   std::vector<EmitterTriangle> triangles;
   Sky sky;
-  LightTree tree;       // over the lights above, made anew when any of them changes; few need none (LightChoice)
+  LightTree tree;       // over the lights above, rebuilt when any of them changes; few need none (LightChoice)
   bool emission = true; // false: what glows is not a light, and has no emitters
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
@@ -72,7 +72,7 @@ EmitterPoint sampleEmitter(const LightSet& lights, const Emitter& emitter, const
 /// Density per m² with which sampleEmitter finds a point on `hit`'s triangle.
 float pdfEmitterArea(const LightSet& lights, const Emitter& emitter, uint32_t meshTriangle);
 
-/// A patch of an emissive surface, standing for a share of its power in direct light: one shadowed sample.
+/// A patch of an emissive surface that stands for a share of its power in direct light: one shadowed sample.
 struct EmitterPatch {
   vec3 position, normal; // unit, the side that emits
   vec3 radiance;

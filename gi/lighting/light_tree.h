@@ -38,14 +38,14 @@ struct LightBounds {
   float importance(const vec3& x, const vec3& n) const;
 };
 
-/// Over the punctual lights that have a place, and the emitters, of a LightSet. Depends on nothing else: what is chosen
-/// is the same whatever stood there before.
+/// A tree over a LightSet's emitters and the punctual lights that have a place. Depends on nothing else: the choice is
+/// the same whatever stood there before.
 class LightTree {
  public:
   LightTree() = default;
   explicit LightTree(const LightSet& lights);
 
-  /// Lights of the set that it was made for.
+  /// Number of lights of the set that the tree was made for.
   size_t lightCount() const { return lightCount_; }
 
  private:
@@ -70,7 +70,7 @@ class LightTree {
 };
 
 /// Chooses one light for a surface point. A set of more than kFewLights lights needs its tree. Suns, which stand
-/// nowhere, weigh by what they bring, beside the tree's parts.
+/// nowhere, weigh by what they bring, next to the tree's parts.
 class LightChoice {
  public:
   static constexpr uint32_t kFewLights = 32;
@@ -81,12 +81,12 @@ class LightChoice {
     uint32_t light = kNone; // index < lights.lightCount() (punctual first, then emitters), or kNone
     float probability = 0;
   };
-  /// Never a light that is certain to bring nothing. None where all of a far group turns out to be such: probabilities
-  /// then add up to less than one, and none counts as zero.
+  /// Chooses a light, never one that is certain to bring nothing. Returns none where all of a far group turns out to be
+  /// such: probabilities then add up to less than one, and none counts as zero.
   Chosen sample(float u) const;
   float probability(uint32_t light) const;
 
-  /// No light brings anything.
+  /// Says whether no light brings anything.
   bool empty() const { return !(total_ > 0); }
 
  private:

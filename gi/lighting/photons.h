@@ -33,11 +33,11 @@ class PhotonSource {
   /// `lights` must outlive the source.
   PhotonSource(const LightSet& lights, const Aabb& boundsWorld, float rayEpsilon);
 
-  /// No light has power, or nothing is there to be lit.
+  /// Says whether no light has power or nothing is there to be lit.
   bool empty() const { return choice_.empty(); }
-  /// Of all lights, W as a luminance.
+  /// Power of all lights, W as a luminance.
   float power() const { return power_; }
-  /// Requires !empty().
+  /// Sends one photon. Requires !empty().
   Photon emit(const PhotonNumbers& u) const;
 
  private:

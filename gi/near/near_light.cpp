@@ -5,12 +5,12 @@
 // reflects. That radiance must be y's own. The cell's mean brightens the gaps of a pavement and the undersides of
 // chairs, for cells are larger than the places where bounds matter (relMSE of the citadel 0.33, with y's own 0.15).
 //
-// One path is noise, and beside lamps a tail of bright spots: it counts up to GatherSettings::nearLimit times the
+// One path is noise, and next to lamps a tail of bright spots: it counts up to GatherSettings::nearLimit times the
 // cell's mean. (Without, N = 2048: hall relMSE 0.16 in place of 0.11, bias -0.4 in place of -2.1 %; limit 2: 0.09, -3.6
 // %.)
 //
 // Rays whose rest is small go on with a probability in proportion to it. The pixels of 4×4 cast the rays of one
-// stratified pattern, the same in every block and fixed in the surface's frame. Over the pictures that are averaged
+// stratified pattern, the same in every block and fixed in the surface's frame. Over the frames that are averaged
 // each pixel casts all rays of one of four longer patterns, and takes its neighbours' in. (With one pattern for all
 // there is no noise between pixels to mix, but its few dozen directions are seen as streaks and specks on folded
 // cloth.)
@@ -211,7 +211,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   // step with them.
   const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock)), casts = in.picture / cycle;
   const uint32_t turn = (in.picture % cycle + Rng(in.seed, Stream::Turns, casts).below(cycle)) % cycle;
-  // The pattern has as many rays as a pixel casts in all pictures that are averaged, one after the other.
+  // The pattern has as many rays as a pixel casts in all frames that are averaged, one after the other.
   const bool averaged = in.pictures > 1;
   const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.pictures) / cycle));
   const uint32_t pattern = averaged ? std::max(steps, stride) : std::min(stride, uint32_t(perBlock));

@@ -16,25 +16,25 @@ struct NearLightInputs {
   const GatherSettings& gather;
   int casts = 8;        // rays, as GatherSettings::near
   int bounces = 1;      // of the virtual lights: SmcSettings::bounces
-  bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each picture
+  bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each frame
   bool glossy = false;
   uint32_t seed = 1;
   uint32_t picture = 0; // which of those that are averaged
   int pictures = 1;     // that are; 1: blocks of pixels are mixed
 };
 
-/// At pixel centres of the view's camera, row by row from the top.
+/// Near light at pixel centres of the view's camera, row by row from the top.
 struct NearLight {
   std::vector<vec3> irradiance;
   std::vector<vec3> glossy; // as GlossyGather::radiance; empty where not asked for
 };
 
-/// Virtual lights and this together are what virtual lights would bring without bounds, if they were as many as the
-/// surface has points: without bias where nearLimit is 0, as far as a surface lies in the cell of the nearest light on
-/// its side.
+/// Traces what bounds take from near lights. Together with the virtual lights it gives what these would bring without
+/// bounds if there were as many of them as the surface has points. Without bias where nearLimit is 0, as far as a
+/// surface lies in the cell of the nearest light on its side.
 NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts);
 
-/// The same at surfaces that do not depend on the view, `casts` rays from each: irradiance. The view is not looked at.
+/// Traces irradiance at surfaces that do not depend on the view, `casts` rays from each. The view is not looked at.
 std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const NearLightInputs& in, RayCounts& counts);
 
 } // namespace lambent

@@ -8,24 +8,24 @@
 
 namespace lambent {
 
-/// What the pixels of a picture see, row by row. Those that cast no ray are infinitely far off.
+/// The surfaces that an image's pixels see, row by row. Those that cast no ray are infinitely far off.
 struct NeighbourSurfaces {
   std::span<const vec3> positions, normals; // world space, m; unit vectors
   int width = 0;                            // pixels
-  float cell = 0;                           // m: side of a virtual light's cell, beside which near light changes little
+  float cell = 0; // m: side of a virtual light's cell, the scale over which near light changes
 };
 
-/// Over pixels of one colour of a chessboard, all of which cast, patternOf its own. What a pixel may not take from a
-/// neighbour it keeps, so that light is moved, never made or lost. (Divided by the weights that count instead, what
-/// lies beside a bright edge takes more than it gives: relMSE hall 0.037, citadel 0.047, with what is kept 0.035,
+/// Mixes pixels of one colour of a chessboard, all of which cast, each by its own patternOf. What a pixel may not take
+/// from a neighbour it keeps, so that light is moved, never made or lost. (Divided by the weights that count instead,
+/// what lies next to a bright edge takes more than it gives: relMSE hall 0.037, citadel 0.047, with what is kept 0.035,
 /// 0.045; bias of living-room-2 -2.9 and -2.2 %.)
 void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
-/// Over 5×5 pixels, so that each of the 16 parts of a block's one pattern weighs alike. The filter over the subsets,
-/// which tells normals apart, finds too few pixels to mix on mouldings and leaves.
+/// Mixes 5×5 pixels, so that each of the 16 parts of a block's one pattern weighs alike. The filter over the subsets,
+/// which separates normals, finds too few pixels to mix on mouldings and leaves.
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
-/// Over 5×5 pixels, each with light of its own; light is moved, not made, as by mixPatterns.
+/// Mixes 5×5 pixels, each with light of its own; light is moved, not made, as by mixPatterns.
 void mixPixels(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
 } // namespace lambent

@@ -61,10 +61,10 @@ struct Axes {
   Reconstruction reconstruction = Reconstruction::Filter;
 };
 
-/// Why these do not go together, in one line that names the setting to change; empty where they do.
+/// Says why these do not go together, in one line that names the setting to change; empty where they do.
 std::string whyNot(const Axes& axes);
 
-/// What puts gathered light together, of a gather mode and a filter that is on or off.
+/// Returns what puts gathered light together, for a gather mode and a filter that is on or off.
 Reconstruction reconstructionOf(GatherMode gather, bool filter);
 
 } // namespace lambent

@@ -19,11 +19,11 @@ constexpr EffectRow kRows[kEffects] = {
     {"relight", "VPLs follow lights and geometry that change", "VPLs"},
     {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
     {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
-    {"history", "indirect light of a pixel is averaged over pictures; off: each by itself", "draws"},
+    {"history", "indirect light of a pixel is averaged over frames; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"gather", "light of VPLs is brought to surfaces; off: what a cube holds stays, and else there is none", "draws"},
-    {"redraw", "the picture is drawn again; off: the last one stays", "draws"},
+    {"redraw", "the frame is drawn again; off: the last one stays", "draws"},
 };
 
 std::string count(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
@@ -159,7 +159,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
                             : needs.subsets               ? Answer{true, "the gather is interleaved"}
                             : bounded                     ? Answer{true, "near light is traced"}
-                                                          : Answer{false, "every picture gathers the same light"});
+                                                          : Answer{false, "every frame gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});
@@ -181,17 +181,17 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   const bool alone = status.stored && sameLight;
   // By photons or chains; photons take the same ways as long as nothing is in another place.
   const bool sameWays = needs.anyView && sameLight;
-  const bool placedAnew = needs.lights == LightSupply::PerFrame;
+  const bool perFrame = needs.lights == LightSupply::PerFrame;
   const Answer fromMaps{false, "VPLs come from the reflective shadow maps"};
   const bool still = !changes.first && !changes.camera && !changes.lights && !moved && !facts.settingsChanged;
-  decide(EffectId::Relight, !lights                  ? none
-                            : reflective             ? fromMaps
-                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
-                            : placedAnew             ? Answer{true, "the technique lights its VPLs anew in every frame"}
-                            : changes.first          ? Answer{true, "the scene is new"}
-                            : changes.lights         ? Answer{true, "lights changed"}
-                            : moved                  ? Answer{true, movers}
-                            : facts.settingsChanged  ? Answer{true, "settings changed"}
+  decide(EffectId::Relight, !lights                 ? none
+                            : reflective            ? fromMaps
+                            : perFrame && sameWays  ? Answer{false, "photons take the same ways as before"}
+                            : perFrame              ? Answer{true, "the technique lights its VPLs again in every frame"}
+                            : changes.first         ? Answer{true, "the scene is new"}
+                            : changes.lights        ? Answer{true, "lights changed"}
+                            : moved                 ? Answer{true, movers}
+                            : facts.settingsChanged ? Answer{true, "settings changed"}
                             : !smc.cache && !(still && status.settled)
                                 ? Answer{true, "smc.cache is off: every light path is traced in every frame"}
                                 : Answer{false, "neither lights nor objects changed"});
@@ -199,8 +199,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                             : needs.lights == LightSupply::Fixed ? Answer{false, "the samples stay on their surfaces"}
                             : alone      ? Answer{false, "nothing has changed for long: a cube holds all light"}
                             : reflective ? fromMaps
-                            : placedAnew && sameWays ? Answer{false, "photons take the same ways as before"}
-                            : placedAnew             ? Answer{true, "the technique places its VPLs anew in every frame"}
+                            : perFrame && sameWays ? Answer{false, "photons take the same ways as before"}
+                            : perFrame             ? Answer{true, "the technique places its VPLs again in every frame"}
                             : still && status.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                   ? Answer{true, "the VPLs have not settled yet"}
                                                       : Answer{true, "the view or the scene changed"});
@@ -209,7 +209,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : needs.stored ? sameLight && !facts.drawingChanged && !status.lightArrived
                                                 ? Answer{false, "the cube holds the light of what there is"}
                                                 : Answer{true, "the cube follows lights and objects"}
-                                          : Answer{true, "every picture gathers its light"});
+                                          : Answer{true, "every frame gathers its light"});
   const bool averages = plan.on(EffectId::History) && plan.calledFor(EffectId::History);
   const int historyFrames = averages ? settings.history.frames : 0;
   const Effect& replace = plan[EffectId::Replace];
@@ -227,7 +227,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                                        : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
-    redraw.reason = "there is no picture yet";
+    redraw.reason = "there is no frame yet";
   }
   return plan;
 }

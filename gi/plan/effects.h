@@ -16,7 +16,7 @@ namespace lambent {
 /// One row per effect: how it is named, and the unit in which FrameStats counts its work.
 struct EffectRow {
   const char* name;
-  const char* help; // what it does; what leaving it out does to the picture
+  const char* help; // what it does; what leaving it out does to the image
   const char* work;
 };
 const EffectRow& effectRow(EffectId id);
@@ -28,7 +28,7 @@ struct Effect {
   std::string reason;
 };
 
-/// What a plan depends on besides the scene and the settings.
+/// What a plan depends on, apart from the scene and the settings.
 struct FrameFacts {
   bool first = true;           // no frame was drawn yet
   bool settingsChanged = true; // of VPLs or effects
@@ -41,14 +41,14 @@ class EffectPlan {
  public:
   bool on(EffectId id) const { return effects_[size_t(id)].on; }
   bool calledFor(EffectId id) const { return effects_[size_t(id)].calledFor; }
-  /// On without need: the work is done, and must not change anything.
+  /// Says whether the effect is on without need: the work is done and must not change anything.
   bool idle(EffectId id) const { return on(id) && !calledFor(id); }
   const Effect& operator[](EffectId id) const { return effects_[size_t(id)]; }
-  /// The picture would be drawn anew even if light were not averaged over pictures.
+  /// Says whether the frame would be drawn again even if light were not averaged over frames.
   bool changed() const { return changed_; }
-  /// Surfaces of the picture, or the light that they receive directly, may be other than in the picture before.
+  /// Says whether visible surfaces, or their direct light, may differ from the last frame's.
   bool seenChanges() const { return seenChanges_; }
-  /// Light in the scene may be other than in the picture before, not only what the camera sees of it.
+  /// Says whether light in the scene may differ from the last frame's, not only what the camera sees of it.
   bool lightChanges() const { return lightChanges_; }
   /// Names of the effects that are on, separated by '+'; "none".
   std::string oneLine() const;
@@ -59,7 +59,7 @@ class EffectPlan {
   bool changed_ = true, seenChanges_ = true, lightChanges_ = true;
 };
 
-/// `view.changes` counts: what nothing changed about needs no work.
+/// Plans a frame. `view.changes` decides: what did not change needs no work.
 EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts);
 
 } // namespace lambent

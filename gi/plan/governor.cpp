@@ -46,7 +46,7 @@ std::optional<double> timeOf(const Settings& settings) {
   return 1;
 }
 
-/// From settings of this time to the dearest preset whose picture need not be too small for the target, else to the
+/// From settings of this time to the dearest preset whose image need not be too small for the target, else to the
 /// cheapest.
 void choosePreset(Governed& g, double time, double ms, double targetMs, const GovernorGains& gains) {
   const auto scaleOf = [&](const Preset& p) { return scaleFor(g.scale, ms * p.time / time, targetMs); };
@@ -99,16 +99,16 @@ Governed governed(Governed g, double ms, double targetMs, const GovernorGains& g
       g.otherScale = before;
       g.otherMs = ms;
     }
-    if (full && !tooLong && !tooShort) g.otherScale = 0; // what it told may be another room's
+    if (full && !tooLong && !tooShort) g.otherScale = 0; // what it measured may be of another room
     if (full || tooLong)
       g.pace = tooLong && before <= gains.least ? Pace::TooSlow : tooShort && before >= 1 ? Pace::Idle : Pace::Holding;
   }
   g.scale = std::clamp(g.scale, gains.least, 1.0f);
   const bool end = g.scale == 1 || g.scale == gains.least; // is worth a small step
   if (std::abs(g.scale - before) < gains.step * before && !(end && g.scale != before)) g.scale = before;
-  const bool anew = !(g.settings == settingsBefore); // as at the start, shaders and maps are prepared first
-  if (anew) g.otherScale = 0;
-  if (g.scale != before || anew) g.ms.clear(), g.frames = anew ? gains.after - gains.warmup : 0;
+  const bool changed = !(g.settings == settingsBefore); // as at the start, shaders and maps are prepared first
+  if (changed) g.otherScale = 0;
+  if (g.scale != before || changed) g.ms.clear(), g.frames = changed ? gains.after - gains.warmup : 0;
   return g;
 }
 

@@ -1,7 +1,7 @@
 // Holds the time of a frame at a target while frames run. A pure function: what is governed, what the last frame cost,
 // and the target go in; what is governed, with what the governor remembers, comes out.
 //
-// Two things are governed. The picture's scale costs nothing to change and follows the load. The preset is another set
+// Two things are governed. The image's scale costs nothing to change and follows the load. The preset is another set
 // of virtual lights with all its maps, which takes a while to draw and is a little brighter or darker (1 to 5 % of
 // indirect light): it is chosen once, after a short calibration, and kept while frames run.
 #pragma once
@@ -24,7 +24,7 @@ struct GovernorGains {
   float step = 0.03f;              // least change of the scale that is worth its new textures, a share
 };
 
-/// What the governor says of itself.
+/// The state that the governor reports.
 enum class Pace {
   Calibrating,
   Holding,
@@ -35,7 +35,7 @@ const char* paceText(Pace pace);
 
 struct Governed {
   Settings settings;
-  float scale = 1;           // of width and height of the picture
+  float scale = 1;           // of width and height of the image
   bool choosesPreset = true; // else, and where they are no preset's, the settings stay as they are
   std::string preset = {};   // the one chosen; empty before the calibration, or where none is
 
@@ -48,14 +48,15 @@ struct Governed {
   Pace pace = Pace::Calibrating;
 };
 
-/// After a frame that took `ms`. Frames in which nothing was drawn (a still view) must not be told: they say nothing of
-/// what the next one costs. Cost is taken to be in proportion to the number of pixels; as a part of it is not, a change
-/// falls short of the target and never overshoots, and the next one closes in: nothing oscillates. Where it fell far
-/// short, the two scales tell how large that part is (a load that doubles just then is taken for it: one change more).
+/// Adjusts what is governed after a frame that took `ms`. Frames in which nothing was drawn (a still view) must be left
+/// out: they say nothing of what the next one costs. Cost is taken to be in proportion to the number of pixels; as a
+/// part of it is not, a change falls short of the target and never overshoots, and the next one closes in: nothing
+/// oscillates. Where it fell far short, the two scales show how large that part is (a load that doubles just then is
+/// taken for it: one change more).
 Governed governed(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
 
-/// Before the first frame, where one at full scale and with these settings is expected to take `ms`: preset and scale
-/// to begin with. The preset is then chosen; the calibration only finds the scale.
+/// Chooses preset and scale before the first frame, where one at full scale and with these settings is expected to take
+/// `ms`. The preset is then chosen; the calibration only finds the scale.
 Governed begun(Governed now, double ms, double targetMs, const GovernorGains& gains = {});
 
 } // namespace lambent

@@ -45,7 +45,7 @@ struct Needs {
     return lights == LightSupply::Kept || lights == LightSupply::Fixed || lights == LightSupply::PerFrame;
   }
   bool reflective() const { return lights == LightSupply::Reflective; }
-  /// Its lights live from frame to frame.
+  /// Says whether its lights live from frame to frame.
   bool persistent() const { return lights == LightSupply::Kept || lights == LightSupply::Fixed; }
 };
 
@@ -59,9 +59,9 @@ struct ProviderStatus {
   std::string pending = {};  // why another frame of the same world would differ; empty: it has converged
 };
 
-/// Of a technique that is composed of the four axes.
+/// Needs of a technique that is composed of the four axes.
 Needs needsOf(const Axes& axes);
-/// Of the technique that the settings choose.
+/// Needs of the technique that the settings choose.
 Needs needsOf(const Settings& settings);
 
 } // namespace lambent

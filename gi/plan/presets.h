@@ -15,12 +15,12 @@ using Assignments = std::vector<std::pair<std::string, std::string>>;
 struct Preset {
   std::string name;
   Assignments set;
-  /// As measured over the scenes of the report, of the default's: time of a frame in motion; relMSE of indirect light,
-  /// moving and standing (geometric mean).
+  /// Shares of the default's, as measured over the scenes of the report: time of a frame in motion; relMSE of indirect
+  /// light, moving and still (geometric mean).
   double time, error;
 };
-/// Cheapest first. The rule that chose them: ladderOf, gi/measure/front.h. Without a preset the defaults hold, which
-/// cost more than the last.
+/// The presets, cheapest first. The rule that chose them: ladderOf, gi/measure/front.h. Without a preset the defaults
+/// hold, which cost more than the last.
 const std::vector<Preset>& presetTable();
 const std::vector<std::string>& presetNames();
 /// Sets what the preset is about (numbers of VPLs, paths, map texels; of a technique that samples its lights also the

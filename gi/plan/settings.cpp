@@ -57,7 +57,7 @@ class Table {
     number("smc.validationRays", &Settings::smc, &SmcSettings::validationRays, {0, 1024, "rays", PowersOfTwo}, Light,
            "V, rays per visible point and round towards unverified VPLs");
     number("smc.warmup", &Settings::smc, &SmcSettings::warmup, {0, 100000, "frames"}, Light,
-           "iterations before the first picture");
+           "iterations before the first frame");
     number("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, {0, 1024, "lights"}, Light,
            "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
     choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"}, Light,
@@ -74,7 +74,7 @@ class Table {
            "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
     number("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, {0, 16384, "texels", PowersOfTwo},
            Maps,
-           "texels per side of a directional light's map; 0 = 2w, w the picture's width rounded up to a power of two");
+           "texels per side of a directional light's map; 0 = 2w, w the frame's width rounded up to a power of two");
     number("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution,
            {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a point light's cube face; 0 = w/2");
     number("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution,
@@ -90,12 +90,12 @@ class Table {
     choice(
         "shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
         "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
-        "from patches of the picture, split where the answers differ (paper 4)");
+        "from patches of the image, split where the answers differ (paper 4)");
     flag("direct.on", &Settings::direct, &DirectSettings::on, Nothing,
          "direct light; off: indirect light alone, for a host that lights its surfaces itself");
     choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"counts", "sub-fragments", "neighbours"},
            Nothing,
-           "what splits these patches: how many rays their quarters and those beside them find open, which rays their "
+           "what splits these patches: how many rays their quarters and those next to them find open, which rays their "
            "quarters do (paper 4), or which rays the eight patches around do (Nichols et al. 2010)");
     number("area.rays", &Settings::area, &AreaSettings::rays, {1, 64, "rays", PowersOfTwo}, Nothing,
            "from each quarter of a patch, and four times as many from a single pixel");
@@ -115,7 +115,7 @@ class Table {
     number("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, {16, 2048, "texels", PowersOfTwo},
            Maps, "texels per side of their maps");
     choice("gather.mode", &Settings::gather, &GatherSettings::mode, namesOf(kGathers), Nothing,
-           "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the picture; "
+           "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the image; "
            "patches of each subset; VPLs splatted into patches, or each into patches of its own");
     number("gather.disk", &Settings::gather, &GatherSettings::disk, {0, 1000}, Nothing,
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
@@ -135,7 +135,7 @@ class Table {
     number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,
            "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     number("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, {1, 1024, "patches", PowersOfTwo},
-           Nothing, "patches along the picture's longer side at the coarsest level");
+           Nothing, "patches along the image's longer side at the coarsest level");
     number("multires.finest", &Settings::multires, &MultiresSettings::finest, {1, 1024, "pixels", PowersOfTwo}, Nothing,
            "side of the smallest patch, whatever it holds, a power of two (paper 2, fig. 8); 4x4 subsets: from 8 on");
     choice("multires.criterion", &Settings::multires, &MultiresSettings::criterion, {"plane", "depth"}, Nothing,
@@ -150,7 +150,7 @@ class Table {
     flag("multires.balance", &Settings::multires, &MultiresSettings::balance, Nothing,
          "patches side by side differ by one level at most");
     flag("multires.edges", &Settings::multires, &MultiresSettings::edges, Nothing,
-         "patches beside an edge are 2x2 pixels at most; off: light that an edge bounds is spread over larger ones");
+         "patches next to an edge are 2x2 pixels at most; off: light that an edge bounds is spread over larger ones");
     choice("multires.upsample", &Settings::multires, &MultiresSettings::upsample, {"bilateral", "bilinear"}, Nothing,
            "between patches: by distance and by how alike their surfaces are, a split one through its parts; or by "
            "distance alone between those that hold light (papers 2 and 3), over edges too");
@@ -204,8 +204,8 @@ class Table {
     flag("lpv.occlusion", &Settings::lpv, &VolumeSettings::occlusion, Nothing,
          "gather.mode volume: surfaces stop light; off: it goes through walls");
     number("history.frames", &Settings::history, &HistorySettings::frames, {0, 256, "frames", PowersOfTwo}, Nothing,
-           "pictures that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
-           "the VPLs; 0 = each picture by itself");
+           "frames that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
+           "the VPLs; 0 = each frame by itself");
     flag("filter.on", &Settings::filter, &FilterSettings::on, Nothing, "cross-bilateral filter over the 4x4 subsets");
     choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"}, Nothing,
            "7x7 filter along rows then columns, or all 49 taps at once");
@@ -214,13 +214,13 @@ class Table {
     number("filter.distance", &Settings::filter, &FilterSettings::distance, {1e-6, 10}, Nothing,
            "deviation from the pixel's plane, share of its view distance");
     number("image.exposure", &Settings::image, &ImageSettings::exposure, {0, kNoLimit}, Nothing,
-           "factor on radiance before tone mapping; 0 = measured at the first picture");
+           "factor on radiance before tone mapping; 0 = measured at the first frame");
     choice(
         "image.toneMapper", &Settings::image, &ImageSettings::toneMapper, {"reinhard", "neutral", "filmic"}, Nothing,
         "reinhard: on luminance, as paper 1, bright colours are cut off; neutral: Khronos PBR Neutral, colours as they "
         "are up to 0.76, then to white; filmic: a fit of ACES");
     choice("image.antiAliasing", &Settings::image, &ImageSettings::antiAliasing, {"off", "edges"}, Nothing,
-           "edges: no stairs along them in what is shown of beauty, direct and indirect; each picture by itself, so "
+           "edges: no stairs along them in what is shown of beauty, direct and indirect; each frame by itself, so "
            "nothing lags; .exr stays as it is");
     flag("frame.overlap", &Settings::frame, &FrameSettings::overlap, Nothing,
          "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");

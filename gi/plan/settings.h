@@ -76,12 +76,12 @@ struct SmcSettings {
   int vpls = 2048;         // slots N
   int moves = 16;          // M_max, replacements per frame
   int candidateRays = 16;  // candidate rays per candidate drawn (16:1 resampling)
-  int poolFrames = 16;     // frames that a candidate is kept at most; 1 = all drawn anew in every frame (paper 1)
+  int poolFrames = 16;     // frames that a candidate is kept at most; 1 = all redrawn in every frame (paper 1)
   int paths = 16;          // light paths per VPL radiosity estimate
   int bounces = 3;         // B: B=1 is light → VPL → pixel
   int points = 2048;       // directly visible points X
   int validationRays = 16; // V, rays per point and round towards unverified VPLs
-  int warmup = 100;        // iterations before the first picture
+  int warmup = 100;        // iterations before the first frame
   int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
   bool cache = true;       // keep light paths until geometry that they touch moves; same results
   DensityEstimator density = DensityEstimator::Cells;
@@ -94,7 +94,7 @@ struct ShadowSettings {
   float bias = 0.4f;   // depth left for round-off and curved receivers, texels of the map at the receiver
   int refresh = 32;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
   int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
-  // Texels per side of a punctual light's map; 0 follows the picture, with w its width rounded up to a power of two.
+  // Texels per side of a punctual light's map; 0 follows the frame, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w
   int pointResolution = 0; // w/2 per cube face
   int spotResolution = 0;  // w
@@ -113,13 +113,13 @@ struct DirectSettings {
   bool operator==(const DirectSettings&) const = default;
 };
 
-/// Direct light of emissive surfaces by patches of the picture (paper 4).
+/// Direct light of emissive surfaces by patches of the image (paper 4).
 struct AreaSettings {
   AreaRefinement refinement = AreaRefinement::Counts;
   int rays = 16;     // per sub-fragment: a quarter of a patch, or of a pixel's rays
   int threshold = 3; // how far sub-fragments (of neighbours: all their rays) differ that a patch is split
   int gradient = 4;  // bits between neighbouring sub-fragments beyond which both are split twice; 0 = never twice
-  bool extra = true; // three single pixels more in patches of 8×8 pixels and larger
+  bool extra = true; // three more single pixels in patches of 8×8 pixels and larger
   AreaUpsample upsample = AreaUpsample::Rbf;
   AreaTracer tracer = AreaTracer::Auto;
   bool operator==(const AreaSettings&) const = default;
@@ -137,15 +137,15 @@ struct GatherSettings {
   bool operator==(const GatherSettings&) const = default;
 };
 
-/// Patches of the picture that gather as one (papers 2 and 3).
+/// Patches of the image that gather as one (papers 2 and 3).
 struct MultiresSettings {
-  int coarsest = 16; // patches along the picture's longer side at the coarsest level
+  int coarsest = 16; // patches along the image's longer side at the coarsest level
   int finest = 1;    // side of the smallest patch, pixels
   PatchCriterion criterion = PatchCriterion::Plane;
   float depth = 0.02f; // what the criterion allows at most, share of the view distance; 0 splits all
   float normal = 0.2f; // range of a component of the normal that splits it
   bool balance = true; // neighbours differ by one level at most
-  bool edges = true;   // patches beside an edge are 2×2 pixels at most
+  bool edges = true;   // patches next to an edge are 2×2 pixels at most
   PatchUpsample upsample = PatchUpsample::Bilateral;
   float detail = 0;    // α of paper 2's surface detail
   float light = 0.05f; // splat-per-vpl: range of a VPL's light that splits a patch, share of its light on what faces it
@@ -205,14 +205,14 @@ struct FilterSettings {
   bool operator==(const FilterSettings&) const = default;
 };
 
-/// Indirect light of a pixel, averaged over pictures.
+/// Indirect light of a pixel, averaged over frames.
 struct HistorySettings {
-  int frames = 64; // that count; 0 = each picture by itself
+  int frames = 64; // that count; 0 = each frame by itself
   bool operator==(const HistorySettings&) const = default;
 };
 
 struct ImageSettings {
-  float exposure = 0; // factor on radiance before tone mapping; 0 = measured once when the first picture is drawn
+  float exposure = 0; // factor on radiance before tone mapping; 0 = measured once when the first frame is drawn
   ToneMapper toneMapper = ToneMapper::Reinhard;
   AntiAliasing antiAliasing = AntiAliasing::Edges;
   bool operator==(const ImageSettings&) const = default;
@@ -269,14 +269,14 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// The axes that the settings amount to.
+/// Returns the axes that the settings amount to.
 Axes axesOf(const Settings& settings);
-/// Why the settings contradict each other; empty where they do not.
+/// Says why the settings contradict each other; empty where they do not.
 std::string whyNot(const Settings& settings);
 
 enum class SettingKind { Flag, Whole, Real, Choice };
 enum class Scale { Linear, PowersOfTwo }; // steps that make sense: of a slider, of a sweep
-/// What changing a setting costs while frames run, beyond drawing the picture again.
+/// What changing a setting costs while frames run, beyond drawing the frame again.
 enum class ChangeCost { Nothing, Light, Maps, Set }; // light paths again | maps again too | another set of lights
 const char* costText(ChangeCost cost);
 
@@ -299,16 +299,16 @@ struct SettingRow {
 const std::vector<SettingRow>& settingsTable();
 /// The row of a setting that one technique owns.
 SettingRow rowOf(const OwnSetting& setting);
-/// The table, and what the chosen technique owns.
+/// Returns the table and the rows that the chosen technique owns.
 std::vector<SettingRow> settingRows(const Settings& settings);
-/// The name that a setting has now: that of a renamed one, which is accepted for one version, else the same.
+/// Returns the name that a setting has now. The old name of a renamed one is accepted for one version.
 std::string_view presentName(std::string_view name);
-/// Of the table, or of those that the chosen technique owns. Throws InputError with the nearest name.
+/// Finds a row of the table or of those that the chosen technique owns. Throws InputError with the nearest name.
 SettingRow settingRow(std::string_view name, const Settings& settings = {});
 
 /// Sets `name` from text. Throws InputError that names the setting, what is wrong and the range or the nearest name.
 void applySetting(Settings& settings, std::string_view name, std::string_view value);
-/// Text of the present value.
+/// Returns the present value as text.
 std::string settingText(const Settings& settings, std::string_view name);
 
 } // namespace lambent

@@ -56,7 +56,7 @@ enum class StageId : uint16_t {
   Upsample,
   History,
   Filter,
-  // picture
+  // image
   Composite,
   Display,
   AntiAliasing,

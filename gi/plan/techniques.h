@@ -19,15 +19,15 @@ struct Technique {
   Axes axes;                                         // of one that is composed of them
   EmitterShadows emitters = EmitterShadows::Samples; // direct light of emissive surfaces, which goes with any axes
   const char* waits = nullptr;                       // what a frame waits for or reads back from the GPU; null: nothing
-  /// A provider of its own, in place of the axes (VplSource::None, GatherMode::Own): it takes a frame and gives light
-  /// on its surfaces.
+  /// Makes a provider of its own, in place of the axes (VplSource::None, GatherMode::Own): it takes a frame and gives
+  /// light on its surfaces.
   std::unique_ptr<LightProvider> (*make)(PassContext) = nullptr;
   Needs needs = {};                          // of its own provider
   std::span<const OwnSetting> settings = {}; // that its own provider reads
 };
 std::span<const Technique> techniqueTable();
 Needs needsOf(const Technique& technique);
-/// Throws InputError that gives the nearest name, or all of them.
+/// Finds a technique. Throws InputError that gives the nearest name, or all of them.
 const Technique& techniqueByName(const std::string& name);
 std::vector<std::string> techniqueNames();
 
@@ -35,7 +35,7 @@ std::vector<std::string> techniqueNames();
 /// stay as they are (a preset or a person chose them).
 void applyTechnique(Settings& settings, const Technique& technique);
 void applyTechnique(Settings& settings, const std::string& name);
-/// The row that the settings amount to, or the nearest: the first of the same source.
+/// Returns the row that the settings amount to, or the nearest: the first of the same source.
 const Technique& techniqueOf(const Settings& settings);
 
 } // namespace lambent

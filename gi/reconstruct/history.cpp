@@ -1,11 +1,11 @@
-// Light averaged over pictures. Each pixel gathers another sixteenth of the lights in every picture and casts other
+// Light averaged over frames. Each pixel gathers another sixteenth of the lights in every frame and casts other
 // near rays, so that its mean holds them all, without the blur of a filter over its neighbours. It looks up what is
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //
-// Where light changes, means over many pictures lag. There means hold few pictures, and what is kept follows this one:
+// Where light changes, means over many frames lag. There, means hold few frames, and what is kept follows this frame:
 // half of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added, so
-// that half of a coarse change is shown in its first picture and nine tenths within three. Tiles of the picture whose
-// light changes by much more than its noise begin anew (history_follow.frag). Numbers: docs/measurements/light.md.
+// that half of a coarse change is shown in its first frame and nine tenths within three. Tiles of the frame whose
+// light changes by much more than its noise start again (history_follow.frag). Numbers: docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
 #include "gi/reconstruct/reconstruct.h"
 
@@ -17,15 +17,15 @@ namespace lambent {
 namespace {
 
 constexpr float kFollow = 0.5f;
-constexpr int kFollowOn = 4;    // pictures after the last change that still follow
-constexpr int kFewPictures = 8; // that means hold at most while light changes
+constexpr int kFollowOn = 4;  // frames after the last change that still follow
+constexpr int kFewFrames = 8; // that means hold at most while light changes
 
 } // namespace
 
 SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::History);
-  if (in.lightChanges && pictures_ > 0) following_ = kFollowOn + 1;
-  const bool changes = pictures_ > 0 && following_ > 0;
+  if (in.lightChanges && frames_ > 0) following_ = kFollowOn + 1;
+  const bool changes = frames_ > 0 && following_ > 0;
   following_ = std::max(0, following_ - 1);
   const Kept& before = kept_[now_];
   now_ = 1 - now_;
@@ -33,7 +33,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   find(in, before, changes ? changing_ : now.framebuffer, changes);
   if (changes) follow(in, now);
   before_ = in.surfaces.block;
-  ++pictures_;
+  ++frames_;
   return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.deinterleaved};
 }
 
@@ -72,17 +72,17 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
-  const int most = pictures_ == 0 ? 0 : in.settings.frames - 1;
-  program.set("pictures", float(changes ? std::min(most, kFewPictures) : most));
-  program.set("stands", pictures_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
-  cameras_.write(sizeof before_, pictures_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
+  const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
+  program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
+  program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
+  cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
   before.seen.bind(4);
   if (in.gathered.glossy && !changes) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    program.set("glossyPictures", in.cameraMoved ? 0.0f : float(most));
+    program.set("mostGlossyFrames", in.cameraMoved ? 0.0f : float(most));
   }
   to.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();

@@ -15,11 +15,11 @@ struct FilterInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
   const FilterSettings& filter;
-  bool fresh = true; // of one picture; else a texel's alpha says how many sixteenths of the lights it holds evenly
+  bool fresh = true; // of one frame; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
 
-/// Cross-bilateral 7×7; with the filter off only puts the pixels back in their places. Light of every class, in its
-/// place, passes through.
+/// Filters with a cross-bilateral 7×7 kernel; with the filter off only puts the pixels back in their places. Light of
+/// every class, in its place, passes through.
 class FilterPass {
  public:
   explicit FilterPass(PassContext context) : context_(context) {}
@@ -33,28 +33,28 @@ class FilterPass {
 struct HistoryInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
-  bool cameraMoved;  // glossy light is then this picture's own
-  bool lightChanges; // what is kept then follows this picture
+  bool cameraMoved;  // glossy light is then this frame's own
+  bool lightChanges; // what is kept then follows this frame
   const HistorySettings& settings;
   const FilterSettings& filter;
 };
 
-/// The mean of what was gathered at the place of each pixel in this picture and those before it.
+/// Averages what was gathered at the place of each pixel in this frame and those before it.
 class HistoryPass {
  public:
   explicit HistoryPass(PassContext context) : context_(context) {}
-  /// Before the gather: makes room. Pictures of another size are looked up like any others; those of another kind are
-  /// forgotten.
+  /// Makes room; call it before the gather. Frames of another size are looked up like any others; those of another kind
+  /// are forgotten.
   void fit(const GBuffer& surfaces);
   SurfaceLighting run(const HistoryInputs& in);
-  void forget() { pictures_ = 0, following_ = 0; }
-  /// Whether the next picture of a still view follows light that changed before.
+  void forget() { frames_ = 0, following_ = 0; }
+  /// Says whether the next frame of a still view follows light that changed before.
   bool follows() const { return following_ > 0; }
-  /// Frames in it: which of those that are averaged the next one is.
-  uint32_t sample() const { return pictures_; }
+  /// Number of frames in the mean, which is the number of the next sample.
+  uint32_t sample() const { return frames_; }
 
  private:
-  /// A picture's light, and the surfaces that it fell on.
+  /// A frame's light, and the surfaces that it fell on.
   struct Kept {
     gl::Texture irradiance, seen, glossy;
     gl::Framebuffer framebuffer;
@@ -65,13 +65,13 @@ class HistoryPass {
   PassContext context_;
   FilterPass filter_{context_};
   Kept kept_[2];
-  gl::Texture found_, change_; // where light changes: what is kept, and this picture's difference to it
+  gl::Texture found_, change_; // where light changes: what is kept, and this frame's difference to it
   gl::Texture tiles_;          // by how much it changes
   gl::Framebuffer changing_, tilesFramebuffer_;
   int now_ = 0;
-  uint32_t pictures_ = 0; // since it was forgotten
-  int following_ = 0;     // pictures that are still to be followed
-  CameraBlock before_;    // the last picture's
+  uint32_t frames_ = 0; // since it was forgotten
+  int following_ = 0;   // frames that are still to be followed
+  CameraBlock before_;  // the last frame's
   gl::Ring cameras_{"history/camera"};
 };
 

@@ -11,13 +11,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kPassMs = 400;          // of tracing, until the next picture
+constexpr double kPassMs = 400;          // of tracing, until the next image
 constexpr uint32_t kMostSamples = 65536; // of each pixel; then it rests
 
 /// Why samples of another view are good for nothing; empty where they are.
 std::string whatChanged(const SceneChanges& changes) {
   if (changes.first) return "another scene";
-  if (changes.camera) return "the camera changed"; // its picture's size, too
+  if (changes.camera) return "the camera changed"; // its image's size, too
   if (changes.lights) return "the light changed";
   if (changes.geometry || changes.instances) return "objects moved";
   return {};
@@ -43,7 +43,7 @@ class LiveReference::Tracing {
     ms_ = 0;
   }
 
-  /// Takes more samples. The first picture comes soon; passes double until they take their time.
+  /// Takes more samples. The first image comes soon; passes double until they take their time.
   void pass() {
     const uint32_t affordable = ms_ > 0 ? uint32_t(std::min(kPassMs * sums_.samples / ms_, double(kMostSamples))) : 1;
     const uint32_t count =

@@ -1,6 +1,6 @@
-// The truth of the view that a window shows, traced beside it: a thread of its own takes passes of samples over a copy
-// of the view. What changes the view ends them; they start anew once it stands still, so whoever walks about is not
-// slowed down.
+// The truth of the view that a window shows, traced while it is shown: a thread of its own takes passes of samples over
+// a copy of the view. What changes the view ends them; they start again once it stands still, so whoever walks about is
+// not slowed down.
 #pragma once
 
 #include "engine/scene/view_copy.h"
@@ -16,13 +16,13 @@
 
 namespace lambent {
 
-/// What is known after some passes.
+/// The truth after some passes.
 struct LiveTruth {
   ReferenceBuffer buffer = ReferenceBuffer::Beauty;
   ReferencePicture picture;
   uint32_t samples = 0; // of each pixel
   int bounces = 0;
-  double ms = 0; // of tracing, wall time, beside whatever else ran
+  double ms = 0; // of tracing, wall time, with whatever else ran
 };
 
 class LiveReference {
@@ -31,17 +31,17 @@ class LiveReference {
   ~LiveReference(); // gives up the pass that runs, and joins
   LiveReference(const LiveReference&) = delete;
 
-  /// To be told of every frame: view.changes counts since the last one. Returns why the samples are good for nothing
-  /// any more, in words; the next view without changes begins anew. Empty where they stay, as when another buffer is
+  /// Must be called for every frame: view.changes counts since the last one. Returns why the samples are of no use any
+  /// more, in words; the next view without changes starts again. Empty where they stay, as when another buffer is
   /// wanted that can be read from them. The view's assets must outlive this.
   std::string follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
 
-  /// The newest truth of what was last followed, once; null where none is new. With `wait` it waits for one, unless
-  /// none is being traced. Rethrows what ended the thread.
+  /// Returns the newest truth of what was last followed, once; null where none is new. With `wait` it waits for one,
+  /// unless none is being traced. Rethrows what ended the thread.
   std::shared_ptr<const LiveTruth> take(bool wait = false);
 
  private:
-  /// What samples depend on besides the view.
+  /// What samples depend on, apart from the view.
   struct Paths {
     int bounces = 0;
     bool glossy = false;

@@ -15,7 +15,7 @@ namespace lambent {
 
 namespace {
 
-constexpr size_t kBlockPixels = 16; // small pictures still keep all threads busy
+constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 
 /// Surfaces at the centres of pixels [begin, end).
 std::vector<SurfaceHit> primaryHits(const RayQuery& rays, const CameraView& camera, size_t begin, size_t end) {
@@ -250,8 +250,8 @@ std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, cons
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
   const bool irradiance = buffer == ReferenceBuffer::Irradiance;
   CHECK(!(irradiance && in.glossy));
-  ReferencePicture picture{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
-  picture.surface.resize(sums.pixels.size());
+  ReferencePicture image{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
+  image.surface.resize(sums.pixels.size());
   const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
   const bool indirect = buffer != ReferenceBuffer::Direct;
   struct Row {
@@ -262,15 +262,15 @@ ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs&
     for (size_t i = firstRow * sums.width; i < lastRow * sums.width; ++i) {
       const SurfaceHit h = primaryHits(in.rays, in.camera, i, i + 1)[0];
       Row& row = rows[i / sums.width];
-      vec3& mean = picture.mean.pixels[i];
-      picture.surface[i] = h.valid();
+      vec3& mean = image.mean.pixels[i];
+      image.surface[i] = h.valid();
       if (h.valid()) {
         const vec3 factor = irradiance ? vec3(kPi) : in.glossy ? vec3(1) : h.albedo;
         for (int c = 0; c < 3; ++c) {
           const Estimate e = estimateOf(sums.pixels[i], c, sums.samples, direct, indirect);
           mean[c] = (direct ? h.emission[c] : 0) + factor[c] * float(e.mean);
           const double variance = factor[c] > 0 ? e.variance * factor[c] * factor[c] : 0; // not 0·∞
-          picture.error.pixels[i][c] = float(std::sqrt(variance));
+          image.error.pixels[i][c] = float(std::sqrt(variance));
           row.variance[c] += variance;
         }
       } else if (direct) {
@@ -284,10 +284,10 @@ ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs&
   for (const Row& r : rows) total += r.total, variance += r.variance;
   const double count = 3 * double(sums.pixels.size()), sum = total.x + total.y + total.z;
   if (sum > 0) {
-    picture.relativeError = std::sqrt((variance.x + variance.y + variance.z) / count) / (sum / count);
-    picture.relativeErrorOfMean = (std::sqrt(variance.x) + std::sqrt(variance.y) + std::sqrt(variance.z)) / sum;
+    image.relativeError = std::sqrt((variance.x + variance.y + variance.z) / count) / (sum / count);
+    image.relativeErrorOfMean = (std::sqrt(variance.x) + std::sqrt(variance.y) + std::sqrt(variance.z)) / sum;
   }
-  return picture;
+  return image;
 }
 
 } // namespace lambent

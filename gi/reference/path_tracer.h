@@ -1,4 +1,4 @@
-// The truth that pictures are held to: a path tracer over the same scene data, albedos and light units as the VPLs.
+// The truth that images are compared with: a path tracer over the same scene data, albedos and light units as the VPLs.
 // Paths have exactly B indirect bounces (B = 1: light → y → x), next-event estimation at every vertex and multiple
 // importance sampling for emissive surfaces and for a sky that is not constant; a constant one is met by the
 // cosine-distributed rays. Pixel rays go through pixel
@@ -23,8 +23,7 @@ struct ReferenceInputs {
   /// Primary hits reflect by the roughness and metalness of this view's materials, as with gather.glossy; null:
   /// Lambert.
   const SceneView* glossy = nullptr;
-  /// Where another thread sets it, addSamples returns soon; what it has added is then part of a pass, and good for
-  /// nothing.
+  /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };
 
@@ -48,27 +47,27 @@ struct ReferenceSums {
 /// Takes `count` more samples of every pixel. The sums have the camera's size.
 void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, RayCounts& counts);
 
-/// `samples` samples at each of some surfaces (surfacesAt), as at the pixels of a picture. Random numbers belong to the
-/// surface's index and the sample, not to a frame: when the camera moves a little the noise of a tracked pixel stays
-/// nearly the same, so differences between consecutive frames are known far better than the values.
+/// Takes `samples` samples at each of some surfaces (surfacesAt), as at the pixels of an image. Random numbers belong
+/// to the surface's index and the sample, not to a frame: when the camera moves a little the noise of a tracked pixel
+/// stays nearly the same, so differences between consecutive frames are known far better than the values.
 std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, const ReferenceInputs& in, uint32_t samples,
                                       RayCounts& counts);
 
 /// The same meanings as the buffers of GiFrame.
 enum class ReferenceBuffer { Beauty, Direct, Indirect, Irradiance };
 
-/// A picture and how well it is known.
+/// An image and how well it is known.
 struct ReferencePicture {
   Image mean;
   Image error;                  // standard error of each pixel's mean; infinite for a single sample
   std::vector<uint8_t> surface; // 1 where the camera sees a surface, 0 where it sees the sky
-  /// Root of the mean squared standard error over pixels and channels, over the mean of the picture: the RMSE to expect
-  /// against the exact picture, relative.
+  /// Root of the mean squared standard error over pixels and channels, over the mean of the image: the RMSE to expect
+  /// against the exact image, relative.
   double relativeError = 0;
-  /// Standard error of the picture's mean over that mean, as if a pixel's channels were fully correlated (else less).
+  /// Standard error of the image's mean over that mean, as if a pixel's channels were fully correlated (else less).
   double relativeErrorOfMean = 0;
 };
-/// Irradiance is not to be had from glossy sums.
+/// Reads a buffer from the sums. Glossy sums do not give irradiance.
 ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
 
 } // namespace lambent

@@ -83,7 +83,7 @@ ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceIn
                                         std::to_string(header.version) + ", while this is " + std::to_string(kVersion) +
                                         ")");
   if (header.width != uint32_t(in.camera.width) || header.height != uint32_t(in.camera.height))
-    throw InputError(file.string(), "holds a picture of " + std::to_string(header.width) + "x" +
+    throw InputError(file.string(), "holds an image of " + std::to_string(header.width) + "x" +
                                         std::to_string(header.height) + " (this run's is " +
                                         std::to_string(in.camera.width) + "x" + std::to_string(in.camera.height) + ")");
   if (header.key != key)

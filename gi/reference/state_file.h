@@ -1,4 +1,4 @@
-// Sums of a reference on disk, so that a run can go on later. The file is bound to what it is a picture of.
+// Sums of a reference on disk, so that a run can go on later. The file is bound to what it is an image of.
 #pragma once
 
 #include "engine/scene/scene_view.h"
@@ -12,9 +12,9 @@ namespace lambent {
 /// seed, roughness and metalness where they count. Where the scene's file lies does not matter.
 uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in);
 
-/// Replaces the file in one step.
+/// Saves the sums, replacing the file in one step.
 void saveReference(const std::filesystem::path& file, const ReferenceSums& sums, uint64_t key);
-/// Throws InputError for a file that is no state, is damaged, or belongs to another picture.
+/// Loads sums. Throws InputError for a file that is no state, is damaged, or belongs to another image.
 ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key);
 
 } // namespace lambent

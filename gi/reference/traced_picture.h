@@ -1,4 +1,4 @@
-// A path-traced picture of a view under the settings of the frame: what pictures drawn with these settings are held to.
+// A path-traced image of a view under the settings of the frame: images drawn with these settings are compared with it.
 #pragma once
 
 #include "gi/plan/settings.h"
@@ -17,7 +17,7 @@ struct TracePlan {
   bool clamped = false;                        // bound the geometry term as gather.clamp bounds virtual lights
   uint32_t seed = 1;                           // of all random numbers
   std::filesystem::path state = {};            // keep the sums in this file, and go on from it when it is there
-  std::function<bool()> cancelled = {};        // asked about once a second; what was sampled so far is the picture
+  std::function<bool()> cancelled = {};        // asked about once a second; what was sampled so far is the image
   std::function<void(int, int)> progress = {}; // samples taken, samples expected
 };
 
@@ -28,18 +28,19 @@ struct TracedPicture {
   float clamp = 0;    // 1/m²; 0 = none
   float exposure = 1; // as set, or as GiFrame would measure it
   RayCounts rays = {};
-  double sampleSeconds = 0; // that one sample of every pixel took, without what is made once; 0: none was taken anew
+  double sampleSeconds =
+      0; // that one sample of every pixel took, without what is made once; 0: none was taken in this run
 };
 
-/// Whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance, which
-/// does not depend on how it is reflected.
+/// Says whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance,
+/// which does not depend on how it is reflected.
 bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
 
-/// Throws InputError for a state file of another picture.
+/// Traces a view. Throws InputError for a state file of another image.
 TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
-/// The exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
-/// measures a picture; 1 without light.
+/// Returns the exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
+/// measures an image; 1 without light.
 float exposureFor(std::span<const vec3> radiance);
 
 } // namespace lambent

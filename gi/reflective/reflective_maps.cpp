@@ -98,17 +98,17 @@ ReflectiveMaps ReflectiveMapPass::run(const ReflectiveMapInputs& in) {
   for (ReflectiveMap& m : maps) complete(m, resolution, in.bounds);
 
   const gl::PassScope scope = context_.scope(StageId::ReflectiveMaps);
-  const bool anew = !position_ || resolution != resolution_ || columns != columns_ ||
-                    position_.height() != rows * resolution || position_.desc().levels != levels ||
-                    maps.size() != maps_.size() || in.allChanged;
-  if (anew) allocate(resolution, columns, rows, levels);
-  bool changed = anew || settings_ != in.rsm || needs_ != in.needs;
+  const bool fresh = !position_ || resolution != resolution_ || columns != columns_ ||
+                     position_.height() != rows * resolution || position_.desc().levels != levels ||
+                     maps.size() != maps_.size() || in.allChanged;
+  if (fresh) allocate(resolution, columns, rows, levels);
+  bool changed = fresh || settings_ != in.rsm || needs_ != in.needs;
   mapsDrawn_ = 0;
   cameras_.reserve(maps.size() * sizeof(CameraBlock));
   for (size_t i = 0; i < maps.size(); ++i) {
     const Frustum frustum = Frustum::ofClip(maps[i].clipFromWorld);
     const bool surfaces =
-        anew || maps[i].clipFromWorld != maps_[i].clipFromWorld ||
+        fresh || maps[i].clipFromWorld != maps_[i].clipFromWorld ||
         std::any_of(in.moved.begin(), in.moved.end(), [&](const Aabb& box) { return frustum.mayShow(box); });
     const bool flux = surfaces || settings_.exact != in.rsm.exact || !sameLight(maps[i].light, maps_[i].light);
     if (i >= maps_.size()) maps_.push_back(maps[i]);

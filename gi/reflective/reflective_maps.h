@@ -38,7 +38,7 @@ struct ReflectiveMaps {
   int levelOf(int patchesPerSide) const; // mip level with about so many clusters per side of a map
 };
 
-/// What is made of the maps besides themselves.
+/// What is made from the maps.
 struct ReflectiveNeeds {
   bool clusters = false; // the coarser mip levels
   bool patches = false;  // which clusters are smooth; only with clusters
@@ -89,8 +89,8 @@ struct LightGrid {
   int columns = 0, rows = 0, mapsWithOneMore = 0, maps = 0;
   int count() const { return columns * (rows * maps + mapsWithOneMore); }
 };
-/// Nearly square cells, `vpls` of them or hardly fewer, at least one per map: 252 on the six maps of a point light for
-/// 256.
+/// Divides the maps into nearly square cells, `vpls` of them or hardly fewer, at least one per map: 252 on the six maps
+/// of a point light for 256.
 LightGrid lightGrid(int vpls, int maps);
 
 class ReflectiveLightPass {
@@ -98,8 +98,8 @@ class ReflectiveLightPass {
   explicit ReflectiveLightPass(PassContext context) : context_(context) {}
   // VPLs of the maps, as the gather reads them.
   PackedLights runGrid(const ReflectiveMaps& maps, const RsmSettings& rsm); // on a regular grid
-  /// One per patch without discontinuity that reflects light; needs the maps' patches. Waits for the GPU to know how
-  /// many these are.
+  /// Makes one light per patch without discontinuity that reflects light. Needs the maps' patches. Waits for the GPU to
+  /// know how many these are.
   PackedLights runClusters(const ReflectiveMaps& maps, const RsmSettings& rsm);
   /// Reads the VPLs of the last run back, by slot; empty ones have no area.
   std::vector<VplLight> read() const;

@@ -7,12 +7,12 @@
 
 namespace lambent {
 
-/// Place of a slot in PackedLights::buffer.
+/// Returns the place of a slot in PackedLights::buffer.
 uint32_t lightOrder(uint32_t slot);
 
-/// The light of a slot; empty (a = 0) when it is not alive or brings nothing.
+/// Packs the light of a slot; empty (a = 0) when it is not alive or brings nothing.
 VplLight pack(const VirtualLight& light);
-/// The virtual light that a packed one describes. Its geometric normal is lost: the shading normal stands in.
+/// Returns the virtual light that a packed one describes. Its geometric normal is lost: the shading normal replaces it.
 VirtualLight unpack(const VplLight& light);
 
 class PackedLightBuffer {

@@ -12,7 +12,7 @@ namespace lambent {
 
 namespace {
 
-/// What an update depends on besides the world.
+/// What an update depends on, apart from the world.
 struct UpdateTask {
   SmcSettings smc;
   VplSettings vpl;
@@ -65,7 +65,7 @@ VirtualLights SampledSource::run(const FrameWorld& in, const Needs& needs, Frame
   const bool onACopy = !needed && persistent && (in.plan.on(Replace) || in.plan.on(Relight) || in.plan.on(Motion));
   const bool overlapped = in.settings.frame.overlap && needed && !kept_.set.slots.empty();
   std::vector<uint32_t> carried;
-  if (overlapped && persistent) { // others place theirs anew
+  if (overlapped && persistent) { // others place theirs again
     carried = carryVpls(kept_.set, world.view, world.view.changes.first);
   } else if (onACopy) {
     kept_.log = updated(kept_, taskOf(in), world.view, world.rays, world.lights, in.progress).log;
@@ -91,7 +91,7 @@ void SampledSource::wait() {
   arrived_ = true;
 }
 
-/// Figures of the update that this frame's picture shows.
+/// Figures of the update that this frame shows.
 void SampledSource::report(const EffectPlan& plan, FrameStats& stats) {
   arrived_ = false;
   VplUpdateLog& log = kept_.log;

@@ -10,7 +10,7 @@
 
 namespace lambent {
 
-/// What an update takes away and brings back: while it runs beside the GPU nobody else holds any of it.
+/// What an update takes away and brings back: while it runs next to the GPU nobody else holds any of it.
 struct VplWork {
   VplSet set;
   VplChanges changes; // with those of earlier updates that were not shown

@@ -19,9 +19,9 @@ namespace lambent {
 struct Frustum {
   std::vector<vec4> planes;
 
-  /// Of a clip-from-world matrix for z in [0, w].
+  /// Makes the frustum of a clip-from-world matrix for z in [0, w].
   static Frustum ofClip(const mat4& clipFromWorld);
-  /// False only when the box is certainly outside.
+  /// Returns false only when the box is certainly outside.
   bool mayShow(const Aabb& box) const;
 };
 
@@ -48,9 +48,9 @@ class GpuScene {
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0),
                 Instances which = Instances::All) const;
 
-  /// Masked at the start.
+  /// Sets which alpha test draws use; AlphaTest::Masked at the start.
   void setAlphaTest(AlphaTest test) { stillVersion_ += std::exchange(alphaTest_, test) != test; }
-  /// What is drawn of Instances::Still is the same as long as this is.
+  /// Returns a number that stays the same as long as what Instances::Still draws does.
   uint64_t stillVersion() const { return stillVersion_; }
 
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested

@@ -1,4 +1,4 @@
-// Which patches of the picture hold one smooth surface. Papers 2 and 3 compare depths in a min-max pyramid, which fires
+// Which patches of the image hold one smooth surface. Papers 2 and 3 compare depths in a min-max pyramid, which fires
 // on floors seen at a grazing angle (paper 2 says so), or their derivatives. Here a patch keeps a plane and a bound of
 // the distance to it, merged from its parts: no plane ever fires, no step is missed; the papers' range of depths is
 // there for comparison. Normals are ranges, as in paper 2, 3.2.
@@ -29,7 +29,7 @@ PatchPyramid PatchPass::run(const PatchInputs& in) {
       framebuffers_.emplace_back(name_, std::initializer_list<const gl::Texture*>{&plane_, &normalLo_, &normalHi_},
                                  nullptr, i);
   }
-  const glm::ivec2 cell = in.cell == in.size ? padded : in.cell; // a picture is one cell
+  const glm::ivec2 cell = in.cell == in.size ? padded : in.cell; // an image is one cell
   const int finest = std::clamp(int(std::bit_width(unsigned(in.finest))) - 1, 0, in.levels);
   for (int i = 0; i < in.levels; ++i) {
     std::vector<std::string> defines;

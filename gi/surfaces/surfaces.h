@@ -1,4 +1,4 @@
-// Surfaces of the picture: drawn, or taken over from a host; and the pyramid of their smooth patches.
+// Surfaces of the image: drawn, or taken over from a host; and the pyramid of their smooth patches.
 #pragma once
 
 #include "engine/gl/ring.h"
@@ -22,15 +22,15 @@ struct SurfaceInputs {
   bool previous = false;              // those of the last run stay too
 };
 
-/// Throws InputError when a host's texture is missing or has not the camera's size.
+/// Checks a host's surfaces. Throws InputError when a texture is missing or has not the camera's size.
 void checkHost(const HostSurfaces& host, const CameraView& camera);
 
 class SurfacePass {
  public:
   explicit SurfacePass(PassContext context) : context_(context) {}
   GBuffer run(const SurfaceInputs& in);
-  /// Depth, normals and camera of the run before, where the last one was asked for it; null the first time, at another
-  /// size, and of a host's surfaces.
+  /// Returns depth, normals and camera of the run before, where the last one was asked for it; null the first time, at
+  /// another size, and of a host's surfaces.
   const GBuffer* previous() const { return before_.depth ? &before_ : nullptr; }
 
  private:
@@ -53,7 +53,7 @@ struct PatchInputs {
   const gl::Texture& depth;  // reversed, affine on planes; 0 where nothing is seen
   const gl::Texture& normal; // unit
   glm::ivec2 size;           // pixels
-  glm::ivec2 cell;           // of one map; `size` for a picture
+  glm::ivec2 cell;           // of one map; `size` for an image
   int levels = 0;
   float orthoScale = 0;                             // depth range over half the width of maps by parallel rays
   int orthoFrom = 1 << 20;                          // the first of these, row by row; all before it have a perspective
@@ -68,7 +68,7 @@ class PatchPass {
  public:
   PatchPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
   PatchPyramid run(const PatchInputs& in);
-  /// Of a picture.
+  /// Makes the pyramid of an image.
   PatchPyramid run(const GBuffer& surfaces, const MultiresSettings& settings);
 
  private:

@@ -1,4 +1,4 @@
-// The picture from its parts, and the exposure that suits it.
+// The image from its parts, and the exposure that suits it.
 #include "gi/gather/draw_gather.h"
 #include "gi/viewer/picture.h"
 

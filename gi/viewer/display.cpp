@@ -54,7 +54,7 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   return {{"MODE 0"}, frame.picture.radiance, exposure};
 }
 
-/// Pictures of light have edges to smooth; figures shown as colours must stay what they are.
+/// Images of light have edges to smooth; figures shown as colours must stay what they are.
 bool hasEdgesToSmooth(Buffer buffer) {
   return buffer == Buffer::Beauty || buffer == Buffer::Direct || buffer == Buffer::Indirect;
 }
@@ -103,7 +103,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     black_.clear();
   }
   if (!display_ || display_.width() != width || display_.height() != height) {
-    display_ = gl::Texture("display/picture", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
+    display_ = gl::Texture("display/image", {.format = GL_RGBA8, .width = width, .height = height, .linear = true});
     framebuffer_ = gl::Framebuffer("display", {&display_});
   }
   framebuffer_.bind();

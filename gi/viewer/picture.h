@@ -1,4 +1,4 @@
-// The picture, and looking at everything that led to it.
+// The image, and looking at everything that led to it.
 #pragma once
 
 #include "engine/core/image.h"
@@ -31,7 +31,7 @@ struct CompositeInputs {
 class CompositePass {
  public:
   explicit CompositePass(PassContext context) : context_(context) {}
-  /// emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
+  /// Adds up emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
   Picture run(const CompositeInputs& in);
 
  private:
@@ -40,8 +40,8 @@ class CompositePass {
   gl::Framebuffer framebuffer_;
 };
 
-/// Factor that brings the log-average luminance of the picture's surfaces (black ones left out) to 0.18; 1 when there
-/// is no light. Reads the picture back: meant to run once.
+/// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 1
+/// when there is no light. Reads the image back, so it is meant to run once.
 float measureExposure(const Picture& picture);
 
 // Looking at it ----------------------------------------------------------------------------------------------------
@@ -69,12 +69,12 @@ class DisplayPass {
   explicit DisplayPass(PassContext context) : context_(context) {}
 
   /// Draws `buffer` as a display shows it into a texture (RGB8, sRGB-encoded, dithered; alpha means nothing) of the
-  /// picture's size.
+  /// image's size.
   const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look, const ErrorView& error = {});
   /// Draws the texture of the last run into framebuffer `framebuffer`, scaled to width × height. With `right`, that
-  /// takes its place right of `divider`, a share of the width, and a line parts them.
+  /// texture is shown right of `divider`, a share of the width, and a line separates the two.
   void present(uint32_t framebuffer, int width, int height, const gl::Texture* right = nullptr, float divider = 1);
-  /// The texture of the last run.
+  /// Reads back the texture of the last run.
   Image8 read() const;
 
  private:
@@ -96,7 +96,7 @@ class TruthDisplay {
 
   /// Takes the truth of a buffer over: beauty, direct, indirect or irradiance; linear, row 0 at the top.
   void take(const Image& truth, const FrameResults& frame);
-  /// It, drawn as the frame's own buffer would be. It was taken for a frame of this size.
+  /// Draws the truth as the frame's own buffer would be. It must have been taken for a frame of this size.
   const gl::Texture& run(Buffer buffer, const FrameResults& frame, const Look& look);
   const gl::Texture& linear() const { return linear_; }
 
@@ -106,7 +106,7 @@ class TruthDisplay {
   DisplayPass display_;
 };
 
-/// Linear values of a buffer: radiance for beauty, direct (emission and background included: beauty − indirect),
+/// Reads linear values of a buffer: radiance for beauty, direct (emission and background included: beauty − indirect),
 /// indirect, emission; irradiance (indirect, filtered) and unfiltered; albedo; world normal; depth in metres along the
 /// view direction, 0 on background. The other views give beauty. Stages that did not run read as black.
 Image readBuffer(Buffer buffer, const FrameResults& frame);

@@ -26,7 +26,7 @@ enum class Buffer : int {
   Patches, // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
   Nan,     // NaN magenta, infinity cyan, else grey beauty
 };
-/// Throws InputError with the nearest name.
+/// Finds a buffer. Throws InputError with the nearest name.
 Buffer bufferByName(const std::string& name);
 const std::vector<std::string>& bufferNames();
 
@@ -36,10 +36,10 @@ class Viewer {
   explicit Viewer(const Settings& settings, uint32_t seed = 1);
   ~Viewer();
 
-  /// GiFrame::run, then the image. The figures are those of both.
+  /// Runs GiFrame::run, then makes the image. The figures are those of both.
   const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
                         const HostSurfaces* host = nullptr);
-  /// As a new one with the present settings: nothing is known of frames before.
+  /// Makes this as a new Viewer with the present settings: nothing of earlier frames is kept.
   void restart();
   const FrameStats& stats() const; // of the last frame
 
@@ -57,23 +57,23 @@ class Viewer {
   /// Factor on radiance before tone mapping: image.exposure, or what the first frame asked for.
   float exposure() const { return exposure_; }
 
-  /// The last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world normal,
-  /// depth in metres along the view direction.
+  /// Reads the last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world
+  /// normal, depth in metres along the view direction.
   Image read(Buffer buffer) const;
-  /// Name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next run. 0 for
-  /// depth (GBuffer::depth holds it reversed) and debug views, and before the first frame.
+  /// Returns the name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next
+  /// run. 0 for depth (GBuffer::depth holds it reversed) and debug views, and before the first frame.
   uint32_t texture(Buffer buffer) const;
-  /// The last frame as shown on a display: exposure, tone mapper, sRGB (albedo, normal, depth mapped to visible
+  /// Reads the last frame as shown on a display: exposure, tone mapper, sRGB (albedo, normal, depth mapped to visible
   /// ranges).
   Image8 readDisplay(Buffer buffer) const;
-  /// Draws it into the framebuffer named `framebuffer`, scaled to its size.
+  /// Draws the buffer as a display shows it into the framebuffer named `framebuffer`, scaled to its size.
   void present(Buffer buffer, uint32_t framebuffer, int width, int height) const;
 
   // A truth of the last frame's view next to the image. Of beauty, direct, indirect or irradiance only.
 
-  /// Takes it over: linear, of the image's size, as read() gives the buffer.
+  /// Takes the truth over: linear, of the image's size, as read() gives the buffer.
   void takeTruth(const Image& truth);
-  /// present; right of `divider`, a share of the width, the truth of the buffer, shown alike.
+  /// Presents the buffer and, right of `divider` (a share of the width), its truth, shown alike.
   void presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const;
   /// Draws how far the buffer is from its truth (shaders/shared/error_color.h); `full`: the error that has the full
   /// colour, in the buffer's unit.

@@ -23,7 +23,7 @@ class MapSchedule {
   /// Queues every map as a whole.
   void invalidateAll(size_t slots, int resolution);
 
-  /// Takes jobs out of the queue, those of `first` (slots, ascending: VPLs that are others than before) whole and for
+  /// Takes jobs out of the queue, those of `first` (slots, ascending, whose VPL is another than before) whole and for
   /// certain, others in order of light per texel times the square of frames waited until `texels` have been traced (the
   /// last map may exceed them). Where they do not suffice for all, maps are drawn coarsely, as many as need be, and
   /// stay in the queue until nothing else waits. By slot, ascending.

@@ -88,7 +88,7 @@ void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<cons
 
 namespace {
 
-/// Gives texels in odd columns or rows of a rectangle a distance, from those beside them that have one.
+/// Gives texels in odd columns or rows of a rectangle a distance, from their neighbours that have one.
 void fillBetween(std::vector<float>& distances, int width, int height) {
   // Along a plane 1/distance is nearly linear; where it jumps, two surfaces meet.
   const auto between = [](float a, float b) {

@@ -16,7 +16,7 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   CHECK(in.farDistance > 0);
   std::vector<MapJob> all;
   std::span<const MapJob> jobs = in.jobs;
-  if (drawsAllAnew(in)) {
+  if (redrawsAll(in)) {
     allocate(in);
     all.resize(in.poses.size());
     for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
@@ -33,7 +33,7 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   return {arrays_, resolution_, in.farDistance};
 }
 
-bool ParaboloidMapPass::drawsAllAnew(const ParaboloidMapInputs& in) const {
+bool ParaboloidMapPass::redrawsAll(const ParaboloidMapInputs& in) const {
   return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size();
 }
 
@@ -70,7 +70,7 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
   const auto raster = [&](std::span<const MapJob> maps) { drawRaster(in, maps); };
   const double raysMs = msOfEach(sample, [&](std::span<const MapJob> maps) { drawRays(in, maps); });
   // Where one map says enough, eight would take as long as all of them take by rays: a second of Sponza's first
-  // picture.
+  // frame.
   constexpr double kHopeless = 4;
   double rasterMs = msOfEach(one, raster);
   if (rasterMs < kHopeless * raysMs) rasterMs = msOfEach(sample, raster);

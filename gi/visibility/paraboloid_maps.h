@@ -18,9 +18,9 @@ struct ParaboloidMapInputs {
   const GpuScene& scene;
   const RayQuery* rays = nullptr;    // null: raster only
   std::span<const MapPose> poses;    // all slots
-  std::span<const MapJob> jobs = {}; // what to draw anew; the rest keeps its texels. By slot, one each
+  std::span<const MapJob> jobs = {}; // what to redraw; the rest keeps its texels. By slot, one each
   float farDistance = 1;             // scene diameter, metres
-  int resolution = 128;              // every slot is drawn anew when it, farDistance or the number of slots changes
+  int resolution = 128;              // all slots are redrawn when it, farDistance or their number changes
   ShadowMaker maker = ShadowMaker::Auto;
 };
 
@@ -36,13 +36,13 @@ class ParaboloidMapPass {
   ParaboloidMapPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
-  /// Whether a run would draw every map, whatever its jobs.
-  bool drawsAllAnew(const ParaboloidMapInputs& in) const;
+  /// Says whether a run would draw every map, whatever its jobs.
+  bool redrawsAll(const ParaboloidMapInputs& in) const;
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
-  /// Who draws, and how it was chosen. Empty before the first map.
+  /// Says which maker draws and how it was chosen. Empty before the first map.
   const FasterOf& maker() const { return maker_; }
-  /// The stored map of a slot, as distances in metres (kInfinity where nothing is met).
+  /// Reads the stored map of a slot, as distances in metres (kInfinity where nothing is met).
   std::vector<float> readLayer(uint32_t slot) const;
   /// Draws one pose with both makers into scratch maps, for the measure of their agreement. Requires in.rays.
   MakerComparison compareMakers(const ParaboloidMapInputs& in, const MapPose& pose);

@@ -21,7 +21,7 @@ struct ShadowAgreement {
   double rasterAgainstRays = 0, castAgainstRays = 0; // the same of each maker's map against a ray per pair
 };
 
-/// `slots` lights spread over the list, each against about `points` visible points of the camera.
+/// Compares `slots` lights spread over the list, each at about `points` visible points of the camera.
 ShadowAgreement measureShadowAgreement(ParaboloidMapPass& pass, const ParaboloidMapInputs& maps, const RayQuery& rays,
                                        const CameraView& camera, std::span<const VirtualLight> lights,
                                        const Settings& settings, int slots, int points,

@@ -30,7 +30,7 @@ ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& sta
   if (!in.lights.mayWait) {
     jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(), world.view.changes.first || old_,
                       shadow.resolution);
-  } else if (pass_.drawsAllAnew(maps)) {
+  } else if (pass_.redrawsAll(maps)) {
     schedule_.clear();
   } else {
     jobs = inTurn(in, stats);

@@ -19,18 +19,18 @@ class ShadowMapCache {
  public:
   explicit ShadowMapCache(PassContext context) : pass_(context, StageId::VplMaps) {}
 
-  /// Brings the lights' maps up to date: of lights that may wait as far as `shadow.refresh` goes, of others at once.
+  /// Updates the lights' maps: of lights that may wait as far as `shadow.refresh` allows, of others at once.
   ShadowedLights update(const ShadowMapInputs& in, FrameStats& stats);
 
-  /// The scene is another.
+  /// Drops all maps: another scene follows.
   void forget() {
     schedule_.clear();
     maps_ = {};
     old_ = true;
   }
-  /// Maps that show where something was.
+  /// Number of maps that still show where a moved object was.
   uint32_t waiting() const { return uint32_t(schedule_.waiting()); }
-  /// Of the last update; empty where its lights had none.
+  /// Returns the maps of the last update; empty where its lights had none.
   const ParaboloidMaps& maps() const { return maps_; }
 
  private:

@@ -17,7 +17,7 @@ void LightVolume::update(const VolumeInputs& in, FrameStats& stats) {
       changed = true;
       upload(open_, "volume/open", sights_.open());
       upload(seen_, "volume/sights", sights_.sights());
-      seats_.clear();
+      injections_.clear();
     }
   }
   {
@@ -44,30 +44,30 @@ template <class T> void LightVolume::upload(gl::Buffer& buffer, const char* labe
 
 /// Looks which cells around them the lights see that stand elsewhere than before; all of them where a cell's sights
 /// changed.
-void LightVolume::seat(const VolumeInputs& in, RayCounts& counts) {
+void LightVolume::findCells(const VolumeInputs& in, RayCounts& counts) {
   const VolumeGrid& grid = sights_.grid();
   const std::span<const VirtualLight> lights = in.lights;
-  seats_.resize(lights.size());
-  std::vector<uint32_t> anew;
+  injections_.resize(lights.size());
+  std::vector<uint32_t> moved;
   for (uint32_t i = 0; i < lights.size(); ++i) {
     const VirtualLight& light = lights[i];
     if (!light.alive) continue;
-    if (seats_[i].position != light.position || seats_[i].normal != light.geometricNormal) anew.push_back(i);
+    if (injections_[i].position != light.position || injections_[i].normal != light.geometricNormal) moved.push_back(i);
   }
   std::vector<Ray> rays;
   std::vector<std::pair<uint32_t, int>> asked;
-  for (uint32_t i : anew) {
+  for (uint32_t i : moved) {
     const VirtualLight& light = lights[i];
-    Seat& seat = seats_[i];
-    seat = {light.position, light.geometricNormal};
+    Injection& injection = injections_[i];
+    injection = {light.position, light.geometricNormal};
     const vec3 x = (light.position - grid.corner()) / grid.cell + kVolumeShift * light.geometricNormal;
     if (!isFinite(x) || maxComponent(glm::abs(x)) > 1e6f) continue;
-    seat.base = ivec3(glm::floor(x - 0.5f));
+    injection.base = ivec3(glm::floor(x - 0.5f));
     for (int k = 0; k < 8; ++k) {
-      const ivec3 at = seat.base + ivec3(k & 1, k >> 1 & 1, k >> 2);
+      const ivec3 at = injection.base + ivec3(k & 1, k >> 1 & 1, k >> 2);
       if (!grid.holds(at)) continue;
-      seat.weights[k] = volumeWeight(x, vec3(at) + 0.5f, light.geometricNormal);
-      if (seat.weights[k] == 0 || !in.settings.occlusion) continue;
+      injection.weights[k] = volumeWeight(x, vec3(at) + 0.5f, light.geometricNormal);
+      if (injection.weights[k] == 0 || !in.settings.occlusion) continue;
       rays.push_back(
           segment(offsetPoint(light.position, light.geometricNormal, in.world.rays.rayEpsilon()), grid.centre(at)));
       asked.emplace_back(i, k);
@@ -79,18 +79,18 @@ void LightVolume::seat(const VolumeInputs& in, RayCounts& counts) {
   });
   counts.occlusion += rays.size();
   for (size_t n = 0; n < asked.size(); ++n)
-    if (blocked[n]) seats_[asked[n].first].weights[asked[n].second] = 0;
-  for (uint32_t i : anew) {
+    if (blocked[n]) injections_[asked[n].first].weights[asked[n].second] = 0;
+  for (uint32_t i : moved) {
     float sum = 0;
-    for (float w : seats_[i].weights) sum += w;
-    for (float& w : seats_[i].weights) w = sum > 0 ? w / sum : 0;
+    for (float w : injections_[i].weights) sum += w;
+    for (float& w : injections_[i].weights) w = sum > 0 ? w / sum : 0;
   }
 }
 
 /// What the lights reflect, as cosine lobes in the cells around them: all of it, where anything is open to them.
 /// Returns whether it is other than before.
 bool LightVolume::deposit(const VolumeInputs& in, RayCounts& counts) {
-  seat(in, counts);
+  findCells(in, counts);
   const VolumeGrid& grid = sights_.grid();
   std::vector<vec4> cells(3 * grid.size(), vec4(0));
   const std::span<const VirtualLight> lights = in.lights;
@@ -98,12 +98,12 @@ bool LightVolume::deposit(const VolumeInputs& in, RayCounts& counts) {
     const VirtualLight& light = lights[i];
     if (!light.alive) continue;
     const vec3 flux = kPi * light.radiance * light.area;
-    const Seat& seat = seats_[i];
+    const Injection& injection = injections_[i];
     const vec4 lobe(kLobe0, kLobe1 * light.normal);
     for (int k = 0; k < 8; ++k) {
-      if (seat.weights[k] == 0) continue;
-      const size_t cell = 3 * grid.index(seat.base + ivec3(k & 1, k >> 1 & 1, k >> 2));
-      for (int colour = 0; colour < 3; ++colour) cells[cell + colour] += lobe * (seat.weights[k] * flux[colour]);
+      if (injection.weights[k] == 0) continue;
+      const size_t cell = 3 * grid.index(injection.base + ivec3(k & 1, k >> 1 & 1, k >> 2));
+      for (int colour = 0; colour < 3; ++colour) cells[cell + colour] += lobe * (injection.weights[k] * flux[colour]);
     }
   }
   if (cells.size() == deposited_.size() &&

@@ -20,31 +20,32 @@ struct VolumeInputs {
   const VolumeSettings& settings;
 };
 
-/// Deposits are made on the CPU, where the lights and the rays are; the steps on the GPU. What nothing changed is kept.
+/// Deposits flux on the CPU, where the lights and the rays are, and propagates it on the GPU. What did not change is
+/// kept.
 class LightVolume {
  public:
   explicit LightVolume(PassContext context) : context_(context) {}
 
   void update(const VolumeInputs& in, FrameStats& stats);
-  /// Storage blocks and uniforms of volume_gather.frag.
+  /// Binds storage blocks and sets uniforms of volume_gather.frag.
   void bind(const gl::Program& program) const;
 
   const VolumeVisibility& sights() const { return sights_; }
-  /// Flux that is on its way after the last step, W. Reads back: for tests.
+  /// Returns the flux that is on its way after the last step, W. Reads back, so it is for tests.
   vec3 fluxOnItsWay() const;
-  /// Flux that was deposited, W.
+  /// Returns the flux that was deposited, W.
   vec3 fluxDeposited() const;
 
  private:
-  /// Where a light stands, and the cells around that it may go to.
-  struct Seat {
+  /// Where a light stands, and the cells around it that receive its flux.
+  struct Injection {
     vec3 position{kInfinity}, normal{0};
     ivec3 base{0};
     float weights[8] = {}; // sum 1, or 0 where nothing is open to it
   };
 
   template <class T> void upload(gl::Buffer& buffer, const char* label, std::span<const T> data);
-  void seat(const VolumeInputs& in, RayCounts& counts);
+  void findCells(const VolumeInputs& in, RayCounts& counts);
   bool deposit(const VolumeInputs& in, RayCounts& counts);
   void propagate();
 
@@ -52,12 +53,12 @@ class LightVolume {
   VolumeVisibility sights_;
   gl::Buffer open_, seen_, deposits_, light_[2], passed_;
   gl::Ring changes_{"volume/changes"};
-  std::vector<Seat> seats_; // by slot
+  std::vector<Injection> injections_; // by slot
   std::vector<vec4> deposited_;
   int steps_ = -1;
 };
 
-/// Light of pixels from such a volume (`lpv`).
+/// Makes the gather of pixels' light from such a volume (`lpv`).
 std::unique_ptr<Gather> makeVolumeGather(PassContext context);
 
 } // namespace lambent

@@ -13,7 +13,7 @@ namespace lambent {
 namespace {
 
 constexpr float kAllOfIt = 1.001f;  // width of a grid over the scene's
-constexpr float kMoving = 1.25f;    // where that has been seen to grow: every new grid is a step in the picture
+constexpr float kMoving = 1.25f;    // where that has been seen to grow: every new grid is a visible step
 constexpr float kLeastCell = 1e-5f; // of the scene's width, which floats still tell apart
 constexpr size_t kAtOnce = 1 << 14; // cells whose rays are listed together: 34 MB
 

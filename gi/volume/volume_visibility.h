@@ -29,8 +29,8 @@ struct VolumeGrid {
   vec3 offset{0}; // of the lattice, metres
 };
 
-/// Grid that the settings ask for. With lpv.size it follows the camera; else it holds the scene, and stays the same
-/// while that fits into `before` and fills half of it.
+/// Returns the grid that the settings ask for. With lpv.size it follows the camera; else it holds the scene, and stays
+/// the same while that fits into `before` and fills half of it.
 VolumeGrid volumeGrid(const VolumeSettings& settings, const SceneView& view, const VolumeGrid& before);
 
 /// What every cell sees of its neighbourhood: the fuzzy occlusion volume (Kaplanyan and Dachsbacher 2010, section 4.2)
@@ -38,7 +38,7 @@ VolumeGrid volumeGrid(const VolumeSettings& settings, const SceneView& view, con
 /// most. What geometry did not change near is kept, also where the grid goes on by whole cells.
 class VolumeVisibility {
  public:
-  /// Returns whether anything may be other than before.
+  /// Updates what cells see. Returns whether anything may have changed.
   bool update(const VolumeGrid& grid, const World& world, bool occlusion, RayCounts& counts);
 
   const VolumeGrid& grid() const { return grid_; }

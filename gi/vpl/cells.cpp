@@ -89,25 +89,25 @@ struct Connection {
 };
 
 /// VPLs of the set with the slots they are in.
-struct Standing {
+struct VplPlaces {
   std::vector<DensityPoint> points;
   std::vector<uint32_t> slots;
 };
 
-Standing standing(const VplSet& set) {
-  Standing s;
+VplPlaces placesOf(const VplSet& set) {
+  VplPlaces result;
   for (uint32_t i = 0; i < set.slots.size(); ++i)
     if (set.slots[i].alive) {
-      s.points.push_back({set.slots[i].position, set.slots[i].normal});
-      s.slots.push_back(i);
+      result.points.push_back({set.slots[i].position, set.slots[i].normal});
+      result.slots.push_back(i);
     }
-  return s;
+  return result;
 }
 
 /// The VPLs as samples look for them; radii are those of set.cells.
 struct Neighbours {
   const VplSet& set;
-  const Standing& vpls;
+  const VplPlaces& vpls;
   const NeighbourTree& tree;
   float limit; // m: no sample lies farther from who draws or has it
 
@@ -275,7 +275,7 @@ class CellSampler {
 
 /// Notes who looks at the VPL: mailbox points of the VPLs nearest to it, not its own, which sees it by definition. Only
 /// that one where none of them does.
-void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const NeighbourTree& tree,
+void findViewers(const Vpl& vpl, const VplSet& set, const VplPlaces& vpls, const NeighbourTree& tree,
                  const RayQuery& rays, VplCell& cell, RayCounts& counts) {
   std::array<uint32_t, SurfaceSample::kNear> index;
   std::array<float, SurfaceSample::kNear> distance2;
@@ -297,17 +297,17 @@ void findViewers(const Vpl& vpl, const VplSet& set, const Standing& vpls, const 
 }
 
 /// Whether something moved between a place and those who look at it.
-bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, const DirtyRegion& disturbance,
+bool viewChanged(const VplCell& cell, const vec3& position, const vec3& normal, const DirtyRegion& dirty,
                  const RayQuery& rays) {
-  if (disturbance.empty()) return false;
+  if (dirty.empty()) return false;
   const vec3 to = offsetPoint(position, normal, rays.rayEpsilon());
   return std::any_of(cell.viewers.begin(), cell.viewers.end(),
-                     [&](const vec3& from) { return disturbance.touches(segment(from, to)); });
+                     [&](const vec3& from) { return dirty.touches(segment(from, to)); });
 }
 
 /// Light leaves a cell from the place of its VPL, so a sample counts by how well it is seen compared with that place:
 /// the number of viewers that see it over the number that see the VPL, two at most. What none sees counts nothing: the
-/// sunlit outside of a wall beside a window.
+/// sunlit outside of a wall next to a window.
 float seenBy(const VplCell& cell, const SurfaceSample& p, const RayQuery& rays, RayCounts& counts) {
   const vec3 to = offsetPoint(p.position, p.geometricNormal, rays.rayEpsilon());
   float seen = 0;
@@ -327,14 +327,14 @@ struct Share {
 
 /// Makes the cell of `vpl` of the samples that it has. Where these may be the same as before (`perhaps`) only if one of
 /// them is seen otherwise than before; returns whether it was made.
-bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const DirtyRegion& disturbance, bool perhaps,
+bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const DirtyRegion& dirty, bool perhaps,
               const RayQuery& rays, RayCounts& counts) {
   std::stable_sort(shares.begin(), shares.end(),
                    [](const Share& a, const Share& b) { return a.sample->owner2 < b.sample->owner2; });
   bool same = perhaps;
   for (const Share& share : shares) {
     SurfaceSample& p = *share.sample;
-    if (p.weighed == cell.drawing && !viewChanged(cell, p.position, p.geometricNormal, disturbance, rays)) continue;
+    if (p.weighed == cell.drawing && !viewChanged(cell, p.position, p.geometricNormal, dirty, rays)) continue;
     const float seen = seenBy(cell, p, rays, counts);
     same &= p.weighed == cell.drawing && seen == p.seen;
     p.seen = seen;
@@ -355,7 +355,7 @@ bool assemble(Vpl& vpl, VplCell& cell, std::span<Share> shares, const DirtyRegio
 
 } // namespace
 
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& disturbance,
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& dirty,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed,
                                   RayCounts& counts) {
   const size_t slots = set.slots.size();
@@ -363,8 +363,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   const bool drifted = !(set.cellLimit > 0.8f * radiusLimit && set.cellLimit < 1.25f * radiusLimit);
   if (drifted) set.cellLimit = radiusLimit;
   radiusLimit = set.cellLimit;
-  if (set.cells.size() != slots) set.cells.assign(slots, {}); // slots may be others: draw all anew
-  const Standing vpls = standing(set);
+  if (set.cells.size() != slots) set.cells.assign(slots, {}); // slots may have changed: redraw all
+  const VplPlaces vpls = placesOf(set);
   const NeighbourTree tree(vpls.points);
   const Neighbours neighbours{set, vpls, tree, kReachLimit * radiusLimit};
   // Scale of a cell: 0.9 of the distance to its third neighbour. Chords reach four times as far.
@@ -373,10 +373,11 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   const std::vector<float> shares =
       representedAreas(vpls.points, vpls.points, true, kScaleNeighbour, DensityEstimator::KnnSide, kInfinity);
 
-  // Whose samples are drawn anew: those that stand elsewhere or have other neighbours; and where something moved.
-  std::vector<uint8_t> anew(slots, 0), near(slots, 0), touched(slots, 0);
+  // Slots whose samples are redrawn: VPLs that stand elsewhere or have other neighbours, and those where something
+  // moved.
+  std::vector<uint8_t> redrawn(slots, 0), near(slots, 0), touched(slots, 0);
   std::vector<vec3> places; // where VPLs came or went, or draw otherwise
-  for (uint32_t slot : moved) anew[slot] = 1;
+  for (uint32_t slot : moved) redrawn[slot] = 1;
   for (size_t n = 0; n < vpls.slots.size(); ++n) {
     const uint32_t slot = vpls.slots[n];
     const float radius =
@@ -384,12 +385,13 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
     VplCell& cell = set.cells[slot];
     const Vpl& vpl = set.slots[slot];
     // (A light may have been carried along with its object before this update.)
-    anew[slot] |= drifted || cell.centre != vpl.position || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius);
-    if (!anew[slot]) {
-      near[slot] = disturbance.touches(vpl.position, kScales.back().radius * cell.radius);
+    redrawn[slot] |=
+        drifted || cell.centre != vpl.position || !(cell.radius > 0.7f * radius && cell.radius < 2 * radius);
+    if (!redrawn[slot]) {
+      near[slot] = dirty.touches(vpl.position, kScales.back().radius * cell.radius);
       const bool nobodySaw = cell.viewers.size() == 1;
-      if ((near[slot] && nobodySaw) || viewChanged(cell, vpl.position, vpl.geometricNormal, disturbance, rays)) {
-        cell.viewers.clear(); // to be found anew
+      if ((near[slot] && nobodySaw) || viewChanged(cell, vpl.position, vpl.geometricNormal, dirty, rays)) {
+        cell.viewers.clear(); // found again below
         cell.drawing = ++set.drawings;
       }
       continue;
@@ -405,7 +407,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
     if (set.slots[slot].alive || cell.radius == 0) continue;
     places.push_back(cell.centre);
   }
-  if (places.empty() && disturbance.empty()) return {};
+  if (places.empty() && dirty.empty()) return {};
 
   constexpr size_t kGrain = 32;
   const auto blocks = [](size_t n) { return (n + kGrain - 1) / kGrain; };
@@ -429,13 +431,13 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
         owners.push_back(slot);
         continue;
       }
-      if (anew[slot] || cell.viewers.empty()) {
+      if (redrawn[slot] || cell.viewers.empty()) {
         findViewers(vpl, set, vpls, tree, rays, cell, count);
         owners.push_back(slot);
       }
-      if (anew[slot] || near[slot]) {
+      if (redrawn[slot] || near[slot]) {
         owners.push_back(slot);
-        stay = sampler.draw(slot, cell, anew[slot] ? nullptr : &disturbance, owners, count);
+        stay = sampler.draw(slot, cell, redrawn[slot] ? nullptr : &dirty, owners, count);
       }
       around.clear();
       for (const vec3& place : places)
@@ -443,18 +445,18 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
       const std::span<SurfaceSample> samples = cell.samples;
       for (SurfaceSample& p : samples.first(stay)) {
         const float tried = kTried * std::sqrt(p.owner == kNone ? p.reach2 : p.owner2);
-        const bool disturbed = disturbance.touches(p.position, tried);
+        const bool inDirty = dirty.touches(p.position, tried);
         const bool others = std::any_of(around.begin(), around.end(), [&](const vec3& place) {
           const vec3 d = place - p.position;
           return glm::dot(d, d) <= p.reach2;
         });
-        if (!disturbed && !others) continue;
+        if (!inDirty && !others) continue;
         const uint32_t owner = p.owner;
         const float density = p.density;
         const std::array<uint32_t, SurfaceSample::kNear> before = p.near;
         if (others) neighbours.enter(p, slot, neighbours.around(p.position));
         neighbours.giveToNearest(p, connected, [&](uint32_t other) {
-          return !disturbed && !anew[other] && std::find(before.begin(), before.end(), other) != before.end();
+          return !inDirty && !redrawn[other] && std::find(before.begin(), before.end(), other) != before.end();
         });
         if (p.owner == owner && p.density == density) continue;
         if (p.owner != owner) p.weighed = 0; // also where it comes back to the one that it had before
@@ -484,11 +486,11 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   for (const VplCell& cell : set.cells)
     for (const SurfaceSample& p : cell.samples)
       if (p.owner != kNone) extent2[p.owner] = std::max(extent2[p.owner], p.owner2);
-  for (uint32_t slot = 0; slot < slots && !disturbance.empty(); ++slot) {
+  for (uint32_t slot = 0; slot < slots && !dirty.empty(); ++slot) {
     if (touched[slot] || !set.slots[slot].alive) continue;
     const vec3 middle = set.slots[slot].position, extent(std::sqrt(extent2[slot]));
     for (const vec3& from : set.cells[slot].viewers)
-      perhaps[slot] |= disturbance.touches(Aabb{glm::min(from, middle - extent), glm::max(from, middle + extent)});
+      perhaps[slot] |= dirty.touches(Aabb{glm::min(from, middle - extent), glm::max(from, middle + extent)});
   }
 
   std::vector<Share> all;
@@ -510,8 +512,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   parallelFor(candidates.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t slot = candidates[i];
-      made[i] = assemble(set.slots[slot], set.cells[slot], shared[i], disturbance, perhaps[slot], rays,
-                         perBlock[begin / kGrain]);
+      made[i] =
+          assemble(set.slots[slot], set.cells[slot], shared[i], dirty, perhaps[slot], rays, perBlock[begin / kGrain]);
     }
   });
   std::vector<uint32_t> changed;

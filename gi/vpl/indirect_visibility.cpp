@@ -12,7 +12,7 @@ namespace lambent {
 
 namespace {
 
-/// Whether the camera's picture holds the point (it may still be hidden).
+/// Whether the camera's image holds the point (it may still be hidden).
 bool inFrustum(const CameraView& camera, const mat4& viewFromWorld, const vec3& p) {
   const vec3 v = vec3(viewFromWorld * vec4(p, 1));
   if (camera.orthoHalfHeight > 0)

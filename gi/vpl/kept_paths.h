@@ -32,7 +32,7 @@ struct KeptPaths {
     uint32_t vertex; // index of the vertex that the ray left
     SurfaceHit hit;
   };
-  // What the paths were traced for; another id or number starts anew.
+  // What the paths were traced for; another id or number starts from scratch.
   uint64_t id = 0;
   int paths = 0, bounces = 0;
   bool overCell = false;            // started all over a cell, not at the VPL

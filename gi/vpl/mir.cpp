@@ -1,12 +1,12 @@
 // Metropolis instant radiosity: B. Segovia, J.-C. Iehl, B. Péroche, "Metropolis Instant Radiosity", Eurographics 2007;
 // `mir` of paper 1, 5.1, which resamples paths of a path tracer, 256:1, independently for each frame, instead of
 // mutating them. What we do:
-// - A candidate is a point x that the camera sees (uniform over the picture), a cosine-distributed ray to y, and one
-//   light path that estimates the radiance of y. Its weight is the luminance it brings to the picture with x taken as
+// - A candidate is a point x that the camera sees (uniform over the image), a cosine-distributed ray to y, and one
+//   light path that estimates the radiance of y. Its weight is the luminance it brings to the image with x taken as
 //   white: the albedo at x would only shift VPLs between pixels whose irradiance is shown, filtered and compared alike.
 // - N of the candidates are drawn in proportion to weight by systematic resampling. One drawn several times stands in
 //   several neighbouring slots, which interleaved sampling shows to different pixels.
-// - Each VPL brings the same power to the picture. Segovia finds its intensity from q(y), the mean over the picture of
+// - Each VPL brings the same power to the image. Segovia finds its intensity from q(y), the mean over the image of
 //   what a unit VPL at y brings, which takes shadow rays to many points and has no finite variance near corners. But
 //   q(y) is the density of candidates, and there are many of those: 1/(M q) = π r_k²/k among all M hits is a mean-free
 //   estimate where the density is even over r_k (3 cm for 524 k candidates in a room), and no chosen weight enters it.

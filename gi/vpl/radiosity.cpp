@@ -76,10 +76,10 @@ class VplEstimator {
       return true;
     }
     const bool lastRays = this->lastRays();
-    const bool anew = kept.id != vpl.id || kept.paths != paths_ || kept.bounces != update_.bounces ||
-                      (lastRays && !kept.lastRays) || (update_.instancesChanged && !kept.emitters.empty()) ||
-                      (cell != nullptr) != kept.overCell;
-    if (anew) {
+    const bool fresh = kept.id != vpl.id || kept.paths != paths_ || kept.bounces != update_.bounces ||
+                       (lastRays && !kept.lastRays) || (update_.instancesChanged && !kept.emitters.empty()) ||
+                       (cell != nullptr) != kept.overCell;
+    if (fresh) {
       kept.id = vpl.id;
       kept.paths = paths_;
       kept.bounces = update_.bounces;
@@ -89,10 +89,10 @@ class VplEstimator {
       kept.lengths.assign(paths_, 0);
       kept.emitters.clear();
     }
-    const bool doubtful = findStale(kept, anew);
+    const bool doubtful = findStale(kept, fresh);
     if (!stale_.empty()) trace(kept, id, counts);
     counts.traced += stale_.size();
-    if (!anew) counts.retraced += stale_.size();
+    if (!fresh) counts.retraced += stale_.size();
     if (stale_.empty() && !doubtful && !update_.lightsChanged) return false;
     radiance = light(kept, id, counts) / float(paths_);
     return true;

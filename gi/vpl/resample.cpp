@@ -15,7 +15,7 @@ Resampled resampleUniformInArea(std::span<const CandidateHit> hits, int count, u
   for (const CandidateHit& h : hits) points.push_back({h.position, h.normal});
   // k = 1, as the paper has it for candidates: π r² to the nearest other hit is an unbiased, if noisy, share of area.
   std::vector<float> areas = representedAreas(points, points, true, 1, DensityEstimator::Knn, kInfinity);
-  if (hits.size() == 1) { // no neighbour tells; what it is seen from must not be nearer than its rim
+  if (hits.size() == 1) { // no neighbour shows it; what it is seen from must not be nearer than its rim
     const vec3 d = hits[0].position - hits[0].from;
     areas[0] = kPi * glm::dot(d, d);
   }

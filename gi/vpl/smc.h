@@ -118,17 +118,17 @@ struct PathCounts {
   }
 };
 
-/// Bit for bit the radiance of an estimate from scratch, whatever was kept.
+/// Estimates radiance: bit for bit that of an estimate from scratch, whatever was kept.
 PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& rays, const LightSet& lights,
                             const RadianceUpdate& update);
-/// From scratch.
+/// Estimates radiance from scratch.
 void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
                       uint32_t seed, RayCounts& counts, RadianceUse use = RadianceUse::Rendering,
                       std::span<const VplCell* const> cells = {});
 
-/// Whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts as
-/// the same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would make
-/// areas along every edge too large (measured: 15 % more light in an empty room).
+/// Says whether two points can lie on one piece of surface: not on opposite sides of a thin wall. A right angle counts
+/// as the same side, because walls that meet in a corner share its neighbourhood; leaving each other out there would
+/// make areas along every edge too large (measured: 15 % more light in an empty room).
 inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot(normalA, normalB) > -0.5f; }
 
 /// Stage 6. Area that each point stands for, π r_k² / k, with r_k the distance to the k-th nearest of `among` (paper 1,
@@ -159,10 +159,10 @@ class NeighbourTree {
   std::unique_ptr<Tree> tree_;
 };
 
-/// Stage 6, other than the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
-/// whose VPL is new or stands elsewhere; cells that `disturbance` touches are drawn anew. Returns the slots whose cell
-/// changed, ascending: their radiance is another.
-std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& disturbance,
+/// Stage 6, not as in the paper. Brings the cells of all VPLs up to date and sets their areas. `moved` lists slots
+/// whose VPL is new or stands elsewhere; cells that `dirty` touches are redrawn. Returns the slots whose cell
+/// changed, ascending: their radiance changes too.
+std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const DirtyRegion& dirty,
                                   std::span<const uint32_t> moved, float radiusLimit, uint32_t seed, RayCounts& counts);
 
 /// Stage 7. Replaces at most `maxMoves` VPLs: unverified ones first, then the weakest, as many as there are candidates
@@ -171,8 +171,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
 /// Candidates that were taken are marked alive.
 VplChanges replaceVpls(VplSet& set, std::vector<Vpl>& candidates, int maxMoves, DensityEstimator estimator);
 
-/// Parts of an update that may be left out or forced (gi/plan/effects.h). As they stand, all is done that changes call
-/// for.
+/// Parts of an update that may be left out or forced (gi/plan/effects.h). By default all is done that changes call for.
 struct VplEffects {
   bool replace = true;     // false: slots once filled keep their VPLs, and no candidates are looked for
   bool relight = true;     // false: only VPLs that are new are lit
@@ -181,7 +180,7 @@ struct VplEffects {
   bool lastRays = false;   // see RadianceUpdate
 };
 
-/// What one update needs besides the set.
+/// What one update needs, apart from the set.
 struct VplUpdate {
   const SceneView& view;
   const RayQuery& rays;
@@ -203,9 +202,9 @@ struct VplUpdateLog {
   uint32_t relitForChange = 0; // of these, because lights or geometry changed
 };
 
-/// All stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on replacements
-/// is lifted and the stages run several times. The first call fills the set and runs `settings.warmup` iterations;
-/// `progress` (may be empty) hears of each.
+/// Runs all stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on
+/// replacements is lifted and the stages run several times. The first call fills the set and runs `settings.warmup`
+/// iterations; `progress` (may be empty) is called for each.
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});
 
@@ -214,7 +213,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 /// nothing.
 std::vector<uint32_t> carryVpls(VplSet& set, const SceneView& view, bool all);
 
-/// Asks a gather for the light that the receivers' lobes reflect, beside irradiance.
+/// Asks a gather for the light that the receivers' lobes reflect, as well as for irradiance.
 struct GlossyGather {
   const SceneView& view;      // camera and materials
   std::vector<vec3> radiance; // filled: W/(m² sr) over glossyTint (shaders/shared/ggx.h)
@@ -225,11 +224,11 @@ struct GlossyGather {
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
                                const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr);
 
-/// What the camera sees at points (u, v) of its picture, v down, in [0, 1]. Rays start at the near plane, as the
+/// What the camera sees at points (u, v) of its image, v down, in [0, 1]. Rays start at the near plane, as the
 /// rasteriser's.
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points);
 
-/// Irradiance at surfaces from all lights, a ray for every pair; zero where there is none.
+/// Computes irradiance at surfaces from all lights, a ray for every pair; zero where there is no surface.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,
                                    std::span<const VirtualLight> lights, const GatherSettings& settings,
                                    RayCounts& counts, GlossyGather* glossy = nullptr);

@@ -1,14 +1,14 @@
 // Who places the virtual lights: the sequential Monte Carlo set, or one of the techniques that paper 1 compares it with
 // (section 5.1). All fill the same VplSet, so that visibility, gathering and filtering are the same for each. The
-// comparators place their whole set anew in every frame; what keeps its place keeps its slot, its id and its map.
+// comparators place their whole set again in every frame; what keeps its place keeps its slot, its id and its map.
 #pragma once
 
 #include "gi/vpl/smc.h"
 
 namespace lambent {
 
-/// The set of this frame by `source`. Slots whose light now stands elsewhere are listed as moved. A set that another
-/// source filled is given up first.
+/// Places the set of this frame by `source`. Slots whose light now stands elsewhere are listed as moved. A set that
+/// another source filled is given up first.
 VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                      const std::function<void(int, int)>& progress = {});
 
@@ -28,7 +28,7 @@ VplChanges placeByImagePower(VplSet& set, const VplUpdate& in, VplUpdateLog& log
 VplChanges placeByShadowMapChains(VplSet& set, const VplUpdate& in, VplUpdateLog& log);
 
 /// Poisson samples over both sides of all surfaces that reflect, each for its share of their area (paper 4, 3.2). They
-/// stand where they stand as long as the same objects are there, and ride on these.
+/// stay where they are as long as the same objects are there, and move with these.
 VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log);
 
 /// What a comparator puts into a slot. Without power the slot is empty.

@@ -1,5 +1,5 @@
 // Poisson samples over all surfaces (paper 4, 3.2): virtual lights that stand where they stand whatever the camera
-// does, ride on their triangles, and are lit anew where the light or what they see changes. The paper lights them by
+// does, ride on their triangles, and are lit again where the light or what they see changes. The paper lights them by
 // rays to the area light; ours take light as every VPL does, so all kinds of lights count, and smc.bounces bounces.
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
@@ -159,7 +159,7 @@ void fillCells(VplSet& set) {
   }
 }
 
-void placeAnew(VplSet& set, const VplUpdate& in) {
+void placeAll(VplSet& set, const VplUpdate& in) {
   const uint32_t count = uint32_t(in.settings.vpls);
   set.slots.assign(count, {});
   set.lightPaths.assign(count, {});
@@ -211,11 +211,11 @@ std::vector<uint32_t> carry(VplSet& set, const VplUpdate& in) {
 VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
   const SceneChanges& changed = in.view.changes;
   ++set.frame;
-  const bool anew = changed.first || changed.instances || set.slots.size() != size_t(in.settings.vpls);
+  const bool fresh = changed.first || changed.instances || set.slots.size() != size_t(in.settings.vpls);
   VplChanges changes;
-  if (anew) {
+  if (fresh) {
     CpuScope scope(log.stages, key(StageId::Candidates));
-    placeAnew(set, in);
+    placeAll(set, in);
     for (uint32_t i = 0; i < set.slots.size(); ++i) changes.movedSlots.push_back(i);
     changes.placedSlots = changes.movedSlots;
   } else if (changed.geometry || in.effects.carryAll) {
@@ -228,7 +228,7 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
                                       [&](const Emitter& e) { return in.view.instances[e.instance].moved; });
   const bool settingsChanged = set.litPaths != in.settings.paths || set.litBounces != in.settings.bounces;
   const bool lightsChanged = in.effects.relightAll || (in.effects.relight && (changed.lights || in.settingsChanged));
-  if (!anew && !settingsChanged && !lightsChanged && !(in.effects.relight && (changed.geometry || lampsMoved)))
+  if (!fresh && !settingsChanged && !lightsChanged && !(in.effects.relight && (changed.geometry || lampsMoved)))
     return changes;
   set.litPaths = in.settings.paths;
   set.litBounces = in.settings.bounces;
@@ -245,7 +245,7 @@ VplChanges placeOverSurfaces(VplSet& set, const VplUpdate& in, VplUpdateLog& log
                                               .bounces = in.settings.bounces,
                                               .seed = in.seed,
                                               .moved = &moved,
-                                              .lightsChanged = lightsChanged || lampsMoved || anew,
+                                              .lightsChanged = lightsChanged || lampsMoved || fresh,
                                               .instancesChanged = changed.instances,
                                               .lastRays = in.effects.lastRays});
   log.paths += counts;

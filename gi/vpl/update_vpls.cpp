@@ -15,7 +15,7 @@ namespace lambent {
 namespace {
 
 /// What happened since the last update, in the terms of the stages.
-struct Since {
+struct ChangesSince {
   bool camera = false, lights = false, instances = false;
   DirtyRegion moved;
   std::vector<uint8_t> carried; // by slot: moved with its object; empty: none did
@@ -77,7 +77,7 @@ void estimateSamplerDensities(VplSet& set, const SmcSettings& settings) {
   for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].candidateArea = areas[i];
 }
 
-RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceUse use) {
+RadianceUpdate radianceUpdate(const VplUpdate& in, const ChangesSince& since, RadianceUse use) {
   RadianceUpdate update;
   update.paths = use == RadianceUse::Rendering ? in.settings.paths : samplerPaths(in.settings);
   update.bounces = in.settings.bounces;
@@ -90,7 +90,7 @@ RadianceUpdate radianceUpdate(const VplUpdate& in, const Since& since, RadianceU
   return update;
 }
 
-void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const Since& since, RadianceUse use,
+void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const ChangesSince& since, RadianceUse use,
            VplUpdateLog& log) {
   const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights, radianceUpdate(in, since, use));
   log.paths += counts;
@@ -99,8 +99,8 @@ void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const Since& 
 }
 
 /// What rendering uses: areas of all VPLs, radiance of `moved` slots and of those whose cell changed, or of all.
-void estimateLight(VplSet& set, const VplUpdate& in, const Since& since, std::span<const uint32_t> moved, bool all,
-                   VplUpdateLog& log) {
+void estimateLight(VplSet& set, const VplUpdate& in, const ChangesSince& since, std::span<const uint32_t> moved,
+                   bool all, VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   const bool cells = settings.density == DensityEstimator::Cells;
   std::vector<uint32_t> changed(moved.begin(), moved.end());
@@ -173,7 +173,8 @@ struct Iteration {
   bool changing; // lights or objects are
 };
 
-VplChanges iterate(VplSet& set, const VplUpdate& in, const Since& since, const Iteration& now, VplUpdateLog& log) {
+VplChanges iterate(VplSet& set, const VplUpdate& in, const ChangesSince& since, const Iteration& now,
+                   VplUpdateLog& log) {
   const SmcSettings& settings = in.settings;
   ++set.frame;
   std::vector<VisiblePoint> points;
@@ -326,7 +327,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
   set.slots.resize(settings.vpls);
   set.samplerPaths.resize(set.slots.size());
   set.lightPaths.resize(set.slots.size());
-  Since since;
+  ChangesSince since;
   since.camera = changed.camera;
   since.lights = effects.relightAll ||
                  (effects.relight && (changed.lights || changed.first || in.settingsChanged || emittersChanged(in)));
@@ -364,14 +365,14 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
 
   VplChanges all;
   if (effects.replace || start) {
-    Since sampled = since;
+    ChangesSince sampled = since;
     sampled.camera |= set.sampledLate;
     const bool changing = changed.lights || since.geometry() || emittersChanged(in);
     Iteration now{settings.moves, relight || set.sampledLate, changed.camera && !start, changing};
     set.sampledLate = false;
     all = iterate(set, in, sampled, now, log);
     // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the
-    // picture.
+    // frame.
     constexpr int kBurstIterations = 3;
     const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
     now = {start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false, false};

@@ -104,7 +104,7 @@ struct VplSet {
 };
 
 /// By slot. An estimate of radiance that met a spot much smaller than the area it stands for is right on average, by
-/// one VPL in thousands that would light the whole picture: none reflects more than could arrive. The error is that of
+/// one VPL in thousands that would light the whole image: none reflects more than could arrive. The error is that of
 /// the set that had it; elsewhere nothing is taken.
 inline std::vector<VirtualLight> lightsOf(const VplSet& set) {
   std::vector<VirtualLight> lights;

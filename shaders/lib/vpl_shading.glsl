@@ -17,7 +17,7 @@ uniform float farDistance;   // metres at map value 1
 uniform float mapResolution; // texels
 uniform float biasTexels;    // ShadowSettings::bias
 
-/// A surface point of the picture.
+/// A surface point of the image.
 struct Surface {
   vec3 position, normal;
 #ifdef GLOSSY

@@ -1,7 +1,7 @@
-// The multiresolution buffer: where a patch of the picture lies in it, and which pixel stands for the patch.
-// The picture is `grid` × `grid` sub-images (1: the picture itself; 4: the subsets of interleaved sampling) of
+// The multiresolution buffer: where a patch of the image lies in it, and which pixel stands for the patch.
+// The image is `grid` × `grid` sub-images (1: the image itself; 4: the subsets of interleaved sampling) of
 // `base` / grid texels each, padded so that all levels divide evenly. A texel of level l stands for 2^l × 2^l pixels of its
-// sub-image. Level 0 fills the left of the atlas, the others are stacked beside it.
+// sub-image. Level 0 fills the left of the atlas, the others are stacked next to it.
 #ifndef LAMBENT_SHARED_PATCHES_H
 #define LAMBENT_SHARED_PATCHES_H
 #include "interop.h"
@@ -20,8 +20,8 @@ SHARED_INLINE ivec2 patchCentre(ivec2 texel, int level) {
   return texel * (1 << level) + ivec2(middle, middle);
 }
 
-/// The same as a pixel of the picture, of `size` pixels; the last that the sub-image has where the centre lies outside.
-/// Outside the picture for a sub-image without pixels.
+/// The same as a pixel of the image, of `size` pixels; the last that the sub-image has where the centre lies outside.
+/// Outside the image for a sub-image without pixels.
 SHARED_INLINE ivec2 patchPixel(ivec2 texel, int level, int grid, ivec2 subset, ivec2 size) {
   ivec2 last = (size - ivec2(1, 1) - subset) / grid;
   return min(patchCentre(texel, level), last) * grid + subset;

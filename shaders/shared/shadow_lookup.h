@@ -18,7 +18,7 @@ SHARED_INLINE float leastParaboloidValue(float share) { return sqrt(max(share - 
 /// Whether a texel leaves a receiver in the light. `met` is the distance that it holds, `centre` its place in [-1,1]²,
 /// `normal` the receiver's in the light's frame, `distance` the receiver's, `cosine` that at the receiver; metres.
 ///
-/// The texel was drawn through its centre, the receiver lies beside that: what counts is where the receiver's plane is
+/// The texel was drawn through its centre, the receiver lies next to that: what counts is where the receiver's plane is
 /// in the direction of the centre, distance · cosine / cosineCentre. No nearer than the receiver where the plane falls
 /// away: near edges it is not there. `biasTexels` texels' share of the distance are left for round-off and for surfaces
 /// that are not planes. (An allowance for the plane in any direction, distance · tanθ · texel, lets light in under all

@@ -9,7 +9,7 @@
 namespace lambent::test::layered_cube_test {
 
 CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
-  return {.resolution = resolution, .sights = sights, .hemicube = 64};
+  return {.resolution = resolution, .visibility = sights, .hemicube = 64};
 }
 
 VirtualLight lightAt(const vec3& position, const vec3& normal, const vec3& power, float area = 0.01f) {

@@ -179,7 +179,7 @@ TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
   const LightSet none;
   const World now{view, gpu, world.rays(), kNothingMoved, none, view.boundsWorld.diameter()};
   const std::vector<VirtualLight> lights = photonLights(view, world.rays(), 96);
-  const CubeSettings settings{.resolution = 32, .sights = CubeVisibility::Hemicubes, .hemicube = 64};
+  const CubeSettings settings{.resolution = 32, .visibility = CubeVisibility::Hemicubes, .hemicube = 64};
   const GatherSettings gather;
   HemicubePass pass(passes);
   pass.prepare(now, CubeMaker::Raster);
@@ -206,7 +206,7 @@ class HemicubeFrameTest : public HemicubeTest {
     room.scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     applyTechnique(settings, "ibrr");
     settings.smc = {.vpls = 128, .bounces = 2};
-    settings.cube = {.resolution = 32, .sights = CubeVisibility::Hemicubes, .hemicube = 32};
+    settings.cube = {.resolution = 32, .visibility = CubeVisibility::Hemicubes, .hemicube = 32};
     settings.gather.near = 0;
   }
   struct Result {

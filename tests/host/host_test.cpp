@@ -55,7 +55,7 @@ std::vector<float> texels(GLuint texture, int width, int height) {
 
 std::string refusal() {
   try {
-    const Viewer gi(small());
+    const GiFrame gi(small());
   } catch (const RunError& e) {
     return e.what();
   }
@@ -87,7 +87,7 @@ TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
   state.poison();
   const Snapshot before = snapshot();
   {
-    Viewer gi(small());
+    GiFrame gi(small());
     expectUnchanged(before, "the construction of a frame");
     gi.run(box.scene.view());
     expectUnchanged(before, "a frame");

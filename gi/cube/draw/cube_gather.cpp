@@ -92,7 +92,7 @@ class CubeGather : public Gather {
     return cubeKey(in.frame.world.view) + (in.frame.settings.effects[EffectId::Alpha] == EffectMode::Off ? 1 : 0);
   }
 
-  /// Takes over what is in the file of the settings. A cube that does not fit is built anew; what is no cube at all
+  /// Takes over what is in the file of the settings. A cube that does not fit is rebuilt; what is no cube at all
   /// stays as it is. Whether the file is to be written.
   bool open(const GatherInputs& in, FrameStats& stats) {
     const std::filesystem::path file = in.frame.settings.cubeFile;
@@ -108,12 +108,12 @@ class CubeGather : public Gather {
     } catch (const InputError& e) {
       const bool replaced = isCube(file);
       stats.warning = std::string(e.what()) +
-                      (replaced ? "; it is built anew and replaced" : "; it stays as it is, and this one is not kept");
+                      (replaced ? "; it is rebuilt and replaced" : "; it stays as it is, and this one is not kept");
       return replaced;
     }
   }
 
-  /// What bounds take from near lights, at entries that light reaches: all, or in pictures that put few lights at once
+  /// What bounds take from near lights, at entries that light reaches: all, or in frames that put few lights at once
   /// the next few. Whether it is done.
   bool traceNear(const GatherInputs& in, FrameStats& stats) {
     constexpr size_t kPerLight = 2048; // entries
@@ -155,7 +155,7 @@ class CubeGather : public Gather {
 
   vec3 irradiance(size_t entry) const { return cube_.irradiance(entry) + near_[entry]; }
 
-  /// Without entries that no light sees, which lie in solids and behind walls: pixels beside one would take it for
+  /// Without entries that no light sees, which lie in solids and behind walls: pixels next to one would take it for
   /// theirs. (Left in: black specks where boxes stand on a floor, and twice the memory.)
   void upload() {
     const CubeSurfaces& surfaces = cube_.surfaces();

@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-/// Its lights must be the same for every view (Needs::anyView), listed on the CPU.
+/// Makes the gather of the cube. Its lights must be the same for every view (Needs::anyView), listed on the CPU.
 std::unique_ptr<Gather> makeCubeGather(PassContext context);
 
 } // namespace lambent

@@ -14,10 +14,10 @@ class HemicubePass : public HemicubeMaker {
  public:
   explicit HemicubePass(PassContext context) : context_(context) {}
 
-  /// What the next ones are of, and who makes them.
+  /// Sets the world that the next hemicubes show and the maker that draws them.
   void prepare(const World& world, CubeMaker maker);
   void make(std::span<Hemicube> hemicubes) override;
-  /// Adds rays since it was last asked, and who made hemicubes: "rays (2.1 ms a hemicube, raster 14.0 ms)".
+  /// Adds to the figures the rays since the last call and the maker: "rays (2.1 ms a hemicube, raster 14.0 ms)".
   void tell(FrameStats& stats);
 
  private:

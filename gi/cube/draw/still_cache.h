@@ -12,7 +12,7 @@
 
 namespace lambent {
 
-/// Wraps the technique that it stands in for.
+/// Wraps a technique and replaces its light by the cube's where the world is still.
 class StillCache : public LightProvider {
  public:
   StillCache(PassContext context, std::unique_ptr<LightProvider> technique)
@@ -27,7 +27,7 @@ class StillCache : public LightProvider {
   ProviderInside inside() const override { return technique_->inside(); }
 
  private:
-  /// It shows all of the light: nothing else need be gathered.
+  /// Says whether the cube shows all of the light: nothing else need be gathered.
   bool alone() const { return wanted_ && share_ >= 1; }
   SurfaceLighting lookUp(const Frame& frame, FrameStats& stats);
   SurfaceLighting mix(const Frame& frame, const SurfaceLighting& gathered, const SurfaceLighting& stored);
