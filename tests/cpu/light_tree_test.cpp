@@ -21,9 +21,8 @@ struct Lit {
 
   vec3 inside(Rng& rng) const { return rng.next3() * size; }
   /// A point on a wall of the room, or anywhere where lamps fill it or stand in few places; some exactly at a lamp.
-  void place(Rng& rng, vec3& x, vec3& n) const {
-    x = inside(rng);
-    n = sampleSphere(rng.next2());
+  std::pair<vec3, vec3> place(Rng& rng) const {
+    vec3 x = inside(rng), n = sampleSphere(rng.next2());
     if (lamps == Lamps::AllKinds || lamps == Lamps::InThreePlaces) {
       const uint32_t i = rng.below(uint32_t(4 * lights.lightCount()));
       if (i < lights.punctual.size()) x = lights.punctual[i].position;
@@ -34,6 +33,7 @@ struct Lit {
       n = vec3(0);
       n[axis] = high ? -1 : 1;
     }
+    return {x, n};
   }
 };
 
@@ -117,8 +117,7 @@ TEST(LightTree, ProbabilitiesAddUpToOneWithThatOfNone) {
       const Lit world = lit(lamps, count, 1);
       for (uint32_t p = 0; p < (count > 1000 ? 4 : 40); ++p) {
         Rng rng(2, Stream::Test, p);
-        vec3 x, n;
-        world.place(rng, x, n);
+        const auto [x, n] = world.place(rng);
         const LightChoice choice(world.lights, x, n);
         double sum = 0;
         for (double q : probabilities(choice, world.lights)) {
@@ -151,8 +150,7 @@ TEST(LightTree, ChoicesFollowProbabilities) {
       const Lit world = lit(lamps, count, 3);
       for (uint32_t p = 0; p < 10; ++p) {
         Rng rng(4, Stream::Test, p);
-        vec3 x, n;
-        world.place(rng, x, n);
+        const auto [x, n] = world.place(rng);
         const LightChoice choice(world.lights, x, n);
         if (choice.empty()) continue;
         constexpr int kChoices = 20000;
@@ -182,8 +180,7 @@ TEST(LightTree, WhatShinesOnAPointMayBeChosenThere) {
       const Lit world = lit(lamps, 700, seed);
       for (uint32_t p = 0; p < 60; ++p) {
         Rng rng(seed, Stream::Test, 100 + p);
-        vec3 x, n;
-        world.place(rng, x, n);
+        const auto [x, n] = world.place(rng);
         const LightChoice choice(world.lights, x, n);
         for (uint32_t i = 0; i < world.lights.lightCount(); ++i)
           if (irradianceBy(world.lights, i, x, n, rng.next3()) > 0) {
@@ -203,8 +200,7 @@ OneForAll oneForAll(const Lit& world, uint32_t places, uint32_t seed) {
   double squares = 0;
   for (uint32_t p = 0; p < places; ++p) {
     Rng rng(seed, Stream::Test, 1000 + p);
-    vec3 x, n;
-    world.place(rng, x, n);
+    const auto [x, n] = world.place(rng);
     // A point on each emitter, the same for the sum and for the choice: what is compared is the choice alone.
     const vec3 u = rng.next3();
     double all = 0;
@@ -246,8 +242,7 @@ TEST(LightTree, OneChoiceOutOfAThousandCostsAnEighthOfWeighingAll) {
   std::vector<vec3> points, normals;
   for (uint32_t p = 0; p < 200; ++p) {
     Rng rng(5, Stream::Test, p);
-    vec3 x, n;
-    world.place(rng, x, n);
+    const auto [x, n] = world.place(rng);
     points.push_back(x), normals.push_back(n);
   }
   const auto timeOf = [&](auto&& f) {
@@ -290,8 +285,7 @@ TEST(LightTree, ScaledByAPowerOfTwoItChoosesTheSame) {
     scaled.tree = LightTree(scaled);
     for (uint32_t p = 0; p < 500; ++p) {
       Rng rng(6, Stream::Test, p);
-      vec3 x, n;
-      world.place(rng, x, n);
+      const auto [x, n] = world.place(rng);
       const float u = rng.next();
       const auto here = LightChoice(world.lights, x, n).sample(u), there = LightChoice(scaled, x * scale, n).sample(u);
       ASSERT_EQ(here.light, there.light);

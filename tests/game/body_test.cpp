@@ -216,20 +216,16 @@ TEST(Body, AGhostPassesWallsAndADollIsStoppedAsAPersonIs) {
 class Platform {
  public:
   Platform() {
-    scene.assets.meshes.push_back(block({1, 0.1f, 1}, scene.material(vec3(0.5f))));
+    lift = scene.add(block({1, 0.1f, 1}, scene.material(vec3(0.5f))), glm::translate(mat4(1), vec3(0, 0.1f, 0)));
     scene.quad({-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);
-    lift = scene.instance(0, glm::translate(mat4(1), vec3(0, 0.1f, 0)));
     rays = std::make_unique<EmbreeQuery>(scene.assets);
     rays->update(scene.view());
   }
   SceneView moveTo(const mat4& pose) {
     InstanceView& i = scene.instances[lift];
-    i.worldFromObjectBefore = i.worldFromObject;
-    i.worldFromObject = pose;
+    scene.place(lift, pose);
     i.moved = i.worldFromObject != i.worldFromObjectBefore;
-    i.boundsWorld = transformed(scene.assets.meshes[0].boundsObject, pose);
-    SceneView view = scene.view();
-    view.changes = {false, false, false, i.moved, false};
+    const SceneView view = scene.view({false, false, false, i.moved, false});
     rays->update(view);
     return view;
   }
@@ -294,8 +290,7 @@ TEST(Player, WalksWhereThereIsAFloorAndFliesElsewhere) {
   outside.home(room.rays);
   EXPECT_EQ(outside.gait(), Gait::Fly);
   EXPECT_EQ(outside.position(), vec3(0, 9, 20));
-  MoveInput ahead;
-  ahead.direction = {0, 0, -1};
+  const MoveInput ahead{.direction = {0, 0, -1}};
   for (int i = 0; i < 300; ++i) outside.move(room.rays, {}, ahead, kFrame);
   EXPECT_LT(outside.position().z, 20 - 5) << "flies along the view";
   EXPECT_NEAR(outside.position().y, 9, 1e-3f) << "and does not fall";
@@ -307,8 +302,7 @@ TEST(Player, WhoFallsOutOfTheSceneComesHome) {
   Player player(cameraAt({0, 1.61f, 0}), {vec3(-10, -0.5f, -10), vec3(10, 3, 10)});
   player.home(island);
   ASSERT_EQ(player.gait(), Gait::Walk);
-  MoveInput ahead;
-  ahead.direction = {0, 0, -1};
+  const MoveInput ahead{.direction = {0, 0, -1}};
   bool lost = false;
   for (int i = 0; i < 300 && !lost; ++i) lost = player.move(island, {}, ahead, kFrame);
   EXPECT_TRUE(lost);

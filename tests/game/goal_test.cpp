@@ -22,18 +22,10 @@ struct Plate {
     addInstance(scene, name, addBoxMesh(scene.assets, "plate", {1, 1e-4f, 1}, vec3(0.5f)), {});
     // Above and aside: in nobody's way until it is moved.
     roof = addInstance(scene, "roof", addBoxMesh(scene.assets, "roof", {1.5f, 0.1f, 1.5f}, vec3(0)), at({0, 1, 90}));
-    LightView sun;
-    sun.type = LightType::Directional;
-    sun.direction = glm::normalize(vec3(0.6f, -0.8f, 0));
-    sun.intensity = vec3(5);
-    addLight(scene, sun, "sun");
+    addLight(scene, {.type = LightType::Directional, .direction = {0.6f, -0.8f, 0}, .intensity = vec3(5)}, "sun");
     goal = Goal::find(scene);
   }
-  static Transform at(const dvec3& place) {
-    Transform t;
-    t.translation = place;
-    return t;
-  }
+  static Transform at(const dvec3& place) { return {.translation = place, .matrix = {}}; }
   void moveRoof(const dvec3& place) {
     scene.registry.get<Transform>(roof) = at(place);
     updateWorldTransforms(scene);
@@ -71,9 +63,7 @@ TEST(Goal, HasOfASkyAllOfIt) {
 
 TEST(Goal, LampsDoNotCount) {
   Plate plate;
-  LightView lamp;
-  lamp.position = {0, 1, 0};
-  lamp.intensity = vec3(100);
+  LightView lamp{.position = {0, 1, 0}, .intensity = vec3(100)};
   addLight(plate.scene, lamp, "lamp");
   lamp.type = LightType::Spot;
   addLight(plate.scene, lamp, "torch");

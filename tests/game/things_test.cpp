@@ -28,9 +28,8 @@ class Room {
     run(0.2f);
   }
   Entity box(const std::string& name, const vec3& lo, const vec3& hi) {
-    Transform at;
-    at.translation = dvec3(0.5f * (lo + hi));
-    return addInstance(scene, name, addBoxMesh(scene.assets, name, 0.5f * (hi - lo), vec3(0.5f)), at);
+    return addInstance(scene, name, addBoxMesh(scene.assets, name, 0.5f * (hi - lo), vec3(0.5f)),
+                       {.translation = dvec3(0.5f * (lo + hi)), .matrix = {}});
   }
   void run(float seconds, const MoveInput& input = {}) {
     for (float t = 0; t < seconds; t += kFrame) {
@@ -70,8 +69,7 @@ TEST(Things, WhatIsPutDownFallsAndComesToRest) {
 TEST(Things, NothingThrownPassesAWallAndAllComesToRest) {
   Room room;
   for (int i = 0; i < 12; ++i) {
-    MoveInput turn;
-    turn.look = {1.1f, i % 3 == 0 ? 0.2f : -0.1f};
+    MoveInput turn{.look = {1.1f, i % 3 == 0 ? 0.2f : -0.1f}};
     room.run(kFrame, turn);
     ASSERT_TRUE(room.things->take(ThingKind(i % int(kThingKinds)), *room.player));
     room.run(2 * kFrame);
@@ -90,11 +88,9 @@ TEST(Things, NothingThrownPassesAWallAndAllComesToRest) {
 TEST(Things, WhatIsCarriedIsInNobodysWayAndNotInWalls) {
   Room room;
   room.things->take(ThingKind::WhiteBoard, *room.player);
-  MoveInput right;
-  right.look = {0.5f * kPi, 0}; // towards +X, past the table
+  MoveInput right{.look = {0.5f * kPi, 0}};
   room.run(kFrame, right);
-  MoveInput ahead;
-  ahead.direction = {0, 0, -1};
+  MoveInput ahead{.direction = {0, 0, -1}};
   room.run(4, ahead);
   EXPECT_NEAR(room.player->position().x, 4 - room.player->body().size().radius(), 0.05f);
   EXPECT_LT(room.things->position(0).x, 4.05f);
@@ -108,8 +104,7 @@ TEST(Things, WhatRestsIsPickedUpAgainAndBearsAPerson) {
   room.run(0.2f);
   room.things->putDown();
   room.run(1);
-  MoveInput down;
-  down.look = {0, -0.86f};
+  MoveInput down{.look = {0, -0.86f}};
   room.run(kFrame, down);
   const auto seen = room.lookedAt();
   ASSERT_TRUE(seen && room.things->kindOf(*seen) == ThingKind::BlueBox);
@@ -118,8 +113,7 @@ TEST(Things, WhatRestsIsPickedUpAgainAndBearsAPerson) {
   EXPECT_GT(room.things->position(0).y, 0.2f);
   room.things->putDown();
   room.run(1);
-  MoveInput jump;
-  jump.direction = {0, 0, -0.35f};
+  MoveInput jump{.direction = {0, 0, -0.35f}};
   jump.jump = true;
   float highest = 0;
   for (int i = 0; i < 60; ++i) {

@@ -6,6 +6,14 @@ namespace lambent::test::ring_test {
 
 using RingTest = GlTest;
 
+/// 0, 1, 2 …
+void expectCounts(const gl::Buffer& heard, size_t count) {
+  std::vector<uint32_t> values(count), expected(count);
+  heard.read(0, std::span(values));
+  std::iota(expected.begin(), expected.end(), 0);
+  EXPECT_EQ(values, expected);
+}
+
 TEST_F(RingTest, EverySliceKeepsItsValueUntilItWasRead) {
   constexpr uint32_t kWrites = 500;
   gl::Ring ring("ring test/ring", 1024);
@@ -20,10 +28,7 @@ TEST_F(RingTest, EverySliceKeepsItsValueUntilItWasRead) {
     glCopyNamedBufferSubData(slice.buffer->name(), heard.name(), slice.offset + slice.bytes - sizeof(uint32_t),
                              i * sizeof(uint32_t), sizeof(uint32_t));
   }
-  std::vector<uint32_t> values(kWrites), expected(kWrites);
-  heard.read(0, std::span(values));
-  std::iota(expected.begin(), expected.end(), 0);
-  EXPECT_EQ(values, expected);
+  expectCounts(heard, kWrites);
 }
 
 TEST_F(RingTest, UploadsKeepTheOrderOfCommands) {
@@ -34,10 +39,7 @@ TEST_F(RingTest, UploadsKeepTheOrderOfCommands) {
     ring.upload(kept, 12, sizeof i, &i);
     glCopyNamedBufferSubData(kept.name(), heard.name(), 12, i * sizeof(uint32_t), sizeof(uint32_t));
   }
-  std::vector<uint32_t> values(kWrites), expected(kWrites);
-  heard.read(0, std::span(values));
-  std::iota(expected.begin(), expected.end(), 0);
-  EXPECT_EQ(values, expected);
+  expectCounts(heard, kWrites);
 }
 
 TEST_F(RingTest, GrowsForWhatIsLargerThanThought) {
@@ -47,9 +49,7 @@ TEST_F(RingTest, GrowsForWhatIsLargerThanThought) {
   const gl::Buffer kept = gl::Buffer::of<uint32_t>("ring test/kept", std::vector<uint32_t>(values.size()));
   ring.upload(kept, 0, 8, values.data());
   ring.upload(kept, 0, values.size() * sizeof(uint32_t), values.data());
-  std::vector<uint32_t> heard(values.size());
-  kept.read(0, std::span(heard));
-  EXPECT_EQ(heard, values);
+  expectCounts(kept, values.size());
 }
 
 } // namespace lambent::test::ring_test
