@@ -8,7 +8,7 @@
 // SDL, Qt, X11 and Wayland do, and contexts without a surface. (Not OSMesa, which epoxy does not know.)
 //
 // The context may be the host's own, whose state every call of GiFrame leaves as found (StateGuard), or a second one
-// that shares objects with it, on a thread of its own; textures by name (GiFrame::texture) then need the host's fence.
+// that shares objects with it, on a thread of its own; textures by name (GiFrame::indirectIrradiance) then need the host's fence.
 #pragma once
 
 namespace lambent::gl {

@@ -67,6 +67,7 @@ void Preferences::chosePreset(const std::string& name, const Settings& before, c
 
 void Preferences::choseTechnique(const std::string& name, const Settings& before, const Settings& after) {
   technique = name;
+  for (const auto& [setting, value] : before.ownValues) set.erase(setting); // no other technique knows them
   eachDifference(before, after, [&](const std::string& setting) { set.erase(setting); });
 }
 

@@ -73,7 +73,9 @@ DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
-  if (!in.plan.seenChanges() && !stale_) return target_.light();
+  if (!in.plan.seenChanges() && !stale_ && !unfinished_) return target_.light();
+  const bool first = std::exchange(unfinished_, true);
+  stale_ |= first;
   lightByMaps(in, stats);
   if (byPatches(in)) {
     areas_.add(in.world, in.surfaces, in.patches, in.settings, target_, stats);
@@ -82,7 +84,7 @@ SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
   } else {
     areas_.forget();
   }
-  stale_ = false;
+  stale_ = unfinished_ = false;
   return target_.light();
 }
 

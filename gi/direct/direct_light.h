@@ -46,6 +46,7 @@ class DirectLight : public LightProvider {
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
   bool stale_ = true;                    // nothing of the last run may be used
+  bool unfinished_ = false;              // something was thrown out of it
   LightTarget target_{"direct"};
 };
 

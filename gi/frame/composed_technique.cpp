@@ -22,7 +22,7 @@ void ComposedTechnique::begin(const SceneView&, const Settings& settings) {
   if (!sameSource(axes, axes_)) source_ = makeSource(axes, context_);
   if (!gather_ || !sameGather(axes, axes_)) {
     gathered_ = {};
-    gather_ = nullptr; // not both in memory
+    if (gather_) shown_ = std::move(gather_);
     gather_ = makeGather(axes, context_);
   }
   axes_ = axes;
@@ -57,6 +57,7 @@ void ComposedTechnique::update(const FrameWorld& in, FrameStats& stats) {
 
 SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   gathered_ = {};
+  shown_ = nullptr;
   if (!frame.plan.on(EffectId::Gather) && !needs_.stored) {
     history_.forget(); // it would be of another place
     return {};

@@ -40,7 +40,7 @@ class ComposedTechnique : public LightProvider {
   Needs needs_;
   std::unique_ptr<LightSource> source_;
   ShadowMapCache maps_{context_};
-  std::unique_ptr<Gather> gather_;
+  std::unique_ptr<Gather> gather_, shown_; // shown_: whose light the last frame still shows, until the next is there
   HistoryPass history_{context_};
   FilterPass filter_{context_};
   VirtualLights lights_;     // of this frame

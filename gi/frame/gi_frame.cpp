@@ -85,35 +85,37 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                        .seed = k.seed,
                        .settingsChanged = k.world.settingsChanged(),
                        .gatherChanged = k.world.gatherChanged(),
+                       .restart = k.world.gatherChanged() || k.world.settingsChanged() || world.view.changes.any(),
                        .progress = progress};
   indirect.update(now, stats);
 
   if (plan.on(EffectId::Redraw)) {
     const gl::DrawCount draws;
-    k.outputs = {};
-    k.outputs.sky = world.view.sky;
-    k.outputs.farDistance = world.farDistance;
+    k.outputs = {}; // what something is thrown out of counts as no frame
+    FrameOutputs out;
+    out.sky = world.view.sky;
+    out.farDistance = world.farDistance;
     const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
-    const GBuffer surfaces = k.surfaces.run({.scene = world.gpu,
-                                             .camera = world.view.camera,
-                                             .glossy = glossy,
-                                             .host = host,
-                                             .keep = !plan.seenChanges(),
-                                             .previous = needs.previousSurfaces});
-    Patches patches([&] { return k.patches.run(surfaces, settings.multires); });
+    out.surfaces = k.surfaces.run({.scene = world.gpu,
+                                   .camera = world.view.camera,
+                                   .glossy = glossy,
+                                   .host = host,
+                                   .keep = !plan.seenChanges(),
+                                   .previous = needs.previousSurfaces});
+    Patches patches([&] { return k.patches.run(out.surfaces, settings.multires); });
     const int bounces = plan.on(EffectId::Bounces) && needs.bounces ? settings.smc.bounces : 1;
-    const Frame frame{now, surfaces, patches, k.surfaces.previous(), bounces};
-    k.outputs.surfaces = surfaces;
+    const Frame frame{now, out.surfaces, patches, k.surfaces.previous(), bounces};
     if (settings.direct.on)
-      k.outputs.direct = k.direct.run(frame, stats);
+      out.direct = k.direct.run(frame, stats);
     else
       k.direct.forget();
     if (plan.on(EffectId::Indirect)) {
       const gl::DrawCount ofIndirect;
-      k.outputs.indirect = indirect.run(frame, stats);
+      out.indirect = indirect.run(frame, stats);
       stats.of(EffectId::Indirect) += ofIndirect();
     }
-    k.outputs.patches = patches.made();
+    out.patches = patches.made();
+    k.outputs = out;
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
   }
@@ -152,6 +154,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
   if (!world.open(*given.assets, stats)) return;
   indirect->forget();
   direct.forget();
+  surfaces.forget();
   outputs = {};
 }
 

@@ -222,7 +222,7 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : facts.drawingChanged    ? Answer{true, "settings or shaders changed"}
                            : newLight                ? Answer{true, "VPLs change"}
                            : waiting                 ? Answer{true, "shadow maps are waiting"}
-                           : !status.pending.empty() ? Answer{true, status.pending}
+                           : indirect && !status.pending.empty() ? Answer{true, status.pending}
                            : status.averaged < historyFrames && !alone ? Answer{true, "light is averaged over frames"}
                                                                        : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {

@@ -19,7 +19,7 @@ enum class StageId : uint16_t {
   Density,
   Photons, // ir
   Chains,  // tcas
-  // virtual lights on the GPU (gi/lights)
+  // virtual lights on the GPU (gi/reflective, gi/sources)
   ReflectiveMaps,
   LightPatches, // of reflective maps
   ReflectiveLights,

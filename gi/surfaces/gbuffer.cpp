@@ -47,7 +47,10 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     return adopted;
   }
   const bool fits = depth_ && depth_.width() == width && depth_.height() == height;
-  if (in.previous && !in.keep) keepPrevious(fits);
+  if (in.previous && in.keep) // the frame before showed the same
+    before_ = {.depth = &depth_, .normal = &normal_, .block = block_, .width = width, .height = height};
+  else if (in.previous)
+    keepPrevious(fits);
   block_ = block;
   if (!fits || in.glossy != bool(roughnessMetalness_)) {
     const auto make = [&](const char* label, GLenum format) {
@@ -57,7 +60,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     normal_ = make("g-buffer/normal", GL_RGBA16F);
     albedo_ = make("g-buffer/albedo", GL_RGBA16F);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    roughnessMetalness_ = in.glossy ? make("g-buffer/finish", GL_RG16) : gl::Texture();
+    roughnessMetalness_ = in.glossy ? make("g-buffer/roughness and metalness", GL_RG16) : gl::Texture();
     framebuffer_ = in.glossy
                        ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
                        : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
@@ -105,7 +108,7 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
   check("normal", host.normal, true);
   check("albedo", host.albedo, true);
   check("emission", host.emission, false);
-  check("finish", host.roughnessMetalness, false);
+  check("roughness and metalness", host.roughnessMetalness, false);
 }
 
 GBuffer SurfacePass::adopt(const SurfaceInputs& in) {

@@ -29,6 +29,8 @@ class SurfacePass {
  public:
   explicit SurfacePass(PassContext context) : context_(context) {}
   GBuffer run(const SurfaceInputs& in);
+  /// The scene is another.
+  void forget() { depth_ = {}, before_ = {}; }
   /// Returns depth, normals and camera of the run before, where the last one was asked for it; null the first time, at
   /// another size, and of a host's surfaces.
   const GBuffer* previous() const { return before_.depth ? &before_ : nullptr; }

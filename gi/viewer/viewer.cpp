@@ -6,6 +6,7 @@
 #include "gi/viewer/picture.h"
 
 #include <chrono>
+#include <utility>
 
 namespace lambent {
 
@@ -36,10 +37,10 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const gl::StateGuard guard;
   FrameResults& results = passes_->results;
   FrameStats& stats = passes_->stats;
+  const Picture last = std::exchange(results, {}).picture; // what something is thrown out of counts as no frame
   stats = gi_.run(view, progress, host);
   const auto begin = std::chrono::steady_clock::now();
   const gl::Counts before = gl::counts();
-  const Picture last = results.picture;
   results = {gi_.outputs(), last};
   if (stats.plan.on(EffectId::Redraw)) {
     results.picture = passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
@@ -70,6 +71,7 @@ const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indire
                                                "shadow-maps", "patches", "nan"};
 }
 
+static_assert(size_t(Buffer::Nan) + 1 == 13, "a name for each");
 const std::vector<std::string>& bufferNames() { return kBufferNames; }
 
 Buffer bufferByName(const std::string& name) {
@@ -83,7 +85,7 @@ Buffer bufferByName(const std::string& name) {
 
 Image Viewer::read(Buffer buffer) const {
   const gl::StateGuard guard;
-  return readBuffer(buffer, passes_->results);
+  return passes_->results.surfaces.depth ? readBuffer(buffer, passes_->results) : Image();
 }
 
 uint32_t Viewer::texture(Buffer buffer) const {

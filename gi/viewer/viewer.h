@@ -43,8 +43,8 @@ class Viewer {
   void restart();
   const FrameStats& stats() const; // of the last frame
 
+  const GiFrame& gi() const { return gi_; }
   // As those of GiFrame.
-  GiFrame& gi() { return gi_; }
   Settings& settings() { return gi_.settings(); }
   const VplSet& vpls() const { return gi_.vpls(); }
   const RayQuery& rays() const { return gi_.rays(); }
@@ -58,7 +58,8 @@ class Viewer {
   float exposure() const { return exposure_; }
 
   /// Reads the last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world
-  /// normal, depth in metres along the view direction.
+  /// normal, depth in metres along the view direction. Empty before the first frame, and after one that something was
+  /// thrown out of.
   Image read(Buffer buffer) const;
   /// Returns the name of a texture that holds the same on the GPU: float, rows from the bottom, valid until the next
   /// run. 0 for depth (GBuffer::depth holds it reversed) and debug views, and before the first frame.

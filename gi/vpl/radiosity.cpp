@@ -3,7 +3,7 @@
 //
 // At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed
 // ray. The cosine ray meets a constant sky directly (that is its whole estimator); emitters, and a sky that is not, by
-// multiple importance sampling (gi/vpl/light_paths) with the shadow rays, so a VPL close to a lamp stays finite in
+// multiple importance sampling (gi/lighting/light_paths.h) with the shadow rays, so a VPL close to a lamp stays finite in
 // variance. Noise of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13
 // % and 24 %. The paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from
 // the middle to the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order

@@ -233,7 +233,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
                                    std::span<const VirtualLight> lights, const GatherSettings& settings,
                                    RayCounts& counts, GlossyGather* glossy = nullptr);
 
-/// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/gather shares the formula): cosines over
+/// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/vpl_shading.glsl shares the formula): cosines over
 /// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².
 /// Within 3e-7 of itself for squared distances and areas of 1e-20 to 1e20 m².
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);

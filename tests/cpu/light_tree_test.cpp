@@ -1,4 +1,4 @@
-// The choice of one light out of many (gi/vpl/light_tree): what it says of itself, that nothing is left out, and how
+// The choice of one light out of many (gi/lighting/light_tree.h): what it says of itself, that nothing is left out, and how
 // far it is from weighing all lights.
 #include "engine/core/rng.h"
 #include "gi/lighting/light_set.h"

@@ -25,7 +25,7 @@ class Progressive : public LightProvider {
 
   SurfaceLighting run(const Frame& frame, FrameStats&) override {
     const CameraView& camera = frame.world.view.camera;
-    if (frame.plan.changed() || sums_.width != camera.width || sums_.height != camera.height)
+    if (frame.restart || sums_.width != camera.width || sums_.height != camera.height)
       sums_ = ReferenceSums(camera.width, camera.height);
     wanted_ = uint32_t(kProgressiveSettings[0](frame.settings));
     const uint32_t count =

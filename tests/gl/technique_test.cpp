@@ -2,6 +2,7 @@
 // needs a file and a row, and a host may bring its surfaces.
 #include "ambient.h"
 #include "engine/core/error.h"
+#include "engine/gl/pulse.h"
 #include "gi/measure/picture_error.h"
 #include "gl_fixture.h"
 #include "progressive.h"
@@ -133,6 +134,102 @@ TEST_F(TechniqueTest, AProgressivePathTracerIsAFileAndARow) {
   EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw));
 }
 
+/// It begins again where camera or objects move, and not for what only shows the light.
+TEST_F(TechniqueTest, AccumulatedLightBeginsAgainWhereTheWorldChanges) {
+  applyTechnique(settings, kProgressive);
+  applySetting(settings, "progressive.paths", "12");
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  const auto reasonAfter = [&](const SceneChanges& changes, const std::function<void(SceneView&)>& edit) {
+    for (int frame = 0; frame < 3; ++frame) gi.run(still());
+    EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw)) << "it had converged";
+    SceneView view = room.scene.view();
+    view.changes = changes;
+    edit(view);
+    gi.run(view);
+    return gi.run(still()).plan[EffectId::Redraw].reason;
+  };
+  const std::string begun = "4 of 12 paths per pixel";
+  EXPECT_EQ(reasonAfter({false, true, false, false, false}, [](SceneView& v) { v.camera.worldFromView[3].x += 0.1f; }),
+            begun);
+  room.scene.instances.back().worldFromObject[3].x += 0.1f;
+  EXPECT_EQ(reasonAfter({false, false, false, true, false}, [](SceneView&) {}), begun);
+  for (int frame = 0; frame < 3; ++frame) gi.run(still());
+  gi.settings().image.exposure = 2;
+  gi.settings().image.toneMapper = ToneMapper::Filmic;
+  gi.run(still());
+  EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw)) << "exposure is the viewer's";
+}
+
+/// A host that draws its surfaces again in every frame does not keep it from converging, nor does it draw for ever
+/// where there is no light.
+TEST_F(TechniqueTest, AccumulatedLightConvergesOnAHostsSurfacesAndRestsInTheDark) {
+  applyTechnique(settings, kProgressive);
+  const SceneView view = room.scene.view();
+  GpuScene gpu(programs, room.scene.assets);
+  gpu.place(view.instances);
+  SurfacePass surfaces(passes);
+  const GBuffer drawn = surfaces.run({gpu, view.camera});
+  const HostSurfaces host{drawn.depth->name(), drawn.normal->name(), drawn.albedo->name(), drawn.emission->name()};
+  Viewer gi(settings), own(settings);
+  gi.run(view, {}, &host);
+  own.run(view);
+  for (int frame = 0; frame < 6; ++frame) gi.run(still(), {}, &host), own.run(still());
+  EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, own.read(Buffer::Irradiance).pixels);
+
+  room.scene.lights.clear();
+  Viewer dark(settings);
+  dark.run(room.scene.view());
+  dark.run(still());
+  EXPECT_FALSE(dark.run(still()).plan.on(EffectId::Redraw));
+}
+
+/// What somebody stops by throwing is no frame: the next one is as the first, and nothing shows what is gone.
+TEST_F(TechniqueTest, AFrameThatSomethingIsThrownOutOfIsDrawnAgain) {
+  for (const char* technique : {"smc", "ibrr", "rsm"}) {
+    SCOPED_TRACE(technique);
+    Settings s = settings;
+    applyTechnique(s, technique);
+    Viewer whole(s);
+    whole.run(room.scene.view());
+    const Image expected = whole.read(Buffer::Beauty);
+    Viewer gi(s);
+    struct Stop {};
+    bool thrown = false;
+    { // at a draw, as the walkthrough's loading screen does when it is cancelled
+      int beats = 0;
+      const gl::Pulse pulse([&] {
+        if (++beats == 12) throw Stop();
+      });
+      try {
+        gi.run(room.scene.view());
+      } catch (const Stop&) {
+        thrown = true;
+      }
+    }
+    EXPECT_TRUE(thrown);
+    EXPECT_TRUE(gi.read(Buffer::Beauty).pixels.empty());
+    EXPECT_EQ(gi.texture(Buffer::Irradiance), 0u);
+    gi.run(still());
+    EXPECT_NEAR(meanLuminance(gi.read(Buffer::Beauty)), meanLuminance(expected), 0.1 * meanLuminance(expected));
+    EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), meanLuminance(whole.read(Buffer::Irradiance)),
+                0.15 * meanLuminance(whole.read(Buffer::Irradiance)));
+  }
+}
+
+/// Another gather while the last image is kept: what is shown lives until the next is there.
+TEST_F(TechniqueTest, WhatTheLastFrameShowsOutlivesItsGather) {
+  applyTechnique(settings, "rsm");
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  const Image before = gi.read(Buffer::Irradiance);
+  gi.settings().effects[EffectId::Redraw] = EffectMode::Off;
+  applyTechnique(gi.settings(), "multires-gather");
+  gi.run(still());
+  EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, before.pixels);
+  EXPECT_NE(gi.gi().indirectIrradiance(), 0u);
+}
+
 TEST_F(TechniqueTest, DirectLightIsAProviderThatAHostLeavesOut) {
   Viewer gi(settings);
   gi.run(room.scene.view());
@@ -226,6 +323,13 @@ TEST_F(TechniqueTest, SurfacesOfTheFrameBeforeAreThereOnDemand) {
   gi.run(moved);
   EXPECT_EQ(PreviousDepth::seen, first);
   EXPECT_NE(depthNow(), first);
+  const float second = depthNow();
+  Settings& s = gi.settings();
+  s.debug.nan = !s.debug.nan; // drawn again, though nothing moved: the frame before showed the same
+  SceneView same = moved;
+  same.changes = {false, false, false, false, false};
+  gi.run(same);
+  EXPECT_EQ(PreviousDepth::seen, second);
   moved.camera.width /= 2;
   gi.run(moved);
   EXPECT_EQ(PreviousDepth::seen, -1) << "of another size";

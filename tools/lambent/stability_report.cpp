@@ -61,7 +61,7 @@ Value figuresOf(const ShotRun& s, size_t index) {
   if (const double simplest = simplestChange(s, t); simplest > 0)
     row["change_over_simplest"] = t.grid.mean.change / simplest;
   const auto published = kPublished.find(s.name.substr(0, s.name.find("-small")));
-  if (t.name == "smc" && published != kPublished.end()) row["paper_1"] = published->second;
+  if (t.name == techniqueTable().front().name && published != kPublished.end()) row["paper_1"] = published->second;
   if (!s.still) return row;
   row["error_still_marked"] = t.marked.still;
   row["error_still_grid"] = t.grid.still;

@@ -23,7 +23,7 @@ constexpr Axes kStored{VplSource::Ir, VplVisibility::None, GatherMode::Cube, Rec
 
 void StillCache::drop() {
   photons_ = nullptr;
-  cube_ = nullptr;
+  if (cube_) shown_ = std::move(cube_);
   share_ = 0;
   stale_ = false;
 }
@@ -65,6 +65,7 @@ void StillCache::update(const FrameWorld& in, FrameStats& stats) {
 }
 
 SurfaceLighting StillCache::run(const Frame& frame, FrameStats& stats) {
+  shown_ = nullptr;
   const SurfaceLighting gathered = technique_->run(frame, stats);
   if (!wanted_ && share_ <= 0) return gathered;
   const SurfaceLighting stored = lookUp(frame, stats);

@@ -37,7 +37,7 @@ class StillCache : public LightProvider {
   PassContext context_;
   std::unique_ptr<LightProvider> technique_;
   std::unique_ptr<LightSource> photons_;
-  std::unique_ptr<Gather> cube_;
+  std::unique_ptr<Gather> cube_, shown_; // shown_: given up, while the last frame may still show its light
   VirtualLights lights_; // of photons_
   std::unique_ptr<LightTarget> mixed_;
   Settings settings_; // that the cube was built for

@@ -119,7 +119,8 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"rsm.resolution", "rsm.vpls", "rsm.exact", "rsm.coarsest", "rsm.finest", "rsm.depth", "rsm.normal", "rsm.tau"},
        "of techniques from reflective shadow maps; their curves: --curve clusters"},
       {{"lpv.cells", "lpv.size", "lpv.steps", "lpv.occlusion"}, "of light propagation volumes; their table: --volume"},
-      {{"cube.resolution", "cube.levels", "cube.split", "cube.visibility", "cube.hemicube", "cube.after", "cube.perFrame"},
+      {{"cube.resolution", "cube.levels", "cube.split", "cube.visibility", "cube.hemicube", "cube.after",
+        "cube.perFrame"},
        "of the layered depth cube; their table: bench --cube"},
       {{"smc.cache", "shadow.maker", "area.tracer", "cube.maker", "frame.overlap"},
        "time alone: the picture is the same, or a frame late"},
@@ -173,13 +174,15 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
   }
   for (const Assignments& set : jointDesign(quick))
     if (settingsOf(set) != Settings{}) add({.name = nameOf(set), .kind = Joint, .set = set});
+  const auto cheapest =
+      std::ranges::find_if(techniqueTable(), [](const Technique& t) { return needsOf(t).reflective(); });
   for (const Technique& technique : techniqueTable()) {
     if (&technique == &techniqueTable().front() || needsOf(technique).lights == LightSupply::None) continue;
-    if (part == SweepPart::Joint || (quick && technique.name != std::string("rsm"))) continue;
+    if (part == SweepPart::Joint || (quick && &technique != &*cheapest)) continue;
     add({.name = technique.name,
          .kind = Named,
          .technique = technique.name,
-         .slow = needsOf(technique).lights == LightSupply::PerFrame}); // every map anew in every frame
+         .slow = needsOf(technique).lights == LightSupply::PerFrame}); // every map in every frame
   }
   return points;
 }
