@@ -73,6 +73,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   k.begin(given);
   k.world.take(given, settings);
   indirect.begin(k.world.view(), settings);
+  k.outputs.inside = indirect.inside(); // parts of another technique are gone
   const Needs needs = needsOf(settings);
   const EffectPlan plan = k.world.plan(
       settings,

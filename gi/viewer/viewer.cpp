@@ -37,8 +37,13 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const gl::StateGuard guard;
   FrameResults& results = passes_->results;
   FrameStats& stats = passes_->stats;
-  const Picture last = std::exchange(results, {}).picture; // what something is thrown out of counts as no frame
-  stats = gi_.run(view, progress, host);
+  const Picture last = results.picture;
+  try {
+    stats = gi_.run(view, progress, host);
+  } catch (...) { // the last frame stays where it was refused; what something is thrown out of in drawing is no frame
+    results = gi_.outputs().surfaces.depth ? FrameResults{gi_.outputs(), last} : FrameResults{};
+    throw;
+  }
   const auto begin = std::chrono::steady_clock::now();
   const gl::Counts before = gl::counts();
   results = {gi_.outputs(), last};
@@ -121,21 +126,21 @@ uint32_t Viewer::texture(Buffer buffer) const {
 }
 
 /// Draws the buffer as a display shows it.
-void Viewer::show(Buffer buffer) const {
+bool Viewer::show(Buffer buffer) const {
+  if (!passes_->results.picture.radiance) return false;
   if (buffer == Buffer::Vpls) gi_.vpls(); // an update takes the set away
   passes_->display.run(buffer, passes_->results, look());
+  return true;
 }
 
 Image8 Viewer::readDisplay(Buffer buffer) const {
   const gl::StateGuard guard;
-  show(buffer);
-  return passes_->display.read();
+  return show(buffer) ? passes_->display.read() : Image8();
 }
 
 void Viewer::present(Buffer buffer, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
-  show(buffer);
-  passes_->display.present(framebuffer, width, height);
+  if (show(buffer)) passes_->display.present(framebuffer, width, height);
 }
 
 void Viewer::takeTruth(const Image& truth) {
@@ -145,6 +150,7 @@ void Viewer::takeTruth(const Image& truth) {
 
 void Viewer::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
+  if (!passes_->results.picture.radiance) return;
   const gl::Texture& truth = passes_->truth.run(buffer, passes_->results, look());
   show(buffer);
   passes_->display.present(framebuffer, width, height, &truth, divider);
@@ -152,6 +158,7 @@ void Viewer::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuff
 
 void Viewer::presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
+  if (!passes_->results.picture.radiance) return;
   passes_->display.run(buffer, passes_->results, look(), {&passes_->truth.linear(), full});
   passes_->display.present(framebuffer, width, height);
 }

@@ -82,7 +82,7 @@ class Viewer {
 
  private:
   struct Passes;
-  void show(Buffer buffer) const;
+  bool show(Buffer buffer) const; // false: there is no frame
   Look look() const;
 
   GiFrame gi_;

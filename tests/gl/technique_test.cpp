@@ -217,6 +217,23 @@ TEST_F(TechniqueTest, AFrameThatSomethingIsThrownOutOfIsDrawnAgain) {
   }
 }
 
+/// Settings that are refused change nothing: the last frame stays, and goes on.
+TEST_F(TechniqueTest, ARefusedFrameLeavesTheLastOne) {
+  applyTechnique(settings, "rsm");
+  Viewer gi(settings);
+  EXPECT_TRUE(gi.readDisplay(Buffer::Beauty).rgb.empty()) << "there is none yet";
+  gi.run(room.scene.view());
+  gi.run(still());
+  const Image before = gi.read(Buffer::Beauty);
+  gi.settings().gather.mode = GatherMode::Cube;
+  EXPECT_THROW(gi.run(still()), InputError);
+  EXPECT_EQ(gi.read(Buffer::Beauty).pixels, before.pixels);
+  EXPECT_FALSE(gi.readDisplay(Buffer::Beauty).rgb.empty());
+  gi.settings().gather.mode = settings.gather.mode;
+  gi.run(still());
+  EXPECT_EQ(gi.read(Buffer::Beauty).pixels, before.pixels);
+}
+
 /// Another gather while the last image is kept: what is shown lives until the next is there.
 TEST_F(TechniqueTest, WhatTheLastFrameShowsOutlivesItsGather) {
   applyTechnique(settings, "rsm");

@@ -63,7 +63,7 @@ std::string Value::json(int indentation) const {
 }
 
 double Value::number() const {
-  CHECK(kind_ == Real || kind_ == Whole || kind_ == Bool);
+  if (!isNumber()) throw RunError("a figure that should be a number is none (a file of an earlier run was changed)");
   return kind_ == Real ? real_ : double(whole_);
 }
 
@@ -86,7 +86,7 @@ Value& Value::operator[](const std::string& name) {
 }
 
 double Value::numberOr(const std::string& name, double otherwise) const {
-  return has(name) ? (*this)[name].number() : otherwise;
+  return has(name) && (*this)[name].isNumber() ? (*this)[name].number() : otherwise;
 }
 
 void Value::update(const Value& other) {

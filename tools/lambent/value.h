@@ -46,7 +46,8 @@ class Value {
   bool isText() const { return kind_ == Text; }
   bool isList() const { return kind_ == Several; }
   bool isObject() const { return kind_ == Object; }
-  double number() const; // a bool is 0 or 1
+  bool isNumber() const { return kind_ == Real || kind_ == Whole || kind_ == Bool; }
+  double number() const; // a bool is 0 or 1; throws RunError where it is none
   const std::string& text() const { return text_; }
   const List& items() const { return list_; } // of a list
   List& items() { return list_; }
