@@ -1,10 +1,9 @@
 #version 450
 // Adds light that was traced on the CPU to what was gathered, texel by texel. Variant: GLOSSY.
+#include "lib/light_outputs.glsl"
 layout(binding = 2) uniform sampler2D irradiance;
-layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossy;
-layout(location = 1) out vec4 outGlossy;
 #endif
 
 void main() {

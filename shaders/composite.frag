@@ -1,11 +1,6 @@
 #version 450
 // Radiance towards the camera: emission + albedo/π · (direct + indirect irradiance), the sky where nothing is seen.
 // Variants GLOSSY: with the receivers' lobes; DAYLIGHT: of the sky.
-#if defined(GLOSSY) || defined(DAYLIGHT)
-#include "lib/gbuffer.glsl"
-#else
-layout(binding = 0) uniform sampler2D gbufferDepth;
-#endif
 #include "lib/background.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"

@@ -6,6 +6,7 @@
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
+#include "lib/light_outputs.glsl"
 #include "shared/layered_cube.h"
 #include "shared/octahedral.h"
 
@@ -15,10 +16,6 @@ layout(binding = 11) uniform usamplerBuffer entries; // CubeTexel
 layout(binding = 12) uniform usamplerBuffer nodes;   // CubeNode, two texels each
 uniform int resolution;  // texels along an edge of each cube
 uniform float brightest; // irradiance of the brightest entry, W/m²
-layout(location = 0) out vec4 outIrradiance;
-#ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
-#endif
 
 const float kLeastCos = 0.5;    // between the pixel's normal, which may be interpolated or mapped, and the entry's
 const float kNextImage = 0.8;   // of the largest part of the normal: from here on its axis is asked too
@@ -110,10 +107,7 @@ void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, inout vec3 su
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  writeNoLight();
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
@@ -133,10 +127,6 @@ void main() {
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
   outIrradiance = vec4(irradiance, total > 1e-3 || nearest.w < 1e8 ? 1.0 : 0.0);
 #ifdef GLOSSY
-  // As if light from around the mirrored direction were even.
-  Receiver receiver = receiverAt(pixel, position, normal);
-  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
-  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(roughnessMetalness.x, kLeastRoughness), receiver.cosViewer)));
-  outGlossy = vec4(irradiance * 0.318309886 * receiver.strength * reflected / glossyTint(receiver), 1.0);
+  outGlossy = vec4(evenGlossy(pixel, receiverAt(pixel, position, normal), irradiance * 0.318309886), 1.0);
 #endif
 }

@@ -6,11 +6,6 @@
 // the sky), LUMA (alpha: see antialias.frag), ERROR (how far the value is from a truth, mean of the channels).
 #include "shared/error_color.h"
 #include "shared/tone_map.h"
-#if defined(GLOSSY) || defined(DAYLIGHT)
-#include "lib/gbuffer.glsl"
-#else
-layout(binding = 0) uniform sampler2D gbufferDepth;
-#endif
 #include "lib/background.glsl"
 #ifdef GLOSSY
 #include "lib/receiver.glsl"

@@ -3,18 +3,17 @@
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
 // the mean over all 16 subsets exactly; the more frames a pixel holds, the less its neighbours count. GLOSSY: glossy light too, with weights by roughness and metalness as well.
 #include "lib/gbuffer.glsl"
+#include "lib/light_outputs.glsl"
 #include "lib/subsets.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
-layout(location = 1) out vec4 outGlossy;
 #endif
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
 uniform float normalPower;
 uniform float distanceSigma;   // share of the view distance
-layout(location = 0) out vec4 outIrradiance;
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
@@ -25,10 +24,7 @@ float shareOf(float frames) { return fresh ? 1.0 : clamp((16.0 - frames) / 15.0,
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  writeNoLight();
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
 #ifdef FILTER

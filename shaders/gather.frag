@@ -1,28 +1,19 @@
 #version 450
 // Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + a/π)·V.
-// One draw covers one 4×4 subset of the pixels, which lie side by side, or all pixels (stride 1).
-// Variants: PATCHES (fragments are patches of one level of the multiresolution buffer, those that the stencil marks), and
-// those of lib/vpl_shading.glsl.
+// Variants of lib/gathered_pixel.glsl and lib/vpl_shading.glsl.
 #include "lib/gbuffer.glsl"
 #include "lib/vpl_shading.glsl"
-#include "lib/patch_sample.glsl"
+#include "lib/gathered_pixel.glsl"
+#include "lib/light_outputs.glsl"
 #ifdef CHECKED
 #include "shared/octahedral.h"
 #endif
 
-uniform ivec2 tileOrigin;   // of this draw's sub-image, pixels
-uniform ivec2 subset;       // (x mod 4, y mod 4) of its pixels
-uniform int stride;         // 4, or 1 for all pixels
-uniform int level;          // of the patches
 uniform int firstClass;     // in the block
 uniform int classCount;
 uniform int blockClass;     // class that the block starts with
 uniform int perClass;       // lights in each class
 uniform float scale;        // 16 for one class of 16, 1 for all
-layout(location = 0) out vec4 outIrradiance;
-#ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
-#endif
 #ifdef CHECKED
 uniform int turn; // another one for each frame of those that are averaged, and each 2048 lights
 #ifdef GLOSSY
@@ -37,20 +28,10 @@ float numberOf(uvec2 pixel) {
   return float(bits >> 8) / 16777216.0;
 }
 #endif
-#ifdef PATCHES
-layout(early_fragment_tests) in;
-#endif
 
 void main() {
-#ifdef PATCHES
-  ivec2 pixel = patchSample(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset);
-#else
-  ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
-#endif
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  ivec2 pixel = gatheredPixel();
+  writeNoLight();
 #ifdef CHECKED
   outDrawn = uvec4(0u);
 #endif

@@ -1,13 +1,12 @@
 #version 450
 // One technique's indirect light mixed into another's. Variant: GLOSSY.
+#include "lib/light_outputs.glsl"
 layout(binding = 2) uniform sampler2D irradianceA;
 layout(binding = 4) uniform sampler2D irradianceB;
 uniform float share; // of B
-layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossyA;
 layout(binding = 5) uniform sampler2D glossyB;
-layout(location = 1) out vec4 outGlossy;
 #endif
 
 void main() {

@@ -1,15 +1,12 @@
 #version 450
 // The light of one VPL at one patch, to be added up. Variants of lib/vpl_shading.glsl.
+#include "lib/light_outputs.glsl"
 #include "lib/vpl_shading.glsl"
 #include "lib/patch_sample.glsl"
 
 uniform int blockClass; // class that the block starts with
 flat in ivec3 subsplat;
 flat in int light;
-layout(location = 0) out vec4 outIrradiance;
-#ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
-#endif
 
 void main() {
   ivec2 pixel = patchSample(subsplat.xy, subsplat.z, 1, ivec2(0));

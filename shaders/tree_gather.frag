@@ -8,7 +8,8 @@
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
-#include "lib/patch_sample.glsl"
+#include "lib/gathered_pixel.glsl"
+#include "lib/light_outputs.glsl"
 
 layout(binding = 2) uniform sampler2D positions; // see ReflectiveMaps
 layout(binding = 3) uniform sampler2D normals;
@@ -17,10 +18,6 @@ uniform ivec2 origin;    // of the map, texels
 uniform float threshold; // see tree_gather.cpp
 uniform int coarsest; // mip levels
 uniform int finest;
-uniform ivec2 tileOrigin;
-uniform ivec2 subset;
-uniform int stride;
-uniform int level;
 uniform int firstRoot; // of the map's coarsest clusters this draw starts from
 uniform int endRoot;
 uniform int rootStep;
@@ -29,13 +26,6 @@ uniform int endLeaf;
 uniform float diskFactor;
 uniform float largestG;
 uniform float spread; // GLOSSY
-layout(location = 0) out vec4 outIrradiance;
-#ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
-#endif
-#ifdef PATCHES
-layout(early_fragment_tests) in;
-#endif
 
 /// Every second bit of m, as a number.
 int evenBits(int m) {
@@ -47,15 +37,8 @@ int evenBits(int m) {
 }
 
 void main() {
-#ifdef PATCHES
-  ivec2 pixel = patchSample(ivec2(gl_FragCoord.xy) - tileOrigin, level, stride, subset);
-#else
-  ivec2 pixel = (ivec2(gl_FragCoord.xy) - tileOrigin) * stride + subset;
-#endif
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  ivec2 pixel = gatheredPixel();
+  writeNoLight();
   if (any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;

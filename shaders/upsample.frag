@@ -6,6 +6,7 @@
 // glossy light too, with weights by roughness and metalness as well. BILINEAR: without weights for surfaces, and between
 // whole patches only, as the paper.
 #include "lib/gbuffer.glsl"
+#include "lib/light_outputs.glsl"
 #include "lib/patch_sample.glsl"
 
 layout(binding = 2) uniform sampler2D atlas;  // as gathered; a > 0: holds light
@@ -18,12 +19,10 @@ uniform ivec2 tile;   // FINAL: size of a sub-image of the target, which is not 
 uniform float normalPower;
 uniform float distanceSigma; // share of the view distance
 uniform float detail;        // FINAL: MultiresSettings::detail
-layout(location = 0) out vec4 outIrradiance;
 #ifdef GLOSSY
 layout(binding = 4) uniform sampler2D atlasGlossy; // as irradiance, in the same places
 layout(binding = 5) uniform sampler2D coarseGlossy;
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
-layout(location = 1) out vec4 outGlossy;
 
 vec2 roughnessMetalness;
 
@@ -55,10 +54,7 @@ float alike(ivec2 pixel) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 size = ivec2(camera.size.xy);
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  writeNoLight();
   ivec2 sub = base / grid >> level;
 #ifdef FINAL
   ivec2 subset = at / tile, texel = at - subset * tile;

@@ -6,6 +6,7 @@
 #ifdef GLOSSY
 #include "lib/receiver.glsl"
 #endif
+#include "lib/light_outputs.glsl"
 #include "shared/light_volume.h"
 
 layout(std430, binding = 2) restrict readonly buffer Passed { vec4 passed[]; };
@@ -14,10 +15,6 @@ uniform vec3 corner; // world
 uniform float cell;  // metres
 uniform int cells;
 const float kTowardsViewer = 0.5; // cells
-layout(location = 0) out vec4 outIrradiance;
-#ifdef GLOSSY
-layout(location = 1) out vec4 outGlossy; // radiance over glossyTint
-#endif
 
 /// Irradiance on a surface in a cell whose unit normal is given.
 vec3 onSurface(int index, vec3 normal) {
@@ -29,10 +26,7 @@ vec3 onSurface(int index, vec3 normal) {
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  outIrradiance = vec4(0.0);
-#ifdef GLOSSY
-  outGlossy = vec4(0.0);
-#endif
+  writeNoLight();
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
@@ -74,11 +68,7 @@ void main() {
   float inverse = (any ? 1.0 / seenWeight : hiddenWeight > 0.0 ? 1.0 / hiddenWeight : 0.0) / (cell * cell);
   outIrradiance = vec4((any ? seen : hidden) * inverse, 1.0);
 #ifdef GLOSSY
-  // As if light from around the mirrored direction were even: its mean radiance, times what the lobe reflects of it.
   vec3 radiance = (any ? glossy : glossyHidden) * inverse * 0.318309886;
-  vec3 tint = glossyTint(receiver);
-  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
-  vec3 reflected = max(receiver.specular, vec3(dielectricShare(max(roughnessMetalness.x, kLeastRoughness), receiver.cosViewer)));
-  outGlossy = vec4(radiance * receiver.strength * reflected / tint, 1.0);
+  outGlossy = vec4(evenGlossy(pixel, receiver, radiance), 1.0);
 #endif
 }

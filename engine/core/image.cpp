@@ -64,6 +64,15 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   }
 }
 
+void writeAtomically(const fs::path& file, std::string_view bytes) {
+  writeAtomically(file, [&](const fs::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(bytes.data(), std::streamsize(bytes.size()));
+    out.close();
+    if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+  });
+}
+
 void removeLeftovers(const fs::path& file) {
   const std::string begin = "." + file.stem().string().substr(0, kLongestStem) + ".", end = file.extension().string();
   std::error_code ignored;
@@ -94,12 +103,7 @@ void writePng(const fs::path& file, const Image8& image) {
   };
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.rgb.data(), image.width * 3))
     throw RunError(file.string() + ": the image cannot be encoded (out of memory?)");
-  writeAtomically(file, [&](const fs::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out.write(bytes.data(), std::streamsize(bytes.size()));
-    out.close();
-    if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
-  });
+  writeAtomically(file, bytes);
 }
 
 Image readPfm(const fs::path& file) {

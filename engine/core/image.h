@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 namespace lambent {
@@ -51,6 +52,8 @@ void checkWritable(const std::filesystem::path& file);
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
 /// the folder cannot be written.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+/// The same for a file of these bytes.
+void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
 /// Removes temporaries of `file` left by a program that was killed while it wrote. Call it only where no other program
 /// writes the file, as when a run is resumed.

@@ -61,6 +61,8 @@ inline bool isAffine(const mat4& m) {
   return std::abs(m[0][3]) + std::abs(m[1][3]) + std::abs(m[2][3]) + std::abs(m[3][3] - 1) < 1e-3f;
 }
 inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool isFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
+inline bool isFinite(const mat4& m) { return isFinite(m[0]) && isFinite(m[1]) && isFinite(m[2]) && isFinite(m[3]); }
 inline float maxComponent(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
 
 } // namespace lambent

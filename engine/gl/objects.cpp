@@ -16,17 +16,7 @@ std::map<std::string, uint64_t>& memory() {
   return bytes;
 }
 
-GLenum glTarget(TextureKind kind) {
-  switch (kind) {
-  case TextureKind::Flat:
-    return GL_TEXTURE_2D;
-  case TextureKind::Array:
-    return GL_TEXTURE_2D_ARRAY;
-  case TextureKind::CubeArray:
-    return GL_TEXTURE_CUBE_MAP_ARRAY;
-  }
-  return GL_TEXTURE_2D;
-}
+constexpr GLenum kTargets[] = {GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP_ARRAY}; // by TextureKind
 
 uint64_t bytesOf(const TextureDesc& desc) {
   uint64_t texels = 0;
@@ -35,10 +25,16 @@ uint64_t bytesOf(const TextureDesc& desc) {
   return texels * desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1) * texelBytes(desc.format);
 }
 
+template <class Create> GLuint make(Create create) {
+  GLuint name = 0;
+  create(1, &name);
+  return name;
+}
+
 /// Throws RunError when the GPU has no room for it.
 GLuint makeTexture(const TextureDesc& desc, const std::string& label) {
   GLuint name = 0;
-  glCreateTextures(glTarget(desc.kind), 1, &name);
+  glCreateTextures(kTargets[int(desc.kind)], 1, &name);
   if (desc.kind != TextureKind::Flat)
     glTextureStorage3D(name, desc.levels, desc.format, desc.width, desc.height,
                        desc.layers * (desc.kind == TextureKind::CubeArray ? 6 : 1));
@@ -63,17 +59,23 @@ GLuint makeTexture(const TextureDesc& desc, const std::string& label) {
 }
 
 GLuint makeBuffer(uint64_t bytes, const void* data, GLbitfield flags) {
-  GLuint name = 0;
-  glCreateBuffers(1, &name);
+  const GLuint name = make(glCreateBuffers);
   glNamedBufferStorage(name, GLsizeiptr(bytes), data, flags);
   return name;
 }
 
-template <class Create> GLuint make(Create create) {
-  GLuint name = 0;
-  create(1, &name);
-  return name;
-}
+/// How objects of each kind are deleted. One of another kind (0) is not ours to delete.
+struct Deletion {
+  GLenum kind;
+  PFNGLDELETETEXTURESPROC* function;
+};
+constexpr Deletion kDeletions[] = {{GL_TEXTURE, &glDeleteTextures},
+                                   {GL_BUFFER, &glDeleteBuffers},
+                                   {GL_FRAMEBUFFER, &glDeleteFramebuffers},
+                                   {GL_VERTEX_ARRAY, &glDeleteVertexArrays},
+                                   {GL_SAMPLER, &glDeleteSamplers},
+                                   {GL_TRANSFORM_FEEDBACK, &glDeleteTransformFeedbacks},
+                                   {GL_QUERY, &glDeleteQueries}};
 
 } // namespace
 
@@ -114,31 +116,8 @@ Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t byte
 
 Object::~Object() {
   if (name_ == 0) return;
-  switch (kind_) {
-  case GL_TEXTURE:
-    glDeleteTextures(1, &name_);
-    break;
-  case GL_BUFFER:
-    glDeleteBuffers(1, &name_);
-    break;
-  case GL_FRAMEBUFFER:
-    glDeleteFramebuffers(1, &name_);
-    break;
-  case GL_VERTEX_ARRAY:
-    glDeleteVertexArrays(1, &name_);
-    break;
-  case GL_SAMPLER:
-    glDeleteSamplers(1, &name_);
-    break;
-  case GL_TRANSFORM_FEEDBACK:
-    glDeleteTransformFeedbacks(1, &name_);
-    break;
-  case GL_QUERY:
-    glDeleteQueries(1, &name_);
-    break;
-  default:
-    CHECK_EQ(kind_, 0u);
-  }
+  for (const auto& [kind, deleteNames] : kDeletions)
+    if (kind == kind_) (*deleteNames)(1, &name_);
   if (bytes_ == 0) return;
   const std::lock_guard lock(memoryMutex);
   if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
@@ -248,8 +227,7 @@ void Buffer::bindStorage(int binding) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(binding), name());
 }
 
-Framebuffer::Framebuffer(const std::string& label)
-    : Object(GL_FRAMEBUFFER, make([](GLsizei n, GLuint* names) { glCreateFramebuffers(n, names); }), label, 0) {}
+Framebuffer::Framebuffer(const std::string& label) : Object(GL_FRAMEBUFFER, make(glCreateFramebuffers), label, 0) {}
 
 Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth,
                          int level)
@@ -285,15 +263,12 @@ void Framebuffer::attachColorLayer(const Texture& texture, int layer) const {
 
 void Framebuffer::bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name()); }
 
-VertexArray::VertexArray(const std::string& label)
-    : Object(GL_VERTEX_ARRAY, make([](GLsizei n, GLuint* names) { glCreateVertexArrays(n, names); }), label, 0) {}
+VertexArray::VertexArray(const std::string& label) : Object(GL_VERTEX_ARRAY, make(glCreateVertexArrays), label, 0) {}
 
-Sampler::Sampler(const std::string& label)
-    : Object(GL_SAMPLER, make([](GLsizei n, GLuint* names) { glCreateSamplers(n, names); }), label, 0) {}
+Sampler::Sampler(const std::string& label) : Object(GL_SAMPLER, make(glCreateSamplers), label, 0) {}
 
 TransformFeedback::TransformFeedback(const std::string& label, const Buffer& target)
-    : Object(GL_TRANSFORM_FEEDBACK, make([](GLsizei n, GLuint* names) { glCreateTransformFeedbacks(n, names); }), label,
-             0) {
+    : Object(GL_TRANSFORM_FEEDBACK, make(glCreateTransformFeedbacks), label, 0) {
   glTransformFeedbackBufferBase(name(), 0, target.name());
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <tuple>
 
 namespace lambent::gl {
 
@@ -88,14 +89,10 @@ PassScope::PassScope(GpuProfiler& profiler, StageKey stage) : profiler_(profiler
   if (profiler_.timing_ == Timing::Finish) {
     finishToMeasure();
   } else {
-    if (profiler_.freeQueries_.empty()) {
-      beginQuery_ = Query(GL_TIMESTAMP);
-      endQuery_ = Query(GL_TIMESTAMP);
-    } else {
-      beginQuery_ = std::move(profiler_.freeQueries_.back().first);
-      endQuery_ = std::move(profiler_.freeQueries_.back().second);
-      profiler_.freeQueries_.pop_back();
-    }
+    auto& free = profiler_.freeQueries_;
+    if (free.empty()) free.emplace_back(GL_TIMESTAMP, GL_TIMESTAMP);
+    std::tie(beginQuery_, endQuery_) = std::move(free.back());
+    free.pop_back();
     glQueryCounter(beginQuery_.name(), GL_TIMESTAMP);
   }
   begin_ = std::chrono::steady_clock::now();

@@ -22,20 +22,27 @@ std::string fileNumbers(const ShaderText& source) {
   return text;
 }
 
+/// What the compiler or linker said of a shader or program.
+template <class GetNumber, class GetLog> std::string logOf(GLuint name, GetNumber getNumber, GetLog getLog) {
+  GLint length = 0;
+  getNumber(name, GL_INFO_LOG_LENGTH, &length);
+  std::string log(size_t(std::max(1, length)), ' ');
+  getLog(name, length, nullptr, log.data());
+  return log.c_str(); // up to its end
+}
+
 GLuint compile(GLenum stage, const ShaderText& source) {
   const GLuint shader = glCreateShader(stage);
   const char* text = source.text.c_str();
   glShaderSource(shader, 1, &text, nullptr);
   glCompileShader(shader);
-  GLint ok = 0, length = 0;
+  GLint ok = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
   if (ok) return shader;
-  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
-  std::string log(size_t(std::max(1, length)), ' ');
-  glGetShaderInfoLog(shader, length, nullptr, log.data());
+  const std::string log = logOf(shader, glGetShaderiv, glGetShaderInfoLog);
   glDeleteShader(shader);
   throw RunError("shader " + source.files[0].string() + " does not compile (files: " + fileNumbers(source) + ")\n" +
-                 log.c_str());
+                 log);
 }
 
 } // namespace
@@ -105,14 +112,12 @@ void ProgramCache::build(Program& program) const {
     glTransformFeedbackVaryings(name, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(name);
   for (const GLuint shader : shaders) glDeleteShader(shader);
-  GLint ok = 0, length = 0;
+  GLint ok = 0;
   glGetProgramiv(name, GL_LINK_STATUS, &ok);
   if (!ok) {
-    glGetProgramiv(name, GL_INFO_LOG_LENGTH, &length);
-    std::string log(size_t(std::max(1, length)), ' ');
-    glGetProgramInfoLog(name, length, nullptr, log.data());
+    const std::string log = logOf(name, glGetProgramiv, glGetProgramInfoLog);
     glDeleteProgram(name);
-    throw RunError("program " + program.desc_.key() + " does not link\n" + log.c_str());
+    throw RunError("program " + program.desc_.key() + " does not link\n" + log);
   }
   const std::string label = program.desc_.key().substr(0, 200); // GL_MAX_LABEL_LENGTH is at least 256
   glObjectLabel(GL_PROGRAM, name, GLsizei(label.size()), label.c_str());

@@ -59,6 +59,30 @@ constexpr PixelStore kPixelStore[] = {
     {GL_UNPACK_IMAGE_HEIGHT, 0}, {GL_UNPACK_SKIP_PIXELS, 0}, {GL_UNPACK_SKIP_ROWS, 0}, {GL_UNPACK_SKIP_IMAGES, 0},
 };
 
+/// Single numbers, and what sets each. They are restored after what is bound to indices, which changes some of them.
+struct Value {
+  GLenum what;
+  void (*set)(GLint);
+};
+constexpr Value kValues[] = {
+    {GL_ACTIVE_TEXTURE, [](GLint v) { glActiveTexture(GLenum(v)); }},
+    {GL_UNIFORM_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_UNIFORM_BUFFER, GLuint(v)); }},
+    {GL_SHADER_STORAGE_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(v)); }},
+    {GL_DRAW_FRAMEBUFFER_BINDING, [](GLint v) { glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(v)); }},
+    {GL_READ_FRAMEBUFFER_BINDING, [](GLint v) { glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(v)); }},
+    {GL_VERTEX_ARRAY_BINDING, [](GLint v) { glBindVertexArray(GLuint(v)); }},
+    {GL_DEPTH_FUNC, [](GLint v) { glDepthFunc(GLenum(v)); }},
+    {GL_DEPTH_WRITEMASK, [](GLint v) { glDepthMask(GLboolean(v)); }},
+    {GL_FRONT_FACE, [](GLint v) { glFrontFace(GLenum(v)); }},
+    {GL_PROVOKING_VERTEX, [](GLint v) { glProvokingVertex(GLenum(v)); }},
+    {GL_PIXEL_PACK_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(v)); }},
+    {GL_PIXEL_UNPACK_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(v)); }},
+    {GL_QUERY_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_QUERY_BUFFER, GLuint(v)); }},
+    {GL_DRAW_INDIRECT_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(v)); }},
+    // One that was deleted while in use went for good when another took its place.
+    {GL_CURRENT_PROGRAM, [](GLint v) { glUseProgram(glIsProgram(GLuint(v)) ? GLuint(v) : 0); }},
+};
+
 /// Every target of a texture unit: binding no texture to a unit empties them all.
 constexpr GLenum kTextureTargets[] = {
     GL_TEXTURE_BINDING_1D,
@@ -160,6 +184,7 @@ void setStencil(GLenum face, const Face& s) {
 struct StateGuard::Saved {
   std::array<bool, std::size(kSwitches)> switches;
   std::array<GLint, std::size(kPixelStore)> pixelStore;
+  std::array<GLint, std::size(kValues)> values;
   std::array<Viewport, kMostViewports> viewports;
   std::array<Target, kMostTargets> targets;
   std::array<Unit, kTextureUnits> units;
@@ -167,13 +192,8 @@ struct StateGuard::Saved {
   std::array<Range, kUniformBindings> uniformBuffers;
   std::array<Range, kStorageBindings> storageBuffers;
   int viewportCount = 0, targetCount = 0;
-  GLint program = 0, vertexArray = 0, drawFramebuffer = 0, readFramebuffer = 0;
-  GLint depthFunction = 0, clipOrigin = 0, clipDepth = 0, frontFace = 0, provokingVertex = 0, polygonMode[2] = {};
-  GLint packBuffer = 0, unpackBuffer = 0, queryBuffer = 0, indirectBuffer = 0, uniformBuffer = 0, storageBuffer = 0,
-        activeUnit = 0;
-  GLint transformFeedback = 0;
+  GLint clipOrigin = 0, clipDepth = 0, polygonMode[2] = {}, transformFeedback = 0;
   bool feedbackRuns = false;
-  GLboolean depthMask = GL_FALSE;
   Face front, back;
   GLfloat pointSize = 1, color[4] = {};
 
@@ -187,6 +207,7 @@ struct StateGuard::Saved {
 StateGuard::Saved::Saved() {
   for (size_t i = 0; i < switches.size(); ++i) switches[i] = glIsEnabled(kSwitches[i].what);
   for (size_t i = 0; i < pixelStore.size(); ++i) pixelStore[i] = get(kPixelStore[i].what);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = get(kValues[i].what);
   viewportCount = std::min(get(GL_MAX_VIEWPORTS), kMostViewports);
   for (int i = 0; i < viewportCount; ++i) {
     Viewport& v = viewports[size_t(i)];
@@ -207,38 +228,23 @@ StateGuard::Saved::Saved() {
     t.equationAlpha = get(GL_BLEND_EQUATION_ALPHA, i);
     glGetBooleani_v(GL_COLOR_WRITEMASK, GLuint(i), t.mask);
   }
-  activeUnit = get(GL_ACTIVE_TEXTURE);
   for (int i = 0; i < kTextureUnits; ++i) {
     glActiveTexture(GLenum(GL_TEXTURE0 + i));
     for (size_t t = 0; t < std::size(kTextureTargets); ++t) units[size_t(i)].textures[t] = get(kTextureTargets[t]);
     units[size_t(i)].sampler = get(GL_SAMPLER_BINDING);
   }
-  uniformBuffer = get(GL_UNIFORM_BUFFER_BINDING);
   for (int i = 0; i < kUniformBindings; ++i)
     uniformBuffers[size_t(i)] =
         Range::of(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, i);
-  storageBuffer = get(GL_SHADER_STORAGE_BUFFER_BINDING);
   for (int i = 0; i < kStorageBindings; ++i)
     storageBuffers[size_t(i)] =
         Range::of(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, i);
-  program = get(GL_CURRENT_PROGRAM);
-  vertexArray = get(GL_VERTEX_ARRAY_BINDING);
-  drawFramebuffer = get(GL_DRAW_FRAMEBUFFER_BINDING);
-  readFramebuffer = get(GL_READ_FRAMEBUFFER_BINDING);
-  depthFunction = get(GL_DEPTH_FUNC);
-  glGetBooleanv(GL_DEPTH_WRITEMASK, &depthMask);
   clipOrigin = get(GL_CLIP_ORIGIN);
   clipDepth = get(GL_CLIP_DEPTH_MODE);
-  frontFace = get(GL_FRONT_FACE);
-  provokingVertex = get(GL_PROVOKING_VERTEX);
   glGetIntegerv(GL_POLYGON_MODE, polygonMode);
   glGetFloatv(GL_POINT_SIZE, &pointSize);
   front = stencilOf(true);
   back = stencilOf(false);
-  packBuffer = get(GL_PIXEL_PACK_BUFFER_BINDING);
-  unpackBuffer = get(GL_PIXEL_UNPACK_BUFFER_BINDING);
-  queryBuffer = get(GL_QUERY_BUFFER_BINDING);
-  indirectBuffer = get(GL_DRAW_INDIRECT_BUFFER_BINDING);
   glGetVertexAttribfv(kColorAttribute, GL_CURRENT_VERTEX_ATTRIB, color);
   for (size_t i = 0; i < queries.size(); ++i) queries[i] = query(kQueries[i]);
   transformFeedback = get(GL_TRANSFORM_FEEDBACK_BINDING);
@@ -281,30 +287,15 @@ void StateGuard::Saved::restore() const {
       if (texture != 0) glBindTextureUnit(GLuint(i), GLuint(texture)); // to the target that it is of
     glBindSampler(GLuint(i), GLuint(u.sampler));
   }
-  glActiveTexture(GLenum(activeUnit));
   for (int i = 0; i < kUniformBindings; ++i) uniformBuffers[size_t(i)].bind(GL_UNIFORM_BUFFER, i);
-  glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniformBuffer));
   for (int i = 0; i < kStorageBindings; ++i) storageBuffers[size_t(i)].bind(GL_SHADER_STORAGE_BUFFER, i);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storageBuffer));
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(drawFramebuffer));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(readFramebuffer));
-  glBindVertexArray(GLuint(vertexArray));
-  glDepthFunc(GLenum(depthFunction));
-  glDepthMask(depthMask);
+  for (size_t i = 0; i < values.size(); ++i) kValues[i].set(values[i]);
   glClipControl(GLenum(clipOrigin), GLenum(clipDepth));
-  glFrontFace(GLenum(frontFace));
-  glProvokingVertex(GLenum(provokingVertex));
   glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygonMode[0]));
   glPointSize(pointSize);
   setStencil(GL_FRONT, front);
   setStencil(GL_BACK, back);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(packBuffer));
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(unpackBuffer));
-  glBindBuffer(GL_QUERY_BUFFER, GLuint(queryBuffer));
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirectBuffer));
   glVertexAttrib4fv(kColorAttribute, color);
-  // One that was deleted while in use went for good when another took its place.
-  glUseProgram(glIsProgram(GLuint(program)) ? GLuint(program) : 0);
   glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, GLuint(transformFeedback));
   if (feedbackRuns) glResumeTransformFeedback();
 }

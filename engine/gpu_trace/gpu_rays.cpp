@@ -20,8 +20,6 @@ struct ListedRay {
 
 constexpr size_t kMostAtOnce = 1 << 20; // rays of one dispatch: 32 MiB
 
-bool traceable(const Ray& r) { return isFinite(r.origin) && isFinite(r.direction) && r.tMax > 0; }
-
 template <class T> gl::Buffer bufferOf(const char* label, std::span<const T> data) {
   static const T kNothing[1] = {}; // a buffer has at least one element
   return gl::Buffer::of<T>(label, data.empty() ? std::span<const T>(kNothing) : data);
@@ -59,10 +57,7 @@ void GpuRays::upload(gl::Buffer& buffer, const char* label, uint64_t offset, uin
 }
 
 void GpuRays::update(const SceneView& view) {
-  if (fresh_ && !view.boundsWorld.empty()) {
-    rayEpsilon_ = rayEpsilonOf(view.boundsWorld);
-    fresh_ = false;
-  }
+  measure(view.boundsWorld);
   const FlatScene::Changed changed = scene_.update(view);
   if (changed.shapes || !nodes_) {
     const bool all = !nodes_;

@@ -41,7 +41,6 @@ class GpuRays final : public RayQuery {
   gl::Ring changes_{"rays/changes"};
   std::vector<InstanceView> placed_;
   AlphaTest alphaTest_ = AlphaTest::Masked;
-  bool fresh_ = true; // no instances have been taken over yet
 };
 
 } // namespace lambent

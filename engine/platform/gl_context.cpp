@@ -1,14 +1,17 @@
 #include "engine/platform/gl_context.h"
 
 #include "engine/core/error.h"
-#include "engine/platform/context_setup.h"
+#include "engine/gl/context.h"
+#include "engine/gl/state_guard.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <cstdlib>
 
 namespace lambent {
@@ -93,6 +96,30 @@ EGLDisplay displayOf(int device, const std::vector<EGLDeviceEXT>& devices) {
              : EGL_NO_DISPLAY;
 }
 
+std::atomic<uint64_t> debugErrors{0};
+
+void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei, const GLchar* text,
+                             const void*) {
+  // Our own group markers come back as notifications; compilers' messages reach the user with the program's log.
+  if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
+  if (severity == GL_DEBUG_SEVERITY_HIGH || type == GL_DEBUG_TYPE_ERROR) {
+    ++debugErrors;
+    spdlog::error("OpenGL {:#x}: {}", id, text);
+  } else if (severity == GL_DEBUG_SEVERITY_MEDIUM) {
+    spdlog::debug("OpenGL {:#x}: {}", id, text);
+  }
+}
+
+/// Checks version and limits (RunError), installs the debug callback, and sets the conventions that every pass relies
+/// on.
+void setUpContext(DebugOutput debug) {
+  gl::requireContext();
+  glEnable(GL_DEBUG_OUTPUT);
+  if (debug == DebugOutput::AtOnce) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(onDebugMessage, nullptr);
+  gl::setConventions();
+}
+
 std::string glText(GLenum name) {
   const GLubyte* text = glGetString(name);
   return text ? reinterpret_cast<const char*>(text) : "unknown";
@@ -123,6 +150,8 @@ struct GlContext::State {
     }
   }
 };
+
+uint64_t glDebugErrors() { return debugErrors; }
 
 GlContext::GlContext(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GlContext::GlContext(GlContext&&) noexcept = default;

@@ -65,6 +65,16 @@ template <class V> V hermite(const Between& at, const V& from, const V& leaving,
          (u3 - u2) * (at.span * arriving);
 }
 
+/// `row(i)` counts keys, or in-tangents, values and out-tangents of keys; `mix` is linear interpolation.
+template <class Channel, class Row, class Mix>
+auto sampleKeys(const Channel& channel, const Between& at, Row&& row, Mix&& mix) {
+  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
+  const auto value = [&](size_t key) { return row(cubic ? 3 * key + 1 : key); };
+  if (at.after == at.key) return value(at.key);
+  if (!cubic) return mix(value(at.key), value(at.after), at.u);
+  return hermite(at, value(at.key), row(3 * at.key + 2), row(3 * at.after), value(at.after));
+}
+
 void applyMotion(Transform& t, const Motion& motion, double time) {
   const double period = motion.swingPeriod > 0 ? motion.swingPeriod : 1;
   const double turns = time / period;
@@ -91,34 +101,19 @@ float clipTime(const AnimationClip& clip, double time) {
 
 vec4 sampleChannel(const AnimationChannel& channel, float time) {
   const bool rotation = channel.path == ChannelPath::Rotation;
-  const auto finish = [&](const vec4& v) { return rotation ? unitOrIdentity(v) : v; };
-  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
-  const auto value = [&](size_t key) { return channel.values[cubic ? 3 * key + 1 : key]; };
-  const Between at = findKeys(channel.times, channel.interpolation, time);
-  if (at.after == at.key) return finish(value(at.key));
-  if (!cubic)
-    return rotation ? finish(slerpShorter(value(at.key), value(at.after), at.u))
-                    : between(value(at.key), value(at.after), at.u);
-  return finish(
-      hermite(at, value(at.key), channel.values[3 * at.key + 2], channel.values[3 * at.after], value(at.after)));
+  const vec4 v = sampleKeys(
+      channel, findKeys(channel.times, channel.interpolation, time), [&](size_t row) { return channel.values[row]; },
+      [&](const vec4& a, const vec4& b, float u) { return rotation ? slerpShorter(a, b, u) : between(a, b, u); });
+  return rotation ? unitOrIdentity(v) : v;
 }
 
 void sampleChannel(const WeightsChannel& channel, float time, std::vector<float>& weights) {
-  const bool cubic = channel.interpolation == Interpolation::CubicSpline;
-  // `row` counts keys, or in-tangents, values and out-tangents of keys.
-  const auto number = [&](size_t row, size_t i) { return channel.values[row * channel.count + i]; };
-  const auto value = [&](size_t key, size_t i) { return number(cubic ? 3 * key + 1 : key, i); };
   const Between at = findKeys(channel.times, channel.interpolation, time);
   weights.resize(channel.count);
-  for (size_t i = 0; i < channel.count; ++i) {
-    if (at.after == at.key)
-      weights[i] = value(at.key, i);
-    else if (cubic)
-      weights[i] =
-          hermite(at, value(at.key, i), number(3 * at.key + 2, i), number(3 * at.after, i), value(at.after, i));
-    else
-      weights[i] = between(value(at.key, i), value(at.after, i), at.u);
-  }
+  for (size_t i = 0; i < channel.count; ++i)
+    weights[i] = sampleKeys(
+        channel, at, [&](size_t row) { return channel.values[row * channel.count + i]; },
+        [](float a, float b, float u) { return between(a, b, u); });
 }
 
 void animate(Scene& scene, double time) {

@@ -127,6 +127,9 @@ struct SceneAssets {
   std::vector<TextureImage> images;
 };
 
+/// Linear RGBA of one texel; alpha is never encoded.
+vec4 decodeTexel(const u8vec4& texel, bool srgb);
+
 /// Bilinear (or nearest) lookup of a material's texture at mesh coordinates (before uvTransform), as linear RGBA.
 /// White when the reference has no image.
 vec4 sampleTexture(const SceneAssets& assets, const TextureRef& ref, vec2 uv);

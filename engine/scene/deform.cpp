@@ -13,12 +13,6 @@ namespace {
 /// Vertices per block of parallel work: about 0.1 ms with four joints each.
 constexpr size_t kGrain = 4096;
 
-bool allFinite(const mat4& m) {
-  for (int c = 0; c < 4; ++c)
-    if (!isFinite(vec3(m[c])) || !std::isfinite(m[c].w)) return false;
-  return true;
-}
-
 /// A matrix that flattens its object onto a plane or line cannot be inverted, and so gives no normals. Its lost axes
 /// get back this share of the largest one: invisible, and well inside float precision.
 constexpr float kFlattenedScale = 1e-5f;
@@ -26,7 +20,7 @@ constexpr float kFlattenedScale = 1e-5f;
 /// Gives a flattened matrix its lost axes back. False when it still cannot be inverted: all axes lost, not finite, or
 /// sheared flat; such instances are left out.
 bool makeInvertible(mat4& m) {
-  if (!allFinite(m)) return false;
+  if (!isFinite(m)) return false;
   const float largest = glm::max(glm::length(vec3(m[0])), glm::max(glm::length(vec3(m[1])), glm::length(vec3(m[2]))));
   if (!(largest > 1e-12f)) return false;
   const float least = kFlattenedScale * largest;
@@ -104,7 +98,7 @@ std::optional<PlacedPose> poseOf(const Scene& scene, Entity entity, const MeshIn
       const auto* joint = scene.registry.tryGet<WorldTransform>(skin->joints[j]);
       mat4 matrix = joint ? objectFromWorld * scene.fromOrigin(joint->worldFromNode) * skin->jointFromBind[j] : mat4(1);
       // A joint that was destroyed, or flung beyond single precision, leaves its part where the node is.
-      if (!allFinite(matrix)) matrix = mat4(1);
+      if (!isFinite(matrix)) matrix = mat4(1);
       out.pose.objectFromBind.push_back(matrix);
     }
   }

@@ -15,11 +15,6 @@ bool sameLight(const LightView& a, const LightView& b) {
          a.range == b.range && a.innerConeCos == b.innerConeCos && a.outerConeCos == b.outerConeCos;
 }
 
-bool sameCamera(const CameraView& a, const CameraView& b) {
-  return a.worldFromView == b.worldFromView && a.fovY == b.fovY && a.orthoHalfHeight == b.orthoHalfHeight &&
-         a.near == b.near && a.width == b.width && a.height == b.height;
-}
-
 template <class View> std::unordered_map<uint32_t, const View*> byId(const std::vector<View>& views) {
   std::unordered_map<uint32_t, const View*> map;
   for (const View& v : views) map.emplace(v.id, &v);
@@ -122,7 +117,7 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     lights.push_back(v);
   });
   changes.lights |= lights.size() != lights_.size() || sky_ != scene.sky;
-  changes.camera |= !sameCamera(camera_, camera);
+  changes.camera |= camera_ != camera;
 
   instances_ = std::move(instances);
   lights_ = std::move(lights);

@@ -1,14 +1,16 @@
-// tinygltf's model to plain data. The only file that includes tinygltf.
+// Files parsed by tinygltf, and checks of what it takes as it comes.
 
 #include "engine/scene/gltf_document.h"
+
+#include "engine/scene/json_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <set>
-
-#include <tiny_gltf.h>
 
 namespace lambent::gltf {
 
@@ -26,6 +28,61 @@ constexpr std::array<const char*, 5> kSupportedExtensions = {"KHR_lights_punctua
 bool fileExists(const std::string& file, void*) {
   std::error_code error;
   return fs::is_regular_file(file, error);
+}
+
+/// Reads the bytes of a file. Throws InputError when it cannot be read.
+std::vector<uint8_t> readFileBytes(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError(file.string(), "no such file");
+  if (!fs::is_regular_file(file, error)) throw InputError(file.string(), "is not a file (a .gltf or .glb expected)");
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) throw InputError(file.string(), "cannot be opened for reading");
+  std::vector<uint8_t> bytes(size_t(std::streamoff(in.tellg())));
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  if (!in) throw InputError(file.string(), "cannot be read to its end");
+  return bytes;
+}
+
+struct Container {
+  bool binary = false;
+  JsonText json; // what was seen of it
+};
+
+uint32_t littleEndian32(const uint8_t* p) {
+  return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
+}
+
+/// Checks what the parser takes on trust: a .glb's chunk sizes, JSON nested so deeply that a parser may run out of
+/// stack, keys given twice.
+Container checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes) {
+  const auto fail = [&](const std::string& reason) { throw InputError(file.string(), reason); };
+  if (bytes.size() < 4) fail("is empty (glTF JSON or a .glb expected)");
+  if (std::memcmp(bytes.data(), "glTF", 4) != 0) {
+    return {false, checkJson(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()})};
+  }
+
+  constexpr size_t kHeader = 12, kChunkHeader = 8;
+  if (bytes.size() < kHeader + kChunkHeader) fail("the .glb is cut off within its header");
+  const uint32_t version = littleEndian32(&bytes[4]), length = littleEndian32(&bytes[8]);
+  if (version != 2) fail("is binary glTF version " + std::to_string(version) + " (2 expected)");
+  if (length > bytes.size())
+    fail("the .glb is cut off: its header says " + std::to_string(length) + " bytes, the file has " +
+         std::to_string(bytes.size()));
+  Container out{true, {}};
+  for (size_t at = kHeader, chunk = 0; at < length; ++chunk) {
+    if (length - at < kChunkHeader) fail("the .glb is cut off within the header of chunk " + std::to_string(chunk));
+    const size_t size = littleEndian32(&bytes[at]);
+    if (size > length - at - kChunkHeader)
+      fail("chunk " + std::to_string(chunk) + " of the .glb says " + std::to_string(size) + " bytes, but only " +
+           std::to_string(length - at - kChunkHeader) + " follow");
+    if (chunk == 0) {
+      if (std::memcmp(&bytes[at + 4], "JSON", 4) != 0) fail("the first chunk of the .glb is not JSON");
+      out.json = checkJson(file, {reinterpret_cast<const char*>(&bytes[at + kChunkHeader]), size});
+    }
+    at += kChunkHeader + size;
+  }
+  return out;
 }
 
 /// What the callbacks know of the file that is read.
@@ -90,33 +147,6 @@ std::string firstLine(std::string text) {
   return text.substr(0, text.find('\n'));
 }
 
-float number(const tinygltf::Value& object, const char* key, float otherwise) {
-  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return otherwise;
-  return float(object.Get(key).GetNumberAsDouble());
-}
-
-vec2 pair(const tinygltf::Value& object, const char* key, vec2 otherwise) {
-  if (!object.IsObject() || !object.Has(key) || object.Get(key).ArrayLen() < 2) return otherwise;
-  const tinygltf::Value &x = object.Get(key).Get(0), &y = object.Get(key).Get(1);
-  return x.IsNumber() && y.IsNumber() ? vec2(x.GetNumberAsDouble(), y.GetNumberAsDouble()) : otherwise;
-}
-
-template <class Info> TextureUse textureUse(const Info& info) {
-  TextureUse use;
-  use.texture = info.index;
-  use.texCoord = info.texCoord;
-  const auto found = info.extensions.find("KHR_texture_transform");
-  if (found == info.extensions.end()) return use;
-  const tinygltf::Value& t = found->second;
-  use.texCoord = int(number(t, "texCoord", float(use.texCoord)));
-  const vec2 offset = pair(t, "offset", vec2(0)), scale = pair(t, "scale", vec2(1));
-  const float angle = number(t, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
-  // Translation × rotation × scale as the extension writes it: positive angles turn counter-clockwise in a uv space
-  // whose v points down.
-  use.uvTransform = mat3(c * scale.x, -s * scale.x, 0, s * scale.y, c * scale.y, 0, offset.x, offset.y, 1);
-  return use;
-}
-
 /// `values` as numbers of exactly N components, the default when absent.
 template <int N, class Number>
 glm::vec<N, Number> numbers(const Document& doc, const std::vector<double>& values, const std::string& place,
@@ -133,93 +163,26 @@ glm::vec<N, Number> numbers(const Document& doc, const std::vector<double>& valu
   return v;
 }
 
-Wrap wrapMode(int mode) {
-  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::ClampToEdge
-         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::MirroredRepeat
-                                                         : Wrap::Repeat;
-}
-
-void takeBuffers(Document& doc, tinygltf::Model& model) {
-  for (auto& b : model.buffers) doc.buffers.push_back(std::move(b.data));
-  for (const auto& v : model.bufferViews)
-    doc.bufferViews.push_back({v.buffer, v.byteOffset, v.byteLength, v.byteStride});
-  for (const auto& a : model.accessors) {
-    Accessor out;
-    out.bufferView = a.bufferView;
-    out.byteOffset = a.byteOffset;
-    out.count = a.count;
-    out.componentType = a.componentType;
-    out.components = tinygltf::GetNumComponentsInType(uint32_t(a.type));
-    out.normalized = a.normalized;
-    if (a.sparse.isSparse) {
-      out.sparse = true;
-      out.sparseCount = a.sparse.count;
-      out.sparseIndicesView = a.sparse.indices.bufferView;
-      out.sparseIndicesOffset = a.sparse.indices.byteOffset;
-      out.sparseIndicesType = a.sparse.indices.componentType;
-      out.sparseValuesView = a.sparse.values.bufferView;
-      out.sparseValuesOffset = a.sparse.values.byteOffset;
-    }
-    doc.accessors.push_back(out);
-  }
-  for (auto& i : model.images) doc.images.push_back({i.name, i.uri, i.bufferView, std::move(i.image)});
-}
-
-void takeMaterials(Document& doc, const tinygltf::Model& model) {
-  for (const auto& t : model.textures) {
-    Texture out;
-    out.image = t.source;
-    if (t.sampler >= 0) {
-      const auto place = "texture " + std::to_string(doc.textures.size());
-      const auto& s = doc.at(model.samplers, t.sampler, "sampler", place);
-      out.wrapU = wrapMode(s.wrapS);
-      out.wrapV = wrapMode(s.wrapT);
-      out.nearest = s.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-    }
-    doc.textures.push_back(out);
-  }
+void checkMaterials(Document& doc) {
+  const tinygltf::Model& model = doc.model;
+  for (size_t i = 0; i < model.textures.size(); ++i)
+    if (const int sampler = model.textures[i].sampler; sampler >= 0)
+      doc.checkIndex(sampler, model.samplers.size(), "sampler", "texture " + std::to_string(i));
   for (const auto& m : model.materials) {
-    const std::string place = label("material", doc.materials.size(), m.name);
-    Material out;
-    out.name = m.name;
-    out.alphaMode = m.alphaMode;
-    out.alphaCutoff = float(m.alphaCutoff);
-    out.doubleSided = m.doubleSided;
-    const auto& pbr = m.pbrMetallicRoughness;
-    out.baseColor = numbers<4>(doc, pbr.baseColorFactor, place, "baseColorFactor", vec4(1));
-    out.emissive = numbers<3>(doc, m.emissiveFactor, place, "emissiveFactor", vec3(0));
-    out.baseColorTexture = textureUse(pbr.baseColorTexture);
-    out.roughness = float(pbr.roughnessFactor);
-    out.metalness = float(pbr.metallicFactor);
-    out.roughnessMetalnessTexture = textureUse(pbr.metallicRoughnessTexture);
-    out.emissiveTexture = textureUse(m.emissiveTexture);
-    for (const auto& [name, value] : m.extensions) {
-      if (name == "KHR_materials_emissive_strength") out.emissiveStrength = number(value, "emissiveStrength", 1);
-      out.extensions.push_back(name);
-    }
-    doc.materials.push_back(out);
+    const std::string place = label("material", doc.materialFactors.size(), m.name);
+    doc.materialFactors.push_back(
+        {numbers<4>(doc, m.pbrMetallicRoughness.baseColorFactor, place, "baseColorFactor", vec4(1)),
+         numbers<3>(doc, m.emissiveFactor, place, "emissiveFactor", vec3(0))});
   }
 }
 
-std::vector<float> morphWeights(const Document& doc, const std::vector<double>& given, const std::string& place) {
-  const std::vector<float> weights(given.begin(), given.end());
-  for (const float w : weights)
-    if (!std::isfinite(w)) doc.fail(place, "weights hold a number beyond single precision");
-  return weights;
+void checkWeights(const Document& doc, const std::vector<double>& weights, const std::string& place) {
+  for (const double w : weights)
+    if (!std::isfinite(float(w))) doc.fail(place, "weights hold a number beyond single precision");
 }
 
-Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
-  const std::string place = label("node", index, n.name);
-  Node out;
-  out.name = n.name;
-  out.children = n.children;
-  out.mesh = n.mesh;
-  out.skin = n.skin;
-  out.camera = n.camera;
-  if (const auto l = n.extensions.find("KHR_lights_punctual"); l != n.extensions.end())
-    out.light = int(number(l->second, "light", -1));
-  out.weights = morphWeights(doc, n.weights, place);
-  Transform& t = out.transform;
+Transform transformOf(Document& doc, const tinygltf::Node& n, const std::string& place) {
+  Transform t;
   t.translation = numbers<3>(doc, n.translation, place, "translation", dvec3(0));
   t.scale = numbers<3>(doc, n.scale, place, "scale", vec3(1));
   const vec4 q = numbers<4>(doc, n.rotation, place, "rotation", vec4(0, 0, 0, 1));
@@ -239,73 +202,86 @@ Node takeNode(Document& doc, const tinygltf::Node& n, size_t index) {
     m[0][3] = m[1][3] = m[2][3] = 0, m[3][3] = 1;
     t.matrix = m;
   }
-  return out;
+  return t;
 }
 
-void takeNodes(Document& doc, tinygltf::Model& model) {
-  for (const auto& n : model.nodes) doc.nodes.push_back(takeNode(doc, n, doc.nodes.size()));
-  for (auto& m : model.meshes) {
-    Mesh out{m.name, {}, morphWeights(doc, m.weights, label("mesh", doc.meshes.size(), m.name))};
-    for (auto& p : m.primitives)
-      out.primitives.push_back({std::move(p.attributes), p.indices, p.material, p.mode, std::move(p.targets)});
-    doc.meshes.push_back(std::move(out));
+void checkNodes(Document& doc) {
+  for (const auto& n : doc.model.nodes) {
+    const std::string place = label("node", doc.transforms.size(), n.name);
+    checkWeights(doc, n.weights, place);
+    doc.transforms.push_back(transformOf(doc, n, place));
   }
-  for (const auto& s : model.skins) doc.skins.push_back({s.name, s.joints, s.inverseBindMatrices});
-  for (const auto& s : model.scenes) doc.scenes.push_back({s.name, s.nodes});
-  doc.defaultScene = model.defaultScene;
+  for (size_t i = 0; i < doc.model.meshes.size(); ++i)
+    checkWeights(doc, doc.model.meshes[i].weights, label("mesh", i, doc.model.meshes[i].name));
 }
 
-void takeCamerasAndLights(Document& doc, const tinygltf::Model& model) {
-  for (const auto& c : model.cameras) {
-    const std::string place = label("camera", doc.cameras.size(), c.name);
-    Camera out{c.name, {}};
+void checkCamerasAndLights(Document& doc) {
+  for (const auto& c : doc.model.cameras) {
+    const std::string place = label("camera", doc.lenses.size(), c.name);
+    CameraLens lens;
     const bool ortho = c.type == "orthographic";
     constexpr double kNearest = 1e-9, kFarthest = 1e12, kNarrowest = 0.001, kWidest = 179.9 / 180 * double(kPi);
     const double near = ortho ? c.orthographic.znear : c.perspective.znear;
     if (ortho && std::abs(c.orthographic.ymag) >= kNearest && std::abs(c.orthographic.ymag) <= kFarthest)
-      out.lens.orthoHalfHeight = float(std::abs(c.orthographic.ymag));
+      lens.orthoHalfHeight = float(std::abs(c.orthographic.ymag));
     else if (!ortho && c.perspective.yfov >= kNarrowest && c.perspective.yfov <= kWidest)
-      out.lens.fovY = float(c.perspective.yfov);
+      lens.fovY = float(c.perspective.yfov);
     else
       doc.warn(place + ": the size of its view is out of range; taken as a perspective view of 57 degrees");
     if ((near >= kNearest || (ortho && near == 0)) && near <= kFarthest)
-      out.lens.near = float(near);
+      lens.near = float(near);
     else
       doc.warn(place + ": the near plane is out of range; taken as 0.05 m");
-    doc.cameras.push_back(out);
+    doc.lenses.push_back(lens);
   }
-  for (const auto& l : model.lights) {
+  for (const auto& l : doc.model.lights) {
     const std::string place = label("light", doc.lights.size(), l.name);
-    Light out{l.name, l.type, {}};
+    PunctualLight light;
     const vec3 intensity = numbers<3>(doc, l.color, place, "color", vec3(1)) * float(l.intensity);
-    out.light.intensity = glm::max(intensity, vec3(0));
+    light.intensity = glm::max(intensity, vec3(0));
     if (!(maxComponent(glm::abs(intensity)) <= kMostLight)) // NaN too
       doc.fail(place, "the intensity is beyond what pictures can hold (1e30)");
-    if (out.light.intensity != intensity) doc.warn(place + ": negative light is left out");
-    if (l.range > 0) out.light.range = float(l.range);
+    if (light.intensity != intensity) doc.warn(place + ": negative light is left out");
+    if (l.range > 0) light.range = float(l.range);
     const double outer = std::clamp(l.spot.outerConeAngle, 0.0, double(kPi) / 2);
-    out.light.outerConeCos = float(std::cos(outer));
-    out.light.innerConeCos = float(std::cos(std::clamp(l.spot.innerConeAngle, 0.0, outer)));
-    doc.lights.push_back(out);
+    light.outerConeCos = float(std::cos(outer));
+    light.innerConeCos = float(std::cos(std::clamp(l.spot.innerConeAngle, 0.0, outer)));
+    doc.lights.push_back(light);
   }
 }
 
-void takeAnimations(Document& doc, const tinygltf::Model& model) {
-  for (const auto& a : model.animations) {
-    Animation out{a.name, {}, {}};
-    for (const auto& c : a.channels) out.channels.push_back({c.sampler, c.target_node, c.target_path});
-    for (const auto& s : a.samplers) out.samplers.push_back({s.input, s.output, s.interpolation});
-    doc.animations.push_back(std::move(out));
-  }
-}
-
-void checkExtensions(const Document& doc, const tinygltf::Model& model) {
-  for (const std::string& required : model.extensionsRequired)
+void checkExtensions(const Document& doc) {
+  for (const std::string& required : doc.model.extensionsRequired)
     if (std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), required) == kSupportedExtensions.end())
       throw InputError(doc.file.string(), "requires the glTF extension " + required + ", which is not supported");
 }
 
 } // namespace
+
+void Document::fail(const std::string& place, const std::string& reason) const {
+  throw InputError(file.string(), place + ": " + reason);
+}
+
+void Document::spend(size_t count, size_t each, const std::string& place) const {
+  if (!budget.take(count, each))
+    fail(place, "needs more memory than a file of " + std::to_string(budget.read) + " bytes may ask for (" +
+                    std::to_string(budget.limit() >> 20) + " MiB in all)");
+}
+
+void Document::checkIndex(int index, size_t size, const char* what, const std::string& place) const {
+  if (index < 0 || size_t(index) >= size)
+    fail(place, std::string("refers to ") + what + " " + std::to_string(index) + ", but the file has " +
+                    (size == 0 ? "none" : std::to_string(size) + " (0 to " + std::to_string(size - 1) + ")"));
+}
+
+std::string label(const char* what, size_t index, const std::string& name) {
+  return std::string(what) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
+}
+
+float number(const tinygltf::Value& object, const char* key, float otherwise) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return otherwise;
+  return float(object.Get(key).GetNumberAsDouble());
+}
 
 Document readDocument(const fs::path& file) {
   Document doc;
@@ -320,29 +296,26 @@ Document readDocument(const fs::path& file) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keepEncoded, nullptr);
   parser.SetFsCallbacks({fileExists, rightPath, readWholeFile, nullptr, &reading});
-  tinygltf::Model model;
   std::string error, warning; // warnings only concern images that could not be read: reported where they are used
   const std::string folder = file.parent_path().empty() ? "." : file.parent_path().string();
   bool parsed = false;
   try {
     const auto size = unsigned(bytes.size());
-    parsed = binary ? parser.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder)
-                    : parser.LoadASCIIFromString(&model, &error, &warning, reinterpret_cast<const char*>(bytes.data()),
-                                                 size, folder);
+    parsed = binary ? parser.LoadBinaryFromMemory(&doc.model, &error, &warning, bytes.data(), size, folder)
+                    : parser.LoadASCIIFromString(&doc.model, &error, &warning,
+                                                 reinterpret_cast<const char*>(bytes.data()), size, folder);
   } catch (const std::exception& e) {
     error = e.what();
   }
-  checkExtensions(doc, model); // before the parser's own errors, which such an extension may be the cause of
+  checkExtensions(doc); // before the parser's own errors, which such an extension may be the cause of
   if (!parsed) throw InputError(file.string(), "is not a usable glTF file: " + firstLine(error));
   if (!error.empty()) doc.warn("the file departs from glTF: " + firstLine(error));
-  if (model.asset.version.rfind("2.", 0) != 0)
-    throw InputError(file.string(), "is glTF version '" + model.asset.version + "' (2.0 expected)");
+  if (doc.model.asset.version.rfind("2.", 0) != 0)
+    throw InputError(file.string(), "is glTF version '" + doc.model.asset.version + "' (2.0 expected)");
 
-  takeBuffers(doc, model);
-  takeMaterials(doc, model);
-  takeNodes(doc, model);
-  takeCamerasAndLights(doc, model);
-  takeAnimations(doc, model);
+  checkMaterials(doc);
+  checkNodes(doc);
+  checkCamerasAndLights(doc);
   return doc;
 }
 

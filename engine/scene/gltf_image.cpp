@@ -2,7 +2,6 @@
 
 #include "engine/core/parallel.h"
 #include "engine/scene/gltf_import.h"
-#include "engine/scene/texture_decode.h"
 
 #include <atomic>
 #include <memory>
@@ -19,14 +18,14 @@ struct StbFree {
 
 constexpr int kMostTexels = 16384; // per side, that OpenGL 4.5 guarantees
 
-std::string placeOf(const Image& image, int index) {
+std::string placeOf(const tinygltf::Image& image, int index) {
   return label("image", size_t(index), image.uri.empty() ? image.name : image.uri);
 }
 
 Bytes encodedBytes(const Document& doc, int index) {
-  const Image& image = doc.images[size_t(index)];
+  const tinygltf::Image& image = doc.model.images[size_t(index)];
   if (image.bufferView >= 0) return viewBytes(doc, image.bufferView, placeOf(image, index));
-  return {image.encoded.data(), image.encoded.size()};
+  return {image.image.data(), image.image.size()};
 }
 
 /// Why the image cannot be decoded; empty: it may be.
@@ -93,7 +92,7 @@ void decodeImages(Import& import) {
     defects[i] = defectOf(encodedBytes(doc, order[i].first), width, height);
     if (defects[i].empty()) // the decoder's and ours
       doc.spend(size_t(width) * size_t(height), 2 * sizeof(u8vec4),
-                placeOf(doc.images[size_t(order[i].first)], order[i].first));
+                placeOf(doc.model.images[size_t(order[i].first)], order[i].first));
   }
   std::atomic<size_t> done = 0;
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
@@ -103,7 +102,7 @@ void decodeImages(Import& import) {
   });
   for (size_t i = 0; i < order.size(); ++i) {
     const auto [index, srgb] = order[i];
-    const Image& image = doc.images[size_t(index)];
+    const tinygltf::Image& image = doc.model.images[size_t(index)];
     const std::string name = !image.name.empty()  ? image.name
                              : !image.uri.empty() ? image.uri
                                                   : "image " + std::to_string(index);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 namespace lambent::gltf {
@@ -16,27 +17,51 @@ constexpr std::array<std::string_view, 8> kSilentExtensions = {
     "KHR_materials_clearcoat",         "KHR_materials_sheen", "KHR_materials_iridescence",
     "KHR_materials_anisotropy",        "KHR_materials_unlit"};
 
-TextureRef importTexture(Import& import, const TextureUse& use, const std::string& place, bool srgb = true) {
+vec2 pair(const tinygltf::Value& object, const char* key, vec2 otherwise) {
+  if (!object.IsObject() || !object.Has(key) || object.Get(key).ArrayLen() < 2) return otherwise;
+  const tinygltf::Value &x = object.Get(key).Get(0), &y = object.Get(key).Get(1);
+  return x.IsNumber() && y.IsNumber() ? vec2(x.GetNumberAsDouble(), y.GetNumberAsDouble()) : otherwise;
+}
+
+Wrap wrapMode(int mode) {
+  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::ClampToEdge
+         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::MirroredRepeat
+                                                         : Wrap::Repeat;
+}
+
+TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const std::string& place, bool srgb = true) {
   Document& doc = import.doc;
   TextureRef ref;
-  if (use.texture < 0) return ref;
-  const Texture& texture = doc.at(doc.textures, use.texture, "texture", place);
-  if (texture.image < 0 || size_t(texture.image) >= doc.images.size()) {
-    doc.warn(place + ": texture " + std::to_string(use.texture) +
+  if (use.index < 0) return ref;
+  const tinygltf::Texture& texture = doc.at(doc.model.textures, use.index, "texture", place);
+  if (texture.source < 0 || size_t(texture.source) >= doc.model.images.size()) {
+    doc.warn(place + ": texture " + std::to_string(use.index) +
              " has no image that this program can use; white instead");
     return ref;
   }
-  ref.image = import.images.emplace(std::pair(texture.image, srgb), uint32_t(import.images.size())).first->second;
-  ref.wrapU = texture.wrapU;
-  ref.wrapV = texture.wrapV;
-  ref.nearest = texture.nearest;
-  ref.uvTransform = use.uvTransform;
+  ref.image = import.images.emplace(std::pair(texture.source, srgb), uint32_t(import.images.size())).first->second;
+  if (texture.sampler >= 0) {
+    const tinygltf::Sampler& sampler = doc.model.samplers[size_t(texture.sampler)];
+    ref.wrapU = wrapMode(sampler.wrapS);
+    ref.wrapV = wrapMode(sampler.wrapT);
+    ref.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  }
+  int texCoord = use.texCoord;
+  if (const auto found = use.extensions.find("KHR_texture_transform"); found != use.extensions.end()) {
+    const tinygltf::Value& t = found->second;
+    texCoord = int(number(t, "texCoord", float(texCoord)));
+    const vec2 offset = pair(t, "offset", vec2(0)), scale = pair(t, "scale", vec2(1));
+    const float angle = number(t, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+    // Translation × rotation × scale as the extension writes it: positive angles turn counter-clockwise in a uv space
+    // whose v points down.
+    ref.uvTransform = mat3(c * scale.x, -s * scale.x, 0, s * scale.y, c * scale.y, 0, offset.x, offset.y, 1);
+  }
   for (int c = 0; c < 3; ++c)
     if (!isFinite(ref.uvTransform[c])) doc.fail(place, "the texture transform holds a number beyond single precision");
-  if (use.texCoord == 0 || use.texCoord == 1)
-    ref.uvSet = uint32_t(use.texCoord);
+  if (texCoord == 0 || texCoord == 1)
+    ref.uvSet = uint32_t(texCoord);
   else
-    doc.warn(place + ": uses texture coordinates " + std::to_string(use.texCoord) + " (0 or 1 expected); 0 instead");
+    doc.warn(place + ": uses texture coordinates " + std::to_string(texCoord) + " (0 or 1 expected); 0 instead");
   return ref;
 }
 
@@ -55,38 +80,42 @@ uint32_t importMaterial(Import& import, int index) {
   }
 
   Document& doc = import.doc;
-  const Material& in = doc.materials[size_t(index)];
+  const tinygltf::Material& in = doc.model.materials[size_t(index)];
+  const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
+  const auto [baseColor, emissive] = doc.materialFactors[size_t(index)];
   const std::string place = label("material", size_t(index), in.name);
   out.name = in.name.empty() ? "material " + std::to_string(index) : in.name;
-  const vec4 color = glm::clamp(in.baseColor, vec4(0), vec4(1));
-  if (color != in.baseColor) doc.warn(place + ": the base colour is out of range; clamped to 0..1");
+  const vec4 color = glm::clamp(baseColor, vec4(0), vec4(1));
+  if (color != baseColor) doc.warn(place + ": the base colour is out of range; clamped to 0..1");
   out.baseColor = vec3(color);
   out.alpha = color.w;
-  out.baseColorTexture = importTexture(import, in.baseColorTexture, place + ", base colour");
+  out.baseColorTexture = importTexture(import, pbr.baseColorTexture, place + ", base colour");
   const auto factor = [&](float value, const char* what) {
     if (!(value >= 0 && value <= 1)) doc.warn(place + ": the " + what + " is out of range; clamped to 0..1");
     return value >= 0 ? glm::min(value, 1.0f) : 0.0f;
   };
-  out.roughness = factor(in.roughness, "roughness");
-  out.metalness = factor(in.metalness, "metalness");
+  out.roughness = factor(float(pbr.roughnessFactor), "roughness");
+  out.metalness = factor(float(pbr.metallicFactor), "metalness");
   out.roughnessMetalnessTexture =
-      importTexture(import, in.roughnessMetalnessTexture, place + ", roughness and metalness", false);
-  out.emission = glm::max(in.emissive * in.emissiveStrength, vec3(0));
+      importTexture(import, pbr.metallicRoughnessTexture, place + ", roughness and metalness", false);
+  const auto strength = in.extensions.find("KHR_materials_emissive_strength");
+  out.emission = glm::max(
+      emissive * (strength != in.extensions.end() ? number(strength->second, "emissiveStrength", 1) : 1), vec3(0));
   if (!(maxComponent(out.emission) <= kMostLight) || !isFinite(out.emission))
     doc.fail(place, "the emission is beyond what pictures can hold (1e30)");
   if (out.emits()) out.emissiveTexture = importTexture(import, in.emissiveTexture, place + ", emission");
-  if (maxComponent(in.emissive) > 1)
+  if (maxComponent(emissive) > 1)
     doc.warn(place + ": emissiveFactor is above 1 (KHR_materials_emissive_strength is meant for that); used as it is");
   out.doubleSided = in.doubleSided;
   if (in.alphaMode == "MASK") {
     out.alphaMode = AlphaMode::Mask;
-    out.alphaCutoff = in.alphaCutoff;
+    out.alphaCutoff = float(in.alphaCutoff);
   } else if (in.alphaMode == "BLEND") {
     out.alphaMode = AlphaMode::Mask;
     out.alphaCutoff = 0.5f;
     import.counted["material(s) with alpha blending shown with a mask, solid where alpha is at least 0.5"]++;
   }
-  for (const std::string& extension : in.extensions)
+  for (const auto& [extension, value] : in.extensions)
     if (std::find(kSilentExtensions.begin(), kSilentExtensions.end(), extension) == kSilentExtensions.end())
       import.counted["material(s) with " + extension + " shown as opaque Lambert surfaces"]++;
   materials.push_back(std::move(out));

@@ -1,6 +1,5 @@
 // glTF nodes to entities, and the importer's entry point.
 
-#include "engine/core/text.h"
 #include "engine/scene/gltf_import.h"
 
 #include <algorithm>
@@ -32,49 +31,57 @@ void decompose(Transform& t) {
 std::vector<int> rootsOf(const Document& doc, const std::string& sceneName) {
   if (!sceneName.empty()) {
     std::vector<std::string> names;
-    for (size_t i = 0; i < doc.scenes.size(); ++i) {
-      if (doc.scenes[i].name == sceneName || std::to_string(i) == sceneName) return doc.scenes[i].nodes;
-      names.push_back(doc.scenes[i].name.empty() ? std::to_string(i) : doc.scenes[i].name);
+    for (size_t i = 0; i < doc.model.scenes.size(); ++i) {
+      if (doc.model.scenes[i].name == sceneName || std::to_string(i) == sceneName) return doc.model.scenes[i].nodes;
+      names.push_back(doc.model.scenes[i].name.empty() ? std::to_string(i) : doc.model.scenes[i].name);
     }
     std::string known;
     for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
     throw InputError(doc.file.string(),
                      "has no scene '" + sceneName + "' (it has: " + (known.empty() ? "none" : known) + ")");
   }
-  if (doc.defaultScene >= 0) return doc.at(doc.scenes, doc.defaultScene, "scene", "default scene").nodes;
-  if (!doc.scenes.empty()) return doc.scenes[0].nodes;
+  if (doc.model.defaultScene >= 0)
+    return doc.at(doc.model.scenes, doc.model.defaultScene, "scene", "default scene").nodes;
+  if (!doc.model.scenes.empty()) return doc.model.scenes[0].nodes;
   // A file without scenes is a library of nodes; those without a parent are shown.
-  std::vector<bool> isChild(doc.nodes.size(), false);
-  for (const Node& n : doc.nodes)
+  std::vector<bool> isChild(doc.model.nodes.size(), false);
+  for (const tinygltf::Node& n : doc.model.nodes)
     for (const int c : n.children)
       if (c >= 0 && size_t(c) < isChild.size()) isChild[size_t(c)] = true;
   std::vector<int> roots;
-  for (size_t i = 0; i < doc.nodes.size(); ++i)
+  for (size_t i = 0; i < doc.model.nodes.size(); ++i)
     if (!isChild[i]) roots.push_back(int(i));
   return roots;
 }
 
-void addCamera(Import& import, Entity e, const Node& node, const std::string& place) {
-  const Camera& camera = import.doc.at(import.doc.cameras, node.camera, "camera", place);
-  import.scene.registry.emplace<CameraLens>(e, camera.lens);
-  if (node.name.empty() && !camera.name.empty()) import.scene.registry.emplace<Name>(e, camera.name);
+/// Nodes without a name have that of what they hold.
+void nameAfter(Import& import, Entity e, const tinygltf::Node& node, const std::string& name) {
+  if (node.name.empty() && !name.empty()) import.scene.registry.emplace<Name>(e, name);
 }
 
-void addPunctual(Import& import, Entity e, const Node& node, const std::string& place) {
-  const Light& light = import.doc.at(import.doc.lights, node.light, "light", place);
-  PunctualLight out = light.light;
-  if (light.type == "point") {
-    out.type = LightType::Point;
-  } else if (light.type == "spot") {
-    out.type = LightType::Spot;
-  } else if (light.type == "directional") {
-    out.type = LightType::Directional;
+void addCamera(Import& import, Entity e, const tinygltf::Node& node, const std::string& place) {
+  import.scene.registry.emplace<CameraLens>(e, import.doc.at(import.doc.lenses, node.camera, "camera", place));
+  nameAfter(import, e, node, import.doc.model.cameras[size_t(node.camera)].name);
+}
+
+void addPunctual(Import& import, Entity e, const tinygltf::Node& node, const std::string& place) {
+  const auto extension = node.extensions.find("KHR_lights_punctual");
+  const int index = extension == node.extensions.end() ? -1 : int(number(extension->second, "light", -1));
+  if (index < 0) return;
+  PunctualLight light = import.doc.at(import.doc.lights, index, "light", place);
+  const tinygltf::Light& in = import.doc.model.lights[size_t(index)];
+  if (in.type == "point") {
+    light.type = LightType::Point;
+  } else if (in.type == "spot") {
+    light.type = LightType::Spot;
+  } else if (in.type == "directional") {
+    light.type = LightType::Directional;
   } else {
-    import.doc.warn(place + ": light type '" + light.type + "' is not one of glTF's; left out");
+    import.doc.warn(place + ": light type '" + in.type + "' is not one of glTF's; left out");
     return;
   }
-  import.scene.registry.emplace<PunctualLight>(e, out);
-  if (node.name.empty() && !light.name.empty()) import.scene.registry.emplace<Name>(e, light.name);
+  import.scene.registry.emplace<PunctualLight>(e, light);
+  nameAfter(import, e, node, in.name);
 }
 
 } // namespace
@@ -82,7 +89,7 @@ void addPunctual(Import& import, Entity e, const Node& node, const std::string& 
 void importNodes(Import& import, const std::string& sceneName) {
   Document& doc = import.doc;
   Registry& registry = import.scene.registry;
-  import.entities.assign(doc.nodes.size(), Entity());
+  import.entities.assign(doc.model.nodes.size(), Entity());
 
   // Depth first, children in file order, on a stack of our own: files may nest nodes deeper than ours is.
   struct Visit {
@@ -98,17 +105,18 @@ void importNodes(Import& import, const std::string& sceneName) {
     const auto [index, parent] = stack.back();
     stack.pop_back();
     const std::string parentPlace =
-        parent < 0 ? "scene" : label("node", size_t(parent), doc.nodes[size_t(parent)].name);
-    Node& node = doc.nodes[(doc.checkIndex(index, doc.nodes.size(), "node", parentPlace), size_t(index))];
+        parent < 0 ? "scene" : label("node", size_t(parent), doc.model.nodes[size_t(parent)].name);
+    const tinygltf::Node& node =
+        doc.model.nodes[(doc.checkIndex(index, doc.model.nodes.size(), "node", parentPlace), size_t(index))];
     if (import.reached(index))
       doc.fail(label("node", size_t(index), node.name),
                "is reached twice: it has two parents, or the nodes form a cycle (a tree expected)");
     order.push_back(index);
-    decompose(node.transform);
+    decompose(doc.transforms[size_t(index)]);
     const Entity e = registry.create();
     import.entities[size_t(index)] = e;
     if (!node.name.empty()) registry.emplace<Name>(e, node.name);
-    registry.emplace<Transform>(e, node.transform);
+    registry.emplace<Transform>(e, doc.transforms[size_t(index)]);
     registry.emplace<WorldTransform>(e);
     if (parent >= 0) registry.emplace<Parent>(e, import.entities[size_t(parent)]);
     push(node.children, index);
@@ -117,13 +125,13 @@ void importNodes(Import& import, const std::string& sceneName) {
   size_t done = 0;
   for (const int index : order) { // after all nodes are placed, because skins refer to joints anywhere
     import.tell("meshes", Import::kRead, Import::kMeshes, done++, order.size());
-    const Node& node = doc.nodes[size_t(index)];
+    const tinygltf::Node& node = doc.model.nodes[size_t(index)];
     const std::string place = label("node", size_t(index), node.name);
     const Entity e = import.entities[size_t(index)];
     if (node.camera >= 0) addCamera(import, e, node, place);
-    if (node.light >= 0) addPunctual(import, e, node, place);
+    addPunctual(import, e, node, place);
     if (node.mesh < 0) continue;
-    doc.checkIndex(node.mesh, doc.meshes.size(), "mesh", place);
+    doc.checkIndex(node.mesh, doc.model.meshes.size(), "mesh", place);
     const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0);
     if (mesh == kNone) continue;
     registry.emplace<MeshInstance>(e, mesh);

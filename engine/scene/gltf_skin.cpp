@@ -6,13 +6,13 @@ namespace lambent::gltf {
 
 namespace {
 
-lambent::Skin readSkin(const Import& import, const Skin& in, const std::string& place) {
+lambent::Skin readSkin(const Import& import, const tinygltf::Skin& in, const std::string& place) {
   const Document& doc = import.doc;
   lambent::Skin skin;
   if (in.joints.empty()) doc.fail(place, "has no joints");
   doc.spend(in.joints.size(), sizeof(Entity) + sizeof(mat4), place);
   for (const int node : in.joints) {
-    doc.checkIndex(node, doc.nodes.size(), "node", place);
+    doc.checkIndex(node, doc.model.nodes.size(), "node", place);
     if (!import.reached(node)) doc.fail(place, "joint node " + std::to_string(node) + " is not part of the scene");
     skin.joints.push_back(import.entities[size_t(node)]);
   }
@@ -35,9 +35,9 @@ lambent::Skin readSkin(const Import& import, const Skin& in, const std::string& 
 
 void addSkin(Import& import, int node, uint32_t slot) {
   Document& doc = import.doc;
-  const Node& in = doc.nodes[size_t(node)];
+  const tinygltf::Node& in = doc.model.nodes[size_t(node)];
   const std::string nodePlace = label("node", size_t(node), in.name);
-  const Skin& skin = doc.at(doc.skins, in.skin, "skin", nodePlace);
+  const tinygltf::Skin& skin = doc.at(doc.model.skins, in.skin, "skin", nodePlace);
   const std::string place = label("skin", size_t(in.skin), skin.name);
   const HighestJoint& highest = import.highestJoints.at(slot);
   if (highest.place.empty()) {
@@ -52,11 +52,12 @@ void addSkin(Import& import, int node, uint32_t slot) {
 
 void addMorphWeights(Import& import, int node, uint32_t slot) {
   Document& doc = import.doc;
-  const Node& in = doc.nodes[size_t(node)];
-  const Mesh& mesh = doc.meshes[size_t(in.mesh)];
+  const tinygltf::Node& in = doc.model.nodes[size_t(node)];
+  const tinygltf::Mesh& mesh = doc.model.meshes[size_t(in.mesh)];
   const size_t targets = import.scene.assets.meshes[slot].morphTargets.size();
   const bool own = !in.weights.empty();
-  std::vector<float> weights = own ? in.weights : mesh.weights;
+  const std::vector<double>& given = own ? in.weights : mesh.weights;
+  std::vector<float> weights(given.begin(), given.end());
   if (!weights.empty() && weights.size() != targets)
     doc.fail(own ? label("node", size_t(node), in.name) : label("mesh", size_t(in.mesh), mesh.name),
              "has " + std::to_string(weights.size()) + " weights for " + std::to_string(targets) + " morph targets");
@@ -68,11 +69,11 @@ void addMorphWeights(Import& import, int node, uint32_t slot) {
 } // namespace
 
 void importDeformation(Import& import, int node, uint32_t slot) {
-  const Node& in = import.doc.nodes[size_t(node)];
+  const tinygltf::Node& in = import.doc.model.nodes[size_t(node)];
   const lambent::Mesh& mesh = import.scene.assets.meshes[slot];
   if (in.skin >= 0 || !mesh.morphTargets.empty()) // a shape of its own
     import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3), label("node", size_t(node), in.name));
-  if (import.doc.nodes[size_t(node)].skin >= 0) addSkin(import, node, slot);
+  if (in.skin >= 0) addSkin(import, node, slot);
   addMorphWeights(import, node, slot);
 }
 

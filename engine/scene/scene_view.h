@@ -66,6 +66,7 @@ struct CameraView {
   float aspect() const { return float(width) / float(height); }
   /// Returns the camera of an image `side` times as wide and as high, in whole pixels, at least one.
   CameraView scaled(float side) const;
+  bool operator==(const CameraView&) const = default;
 };
 
 struct SceneChanges {

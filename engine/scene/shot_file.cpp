@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -101,11 +100,17 @@ class Field {
   std::string file_, path_;
 };
 
-/// Time of a key, which must lie after the one before.
-double keyTime(const Field& key, double before) {
+/// Time of the key that follows `before`, which must lie after these.
+template <class Key> double keyTime(const Field& key, const std::vector<Key>& before) {
   const double t = key["t"].number();
-  if (!(t > before)) key["t"].fail("is not after the key before it (keys go up in time)");
+  if (!before.empty() && !(t > before.back().t)) key["t"].fail("is not after the key before it (keys go up in time)");
   return t;
+}
+
+dvec3 placeOf(const Field& field) {
+  const auto at = field.vector<3, double>();
+  if (!isNear(vec3(at))) field.fail("is farther than 1e12 m away");
+  return at;
 }
 
 std::vector<CameraKey> readCamera(const Field& camera) {
@@ -114,14 +119,9 @@ std::vector<CameraKey> readCamera(const Field& camera) {
   camera["keys"].elements([&](const Field& k) {
     k.checkKeys({"t", "eye", "target", "fov"});
     CameraKey key;
-    key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
-    const auto place = [&](const char* name) {
-      const dvec3 at = k[name].vector<3, double>();
-      if (!isNear(vec3(at))) k[name].fail("is farther than 1e12 m away");
-      return at;
-    };
-    key.eye = place("eye");
-    key.target = place("target");
+    key.t = keyTime(k, keys);
+    key.eye = placeOf(k["eye"]);
+    key.target = placeOf(k["target"]);
     if (key.eye == key.target) k["target"].fail("is the same point as the eye");
     if (k.has("fov")) {
       const float degrees = k["fov"].single();
@@ -157,25 +157,15 @@ std::map<std::string, std::vector<NodeKey>> readNodes(const Field& nodes, bool l
       k.checkKeys(lights ? std::vector<std::string>{"t", "position", "rotation", "direction", "intensity"}
                          : std::vector<std::string>{"t", "position", "rotation"});
       NodeKey key;
-      key.t = keyTime(k, keys.empty() ? -std::numeric_limits<double>::infinity() : keys.back().t);
+      key.t = keyTime(k, keys);
       if (k.has("position")) key.position = k["position"].vector<3, double>();
       if (k.has("rotation")) key.rotation = k["rotation"].vector<3>();
-      if (k.has("direction")) {
-        key.direction = vec3(glm::normalize(directionOf(k["direction"])));
-      }
-      if (k.has("intensity")) {
-        key.intensity = lightOf(k["intensity"]);
-      }
+      if (k.has("direction")) key.direction = vec3(glm::normalize(directionOf(k["direction"])));
+      if (k.has("intensity")) key.intensity = lightOf(k["intensity"]);
       keys.push_back(key);
     });
   });
   return out;
-}
-
-vec3 placeOf(const Field& field) {
-  const vec3 at = field.vector<3>();
-  if (!isNear(at)) field.fail("is farther than 1e12 m away");
-  return at;
 }
 
 PlayedMoment::Thing readThing(const Field& t) {
@@ -185,7 +175,7 @@ PlayedMoment::Thing readThing(const Field& t) {
   if (!(number >= 0 && number <= 1e9)) t["number"].fail("is out of range (0 to 1e9)");
   thing.number = uint32_t(number);
   thing.kind = t["kind"].text();
-  thing.centre = placeOf(t["at"]);
+  thing.centre = vec3(placeOf(t["at"]));
   thing.yaw = t["yaw"].single();
   return thing;
 }
@@ -195,7 +185,7 @@ std::vector<PlayedMoment> readPlayed(const Field& list) {
   list.elements([&](const Field& m) {
     m.checkKeys({"t", "movers", "things", "lamps", "hour", "torch"});
     PlayedMoment moment;
-    moment.t = keyTime(m, moments.empty() ? -std::numeric_limits<double>::infinity() : moments.back().t);
+    moment.t = keyTime(m, moments);
     if (m.has("movers"))
       m["movers"].members([&](const std::string& name, const Field& at) {
         at.single(); // larger numbers are refused
@@ -210,7 +200,7 @@ std::vector<PlayedMoment> readPlayed(const Field& list) {
     if (m.has("torch")) {
       const Field torch = m["torch"];
       torch.checkKeys({"at", "direction", "intensity"});
-      moment.torch = {placeOf(torch["at"]), vec3(directionOf(torch["direction"])), lightOf(torch["intensity"])};
+      moment.torch = {vec3(placeOf(torch["at"])), vec3(directionOf(torch["direction"])), lightOf(torch["intensity"])};
     }
     moments.push_back(std::move(moment));
   });
@@ -319,12 +309,7 @@ void saveShot(const Shot& shot, const fs::path& file) {
     for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));
   }
   if (!shot.set.empty()) out["set"] = shot.set;
-  writeAtomically(file, [&](const fs::path& temporary) {
-    std::ofstream stream(temporary);
-    stream << out.dump(2) << "\n";
-    stream.close();
-    if (!stream) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
-  });
+  writeAtomically(file, out.dump(2) + "\n");
 }
 
 } // namespace lambent

@@ -15,11 +15,15 @@ template <class Value, class Share> Value between(const Value& from, const Value
   return from + (to - from) * u;
 }
 
+/// The first of the keys that lies after t.
+template <class Key> auto firstAfter(const std::vector<Key>& keys, double t) {
+  return std::upper_bound(keys.begin(), keys.end(), t, [](double a, const Key& k) { return a < k.t; });
+}
+
 /// Catmull-Rom through keys at uneven times: cubic Hermite whose tangents are the slopes between the neighbours,
 /// one-sided at the ends, where it also holds.
 template <class Value> dvec3 spline(const std::vector<CameraKey>& keys, double t, Value&& value) {
-  const auto after =
-      std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  const auto after = firstAfter(keys, t);
   if (after == keys.begin()) return value(keys.front());
   if (after == keys.end()) return value(keys.back());
   const size_t i = size_t(after - keys.begin()) - 1;
@@ -33,22 +37,21 @@ template <class Value> dvec3 spline(const std::vector<CameraKey>& keys, double t
 }
 
 float linearFov(const std::vector<CameraKey>& keys, double t) {
-  const auto after =
-      std::upper_bound(keys.begin(), keys.end(), t, [](double a, const CameraKey& k) { return a < k.t; });
+  const auto after = firstAfter(keys, t);
   if (after == keys.begin()) return keys.front().fovY;
   if (after == keys.end()) return keys.back().fovY;
   const auto before = after - 1;
   return between(before->fovY, after->fovY, float((t - before->t) / (after->t - before->t)));
 }
 
-template <class V> struct Between {
+template <class V> struct Neighbours {
   V from, to;
   float u;
 };
 
 /// The keys around t that set `field`; nothing where no key does.
 template <class V>
-std::optional<Between<V>> around(const std::vector<NodeKey>& keys, std::optional<V> NodeKey::*field, double t) {
+std::optional<Neighbours<V>> around(const std::vector<NodeKey>& keys, std::optional<V> NodeKey::*field, double t) {
   const NodeKey *before = nullptr, *after = nullptr;
   for (const NodeKey& k : keys) {
     if (!(k.*field)) continue;
@@ -56,9 +59,9 @@ std::optional<Between<V>> around(const std::vector<NodeKey>& keys, std::optional
     if (k.t > t && !after) after = &k;
   }
   if (!before && !after) return {};
-  if (!before) return Between<V>{*(after->*field), *(after->*field), 0};
-  if (!after) return Between<V>{*(before->*field), *(before->*field), 0};
-  return Between<V>{*(before->*field), *(after->*field), float((t - before->t) / (after->t - before->t))};
+  if (!before) return Neighbours<V>{*(after->*field), *(after->*field), 0};
+  if (!after) return Neighbours<V>{*(before->*field), *(before->*field), 0};
+  return Neighbours<V>{*(before->*field), *(after->*field), float((t - before->t) / (after->t - before->t))};
 }
 
 template <class V>
@@ -118,7 +121,7 @@ void aimLight(Scene& scene, Entity e, const vec3& direction) {
 }
 
 /// Mixed along the great circle where the two differ by less than half a turn.
-vec3 mixDirections(const Between<vec3>& b) {
+vec3 mixDirections(const Neighbours<vec3>& b) {
   const vec3 from = glm::normalize(b.from), to = glm::normalize(b.to);
   const float angle = std::acos(glm::clamp(glm::dot(from, to), -1.0f, 1.0f));
   if (angle < 1e-3f || angle > kPi - 1e-3f) return b.u < 0.5f ? from : to;
@@ -138,8 +141,7 @@ CameraView shotCamera(const Shot& shot, double t, const dvec3& origin) {
 
 PlayedMoment playedAt(const Shot& shot, double t) {
   CHECK(!shot.played.empty());
-  const auto after = std::upper_bound(shot.played.begin(), shot.played.end(), t,
-                                      [](double a, const PlayedMoment& m) { return a < m.t; });
+  const auto after = firstAfter(shot.played, t);
   if (after == shot.played.begin()) return shot.played.front();
   PlayedMoment now = *(after - 1);
   if (after == shot.played.end()) return now;

@@ -11,13 +11,10 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_
   const Mesh& mesh = view.assets->meshes[instance.mesh];
   CHECK_LT(primitiveIndex, mesh.primitives.size());
   CHECK_LT(triangle, mesh.primitives[primitiveIndex].triangleCount);
-  const uvec3 corners = mesh.triangles[mesh.primitives[primitiveIndex].firstTriangle + triangle];
+  const TrianglePlace place = trianglePlace(mesh, mesh.primitives[primitiveIndex], triangle, barycentric);
+  const uvec3& corners = place.vertices;
   const std::vector<vec3>& positions = instance.deformed ? instance.deformed->positions : mesh.positions;
   const std::vector<vec3>& normals = instance.deformed ? instance.deformed->normals : mesh.normals;
-  const auto interpolate = [&](const std::vector<vec3>& of) {
-    return of[corners.x] * (1 - barycentric.x - barycentric.y) + of[corners.y] * barycentric.x +
-           of[corners.z] * barycentric.y;
-  };
   const mat3 normalFromObject = glm::transpose(glm::inverse(mat3(instance.worldFromObject)));
   const auto unit = [](const vec3& v, const vec3& otherwise) {
     const float length = glm::length(v);
@@ -25,10 +22,10 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_
   };
   const vec3 p0 = positions[corners.x];
   SurfacePoint point;
-  point.position = vec3(instance.worldFromObject * vec4(interpolate(positions), 1));
+  point.position = vec3(instance.worldFromObject * vec4(place.interpolate(positions), 1));
   point.geometricNormal =
       unit(normalFromObject * glm::cross(positions[corners.y] - p0, positions[corners.z] - p0), vec3(0));
-  point.normal = unit(normalFromObject * interpolate(normals), point.geometricNormal);
+  point.normal = unit(normalFromObject * place.interpolate(normals), point.geometricNormal);
   return point;
 }
 
@@ -41,14 +38,8 @@ RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance
   const Material& material = view.assets->materials[primitive.material];
   RoughnessMetalness roughnessMetalness{material.roughness, material.metalness};
   if (material.roughnessMetalnessTexture.image == kNone) return roughnessMetalness;
-  const std::vector<vec2>& uvs = material.roughnessMetalnessTexture.uvSet == 0 ? mesh.uv0 : mesh.uv1;
-  vec2 uv(0);
-  if (!uvs.empty()) {
-    CHECK_LT(triangle, primitive.triangleCount);
-    const uvec3 corners = mesh.triangles[primitive.firstTriangle + triangle];
-    uv = uvs[corners.x] * (1 - barycentric.x - barycentric.y) + uvs[corners.y] * barycentric.x +
-         uvs[corners.z] * barycentric.y;
-  }
+  CHECK_LT(triangle, primitive.triangleCount);
+  const vec2 uv = uvAt(mesh, trianglePlace(mesh, primitive, triangle, barycentric), material.roughnessMetalnessTexture);
   const vec4 texel = sampleTexture(*view.assets, material.roughnessMetalnessTexture, uv);
   roughnessMetalness.roughness *= texel.y;
   roughnessMetalness.metalness *= texel.z;

@@ -5,6 +5,30 @@
 
 namespace lambent {
 
+/// A place on a triangle: its vertices and their weights.
+struct TrianglePlace {
+  uvec3 vertices;
+  float w0, u, v;
+
+  template <class T> T interpolate(const std::vector<T>& a) const {
+    return a[vertices.x] * w0 + a[vertices.y] * u + a[vertices.z] * v;
+  }
+};
+
+/// `triangle` is numbered within its primitive, `barycentric` are the weights of its second and third corner: all as a
+/// SurfaceHit has them.
+inline TrianglePlace trianglePlace(const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
+                                   const vec2& barycentric) {
+  return {mesh.triangles[primitive.firstTriangle + triangle], 1 - barycentric.x - barycentric.y, barycentric.x,
+          barycentric.y};
+}
+
+/// Coordinates for a texture; 0 where the mesh has none.
+inline vec2 uvAt(const Mesh& mesh, const TrianglePlace& place, const TextureRef& ref) {
+  const auto& uv = ref.uvSet == 0 ? mesh.uv0 : mesh.uv1;
+  return uv.empty() ? vec2(0) : place.interpolate(uv);
+}
+
 /// World space. Both normals are unit and on the front side as glTF defines it (counter-clockwise, turned with a
 /// mirrored instance), unlike a hit's, which face the ray. Zero where the triangle has no area and so no side.
 struct SurfacePoint {
@@ -13,8 +37,7 @@ struct SurfacePoint {
   vec3 geometricNormal{0}; // the triangle's
 };
 
-/// The point of a triangle (numbered within its primitive) at `barycentric`, the weights of its second and third
-/// corner: all as a SurfaceHit has them. Uses the deformed vertices where there are any.
+/// The point of a triangle (as trianglePlace). Uses the deformed vertices where there are any.
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
                           vec2 barycentric);
 

@@ -1,24 +1,20 @@
 // Texture lookup on the CPU. Matches what GL does with the base level of an sRGB texture: decode, then filter.
 
 #include "engine/core/image.h"
-#include "engine/scene/texture_decode.h"
+#include "engine/scene/assets.h"
 
+#include <array>
 #include <cmath>
 
 namespace lambent {
 
-const std::array<float, 256>& srgbDecodeTable() {
+vec4 decodeTexel(const u8vec4& texel, bool srgb) {
+  if (!srgb) return vec4(texel) / 255.0f;
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t;
     for (int i = 0; i < 256; ++i) t[i] = linearFromSrgb(float(i) / 255);
     return t;
   }();
-  return table;
-}
-
-vec4 decodeTexel(const u8vec4& texel, bool srgb) {
-  if (!srgb) return vec4(texel) / 255.0f;
-  const auto& table = srgbDecodeTable();
   return {table[texel.x], table[texel.y], table[texel.z], float(texel.w) / 255};
 }
 

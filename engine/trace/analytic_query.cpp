@@ -6,16 +6,8 @@
 
 namespace lambent {
 
-uint32_t AnalyticQuery::addBox(const vec3& lo, const vec3& hi, const Look& look) {
-  shapes_.push_back({Kind::Box, lo, hi, look});
-  return uint32_t(shapes_.size() - 1);
-}
-uint32_t AnalyticQuery::addSphere(const vec3& centre, float radius, const Look& look) {
-  shapes_.push_back({Kind::Sphere, centre, vec3(radius), look});
-  return uint32_t(shapes_.size() - 1);
-}
-uint32_t AnalyticQuery::addPlane(const vec3& point, const vec3& normal, const Look& look) {
-  shapes_.push_back({Kind::Plane, point, normal, look});
+uint32_t AnalyticQuery::add(const Shape& shape) {
+  shapes_.push_back(shape);
   return uint32_t(shapes_.size() - 1);
 }
 

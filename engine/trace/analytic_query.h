@@ -16,10 +16,14 @@ class AnalyticQuery final : public RayQuery {
 
   /// Each returns the shape's index, which hits carry as `instance`. Triangle numbers: 0, or the face (−x,+x,−y,…) of a
   /// box.
-  uint32_t addBox(const vec3& lo, const vec3& hi, const Look& look);
-  uint32_t addSphere(const vec3& centre, float radius, const Look& look);
+  uint32_t addBox(const vec3& lo, const vec3& hi, const Look& look) { return add({Kind::Box, lo, hi, look}); }
+  uint32_t addSphere(const vec3& centre, float radius, const Look& look) {
+    return add({Kind::Sphere, centre, vec3(radius), look});
+  }
   /// The plane through `point` with unit `normal`; emission on the normal's side.
-  uint32_t addPlane(const vec3& point, const vec3& normal, const Look& look);
+  uint32_t addPlane(const vec3& point, const vec3& normal, const Look& look) {
+    return add({Kind::Plane, point, normal, look});
+  }
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
   void distances(std::span<const Ray> rays, std::span<float> t) const override;
@@ -39,6 +43,7 @@ class AnalyticQuery final : public RayQuery {
     vec3 outward{0};
     uint32_t face = 0;
   };
+  uint32_t add(const Shape& shape);
   static Meeting meet(const Shape& shape, const Ray& ray);
 
   std::vector<Shape> shapes_;

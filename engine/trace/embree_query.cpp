@@ -44,8 +44,6 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-bool traceable(const Ray& r) { return isFinite(r.origin) && isFinite(r.direction) && r.tMax > 0; }
-
 #if EMBREE_MAJOR >= 4
 struct TraceArguments {
   RTCIntersectArguments intersect;
@@ -116,7 +114,6 @@ struct EmbreeQuery::State {
 
   const SceneAssets& assets;
   RTCDevice device = nullptr;
-  bool fresh = true;                                   // no instances have been taken over yet
   std::vector<RTCScene> meshes;                        // null for a mesh without triangles
   std::vector<std::vector<GeometryData>> geometryData; // by mesh and primitive; addresses are handed to Embree
   RTCScene top = nullptr;
@@ -136,6 +133,16 @@ struct EmbreeQuery::State {
   void place(uint32_t index, const InstanceView& in);
   void remove(uint32_t index);
   void reshape(Instance& out, const DeformedMesh& deformed);
+  /// Calls fn(geometry, primitive) for the geometries of a mesh's bottom level, and commits what it changed.
+  template <class Fn> void change(RTCScene bottom, uint32_t mesh, Fn&& fn) const {
+    for (uint32_t p = 0; p < assets.meshes[mesh].primitives.size(); ++p) {
+      if (assets.meshes[mesh].primitives[p].triangleCount == 0) continue;
+      RTCGeometry g = rtcGetGeometry(bottom, p);
+      fn(g, p);
+      rtcCommitGeometry(g);
+    }
+    rtcCommitScene(bottom);
+  }
 };
 
 void EmbreeQuery::State::applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t p) {
@@ -198,14 +205,8 @@ void EmbreeQuery::State::reshape(Instance& out, const DeformedMesh& deformed) {
     return;
   }
   writeVertices(out.own.vertices, deformed.positions);
-  const Mesh& mesh = assets.meshes[out.mesh];
-  for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
-    if (mesh.primitives[p].triangleCount == 0) continue;
-    RTCGeometry g = rtcGetGeometry(out.own.scene, p);
-    rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0);
-    rtcCommitGeometry(g);
-  }
-  rtcCommitScene(out.own.scene);
+  change(out.own.scene, out.mesh,
+         [](RTCGeometry g, uint32_t) { rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0); });
 }
 
 void EmbreeQuery::State::remove(uint32_t index) {
@@ -263,10 +264,7 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
   State& s = *state_;
   const size_t before = s.instances.size(), now = view.instances.size();
   uint32_t placed = 0;
-  if (s.fresh && !view.boundsWorld.empty()) {
-    rayEpsilon_ = rayEpsilonOf(view.boundsWorld);
-    s.fresh = false;
-  }
+  measure(view.boundsWorld);
   for (size_t i = now; i < before; ++i) s.remove(uint32_t(i));
   s.instances.resize(now);
   for (uint32_t i = 0; i < now; ++i) {
@@ -286,14 +284,7 @@ void EmbreeQuery::setAlphaTest(AlphaTest test) {
   if (s.alphaTest == test) return;
   s.alphaTest = test;
   const auto apply = [&](RTCScene scene, uint32_t mesh) {
-    if (!scene) return;
-    for (uint32_t p = 0; p < s.assets.meshes[mesh].primitives.size(); ++p) {
-      if (s.assets.meshes[mesh].primitives[p].triangleCount == 0) continue;
-      RTCGeometry g = rtcGetGeometry(scene, p);
-      s.applyAlphaTest(g, mesh, p);
-      rtcCommitGeometry(g);
-    }
-    rtcCommitScene(scene);
+    if (scene) s.change(scene, mesh, [&](RTCGeometry g, uint32_t p) { s.applyAlphaTest(g, mesh, p); });
   };
   for (uint32_t m = 0; m < s.meshes.size(); ++m) apply(s.meshes[m], m);
   for (const State::Instance& i : s.instances) apply(i.own.scene, i.mesh);

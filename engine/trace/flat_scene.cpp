@@ -34,9 +34,9 @@ double areaOf(const Bvh& bvh) {
   return sum;
 }
 
+/// As RayMask::modes, whose wraps have the numbers of ours.
 uint32_t modesOf(const TextureRef& ref) {
-  const auto number = [](Wrap wrap) { return wrap == Wrap::Repeat ? 0u : wrap == Wrap::MirroredRepeat ? 1u : 2u; };
-  return number(ref.wrapU) | number(ref.wrapV) << 2 | uint32_t(ref.nearest) << 4;
+  return uint32_t(ref.wrapU) | uint32_t(ref.wrapV) << 2 | uint32_t(ref.nearest) << 4;
 }
 
 } // namespace

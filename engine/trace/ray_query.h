@@ -6,9 +6,7 @@
 #include "engine/core/math.h"
 #include "engine/scene/scene_view.h"
 
-#include <memory>
 #include <span>
-#include <vector>
 
 namespace lambent {
 
@@ -18,6 +16,9 @@ struct Ray {
   vec3 direction{0, 0, 1};
   float tMax = kInfinity;
 };
+
+/// Says whether a ray can be traced: others meet nothing.
+inline bool traceable(const Ray& r) { return isFinite(r.origin) && isFinite(r.direction) && r.tMax > 0; }
 
 /// What a ray met. `normal` is the shading normal and `geometricNormal` the triangle's, both unit and both turned to
 /// the side the ray came from. `emission` is what this side emits (zero on the back of a single-sided emitter).
@@ -75,13 +76,17 @@ class RayQuery {
   float rayEpsilon() const { return rayEpsilon_; }
 
  protected:
-  float rayEpsilon_ = 1e-4f;
-};
+  /// Finds the rayEpsilon of a scene of triangles by the bounds of the first view that has any.
+  void measure(const Aabb& b) {
+    if (measured_ || b.empty()) return;
+    rayEpsilon_ = 0x1p-19f * glm::max(maxComponent(glm::abs(b.lo)), maxComponent(glm::abs(b.hi)));
+    measured_ = true;
+  }
 
-/// RayQuery::rayEpsilon of a scene of triangles with these bounds.
-inline float rayEpsilonOf(const Aabb& b) {
-  return 0x1p-19f * glm::max(maxComponent(glm::abs(b.lo)), maxComponent(glm::abs(b.hi)));
-}
+ private:
+  float rayEpsilon_ = 1e-4f;
+  bool measured_ = false;
+};
 
 /// Point just off a surface on the side of `geometricNormal`, so that a ray from it does not meet the surface again:
 /// the query's rayEpsilon, and 2^-16 of the position's own coordinates. (16 float steps would do for rays; virtual

@@ -1,35 +1,19 @@
 #include "engine/trace/surface_hit.h"
 
+#include "engine/scene/surface_point.h"
+
 namespace lambent {
 
 namespace {
 
-struct Corner {
-  uvec3 vertices;
-  float w0, u, v;
-
-  template <class T> T interpolate(const std::vector<T>& a) const {
-    return a[vertices.x] * w0 + a[vertices.y] * u + a[vertices.z] * v;
-  }
-};
-
-Corner cornerOf(const Mesh& mesh, const Primitive& primitive, uint32_t triangle, float u, float v) {
-  return {mesh.triangles[primitive.firstTriangle + triangle], 1 - u - v, u, v};
-}
-
-vec2 uvOf(const Mesh& mesh, const Corner& c, const TextureRef& ref) {
-  const auto& uv = ref.uvSet == 0 ? mesh.uv0 : mesh.uv1;
-  return uv.empty() ? vec2(0) : c.interpolate(uv);
-}
-
 /// `mean` (may be null) stands in for the texture.
-vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const Corner& c,
+vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& c,
                   const vec4* mean = nullptr) {
   vec4 colour(material.baseColor, material.alpha);
   if (mean)
     colour *= *mean;
   else if (material.baseColorTexture.image != kNone)
-    colour *= sampleTexture(assets, material.baseColorTexture, uvOf(mesh, c, material.baseColorTexture));
+    colour *= sampleTexture(assets, material.baseColorTexture, uvAt(mesh, c, material.baseColorTexture));
   if (!mesh.colors.empty()) colour *= c.interpolate(mesh.colors);
   return colour;
 }
@@ -38,7 +22,7 @@ vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& m
 
 float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
               const vec2& barycentric) {
-  const Corner c = cornerOf(mesh, primitive, triangle, barycentric.x, barycentric.y);
+  const TrianglePlace c = trianglePlace(mesh, primitive, triangle, barycentric);
   return baseColourAt(assets, mesh, assets.materials[primitive.material], c).w;
 }
 
@@ -47,7 +31,7 @@ SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, 
   const Mesh& mesh = instance.mesh;
   const Primitive& primitive = mesh.primitives[met.primitive];
   const Material& material = assets.materials[primitive.material];
-  const Corner c = cornerOf(mesh, primitive, met.triangle, met.barycentric.x, met.barycentric.y);
+  const TrianglePlace c = trianglePlace(mesh, primitive, met.triangle, met.barycentric);
   const vec3 p0 = instance.positions[c.vertices.x];
   const vec3 front = instance.normalFromObject *
                      glm::cross(instance.positions[c.vertices.y] - p0, instance.positions[c.vertices.z] - p0);
@@ -69,7 +53,7 @@ SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, 
   hit.albedo = glm::clamp(vec3(baseColourAt(assets, mesh, material, c, mean)), 0.0f, 1.0f);
   if (material.emits() && (fromFront || material.doubleSided))
     hit.emission = material.emission *
-                   vec3(sampleTexture(assets, material.emissiveTexture, uvOf(mesh, c, material.emissiveTexture)));
+                   vec3(sampleTexture(assets, material.emissiveTexture, uvAt(mesh, c, material.emissiveTexture)));
   hit.instance = met.instance;
   hit.primitive = met.primitive;
   hit.triangle = met.triangle;

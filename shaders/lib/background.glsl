@@ -1,4 +1,9 @@
-// The sky where no surface is seen. Variant DAYLIGHT: by direction; lib/gbuffer.glsl goes before, for its camera.
+// Depth, and the sky where no surface is seen. Variants DAYLIGHT (by direction) and GLOSSY: with all of lib/gbuffer.glsl.
+#if defined(GLOSSY) || defined(DAYLIGHT)
+#include "gbuffer.glsl"
+#else
+layout(binding = 0) uniform sampler2D gbufferDepth;
+#endif
 #ifdef DAYLIGHT
 #include "shared/sky.h"
 uniform DaylightModel daylight;

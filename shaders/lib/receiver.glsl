@@ -14,6 +14,14 @@ Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
   return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb, roughnessMetalness.x, roughnessMetalness.y);
 }
 
+/// Glossy light as the passes store it, as if what comes from around the mirrored direction were even: its mean radiance,
+/// times what the lobe reflects of it.
+vec3 evenGlossy(ivec2 pixel, Receiver receiver, vec3 radiance) {
+  float roughness = max(texelFetch(gbufferRoughnessMetalness, pixel, 0).r, kLeastRoughness);
+  vec3 reflected = max(receiver.specular, vec3(dielectricShare(roughness, receiver.cosViewer)));
+  return radiance * receiver.strength * reflected / glossyTint(receiver);
+}
+
 /// Radiance towards the camera of irradiance and of glossy light as the passes store it, divided by glossyTint.
 /// `depth` must not be 0.
 vec3 reflectedAt(ivec2 pixel, float depth, vec3 irradiance, vec3 glossy) {

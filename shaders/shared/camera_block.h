@@ -1,6 +1,5 @@
 // The camera as the passes read it: uniform block, std140.
-#ifndef LAMBENT_SHARED_CAMERA_BLOCK_H
-#define LAMBENT_SHARED_CAMERA_BLOCK_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -35,5 +34,4 @@ SHARED_INLINE vec3 viewDirectionFromPixel(CameraBlock c, vec2 pixel) {
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::CameraBlock) == 160);
-#endif
 #endif

@@ -1,6 +1,5 @@
 // Error as a colour, ready for a display; one text for C++ and GLSL.
-#ifndef LAMBENT_SHARED_ERROR_COLOR_H
-#define LAMBENT_SHARED_ERROR_COLOR_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -14,4 +13,3 @@ SHARED_INLINE vec3 errorColor(float error) {
 }
 
 SHARED_END
-#endif

@@ -6,8 +6,7 @@
 // scaled by one minus a bound of what a dielectric lobe reflects altogether towards this viewer. The scale does not
 // depend on the light, so the irradiance that the passes gather, store and filter stays what it is for Lambert
 // surfaces; the price is that the Lambert part alone is not reciprocal. (The lobe is.)
-#ifndef LAMBENT_SHARED_GGX_H
-#define LAMBENT_SHARED_GGX_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -87,4 +86,3 @@ SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight, float spread
 SHARED_INLINE vec3 glossyTint(Receiver r) { return max(r.specular, vec3(kDielectricF0)); }
 
 SHARED_END
-#endif

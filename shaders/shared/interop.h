@@ -1,6 +1,5 @@
 // Makes the files of this folder valid C++ and GLSL: each struct and mapping that both sides use is written once.
-#ifndef LAMBENT_SHARED_INTEROP_H
-#define LAMBENT_SHARED_INTEROP_H
+#pragma once
 #ifdef __cplusplus
 #include "engine/core/math.h"
 #define SHARED_INLINE inline
@@ -31,5 +30,4 @@ using glm::uvec4;
 #define SHARED_OUT(T) out T
 #define SHARED_BEGIN
 #define SHARED_END
-#endif
 #endif

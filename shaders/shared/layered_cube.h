@@ -1,6 +1,5 @@
 // An entry of the layered depth cube (gi/cube) as pixels look it up: 16 bytes.
-#ifndef LAMBENT_SHARED_LAYERED_CUBE_H
-#define LAMBENT_SHARED_LAYERED_CUBE_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -27,5 +26,4 @@ SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::CubeTexel) == 16);
 static_assert(sizeof(lambent::CubeNode) == 32);
-#endif
 #endif

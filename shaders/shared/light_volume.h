@@ -1,6 +1,5 @@
 // A grid that light propagates through: what its filling, its steps and its readers must agree on. Lengths are in cells.
-#ifndef LAMBENT_SHARED_LIGHT_VOLUME_H
-#define LAMBENT_SHARED_LIGHT_VOLUME_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -31,4 +30,3 @@ SHARED_INLINE int volumePart(vec3 x, vec3 centre) {
 }
 
 SHARED_END
-#endif

@@ -1,6 +1,5 @@
 // A material as the scene shaders read it: uniform block, std140.
-#ifndef LAMBENT_SHARED_MATERIAL_BLOCK_H
-#define LAMBENT_SHARED_MATERIAL_BLOCK_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -19,5 +18,4 @@ struct MaterialBlock {
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::MaterialBlock) == 144);
-#endif
 #endif

@@ -1,6 +1,5 @@
 // Unit vectors in two numbers (octahedral map), one text for C++ and GLSL.
-#ifndef LAMBENT_SHARED_OCTAHEDRAL_H
-#define LAMBENT_SHARED_OCTAHEDRAL_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -27,4 +26,3 @@ SHARED_INLINE vec3 unitFromOctahedral(vec2 p) {
 }
 
 SHARED_END
-#endif

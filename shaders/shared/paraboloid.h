@@ -1,7 +1,6 @@
 // Paraboloid mapping of a hemisphere and the basis it uses, one text for C++ and GLSL so that both makers of shadow
 // maps and the gather agree to the texel.
-#ifndef LAMBENT_SHARED_PARABOLOID_H
-#define LAMBENT_SHARED_PARABOLOID_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -28,4 +27,3 @@ SHARED_INLINE vec3 directionFromParaboloid(vec2 uv) {
 }
 
 SHARED_END
-#endif

@@ -2,8 +2,7 @@
 // The image is `grid` × `grid` sub-images (1: the image itself; 4: the subsets of interleaved sampling) of
 // `base` / grid texels each, padded so that all levels divide evenly. A texel of level l stands for 2^l × 2^l pixels of its
 // sub-image. Level 0 fills the left of the atlas, the others are stacked next to it.
-#ifndef LAMBENT_SHARED_PATCHES_H
-#define LAMBENT_SHARED_PATCHES_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -28,4 +27,3 @@ SHARED_INLINE ivec2 patchPixel(ivec2 texel, int level, int grid, ivec2 subset, i
 }
 
 SHARED_END
-#endif

@@ -1,6 +1,5 @@
 // The scene as arrays that a shader traces rays through (lib/rays.glsl): elements of storage buffers, std430.
-#ifndef LAMBENT_SHARED_RAY_SCENE_H
-#define LAMBENT_SHARED_RAY_SCENE_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -45,5 +44,4 @@ SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::BvhNode) == 32 && sizeof(lambent::RayTriangle) == 48 &&
               sizeof(lambent::RayInstance) == 64 && sizeof(lambent::RayMask) == 64);
-#endif
 #endif

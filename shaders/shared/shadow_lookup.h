@@ -1,6 +1,5 @@
 // How a paraboloid map answers for a receiver, one text for the gather and for the measure of its errors.
-#ifndef LAMBENT_SHARED_SHADOW_LOOKUP_H
-#define LAMBENT_SHARED_SHADOW_LOOKUP_H
+#pragma once
 #include "paraboloid.h"
 SHARED_BEGIN
 
@@ -31,4 +30,3 @@ SHARED_INLINE bool paraboloidLit(float met, vec2 centre, vec3 normal, float dist
 }
 
 SHARED_END
-#endif

@@ -1,7 +1,6 @@
 // Radiance of a clear sky by direction, one text for C++ and GLSL: Preetham, Shirley, Smits 1999, "A practical analytic
 // model for daylight". What does not depend on the direction is in the model (engine/scene/sky.cpp).
-#ifndef LAMBENT_SHARED_SKY_H
-#define LAMBENT_SHARED_SKY_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -31,4 +30,3 @@ SHARED_INLINE vec3 daylightRadiance(DaylightModel m, vec3 d) {
 }
 
 SHARED_END
-#endif

@@ -1,6 +1,5 @@
 // Solid angle of a rectangle on the plane z = 1 seen from the origin: of texels of a map with perspective.
-#ifndef LAMBENT_SHARED_SOLID_ANGLE_H
-#define LAMBENT_SHARED_SOLID_ANGLE_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -28,4 +27,3 @@ SHARED_INLINE float rectSolidAngle(vec2 lo, vec2 hi) {
 }
 
 SHARED_END
-#endif

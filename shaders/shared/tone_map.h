@@ -1,6 +1,5 @@
 // From exposed radiance to what a display shows, before its transfer function; one text for C++ and GLSL.
-#ifndef LAMBENT_SHARED_TONE_MAP_H
-#define LAMBENT_SHARED_TONE_MAP_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -33,4 +32,3 @@ SHARED_INLINE vec3 toneMapped(vec3 c, int toneMapper) {
 }
 
 SHARED_END
-#endif

@@ -1,7 +1,6 @@
 // A VPL as the gather reads it: four vec4 of a uniform block (64 KiB = 1024 lights). The light's frame is stored, not
 // derived: unpacking a normal and building its basis at every pixel costs software Mesa half of the loop again.
-#ifndef LAMBENT_SHARED_VPL_LIGHT_H
-#define LAMBENT_SHARED_VPL_LIGHT_H
+#pragma once
 #include "interop.h"
 SHARED_BEGIN
 
@@ -19,5 +18,4 @@ const int kClassesPerLightBlock = 8;
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lambent::VplLight) == 64);
-#endif
 #endif
