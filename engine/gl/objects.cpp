@@ -64,18 +64,23 @@ GLuint makeBuffer(uint64_t bytes, const void* data, GLbitfield flags) {
   return name;
 }
 
-/// How objects of each kind are deleted. One of another kind (0) is not ours to delete.
-struct Deletion {
-  GLenum kind;
-  PFNGLDELETETEXTURESPROC* function;
-};
-constexpr Deletion kDeletions[] = {{GL_TEXTURE, &glDeleteTextures},
-                                   {GL_BUFFER, &glDeleteBuffers},
-                                   {GL_FRAMEBUFFER, &glDeleteFramebuffers},
-                                   {GL_VERTEX_ARRAY, &glDeleteVertexArrays},
-                                   {GL_SAMPLER, &glDeleteSamplers},
-                                   {GL_TRANSFORM_FEEDBACK, &glDeleteTransformFeedbacks},
-                                   {GL_QUERY, &glDeleteQueries}};
+/// Deletes names of a kind of object, which is as for glObjectLabel.
+PFNGLDELETETEXTURESPROC deletionOf(GLenum kind) {
+  struct Deletion {
+    GLenum kind;
+    PFNGLDELETETEXTURESPROC* function;
+  };
+  constexpr Deletion kDeletions[] = {{GL_TEXTURE, &glDeleteTextures},
+                                     {GL_BUFFER, &glDeleteBuffers},
+                                     {GL_FRAMEBUFFER, &glDeleteFramebuffers},
+                                     {GL_VERTEX_ARRAY, &glDeleteVertexArrays},
+                                     {GL_SAMPLER, &glDeleteSamplers},
+                                     {GL_TRANSFORM_FEEDBACK, &glDeleteTransformFeedbacks},
+                                     {GL_QUERY, &glDeleteQueries}};
+  for (const Deletion& d : kDeletions)
+    if (d.kind == kind) return *d.function;
+  checkFailed("a kind of object of this project", kind, 0, __FILE__, __LINE__);
+}
 
 } // namespace
 
@@ -116,8 +121,7 @@ Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t byte
 
 Object::~Object() {
   if (name_ == 0) return;
-  for (const auto& [kind, deleteNames] : kDeletions)
-    if (kind == kind_) (*deleteNames)(1, &name_);
+  if (kind_ != 0) deletionOf(kind_)(1, &name_); // else it is somebody else's
   if (bytes_ == 0) return;
   const std::lock_guard lock(memoryMutex);
   if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
