@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace lambent {
 
@@ -14,5 +15,12 @@ int threadCount();
 /// Calls body(begin, end) over disjoint blocks that cover [0, n): block i begins at i · grain, all but the last have
 /// `grain` indices.
 void parallelFor(size_t n, size_t grain, const std::function<void(size_t, size_t)>& body);
+
+/// Calls body(begin, end, counts of the block) likewise, and adds the counts of all blocks to `sum`.
+template <class Counts, class Body> void parallelCount(size_t n, size_t grain, Counts& sum, const Body& body) {
+  std::vector<Counts> perBlock((n + grain - 1) / grain);
+  parallelFor(n, grain, [&](size_t begin, size_t end) { body(begin, end, perBlock[begin / grain]); });
+  for (const Counts& c : perBlock) sum += c;
+}
 
 } // namespace lambent

@@ -63,4 +63,15 @@ std::string nearestName(std::string_view name, std::span<const std::string> cand
   return *best;
 }
 
+std::string guessText(std::string_view name, std::span<const std::string> known, const std::string& otherwise) {
+  const std::string near = nearestName(name, known);
+  return near.empty() ? otherwise : "did you mean " + near + "?";
+}
+
+std::string joined(std::span<const std::string> names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 } // namespace lambent

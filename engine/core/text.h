@@ -14,4 +14,10 @@ std::string printable(std::string_view text);
 /// are no candidates or when even the best would have to be mostly rewritten, so that a guess would mislead.
 std::string nearestName(std::string_view name, std::span<const std::string> candidates);
 
+/// "did you mean NEAR?", or `otherwise` where no name is near.
+std::string guessText(std::string_view name, std::span<const std::string> known, const std::string& otherwise);
+
+/// "a, b, c".
+std::string joined(std::span<const std::string> names);
+
 } // namespace lambent

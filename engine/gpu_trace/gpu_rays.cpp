@@ -134,7 +134,7 @@ void GpuRays::distances(std::span<const Ray> rays, std::span<float> t) const {
 void GpuRays::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   CHECK_EQ(rays.size(), blocked.size());
   const std::vector<uint32_t> met = trace<uint32_t>(rays, true);
-  std::transform(met.begin(), met.end(), blocked.begin(), [](uint32_t m) { return uint8_t(m); });
+  for (size_t i = 0; i < rays.size(); ++i) blocked[i] = uint8_t(met[i]);
 }
 
 } // namespace lambent

@@ -13,7 +13,6 @@ struct GatherInputs {
   bool changes = false;  // light does; means are short then
   bool stands = false;   // neither light nor camera changes, and means follow no change before
   bool stores = true;    // what outlives frames follows the lights; else it stays as it is
-  uint32_t most = ~0u;   // lights that are put into it at once: there is no light before all are
 };
 
 class Gather {

@@ -138,12 +138,9 @@ float DepthCube::atEdges() const {
 
 void DepthCube::castAll(std::span<const uint32_t> columns, const RayQuery& rays, RayCounts& counts) {
   std::vector<std::vector<CubeEntry>> found(columns.size());
-  std::vector<RayCounts> perBlock((columns.size() + kBlock - 1) / kBlock);
-  parallelFor(columns.size(), kBlock, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      found[i] = castColumn(grid, grid.placeOf(columns[i]), rays, perBlock[begin / kBlock]);
+  parallelCount(columns.size(), kBlock, counts, [&](size_t begin, size_t end, RayCounts& count) {
+    for (size_t i = begin; i < end; ++i) found[i] = castColumn(grid, grid.placeOf(columns[i]), rays, count);
   });
-  for (const RayCounts& c : perBlock) counts += c;
   std::vector<CubeEntry> all;
   std::vector<uint32_t> begins(firsts.size(), 0);
   size_t next = 0; // of `columns`, which ascend
@@ -163,8 +160,7 @@ void DepthCube::castAll(std::span<const uint32_t> columns, const RayQuery& rays,
 
 /// Light is mixed from neighbours that see one another, so that none comes through a wall.
 void DepthCube::linkAll(std::span<const uint32_t> columns, const RayQuery& rays, RayCounts& counts) {
-  std::vector<RayCounts> perBlock((columns.size() + kBlock - 1) / kBlock);
-  parallelFor(columns.size(), kBlock, [&](size_t begin, size_t end) {
+  parallelCount(columns.size(), kBlock, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<Ray> asked;
     std::vector<std::pair<uint32_t, int>> of;
     for (size_t i = begin; i < end; ++i) {
@@ -188,11 +184,10 @@ void DepthCube::linkAll(std::span<const uint32_t> columns, const RayQuery& rays,
     }
     std::vector<uint8_t> blocked(asked.size());
     rays.occluded(asked, blocked);
-    perBlock[begin / kBlock].occlusion += asked.size();
+    count.occlusion += asked.size();
     for (size_t j = 0; j < of.size(); ++j)
       if (!blocked[j]) entries[of[j].first].neighbours |= 1u << of[j].second;
   });
-  for (const RayCounts& c : perBlock) counts += c;
 }
 
 } // namespace lambent

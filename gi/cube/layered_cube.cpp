@@ -146,8 +146,7 @@ std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t 
                                                    const std::vector<uint8_t>* isNew) const {
   const std::span<const CubeEntry> entries = surfaces_.entries();
   std::vector<Word> seen(entries.size(), 0);
-  std::vector<RayCounts> perTile((entries.size() + kTile - 1) / kTile);
-  parallelFor(entries.size(), kTile, [&](size_t begin, size_t end) {
+  parallelCount(entries.size(), kTile, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<Ray> asked;
     std::vector<std::pair<uint32_t, int>> of;
     std::vector<uint8_t> blocked;
@@ -175,11 +174,10 @@ std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t 
     }
     blocked.resize(asked.size());
     in.rays.occluded(asked, blocked);
-    perTile[begin / kTile].occlusion += asked.size();
+    count.occlusion += asked.size();
     for (size_t i = 0; i < of.size(); ++i)
       if (!blocked[i]) seen[of[i].first] |= Word(1) << of[i].second;
   });
-  for (const RayCounts& c : perTile) counts += c;
   return seen;
 }
 
@@ -193,16 +191,12 @@ std::vector<LayeredCube::Word> LayeredCube::byHemicubes(const CubeInputs& in, si
     hemicubes.push_back(hemicubeAt(in_[slot], resolution, in.rays.rayEpsilon()));
   }
   if (in.hemicubes) in.hemicubes->make(hemicubes);
-  std::vector<RayCounts> perLight(bits.size());
   std::vector<std::vector<uint8_t>> marks(bits.size());
-  parallelFor(bits.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (!in.hemicubes) castHemicube(hemicubes[i], in.rays, perLight[i]);
-      marks[i].assign(sums_.size(), 0);
-      splat(hemicubes[i], surfaces_, marks[i]);
-    }
+  parallelCount(bits.size(), 1, counts, [&](size_t i, size_t, RayCounts& count) {
+    if (!in.hemicubes) castHemicube(hemicubes[i], in.rays, count);
+    marks[i].assign(sums_.size(), 0);
+    splat(hemicubes[i], surfaces_, marks[i]);
   });
-  for (const RayCounts& c : perLight) counts += c;
   std::vector<Word> seen(sums_.size(), 0);
   for (size_t i = 0; i < bits.size(); ++i)
     for (size_t e = 0; e < seen.size(); ++e)

@@ -1,60 +1,36 @@
 // The factory of composed techniques: what each value of an axis is made of.
 #include "engine/core/error.h"
-#include "gi/cube/draw/cube_gather.h"
 #include "gi/frame/composed_technique.h"
 #include "gi/gather/gathers.h"
 #include "gi/reflective/reflective_source.h"
 #include "gi/sources/sampled_source.h"
-#include "gi/volume/light_volume.h"
 
 namespace lambent {
 
 namespace {
 
-enum class SourceKind { None, Sampled, Grid, Clusters, Trees };
-
-/// One sampled source serves all samplers: gi/vpl/sources.h.
-SourceKind kindOf(VplSource source) {
-  switch (source) {
-  case VplSource::Smc:
-  case VplSource::Ir:
-  case VplSource::Mir:
-  case VplSource::Tcas:
-  case VplSource::Poisson:
-    return SourceKind::Sampled;
-  case VplSource::Rsm:
-    return SourceKind::Grid;
-  case VplSource::Isr:
-    return SourceKind::Clusters;
-  case VplSource::Hisr:
-    return SourceKind::Trees;
-  case VplSource::None:
-    break;
-  }
-  return SourceKind::None;
-}
-
 bool byRays(const Axes& axes) { return axes.visibility == VplVisibility::Rays; }
 
 } // namespace
 
+/// One sampled source serves all samplers: gi/vpl/sources.h.
 std::unique_ptr<LightSource> makeSource(const Axes& axes, PassContext context) {
-  switch (kindOf(axes.source)) {
-  case SourceKind::Sampled:
-    return std::make_unique<SampledSource>(context);
-  case SourceKind::Grid:
+  if (needsOf(axes).sampled()) return std::make_unique<SampledSource>(context);
+  switch (axes.source) {
+  case VplSource::Rsm:
     return std::make_unique<ReflectiveSource>(context, ReflectiveLights::Grid);
-  case SourceKind::Clusters:
+  case VplSource::Isr:
     return std::make_unique<ReflectiveSource>(context, ReflectiveLights::Clusters);
-  case SourceKind::Trees:
+  case VplSource::Hisr:
     return std::make_unique<ReflectiveSource>(context, ReflectiveLights::Trees);
-  case SourceKind::None:
-    break;
+  default:
+    return nullptr;
   }
-  return nullptr;
 }
 
-bool sameSource(const Axes& a, const Axes& b) { return kindOf(a.source) == kindOf(b.source); }
+bool sameSource(const Axes& a, const Axes& b) {
+  return a.source == b.source || (needsOf(a).sampled() && needsOf(b).sampled());
+}
 
 std::unique_ptr<Gather> makeGather(const Axes& axes, PassContext context) {
   if (byRays(axes)) return makeRayGather(context);

@@ -5,7 +5,6 @@
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
-#include "gi/frame/make_technique.h"
 #include "gi/frame/world_state.h"
 #include "gi/surfaces/surfaces.h"
 #include "gi/visibility/paraboloid_maps.h"

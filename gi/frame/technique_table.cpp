@@ -1,8 +1,6 @@
 #include "gi/plan/techniques.h"
 
-#include "gi/cube/draw/still_cache.h"
 #include "gi/frame/composed_technique.h"
-#include "gi/frame/make_technique.h"
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
@@ -58,19 +56,15 @@ std::vector<std::string> techniqueNames() {
 }
 
 const Technique& techniqueByName(const std::string& name) {
-  std::string all;
-  for (const Technique& t : kTechniques) {
+  for (const Technique& t : kTechniques)
     if (t.name == name) return t;
-    all += (all.empty() ? "" : ", ") + std::string(t.name);
-  }
-  const std::string near = nearestName(name, techniqueNames());
-  throw InputError("--technique " + name,
-                   "no such technique (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
+  const std::vector<std::string> names = techniqueNames();
+  throw InputError("--technique " + name, "no such technique (" + guessText(name, names, joined(names)) + ")");
 }
 
 std::unique_ptr<LightProvider> makeTechnique(const Settings& settings, PassContext context) {
   if (settings.own) return settings.own->make(context);
-  return std::make_unique<StillCache>(context, std::make_unique<ComposedTechnique>(context));
+  return std::make_unique<ComposedTechnique>(context);
 }
 
 void applyTechnique(Settings& settings, const Technique& technique) {

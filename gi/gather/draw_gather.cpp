@@ -37,6 +37,10 @@ std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t s
   return areas;
 }
 
+int lightsPerClass(const PackedLights& lights, uint32_t chunk) {
+  return int(std::min(kLightsPerChunk, lights.count - chunk * kLightsPerChunk) + kLightClasses - 1) / kLightClasses;
+}
+
 std::vector<std::string> bindSurfaces(const GBuffer& gbuffer) {
   gbuffer.camera->bindUniform(0);
   gbuffer.depth->bind(0);

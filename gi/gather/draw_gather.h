@@ -39,6 +39,9 @@ int lightClassOf(const glm::ivec2& subset, uint32_t sample);
 /// Returns the frame's pixels as one area, or as 16 tiles.
 std::vector<GatherArea> gatherAreas(const GBuffer& gbuffer, int grid, uint32_t sample = 0);
 
+/// The lights of each class in a chunk.
+int lightsPerClass(const PackedLights& lights, uint32_t chunk);
+
 /// Binds what shaders/lib/gbuffer.glsl and receiver.glsl read. Gives the defines of a variant: "GLOSSY" when the
 /// G-buffer has roughness and metalness, else none.
 std::vector<std::string> bindSurfaces(const GBuffer& gbuffer);

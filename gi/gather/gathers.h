@@ -9,7 +9,7 @@
 //   tree_gather     the draw of light trees
 //   map_checks      rays that check what maps say at pixels
 //   near_light_pass what bounds take from near lights, added to any of these
-// Those that bring a store of their own: gi/volume, gi/cube/draw.
+// Those that bring a store of their own: gi/volume/volume_gather, gi/cube/draw/cube_gather.
 #pragma once
 
 #include "gi/contract/figures.h"
@@ -24,5 +24,10 @@ std::unique_ptr<Gather> makePatchGather(PassContext context, bool subsets);
 std::unique_ptr<Gather> makeRayGather(PassContext context);
 /// `perLight`: each light has patches of its own.
 std::unique_ptr<Gather> makeSplatGather(PassContext context, bool perLight);
+/// From a grid that light propagates through (`lpv`).
+std::unique_ptr<Gather> makeVolumeGather(PassContext context);
+/// From the layered depth cube (paper 5). Its lights must be the same for every view (Needs::anyView), listed on the
+/// CPU.
+std::unique_ptr<Gather> makeCubeGather(PassContext context);
 
 } // namespace lambent

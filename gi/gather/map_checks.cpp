@@ -61,11 +61,11 @@ void MapChecks::add(const GatherInputs& in, const LightTarget& target, FrameStat
   std::vector<std::vector<DrawnPair>> drawn(drawn_.size(), std::vector<DrawnPair>(size_t(size.x) * size.y));
   for (size_t chunk = 0; chunk < drawn.size(); ++chunk) // waits for the GPU
     drawn_[chunk].read(std::span(drawn[chunk]), GL_RGBA_INTEGER, GL_UNSIGNED_INT);
-  std::vector<uint64_t> countOf((pixels + grain - 1) / grain);
+  uint64_t count = 0; // rays
   {
     const CpuScope scope(stats.stages, key(StageId::MapChecks));
     for (uint32_t chunk = 0; chunk < drawn_.size(); ++chunk) {
-      parallelFor(pixels, grain, [&](size_t begin, size_t end) {
+      parallelCount(pixels, grain, count, [&](size_t begin, size_t end, uint64_t& ofBlock) {
         struct Asked {
           size_t pixel;
           vec3 light; // irradiance; negative where the map says shadowed
@@ -91,15 +91,13 @@ void MapChecks::add(const GatherInputs& in, const LightTarget& target, FrameStat
         }
         std::vector<uint8_t> blocked(segments.size());
         rays.occluded(segments, blocked);
-        countOf[begin / grain] += segments.size();
+        ofBlock += segments.size();
         for (size_t j = 0; j < asked.size(); ++j)
           if (asked[j].lit == bool(blocked[j])) differences[asked[j].pixel] -= asked[j].light;
       });
     }
     mixPixels(differences, {positions, normals, camera.width, cellOf(in.lights.list.slots)});
   }
-  uint64_t count = 0;
-  for (const uint64_t c : countOf) count += c;
   stats.raysChecks.occlusion += count;
   stats.of(EffectId::Indirect) += count;
   differences_.add(differences, {}, in.frame.surfaces, target, 4);

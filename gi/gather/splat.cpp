@@ -118,10 +118,9 @@ void SplatPass::refineList(const SplatInputs& in, const gl::Program& first, cons
 
 void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
   const gl::PassScope scope = context_.scope(StageId::Splat);
-  const uint32_t count = in.draw.lights.list.packed.count;
-  for (uint32_t chunk = 0; chunk * kLightsPerChunk < count; ++chunk) {
-    const int perClass =
-        int(std::min(kLightsPerChunk, count - chunk * kLightsPerChunk) + kLightClasses - 1) / kLightClasses;
+  const PackedLights& lights = in.draw.lights.list.packed;
+  for (uint32_t chunk = 0; chunk * kLightsPerChunk < lights.count; ++chunk) {
+    const int perClass = lightsPerClass(lights, chunk);
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block)
       drawPoints(in, atlas, chunk, block, 0, perClass * kClassesPerLightBlock);
   }
@@ -129,9 +128,7 @@ void SplatPass::splat(const SplatInputs& in, const gl::Framebuffer& atlas) {
 
 void SplatPass::splatOne(const SplatInputs& in, const gl::Framebuffer& atlas, uint32_t slot) {
   const LightPlace place(slot);
-  const int perClass = int(std::min(kLightsPerChunk, in.draw.lights.list.packed.count - place.chunk * kLightsPerChunk) +
-                           kLightClasses - 1) /
-                       kLightClasses;
+  const int perClass = lightsPerClass(in.draw.lights.list.packed, place.chunk);
   const int index = place.light / kLightsPerClass * perClass + place.light % kLightsPerClass;
   drawPoints(in, atlas, place.chunk, place.block, index, 1);
 }
@@ -144,9 +141,7 @@ void SplatPass::drawPoints(const SplatInputs& in, const gl::Framebuffer& atlas, 
   const glm::ivec2 size = atlasSize(in.shape.base, in.shape.coarsest);
   program.set("base", in.shape.base);
   program.set("inverseSize", 1.0f / vec2(size));
-  program.set("perClass", int(std::min(kLightsPerChunk, in.draw.lights.list.packed.count - chunk * kLightsPerChunk) +
-                              kLightClasses - 1) /
-                              kLightClasses);
+  program.set("perClass", lightsPerClass(in.draw.lights.list.packed, chunk));
   program.set("firstLight", firstLight);
   program.set("blockClass", block * kClassesPerLightBlock);
   program.use();

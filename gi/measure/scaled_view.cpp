@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 namespace lambent {
@@ -144,33 +145,52 @@ size_t trianglesOf(const SceneView& view) {
   return count;
 }
 
-SceneView SplitLights::of(SceneView view) {
-  lights_.clear();
-  for (const LightView& light : view.lights)
-    for (uint32_t k = 0; k < count_; ++k) {
-      LightView& part = lights_.emplace_back(light);
-      part.id = uint32_t(lights_.size());
-      part.intensity = light.intensity / float(count_);
-    }
-  view.lights = lights_;
-  return view;
+ScaledView splitLights(uint32_t count) {
+  return [count, lights = std::vector<LightView>()](SceneView view) mutable {
+    lights.clear();
+    for (const LightView& light : view.lights)
+      for (uint32_t k = 0; k < count; ++k) {
+        LightView& part = lights.emplace_back(light);
+        part.id = uint32_t(lights.size());
+        part.intensity = light.intensity / float(count);
+      }
+    view.lights = lights;
+    return view;
+  };
 }
 
-SceneView SplitInstances::of(SceneView view) {
-  instances_.clear();
-  for (const InstanceView& whole : view.instances)
-    for (uint32_t mesh : pieces_.of[whole.mesh]) {
-      InstanceView& part = instances_.emplace_back(whole);
-      part.id = uint32_t(instances_.size());
-      part.mesh = mesh;
-      if (whole.deformed) continue;
-      const Aabb& box = pieces_.assets.meshes[mesh].boundsObject;
-      part.boundsWorld = transformed(box, whole.worldFromObject);
-      part.boundsWorldBefore = transformed(box, whole.worldFromObjectBefore);
-    }
-  view.instances = instances_;
-  view.assets = &pieces_.assets;
-  return view;
+ScaledView splitInstances(const SceneAssets& assets, uint32_t parts) {
+  const auto pieces = std::make_shared<const Pieces>(inPieces(assets, parts));
+  return [pieces, instances = std::vector<InstanceView>()](SceneView view) mutable {
+    instances.clear();
+    for (const InstanceView& whole : view.instances)
+      for (uint32_t mesh : pieces->of[whole.mesh]) {
+        InstanceView& part = instances.emplace_back(whole);
+        part.id = uint32_t(instances.size());
+        part.mesh = mesh;
+        if (whole.deformed) continue;
+        const Aabb& box = pieces->assets.meshes[mesh].boundsObject;
+        part.boundsWorld = transformed(box, whole.worldFromObject);
+        part.boundsWorldBefore = transformed(box, whole.worldFromObjectBefore);
+      }
+    view.instances = instances;
+    view.assets = &pieces->assets;
+    return view;
+  };
+}
+
+ScaledView splitTriangles(const SceneAssets& assets, uint32_t n) {
+  return [cut = std::make_shared<const SceneAssets>(tessellated(assets, n))](SceneView view) {
+    view.assets = cut.get();
+    return view;
+  };
+}
+
+ScaledView resizedPicture(float side) {
+  return [side](SceneView view) {
+    view.camera = view.camera.scaled(side);
+    return view;
+  };
 }
 
 SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights) {

@@ -4,6 +4,7 @@
 
 #include "engine/scene/scene_view.h"
 
+#include <functional>
 #include <vector>
 
 namespace lambent {
@@ -28,58 +29,16 @@ size_t trianglesOf(const SceneView& view);
 /// and every stage that follows them runs in every frame. `lights` holds them.
 SceneView unsteady(SceneView view, int frame, std::vector<LightView>& lights);
 
-/// A view changed in one way. What it gives points into itself and into the view given, until the next call.
-class ScaledView {
- public:
-  virtual ~ScaledView() = default;
-  virtual SceneView of(SceneView view) = 0;
-};
+/// A view changed in one way. What it gives points into the function and into the view given, until the next call.
+using ScaledView = std::function<SceneView(SceneView)>;
 
 /// Each punctual light as `count` lights at its place, which share its intensity.
-class SplitLights final : public ScaledView {
- public:
-  explicit SplitLights(uint32_t count) : count_(count) {}
-  SceneView of(SceneView view) override;
-
- private:
-  uint32_t count_;
-  std::vector<LightView> lights_;
-};
-
+ScaledView splitLights(uint32_t count);
 /// Each instance as instances of the pieces of its mesh. `assets` are those of all views to come.
-class SplitInstances final : public ScaledView {
- public:
-  SplitInstances(const SceneAssets& assets, uint32_t parts) : pieces_(inPieces(assets, parts)) {}
-  SceneView of(SceneView view) override;
-
- private:
-  Pieces pieces_;
-  std::vector<InstanceView> instances_;
-};
-
-class SplitTriangles final : public ScaledView {
- public:
-  SplitTriangles(const SceneAssets& assets, uint32_t n) : assets_(tessellated(assets, n)) {}
-  SceneView of(SceneView view) override {
-    view.assets = &assets_;
-    return view;
-  }
-
- private:
-  SceneAssets assets_;
-};
-
-/// A picture of another size, of the same shape as nearly as whole pixels allow.
-class ResizedPicture final : public ScaledView {
- public:
-  explicit ResizedPicture(float side) : side_(side) {}
-  SceneView of(SceneView view) override {
-    view.camera = view.camera.scaled(side_);
-    return view;
-  }
-
- private:
-  float side_; // times as wide and as high
-};
+ScaledView splitInstances(const SceneAssets& assets, uint32_t parts);
+/// The same surface of n² times as many triangles. `assets` are those of all views to come.
+ScaledView splitTriangles(const SceneAssets& assets, uint32_t n);
+/// A picture `side` times as wide and as high, of the same shape as nearly as whole pixels allow.
+ScaledView resizedPicture(float side);
 
 } // namespace lambent

@@ -30,8 +30,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
   constexpr size_t kGrain = 16;
   if (glossy) glossy->radiance.assign(surfaces.size(), vec3(0));
   std::vector<vec3> irradiance(surfaces.size(), vec3(0));
-  std::vector<RayCounts> perBlock((surfaces.size() + kGrain - 1) / kGrain);
-  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(surfaces.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<Ray> segments;
     std::vector<vec3> values;
     std::vector<float> spreads; // of lobes
@@ -58,7 +57,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       }
       blocked.resize(segments.size());
       rays.occluded(segments, blocked);
-      perBlock[begin / kGrain].occlusion += segments.size();
+      count.occlusion += segments.size();
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j]) irradiance[i] += values[j];
       if (!glossy) continue;
@@ -70,7 +69,6 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       glossy->radiance[i] /= glossyTint(receiver);
     }
   });
-  for (const RayCounts& c : perBlock) counts += c;
   return irradiance;
 }
 

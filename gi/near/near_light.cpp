@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <optional>
 
 namespace lambent {
 
@@ -38,16 +37,11 @@ constexpr uint32_t kPatterns = 4; // that mixPatterns brings together
 /// Finds the light in whose cell a surface lies.
 class Cells {
  public:
-  explicit Cells(std::span<const VirtualLight> lights) : lights_(lights) {
+  explicit Cells(std::span<const VirtualLight> lights)
+      : lights_(lights), live_(livePoints(lights)), tree_(live_.points) {
     double area = 0;
-    for (uint32_t i = 0; i < lights.size(); ++i)
-      if (lights[i].alive) {
-        points_.push_back({lights[i].position, lights[i].normal});
-        slots_.push_back(i);
-        area += lights[i].area;
-      }
-    meanArea_ = points_.empty() ? 0 : float(area / double(points_.size()));
-    tree_.emplace(points_);
+    for (uint32_t slot : live_.slots) area += lights[slot].area;
+    meanArea_ = live_.slots.empty() ? 0 : float(area / double(live_.slots.size()));
   }
   float meanArea() const { return meanArea_; }
   /// The nearest that may be on the same piece of surface; null where none of some is.
@@ -56,9 +50,9 @@ class Cells {
     std::array<uint32_t, kNeighbours> index;
     std::array<float, kNeighbours> distance2;
     for (const size_t asked : {size_t(2), kNeighbours}) { // mostly the nearest is
-      const size_t found = tree_->nearest(h.position, asked, index, distance2);
+      const size_t found = tree_.nearest(h.position, asked, index, distance2);
       for (size_t j = 0; j < found; ++j)
-        if (sameSide(points_[index[j]].normal, h.normal)) return &lights_[slots_[index[j]]];
+        if (sameSide(live_.points[index[j]].normal, h.normal)) return &lights_[live_.slots[index[j]]];
       if (found < asked) break;
     }
     return nullptr;
@@ -66,10 +60,9 @@ class Cells {
 
  private:
   std::span<const VirtualLight> lights_;
-  std::vector<DensityPoint> points_;
-  std::vector<uint32_t> slots_;
+  LivePoints live_;
+  NeighbourTree tree_;
   float meanArea_ = 0;
-  std::optional<NeighbourTree> tree_;
 };
 
 /// Share of the integrand that bounds leave out.
@@ -152,13 +145,12 @@ struct NearTracer {
       n.spread = lobeSpread(gather.spread, light->area, cosLight, distance2);
       if (gather.nearLimit > 0) n.most = gather.nearLimit * luminance(light->radiance);
       near[kept++] = n;
-      Vpl v;
+      Vpl& v = met.emplace_back();
       v.position = h.position;
       v.normal = h.normal;
       v.geometricNormal = h.geometricNormal;
       v.albedo = h.albedo;
       v.id = 1;
-      met.push_back(v);
     }
     std::vector<RadianceJob> jobs;
     for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].path)});
@@ -177,21 +169,16 @@ std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const N
   std::vector<vec3> irradiance(surfaces.size(), vec3(0));
   const Cells cells(in.virtuals);
   if (!(cells.meanArea() > 0)) return irradiance;
-  RadianceUpdate update;
-  update.paths = in.casts;
-  update.bounces = in.bounces;
-  update.seed = in.seed;
+  const RadianceUpdate update{.paths = in.casts, .bounces = in.bounces, .seed = in.seed};
   const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
   constexpr size_t kGrain = 64;
-  std::vector<RayCounts> countsOf((surfaces.size() + kGrain - 1) / kGrain);
-  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(surfaces.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1 / float(in.casts)};
     for (size_t s = begin; s < end; ++s)
       for (uint32_t path = 0; path < uint32_t(in.casts); ++path) tracer.cast(surfaces[s], uint32_t(s), path);
     tracer.follow(
-        surfaces, [&](const Near& n, const vec3& light) { irradiance[n.surface] += light; }, countsOf[begin / kGrain]);
+        surfaces, [&](const Near& n, const vec3& light) { irradiance[n.surface] += light; }, count);
   });
-  for (const RayCounts& c : countsOf) counts += c;
   return irradiance;
 }
 
@@ -215,15 +202,12 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const bool averaged = in.pictures > 1;
   const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.pictures) / cycle));
   const uint32_t pattern = averaged ? std::max(steps, stride) : std::min(stride, uint32_t(perBlock));
-  RadianceUpdate update;
-  update.paths = int(averaged ? kPatterns * pattern : pattern) * ((perBlock + int(stride) - 1) / int(stride));
-  update.bounces = in.bounces;
-  update.seed = in.seed;
+  const int ofPattern = int(averaged ? kPatterns * pattern : pattern);
+  const RadianceUpdate update{
+      .paths = ofPattern * ((perBlock + int(stride) - 1) / int(stride)), .bounces = in.bounces, .seed = in.seed};
 
   const size_t grain = size_t(std::clamp(4096 * int(stride) / perBlock, 16, 512)); // pixels
-  std::vector<RayCounts> countsOf((pixels + grain - 1) / grain);
-  parallelFor(pixels, grain, [&](size_t begin, size_t end) {
-    RayCounts& count = countsOf[begin / grain];
+  parallelCount(pixels, grain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     // Pixels that cast, the first path of each; where blocks are mixed, those too that take from their neighbours.
     std::vector<uint32_t> asked, paths;
     std::vector<vec2> centres;
@@ -261,7 +245,6 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
         },
         count);
   });
-  for (const RayCounts& c : countsOf) counts += c;
   if (in.subsets) {
     const NeighbourSurfaces seen{positions, normals, camera.width, std::sqrt(cells.meanArea())};
     for (std::vector<vec3>* light : {&out.irradiance, &out.glossy})

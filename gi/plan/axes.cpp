@@ -11,46 +11,9 @@ static_assert(std::size(kVisibilities) == size_t(VplVisibility::None) + 1);
 static_assert(std::size(kGathers) == size_t(GatherMode::Own) + 1);
 static_assert(std::size(kReconstructions) == size_t(Reconstruction::UpsampleFilter) + 1);
 
-namespace {
-
-struct SourceTraits {
-  LightSupply lights = LightSupply::None;
-  bool tree = false, anyView = false;
-};
-constexpr SourceTraits kSourceTraits[] = {
-    {.lights = LightSupply::Kept},                      // smc
-    {.lights = LightSupply::PerFrame, .anyView = true}, // ir
-    {.lights = LightSupply::PerFrame},                  // mir
-    {.lights = LightSupply::PerFrame},                  // tcas
-    {.lights = LightSupply::Fixed, .anyView = true},    // poisson
-    {.lights = LightSupply::Reflective},                // rsm
-    {.lights = LightSupply::Reflective},                // isr
-    {.lights = LightSupply::Reflective, .tree = true},  // hisr
-    {},                                                 // none
-};
-static_assert(std::size(kSourceTraits) == std::size(kSources));
-
-struct GatherTraits {
-  bool subsets = false, patches = false, splats = false, volume = false, stored = false;
-};
-constexpr GatherTraits kGatherTraits[] = {
-    {.subsets = true},                  // interleaved
-    {},                                 // full
-    {.patches = true},                  // multires
-    {.subsets = true, .patches = true}, // multires-interleaved
-    {.patches = true, .splats = true},  // splat
-    {.patches = true, .splats = true},  // splat-per-vpl
-    {.volume = true},                   // volume
-    {.stored = true},                   // cube
-    {},                                 // own
-};
-static_assert(std::size(kGatherTraits) == std::size(kGathers));
-
-} // namespace
-
 Needs needsOf(const Axes& axes) {
-  const SourceTraits& source = kSourceTraits[int(axes.source)];
-  const GatherTraits& gather = kGatherTraits[int(axes.gather)];
+  const SourceRow& source = rowOf(axes.source);
+  const GatherRow& gather = rowOf(axes.gather);
   const bool rays = axes.visibility == VplVisibility::Rays;
   Needs needs{.lights = source.lights, .anyView = source.anyView, .tree = source.tree};
   needs.bounces = needs.textures = needs.sampled();
@@ -66,18 +29,18 @@ Needs needsOf(const Axes& axes) {
 }
 
 Reconstruction reconstructionOf(GatherMode mode, bool filter) {
-  const GatherTraits& gather = kGatherTraits[int(mode)];
+  const GatherRow& gather = rowOf(mode);
   const bool filtered = gather.subsets && filter;
   if (gather.patches) return filtered ? Reconstruction::UpsampleFilter : Reconstruction::Upsample;
   return filtered ? Reconstruction::Filter : Reconstruction::None;
 }
 
 std::string whyNot(const Axes& axes) {
-  const SourceTraits& source = kSourceTraits[int(axes.source)];
-  const GatherTraits& gather = kGatherTraits[int(axes.gather)];
-  const std::string name = rowOf(axes.source).name;
+  const SourceRow& source = rowOf(axes.source);
+  const GatherRow& gather = rowOf(axes.gather);
+  const std::string name = source.name;
   const std::string visibility = "vpl.visibility " + std::string(rowOf(axes.visibility).name) + ": ";
-  const std::string mode = "gather.mode " + std::string(rowOf(axes.gather).name);
+  const std::string mode = "gather.mode " + std::string(gather.name);
   const bool lights = source.lights != LightSupply::None, seen = axes.visibility != VplVisibility::None;
   if (!lights && axes.gather != GatherMode::Own)
     return "vpl.source none: " + mode + " needs virtual lights (smc, rsm, ...)";

@@ -178,7 +178,6 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                : status.mapsWaiting > 0 ? Answer{true, count(status.mapsWaiting, "map") + " waiting"}
                                                         : Answer{false, "nothing moved"});
   const bool sameLight = !changes.first && !changes.lights && !moved && !facts.settingsChanged;
-  const bool alone = status.stored && sameLight;
   // By photons or chains; photons take the same ways as long as nothing is in another place.
   const bool sameWays = needs.anyView && sameLight;
   const bool perFrame = needs.lights == LightSupply::PerFrame;
@@ -197,15 +196,13 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                 : Answer{false, "neither lights nor objects changed"});
   decide(EffectId::Replace, !lights                              ? none
                             : needs.lights == LightSupply::Fixed ? Answer{false, "the samples stay on their surfaces"}
-                            : alone      ? Answer{false, "nothing has changed for long: a cube holds all light"}
-                            : reflective ? fromMaps
-                            : perFrame && sameWays ? Answer{false, "photons take the same ways as before"}
-                            : perFrame             ? Answer{true, "the technique places its VPLs again in every frame"}
+                            : reflective                         ? fromMaps
+                            : perFrame && sameWays               ? Answer{false, "photons take the same ways as before"}
+                            : perFrame ? Answer{true, "the technique places its VPLs again in every frame"}
                             : still && status.settled ? Answer{false, "nothing changed and the VPLs have settled"}
                             : still                   ? Answer{true, "the VPLs have not settled yet"}
                                                       : Answer{true, "the view or the scene changed"});
   decide(EffectId::Gather, !indirect      ? Answer{false, "no indirect light"}
-                           : alone        ? Answer{false, "nothing has changed for long: a cube holds all light"}
                            : needs.stored ? sameLight && !facts.drawingChanged && !status.lightArrived
                                                 ? Answer{false, "the cube holds the light of what there is"}
                                                 : Answer{true, "the cube follows lights and objects"}
@@ -218,13 +215,13 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
   plan.seenChanges_ = !still || facts.drawingChanged || facts.first;
   plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
-  decide(EffectId::Redraw, !still                    ? Answer{true, "the view, the scene or settings changed"}
-                           : facts.drawingChanged    ? Answer{true, "settings or shaders changed"}
-                           : newLight                ? Answer{true, "VPLs change"}
-                           : waiting                 ? Answer{true, "shadow maps are waiting"}
+  decide(EffectId::Redraw, !still                 ? Answer{true, "the view, the scene or settings changed"}
+                           : facts.drawingChanged ? Answer{true, "settings or shaders changed"}
+                           : newLight             ? Answer{true, "VPLs change"}
+                           : waiting              ? Answer{true, "shadow maps are waiting"}
                            : indirect && !status.pending.empty() ? Answer{true, status.pending}
-                           : status.averaged < historyFrames && !alone ? Answer{true, "light is averaged over frames"}
-                                                                       : Answer{false, "nothing changed"});
+                           : status.averaged < historyFrames     ? Answer{true, "light is averaged over frames"}
+                                                                 : Answer{false, "nothing changed"});
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no frame yet";

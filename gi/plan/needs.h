@@ -11,15 +11,6 @@ namespace lambent {
 
 struct Settings;
 
-/// How a technique's virtual lights come to be.
-enum class LightSupply {
-  None,       // it has none
-  Kept,       // sampled on the CPU, kept from frame to frame and brought up to date
-  Fixed,      // samples of all surfaces, which stay where they are
-  PerFrame,   // sampled on the CPU, all placed again in every frame
-  Reflective, // drawn on the GPU into reflective shadow maps: light of punctual lights, reflected once
-};
-
 struct Needs {
   // What the provider asks of the world.
   LightSupply lights = LightSupply::None;
@@ -55,7 +46,6 @@ struct ProviderStatus {
   bool lightArrived = false; // they were updated next to the last frame, which does not show them
   uint32_t mapsWaiting = 0;  // maps that show where a moved object was
   int averaged = 0;          // frames in the mean since anything last changed
-  bool stored = false;       // a store shows all of the light: nothing else need be gathered
   std::string pending = {};  // why another frame of the same world would differ; empty: it has converged
 };
 

@@ -1,13 +1,12 @@
 #include "gi/plan/presets.h"
 
 #include "engine/core/error.h"
+#include "engine/core/text.h"
 #include "gi/plan/needs.h"
 
 #include <algorithm>
 
 namespace lambent {
-
-namespace {
 
 Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* mode) {
   return {{"smc.vpls", vpls},
@@ -16,8 +15,6 @@ Assignments worth(const char* vpls, const char* points, const char* paths, const
           {"shadow.resolution", resolution},
           {"gather.mode", mode}};
 }
-
-} // namespace
 
 const std::vector<Preset>& presetTable() {
   static const std::vector<Preset> table{
@@ -38,11 +35,8 @@ const std::vector<std::string>& presetNames() {
 
 void applyPreset(Settings& settings, const std::string& name) {
   const auto found = std::ranges::find(presetTable(), name, &Preset::name);
-  if (found == presetTable().end()) {
-    std::string known;
-    for (const std::string& other : presetNames()) known += (known.empty() ? "" : ", ") + other;
-    throw InputError("preset " + name, "no such preset (" + known + ")");
-  }
+  if (found == presetTable().end())
+    throw InputError("preset " + name, "no such preset (" + joined(presetNames()) + ")");
   for (const auto& [setting, value] : found->set) // techniques from reflective maps have a gather of their own
     if (setting != "gather.mode" || needsOf(settings).freeGather) applySetting(settings, setting, value);
 }

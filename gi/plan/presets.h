@@ -12,6 +12,9 @@ namespace lambent {
 /// Settings by name, as on the command line.
 using Assignments = std::vector<std::pair<std::string, std::string>>;
 
+/// Numbers of virtual lights, what each is worth, and where light is gathered: what presets set.
+Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* mode);
+
 struct Preset {
   std::string name;
   Assignments set;

@@ -26,207 +26,189 @@ struct Span {
   Scale scale = Linear;
 };
 
+/// A row's name and where its value is. "smc.vpls" is SETTING(smc, vpls).
+#define SETTING(group, value) #group "." #value, &Settings::group, &decltype(Settings::group)::value
+
 class Table {
  public:
   Table() {
-    choice("vpl.source", &Settings::vpl, &VplSettings::source, namesOf(kSources), Set,
-           "who places virtual lights; named techniques set it");
-    choice("vpl.visibility", &Settings::vpl, &VplSettings::visibility, namesOf(kVisibilities), Maps,
+    choice(SETTING(vpl, source), namesOf(kSources), Set, "who places virtual lights; named techniques set it");
+    choice(SETTING(vpl, visibility), namesOf(kVisibilities), Maps,
            "who tests VPLs against pixels: shadow maps, a ray for every pair (seconds per frame), or nobody");
-    number("vpl.mirCandidates", &Settings::vpl, &VplSettings::mirCandidates, {1, 1024, "paths", PowersOfTwo}, Light,
+    number(SETTING(vpl, mirCandidates), {1, 1024, "paths", PowersOfTwo}, Light,
            "mir: light paths per VPL slot to choose from; its time and memory grow with it");
-    number("vpl.tcasIterations", &Settings::vpl, &VplSettings::tcasIterations, {0, 1024, "rays", PowersOfTwo}, Light,
+    number(SETTING(vpl, tcasIterations), {0, 1024, "rays", PowersOfTwo}, Light,
            "tcas: Metropolis-Hastings iterations per VPL and frame, a ray each");
-    number("smc.vpls", &Settings::smc, &SmcSettings::vpls, {1, 65536, "lights", PowersOfTwo}, Maps,
+    number(SETTING(smc, vpls), {1, 65536, "lights", PowersOfTwo}, Maps,
            "VPL slots N; time of every stage grows with it");
-    number("smc.moves", &Settings::smc, &SmcSettings::moves, {0, 32768, "lights", PowersOfTwo}, Light,
+    number(SETTING(smc, moves), {0, 32768, "lights", PowersOfTwo}, Light,
            "M_max, VPLs replaced per frame; each costs a shadow map");
-    number("smc.candidateRays", &Settings::smc, &SmcSettings::candidateRays, {1, 256, "rays", PowersOfTwo}, Light,
-           "rays per candidate drawn");
-    number("smc.poolFrames", &Settings::smc, &SmcSettings::poolFrames, {1, 64, "frames", PowersOfTwo}, Light,
+    number(SETTING(smc, candidateRays), {1, 256, "rays", PowersOfTwo}, Light, "rays per candidate drawn");
+    number(SETTING(smc, poolFrames), {1, 64, "frames", PowersOfTwo}, Light,
            "frames that a candidate is kept, so that N/poolFrames are drawn per frame, twice that in motion; 1 = all, "
            "as paper 1");
-    flag("smc.cache", &Settings::smc, &SmcSettings::cache, Light,
+    flag(SETTING(smc, cache), Light,
          "keep light paths until something that they touch moves; same results, 0.5 kB per path");
-    number("smc.paths", &Settings::smc, &SmcSettings::paths, {1, 4096, "paths", PowersOfTwo}, Light,
-           "light paths per VPL and candidate");
-    number("smc.bounces", &Settings::smc, &SmcSettings::bounces, {0, 32}, Light,
-           "indirect bounces B; 0 = direct light only");
-    number("smc.points", &Settings::smc, &SmcSettings::points, {1, 1 << 20, "rays", PowersOfTwo}, Light,
-           "camera rays that find visible points");
-    number("smc.validationRays", &Settings::smc, &SmcSettings::validationRays, {0, 1024, "rays", PowersOfTwo}, Light,
+    number(SETTING(smc, paths), {1, 4096, "paths", PowersOfTwo}, Light, "light paths per VPL and candidate");
+    number(SETTING(smc, bounces), {0, 32}, Light, "indirect bounces B; 0 = direct light only");
+    number(SETTING(smc, points), {1, 1 << 20, "rays", PowersOfTwo}, Light, "camera rays that find visible points");
+    number(SETTING(smc, validationRays), {0, 1024, "rays", PowersOfTwo}, Light,
            "V, rays per visible point and round towards unverified VPLs");
-    number("smc.warmup", &Settings::smc, &SmcSettings::warmup, {0, 100000, "frames"}, Light,
-           "iterations before the first frame");
-    number("smc.neighbours", &Settings::smc, &SmcSettings::neighbours, {0, 1024, "lights"}, Light,
+    number(SETTING(smc, warmup), {0, 100000, "frames"}, Light, "iterations before the first frame");
+    number(SETTING(smc, neighbours), {0, 1024, "lights"}, Light,
            "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
-    choice("smc.density", &Settings::smc, &SmcSettings::density, {"knn", "knn-side", "cells"}, Light,
+    choice(SETTING(smc, density), {"knn", "knn-side", "cells"}, Light,
            "what a VPL stands for: paper 1's density, the same by neighbours on its side, or the cell around it");
-    number("shadow.resolution", &Settings::shadow, &ShadowSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Maps,
+    number(SETTING(shadow, resolution), {16, 2048, "texels", PowersOfTwo}, Maps,
            "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
-    choice("shadow.maker", &Settings::shadow, &ShadowSettings::maker, {"auto", "raster", "rays"}, Nothing,
+    choice(SETTING(shadow, maker), {"auto", "raster", "rays"}, Nothing,
            "who draws VPL maps; auto measures both once and keeps the faster");
-    number("shadow.bias", &Settings::shadow, &ShadowSettings::bias, {0, 100, "texels"}, Nothing,
-           "depth bias of VPL maps, texels at the receiver");
-    number("shadow.refresh", &Settings::shadow, &ShadowSettings::refresh, {0, 32768, "maps", PowersOfTwo}, Nothing,
+    number(SETTING(shadow, bias), {0, 100, "texels"}, Nothing, "depth bias of VPL maps, texels at the receiver");
+    number(SETTING(shadow, refresh), {0, 32768, "maps", PowersOfTwo}, Nothing,
            "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
-    number("shadow.motionRays", &Settings::shadow, &ShadowSettings::motionRays, {0, 1024, "rays", PowersOfTwo}, Nothing,
+    number(SETTING(shadow, motionRays), {0, 1024, "rays", PowersOfTwo}, Nothing,
            "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
-    number("shadow.sunResolution", &Settings::shadow, &ShadowSettings::sunResolution, {0, 16384, "texels", PowersOfTwo},
-           Maps,
+    number(SETTING(shadow, sunResolution), {0, 16384, "texels", PowersOfTwo}, Maps,
            "texels per side of a directional light's map; 0 = 2w, w the frame's width rounded up to a power of two");
-    number("shadow.pointResolution", &Settings::shadow, &ShadowSettings::pointResolution,
-           {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a point light's cube face; 0 = w/2");
-    number("shadow.spotResolution", &Settings::shadow, &ShadowSettings::spotResolution,
-           {0, 8192, "texels", PowersOfTwo}, Maps, "texels per side of a spot light's map; 0 = w");
+    number(SETTING(shadow, pointResolution), {0, 8192, "texels", PowersOfTwo}, Maps,
+           "texels per side of a point light's cube face; 0 = w/2");
+    number(SETTING(shadow, spotResolution), {0, 8192, "texels", PowersOfTwo}, Maps,
+           "texels per side of a spot light's map; 0 = w");
     flag(
-        "shadow.rays", &Settings::shadow, &ShadowSettings::rays, Nothing,
+        SETTING(shadow, rays), Nothing,
         "a ray for each pixel and light (lamps, suns, spots, emissive samples; the sky where none of it is seen) whose "
         "map is in doubt; off, or a host's depth of less than 32 bits: maps are filtered");
-    number("shadow.emitterSamples", &Settings::shadow, &ShadowSettings::emitterSamples,
-           {1, 1024, "samples", PowersOfTwo}, Maps, "shadowed samples for all emissive surfaces in direct light");
-    number("shadow.emitterResolution", &Settings::shadow, &ShadowSettings::emitterResolution,
-           {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
+    number(SETTING(shadow, emitterSamples), {1, 1024, "samples", PowersOfTwo}, Maps,
+           "shadowed samples for all emissive surfaces in direct light");
+    number(SETTING(shadow, emitterResolution), {16, 2048, "texels", PowersOfTwo}, Maps,
+           "texels per side of their maps");
     choice(
-        "shadow.emitters", &Settings::shadow, &ShadowSettings::emitters, {"samples", "patches"}, Nothing,
+        SETTING(shadow, emitters), {"samples", "patches"}, Nothing,
         "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
         "from patches of the image, split where the answers differ (paper 4)");
-    flag("direct.on", &Settings::direct, &DirectSettings::on, Nothing,
+    flag(SETTING(direct, on), Nothing,
          "direct light; off: indirect light alone, for a host that lights its surfaces itself");
-    choice("area.refinement", &Settings::area, &AreaSettings::refinement, {"counts", "sub-fragments", "neighbours"},
-           Nothing,
+    choice(SETTING(area, refinement), {"counts", "sub-fragments", "neighbours"}, Nothing,
            "what splits these patches: how many rays their quarters and those next to them find open, which rays their "
            "quarters do (paper 4), or which rays the eight patches around do (Nichols et al. 2010)");
-    number("area.rays", &Settings::area, &AreaSettings::rays, {1, 64, "rays", PowersOfTwo}, Nothing,
+    number(SETTING(area, rays), {1, 64, "rays", PowersOfTwo}, Nothing,
            "from each quarter of a patch, and four times as many from a single pixel");
-    number("area.threshold", &Settings::area, &AreaSettings::threshold, {1, 256, "rays"}, Nothing,
+    number(SETTING(area, threshold), {1, 256, "rays"}, Nothing,
            "by which quarters side by side differ that a patch is split; the papers ask for 1");
-    number("area.gradient", &Settings::area, &AreaSettings::gradient, {0, 64, "rays"}, Nothing,
+    number(SETTING(area, gradient), {0, 64, "rays"}, Nothing,
            "difference between quarters side by side beyond which both are split twice at once; 0 = never");
-    flag("area.extra", &Settings::area, &AreaSettings::extra, Nothing,
+    flag(SETTING(area, extra), Nothing,
          "three single pixels more in patches of 8x8 pixels and larger, for area.upsample=rbf");
-    choice("area.upsample", &Settings::area, &AreaSettings::upsample, {"rbf", "bilateral", "bilinear"}, Nothing,
+    choice(SETTING(area, upsample), {"rbf", "bilateral", "bilinear"}, Nothing,
            "between patches: radial basis functions around the three nearest samples, or level by level as "
            "multires.upsample");
-    choice("area.tracer", &Settings::area, &AreaSettings::tracer, {"auto", "cpu", "gpu"}, Nothing,
+    choice(SETTING(area, tracer), {"auto", "cpu", "gpu"}, Nothing,
            "who traces these rays; auto measures both once and takes the GPU where it is twice as fast");
-    number("shadow.skyMaps", &Settings::shadow, &ShadowSettings::skyMaps, {1, 512, "maps", PowersOfTwo}, Maps,
-           "directions of the sky in direct light");
-    number("shadow.skyResolution", &Settings::shadow, &ShadowSettings::skyResolution, {16, 2048, "texels", PowersOfTwo},
-           Maps, "texels per side of their maps");
-    choice("gather.mode", &Settings::gather, &GatherSettings::mode, namesOf(kGathers), Nothing,
+    number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "directions of the sky in direct light");
+    number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
+    choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
            "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the image; "
            "patches of each subset; VPLs splatted into patches, or each into patches of its own");
-    number("gather.disk", &Settings::gather, &GatherSettings::disk, {0, 1000}, Nothing,
+    number(SETTING(gather, disk), {0, 1000}, Nothing,
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
-    number("gather.clamp", &Settings::gather, &GatherSettings::clamp, {0, kNoLimit, "1/m^2"}, Nothing,
+    number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number(
-        "gather.near", &Settings::gather, &GatherSettings::near, {0, 256, "rays", PowersOfTwo}, Nothing,
+        SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
         "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; 0 "
         "= lost");
     number(
-        "gather.nearLimit", &Settings::gather, &GatherSettings::nearLimit, {0, kNoLimit}, Nothing,
+        SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
-    flag("gather.checks", &Settings::gather, &GatherSettings::checks, Nothing,
+    flag(SETTING(gather, checks), Nothing,
          "interleaved, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps say");
-    flag("gather.glossy", &Settings::gather, &GatherSettings::glossy, Nothing,
+    flag(SETTING(gather, glossy), Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
-    number("gather.spread", &Settings::gather, &GatherSettings::spread, {0, 1000}, Nothing,
+    number(SETTING(gather, spread), {0, 1000}, Nothing,
            "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
-    number("multires.coarsest", &Settings::multires, &MultiresSettings::coarsest, {1, 1024, "patches", PowersOfTwo},
-           Nothing, "patches along the image's longer side at the coarsest level");
-    number("multires.finest", &Settings::multires, &MultiresSettings::finest, {1, 1024, "pixels", PowersOfTwo}, Nothing,
+    number(SETTING(multires, coarsest), {1, 1024, "patches", PowersOfTwo}, Nothing,
+           "patches along the image's longer side at the coarsest level");
+    number(SETTING(multires, finest), {1, 1024, "pixels", PowersOfTwo}, Nothing,
            "side of the smallest patch, whatever it holds, a power of two (paper 2, fig. 8); 4x4 subsets: from 8 on");
-    choice("multires.criterion", &Settings::multires, &MultiresSettings::criterion, {"plane", "depth"}, Nothing,
+    choice(SETTING(multires, criterion), {"plane", "depth"}, Nothing,
            "what splits a patch: distance of its pixels from its plane, or largest less least depth (papers 2 and 3), "
            "which fires on floors seen at a grazing angle");
     number(
-        "multires.depth", &Settings::multires, &MultiresSettings::depth, {0, kNoLimit}, Nothing,
+        SETTING(multires, depth), {0, kNoLimit}, Nothing,
         "plane: deviation that splits a patch, share of the view distance; depth: range of view depths, share of the "
         "least; 0 = every pixel is gathered");
-    number("multires.normal", &Settings::multires, &MultiresSettings::normal, {0, kNoLimit}, Nothing,
+    number(SETTING(multires, normal), {0, kNoLimit}, Nothing,
            "range of a component of the normal, 0 to 2, that splits a patch");
-    flag("multires.balance", &Settings::multires, &MultiresSettings::balance, Nothing,
-         "patches side by side differ by one level at most");
-    flag("multires.edges", &Settings::multires, &MultiresSettings::edges, Nothing,
+    flag(SETTING(multires, balance), Nothing, "patches side by side differ by one level at most");
+    flag(SETTING(multires, edges), Nothing,
          "patches next to an edge are 2x2 pixels at most; off: light that an edge bounds is spread over larger ones");
-    choice("multires.upsample", &Settings::multires, &MultiresSettings::upsample, {"bilateral", "bilinear"}, Nothing,
+    choice(SETTING(multires, upsample), {"bilateral", "bilinear"}, Nothing,
            "between patches: by distance and by how alike their surfaces are, a split one through its parts; or by "
            "distance alone between those that hold light (papers 2 and 3), over edges too");
     number(
-        "multires.detail", &Settings::multires, &MultiresSettings::detail, {0, 1}, Nothing,
+        SETTING(multires, detail), {0, 1}, Nothing,
         "darkens indirect light where the surface turns away from the viewer, for detail that patches lost (paper 2)");
-    number("multires.light", &Settings::multires, &MultiresSettings::light, {0, kNoLimit}, Nothing,
+    number(SETTING(multires, light), {0, kNoLimit}, Nothing,
            "splat-per-vpl: range of a VPL's light that splits a patch, share of what it brings to a surface facing it");
-    number("rsm.resolution", &Settings::rsm, &RsmSettings::resolution, {16, 4096, "texels", PowersOfTwo}, Light,
+    number(SETTING(rsm, resolution), {16, 4096, "texels", PowersOfTwo}, Light,
            "texels per side of a light's reflective shadow map, of each face of a point light's");
-    number("rsm.vpls", &Settings::rsm, &RsmSettings::vpls, {1, 1 << 20, "lights", PowersOfTwo}, Light,
+    number(SETTING(rsm, vpls), {1, 1 << 20, "lights", PowersOfTwo}, Light,
            "rsm: VPLs on a regular grid over all maps, about so many");
-    flag("rsm.exact", &Settings::rsm, &RsmSettings::exact, Light,
-         "every texel's own solid angle, instead of a map's mean (the papers')");
-    number("rsm.coarsest", &Settings::rsm, &RsmSettings::coarsest, {1, 256, "patches", PowersOfTwo}, Light,
+    flag(SETTING(rsm, exact), Light, "every texel's own solid angle, instead of a map's mean (the papers')");
+    number(SETTING(rsm, coarsest), {1, 256, "patches", PowersOfTwo}, Light,
            "isr, hisr: patches per side of a map at the coarsest level, a power of two");
-    number("rsm.finest", &Settings::rsm, &RsmSettings::finest, {1, 1024, "patches", PowersOfTwo}, Light,
+    number(SETTING(rsm, finest), {1, 1024, "patches", PowersOfTwo}, Light,
            "isr, hisr: patches per side of a map at the finest level, a power of two");
-    number("rsm.depth", &Settings::rsm, &RsmSettings::depth, {0, kNoLimit}, Light,
+    number(SETTING(rsm, depth), {0, kNoLimit}, Light,
            "isr: deviation from its plane that splits a patch of a map, share of the distance; 0 splits all");
-    number("rsm.normal", &Settings::rsm, &RsmSettings::normal, {0, kNoLimit}, Light,
+    number(SETTING(rsm, normal), {0, kNoLimit}, Light,
            "isr: range of a component of the normal, 0 to 2, that splits a patch of a map");
-    number("rsm.tau", &Settings::rsm, &RsmSettings::tau, {0, 1}, Nothing,
+    number(SETTING(rsm, tau), {0, 1}, Nothing,
            "hisr: a cluster that may bring more than this share of the brightest map's light is split; 0 splits all");
-    number("cube.resolution", &Settings::cube, &CubeSettings::resolution, {16, 2048, "texels", PowersOfTwo}, Nothing,
+    number(SETTING(cube, resolution), {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of a layered depth cube; time to build it and memory grow with the square");
-    number("cube.levels", &Settings::cube, &CubeSettings::levels, {0, 8, "levels"}, Nothing,
+    number(SETTING(cube, levels), {0, 8, "levels"}, Nothing,
            "of a tree of cubes: each halves the texels where cube.split says so; 0 = one cube over all of the scene");
-    number("cube.split", &Settings::cube, &CubeSettings::split, {0, 1}, Nothing,
+    number(SETTING(cube, split), {0, 1}, Nothing,
            "share of edges among what a cube of the tree holds that makes eight of it; 0 splits all but the empty");
-    choice("cube.visibility", &Settings::cube, &CubeSettings::visibility, {"rays", "hemicubes"}, Nothing,
+    choice(SETTING(cube, visibility), {"rays", "hemicubes"}, Nothing,
            "who says which entries a light sees: a ray for each, or the texels of five images around it (paper 5)");
-    number("cube.hemicube", &Settings::cube, &CubeSettings::hemicube, {16, 2048, "texels", PowersOfTwo}, Nothing,
+    number(SETTING(cube, hemicube), {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of these images; half of it for lights after the first bounce");
-    number(
-        "cube.after", &Settings::stillCache, &StillCacheSettings::after, {0, 1000000, "frames"}, Nothing,
-        "frames in which neither lights nor objects change until a layered depth cube takes the place of the gather; "
-        "0 = never");
-    number("cube.perFrame", &Settings::stillCache, &StillCacheSettings::perFrame, {1, 65536, "lights", PowersOfTwo},
-           Nothing, "cube.after: lights put into that cube in a frame");
     choice("cube.maker", &Settings::hemicubes, &HemicubeSettings::maker, {"auto", "raster", "rays"}, Nothing,
            "who makes these images: the GPU, rays on the CPU, or whoever is faster on the first of them");
-    number("lpv.cells", &Settings::lpv, &VolumeSettings::cells, {4, 128, "cells", PowersOfTwo}, Nothing,
+    number(SETTING(lpv, cells), {4, 128, "cells", PowersOfTwo}, Nothing,
            "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
-    number("lpv.size", &Settings::lpv, &VolumeSettings::size, {0, kNoLimit, "m"}, Nothing,
+    number(SETTING(lpv, size), {0, kNoLimit, "m"}, Nothing,
            "gather.mode volume: edge of a grid that follows the camera in steps of a cell (of 1e-5 of the scene's "
            "width, at "
            "least); 0 = all of the scene");
-    number("lpv.steps", &Settings::lpv, &VolumeSettings::steps, {0, 512, "steps", PowersOfTwo}, Nothing,
+    number(SETTING(lpv, steps), {0, 512, "steps", PowersOfTwo}, Nothing,
            "gather.mode volume: cells that light goes from where it was reflected; what is then on its way is lost");
-    flag("lpv.occlusion", &Settings::lpv, &VolumeSettings::occlusion, Nothing,
-         "gather.mode volume: surfaces stop light; off: it goes through walls");
-    number("history.frames", &Settings::history, &HistorySettings::frames, {0, 256, "frames", PowersOfTwo}, Nothing,
+    flag(SETTING(lpv, occlusion), Nothing, "gather.mode volume: surfaces stop light; off: it goes through walls");
+    number(SETTING(history, frames), {0, 256, "frames", PowersOfTwo}, Nothing,
            "frames that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
            "the VPLs; 0 = each frame by itself");
-    flag("filter.on", &Settings::filter, &FilterSettings::on, Nothing, "cross-bilateral filter over the 4x4 subsets");
-    choice("filter.kernel", &Settings::filter, &FilterSettings::kernel, {"separable", "whole"}, Nothing,
+    flag(SETTING(filter, on), Nothing, "cross-bilateral filter over the 4x4 subsets");
+    choice(SETTING(filter, kernel), {"separable", "whole"}, Nothing,
            "7x7 filter along rows then columns, or all 49 taps at once");
-    number("filter.normalPower", &Settings::filter, &FilterSettings::normalPower, {0, 1024}, Nothing,
-           "weight max(0, n.n')^power");
-    number("filter.distance", &Settings::filter, &FilterSettings::distance, {1e-6, 10}, Nothing,
+    number(SETTING(filter, normalPower), {0, 1024}, Nothing, "weight max(0, n.n')^power");
+    number(SETTING(filter, distance), {1e-6, 10}, Nothing,
            "deviation from the pixel's plane, share of its view distance");
-    number("image.exposure", &Settings::image, &ImageSettings::exposure, {0, kNoLimit}, Nothing,
+    number(SETTING(image, exposure), {0, kNoLimit}, Nothing,
            "factor on radiance before tone mapping; 0 = measured at the first frame");
     choice(
-        "image.toneMapper", &Settings::image, &ImageSettings::toneMapper, {"reinhard", "neutral", "filmic"}, Nothing,
+        SETTING(image, toneMapper), {"reinhard", "neutral", "filmic"}, Nothing,
         "reinhard: on luminance, as paper 1, bright colours are cut off; neutral: Khronos PBR Neutral, colours as they "
         "are up to 0.76, then to white; filmic: a fit of ACES");
-    choice("image.antiAliasing", &Settings::image, &ImageSettings::antiAliasing, {"off", "edges"}, Nothing,
+    choice(SETTING(image, antiAliasing), {"off", "edges"}, Nothing,
            "edges: no stairs along them in what is shown of beauty, direct and indirect; each frame by itself, so "
            "nothing lags; .exr stays as it is");
-    flag("frame.overlap", &Settings::frame, &FrameSettings::overlap, Nothing,
+    flag(SETTING(frame, overlap), Nothing,
          "update the VPLs while the GPU draws those of the frame before: indirect light is one frame late");
     for (size_t i = 0; i < kEffects; ++i) effect(EffectId(i));
-    flag("debug.nan", &Settings::debug, &DebugSettings::nan, Nothing, "paint NaN magenta and infinity cyan");
-    choice("debug.timing", &Settings::debug, &DebugSettings::timing, {"auto", "queries", "finish"}, Nothing,
+    flag(SETTING(debug, nan), Nothing, "paint NaN magenta and infinity cyan");
+    choice(SETTING(debug, timing), {"auto", "queries", "finish"}, Nothing,
            "GPU times by timer queries, or by finishing each pass");
   }
 
@@ -285,6 +267,8 @@ class Table {
                     .set = [id](Settings& s, double v) { s.effects[id] = EffectMode(int(v)); }});
   }
 };
+
+#undef SETTING
 
 /// A number that is all of `text`; nothing otherwise.
 template <class Value> std::optional<double> numberOf(std::string_view text) {
@@ -382,10 +366,8 @@ SettingRow settingRow(std::string_view name, const Settings& settings) {
     if (row.name == name) return row;
     names.push_back(row.name);
   }
-  const std::string near = nearestName(name, names);
   throw InputError("setting " + std::string(name),
-                   "no such setting (" + (near.empty() ? "see `lambent settings`" : "did you mean " + near + "?") +
-                       ")");
+                   "no such setting (" + guessText(name, names, "see `lambent settings`") + ")");
 }
 
 void applySetting(Settings& settings, std::string_view name, std::string_view value) {

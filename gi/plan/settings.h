@@ -190,13 +190,6 @@ struct HemicubeSettings {
   bool operator==(const HemicubeSettings&) const = default;
 };
 
-/// A layered depth cube in place of another technique (gi/cube/draw/still_cache.h).
-struct StillCacheSettings {
-  int after = 0;    // frames without change until it is built; 0: never
-  int perFrame = 4; // lights put into it in a frame
-  bool operator==(const StillCacheSettings&) const = default;
-};
-
 struct FilterSettings {
   bool on = true;
   FilterKernel kernel = FilterKernel::Separable; // separable: a third of the time, more error at edges
@@ -257,7 +250,6 @@ struct Settings {
   RsmSettings rsm;
   VolumeSettings lpv;
   CubeSettings cube;
-  StillCacheSettings stillCache;
   HemicubeSettings hemicubes;
   std::string cubeFile; // that keeps the layered depth cube between runs; empty: none (--cube-file)
   HistorySettings history;

@@ -7,110 +7,74 @@
 
 namespace lambent {
 
+/// STAGE(id, name) for each.
+#define LAMBENT_STAGES(STAGE)                                                                                          \
+  STAGE(Scene, "scene")                                                                                                \
+  /* virtual lights on the CPU (gi/vpl) */                                                                             \
+  STAGE(Validate, "validate")                                                                                          \
+  STAGE(Points, "points")                                                                                              \
+  STAGE(Candidates, "candidates")                                                                                      \
+  STAGE(Resample, "resample")                                                                                          \
+  STAGE(Radiosity, "radiosity")                                                                                        \
+  STAGE(Replace, "replace")                                                                                            \
+  STAGE(Density, "density")                                                                                            \
+  STAGE(Photons, "photons") /* ir */                                                                                   \
+  STAGE(Chains, "chains")   /* tcas */                                                                                 \
+  /* virtual lights on the GPU (gi/reflective, gi/sources) */                                                          \
+  STAGE(ReflectiveMaps, "reflective maps")                                                                             \
+  STAGE(LightPatches, "light patches") /* of reflective maps */                                                        \
+  STAGE(ReflectiveLights, "reflective lights")                                                                         \
+  STAGE(Vpls, "vpls") /* upload */                                                                                     \
+  /* surfaces */                                                                                                       \
+  STAGE(Surfaces, "g-buffer")                                                                                          \
+  STAGE(Patches, "patches")                                                                                            \
+  /* direct light */                                                                                                   \
+  STAGE(LightMaps, "light maps")                                                                                       \
+  STAGE(Emitters, "emitters") /* upload */                                                                             \
+  STAGE(EmitterMaps, "emitter maps")                                                                                   \
+  STAGE(Direct, "direct")                                                                                              \
+  STAGE(ShadowRays, "shadow rays") /* where maps are in doubt */                                                       \
+  STAGE(AreaRays, "area rays")     /* between emissive surfaces and patches */                                         \
+  STAGE(AreaLight, "area light")                                                                                       \
+  /* who sees whom */                                                                                                  \
+  STAGE(VplMaps, "vpl maps")                                                                                           \
+  STAGE(MapComparison, "map comparison")                                                                               \
+  /* indirect light */                                                                                                 \
+  STAGE(Gather, "gather")                                                                                              \
+  STAGE(MapChecks, "map checks")                                                                                       \
+  STAGE(NearLight, "near light")                                                                                       \
+  STAGE(GatherByRays, "gather by rays")                                                                                \
+  STAGE(IrradianceUpload, "irradiance upload")                                                                         \
+  STAGE(Stencil, "stencil")                                                                                            \
+  STAGE(Refine, "refine")                                                                                              \
+  STAGE(Splat, "splat")                                                                                                \
+  STAGE(SplatPerVpl, "splat per VPL")                                                                                  \
+  STAGE(VolumeVisibility, "volume sights") /* which cells of a volume see one another */                               \
+  STAGE(Inject, "inject")                                                                                              \
+  STAGE(Propagate, "propagate")                                                                                        \
+  STAGE(Cube, "cube")           /* lights put into it and taken out */                                                 \
+  STAGE(Hemicubes, "hemicubes") /* of these, drawn */                                                                  \
+  STAGE(Upsample, "upsample")                                                                                          \
+  STAGE(History, "history")                                                                                            \
+  STAGE(Filter, "filter")                                                                                              \
+  /* image */                                                                                                          \
+  STAGE(Composite, "composite")                                                                                        \
+  STAGE(Display, "display")                                                                                            \
+  STAGE(AntiAliasing, "antialiasing")                                                                                  \
+  STAGE(Present, "present")
+
 enum class StageId : uint16_t {
-  Scene,
-  // virtual lights on the CPU (gi/vpl)
-  Validate,
-  Points,
-  Candidates,
-  Resample,
-  Radiosity,
-  Replace,
-  Density,
-  Photons, // ir
-  Chains,  // tcas
-  // virtual lights on the GPU (gi/reflective, gi/sources)
-  ReflectiveMaps,
-  LightPatches, // of reflective maps
-  ReflectiveLights,
-  Vpls, // upload
-  // surfaces
-  Surfaces,
-  Patches,
-  // direct light
-  LightMaps,
-  Emitters, // upload
-  EmitterMaps,
-  Direct,
-  ShadowRays, // where maps are in doubt
-  AreaRays,   // between emissive surfaces and patches
-  AreaLight,
-  // who sees whom
-  VplMaps,
-  MapComparison,
-  // indirect light
-  Gather,
-  MapChecks,
-  NearLight,
-  GatherByRays,
-  IrradianceUpload,
-  Stencil,
-  Refine,
-  Splat,
-  SplatPerVpl,
-  VolumeVisibility, // which cells of a volume see one another
-  Inject,
-  Propagate,
-  Cube,      // lights put into it and taken out
-  Hemicubes, // of these, drawn
-  Upsample,
-  History,
-  Filter,
-  // image
-  Composite,
-  Display,
-  AntiAliasing,
-  Present,
+#define STAGE(id, name) id,
+  LAMBENT_STAGES(STAGE)
+#undef STAGE
 };
 
-inline constexpr const char* kStageNames[] = {"scene",
-                                              "validate",
-                                              "points",
-                                              "candidates",
-                                              "resample",
-                                              "radiosity",
-                                              "replace",
-                                              "density",
-                                              "photons",
-                                              "chains",
-                                              "reflective maps",
-                                              "light patches",
-                                              "reflective lights",
-                                              "vpls",
-                                              "g-buffer",
-                                              "patches",
-                                              "light maps",
-                                              "emitters",
-                                              "emitter maps",
-                                              "direct",
-                                              "shadow rays",
-                                              "area rays",
-                                              "area light",
-                                              "vpl maps",
-                                              "map comparison",
-                                              "gather",
-                                              "map checks",
-                                              "near light",
-                                              "gather by rays",
-                                              "irradiance upload",
-                                              "stencil",
-                                              "refine",
-                                              "splat",
-                                              "splat per VPL",
-                                              "volume sights",
-                                              "inject",
-                                              "propagate",
-                                              "cube",
-                                              "hemicubes",
-                                              "upsample",
-                                              "history",
-                                              "filter",
-                                              "composite",
-                                              "display",
-                                              "antialiasing",
-                                              "present"};
+inline constexpr const char* kStageNames[] = {
+#define STAGE(id, name) name,
+    LAMBENT_STAGES(STAGE)
+#undef STAGE
+};
 inline constexpr size_t kStages = std::size(kStageNames);
-static_assert(kStages == size_t(StageId::Present) + 1);
 
 constexpr StageKey key(StageId id) { return {uint16_t(id), kStageNames[size_t(id)]}; }
 

@@ -27,6 +27,8 @@ struct Technique {
 };
 std::span<const Technique> techniqueTable();
 Needs needsOf(const Technique& technique);
+/// Makes the row's own provider, or one that is composed of the axes and serves all settings without a row of its own.
+std::unique_ptr<LightProvider> makeTechnique(const Settings& settings, PassContext context);
 /// Finds a technique. Throws InputError that gives the nearest name, or all of them.
 const Technique& techniqueByName(const std::string& name);
 std::vector<std::string> techniqueNames();

@@ -211,39 +211,30 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
   CHECK_EQ(sums.width, in.camera.width);
   CHECK_EQ(sums.height, in.camera.height);
   const size_t pixels = sums.pixels.size();
-  std::vector<RayCounts> perBlock((pixels + kBlockPixels - 1) / kBlockPixels);
-  parallelFor(perBlock.size(), 1, [&](size_t firstBlock, size_t lastBlock) {
-    for (size_t block = firstBlock; block < lastBlock; ++block) {
-      if (in.stopped && *in.stopped) return;
-      const size_t begin = block * kBlockPixels, end = std::min(begin + kBlockPixels, pixels);
-      const std::vector<SurfaceHit> primary = primaryHits(in.rays, in.camera, begin, end);
-      perBlock[block].closest += primary.size();
-      BlockTracer tracer(in, begin, primary);
-      for (uint32_t s = 0; s < count; ++s) {
-        const std::span<const Sample> samples = tracer.trace(sums.samples + s, perBlock[block]);
-        for (size_t i = begin; i < end; ++i) {
-          addTo(sums.pixels[i], samples[i - begin]);
-        }
-      }
+  parallelCount(pixels, kBlockPixels, counts, [&](size_t begin, size_t end, RayCounts& ofBlock) {
+    if (in.stopped && *in.stopped) return;
+    const std::vector<SurfaceHit> primary = primaryHits(in.rays, in.camera, begin, end);
+    ofBlock.closest += primary.size();
+    BlockTracer tracer(in, begin, primary);
+    for (uint32_t s = 0; s < count; ++s) {
+      const std::span<const Sample> samples = tracer.trace(sums.samples + s, ofBlock);
+      for (size_t i = begin; i < end; ++i) addTo(sums.pixels[i], samples[i - begin]);
     }
   });
   sums.samples += count;
-  for (const RayCounts& c : perBlock) counts += c;
 }
 
 std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, const ReferenceInputs& in, uint32_t samples,
                                       RayCounts& counts) {
   std::vector<PixelSums> sums(surfaces.size());
   constexpr size_t kGrain = 8;
-  std::vector<RayCounts> perBlock((surfaces.size() + kGrain - 1) / kGrain);
-  parallelFor(surfaces.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(surfaces.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& ofBlock) {
     BlockTracer tracer(in, begin, surfaces.subspan(begin, end - begin));
     for (uint32_t s = 0; s < samples; ++s) {
-      const std::span<const Sample> values = tracer.trace(s, perBlock[begin / kGrain]);
+      const std::span<const Sample> values = tracer.trace(s, ofBlock);
       for (size_t i = begin; i < end; ++i) addTo(sums[i], values[i - begin]);
     }
   });
-  for (const RayCounts& c : perBlock) counts += c;
   return sums;
 }
 

@@ -82,10 +82,7 @@ const std::vector<std::string>& bufferNames() { return kBufferNames; }
 Buffer bufferByName(const std::string& name) {
   for (size_t i = 0; i < kBufferNames.size(); ++i)
     if (kBufferNames[i] == name) return Buffer(i);
-  const std::string near = nearestName(name, kBufferNames);
-  std::string all;
-  for (const std::string& n : kBufferNames) all += (all.empty() ? "" : ", ") + n;
-  throw InputError("--buffer " + name, "no such buffer (" + (near.empty() ? all : "did you mean " + near + "?") + ")");
+  throw InputError("--buffer " + name, "no such buffer (" + guessText(name, kBufferNames, joined(kBufferNames)) + ")");
 }
 
 Image Viewer::read(Buffer buffer) const {

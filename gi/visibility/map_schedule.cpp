@@ -62,8 +62,7 @@ void MapSchedule::invalidate(std::span<const MapPose> poses, std::span<const flo
   const std::span<const Aabb> boxes = moved.boxes();
   size_t stride = std::max<size_t>(1, size_t(0.618 * double(boxes.size())));
   while (std::gcd(stride, boxes.size()) > 1) ++stride;
-  std::vector<RayCounts> perBlock((poses.size() + kGrain - 1) / kGrain);
-  parallelFor(poses.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(poses.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     for (size_t i = begin; i < end; ++i) {
       if (brightness[i] <= 0) continue;
       const vec3 origin = poses[i].origin();
@@ -80,13 +79,12 @@ void MapSchedule::invalidate(std::span<const MapPose> poses, std::span<const flo
         all.add(texels);
         if (texels.empty() || all == stale_[i].texels) continue; // behind it, or listed already
         if (raysPerBox > 0 && tested++ < kBoxesTested &&
-            !seesPlace(origin, poses[i].geometricNormal, box, rays, rng, raysPerBox, perBlock[begin / kGrain]))
+            !seesPlace(origin, poses[i].geometricNormal, box, rays, rng, raysPerBox, count))
           continue;
         stale_[i].texels = all;
       }
     }
   });
-  for (const RayCounts& c : perBlock) counts += c;
 }
 
 void MapSchedule::invalidateInTurn(size_t slots, size_t count, int resolution) {

@@ -1,14 +1,97 @@
-// Distance maps of VPLs and emissive samples: bookkeeping and the choice of the maker. Paper 1, section 4.4, draws them
-// on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
-#include "gi/visibility/paraboloid_makers.h"
+// Distance maps of VPLs and emissive samples: bookkeeping, the two makers and the choice between them. Paper 1, section
+// 4.4, draws them on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
+// Maps of both agree up to the rounding of a texel, which tests/gl/maps_test.cpp checks.
+#include "gi/visibility/paraboloid_maps.h"
 
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/gl/profiler.h"
 #include "engine/gl/pulse.h"
+#include "engine/trace/ray_query.h"
+#include "shaders/shared/shadow_lookup.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambent {
+
+namespace {
+
+/// The light's frame, as VplLight stores it: columns tangent, bitangent, normal.
+mat3 frameOf(const MapPose& pose) {
+  mat3 frame;
+  basisAround(pose.normal, frame[0], frame[1]);
+  frame[2] = pose.normal;
+  return frame;
+}
+
+/// Reads a layer as distances in metres, kInfinity where nothing is met.
+std::vector<float> readMap(const gl::Texture& array, int layer, float farDistance) {
+  const int resolution = array.width();
+  std::vector<uint16_t> values(size_t(resolution) * resolution);
+  array.readLayer(layer, std::span(values), GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT);
+  std::vector<float> distances(values.size());
+  for (size_t i = 0; i < values.size(); ++i)
+    distances[i] =
+        values[i] == 65535 ? kInfinity : float(values[i]) * float(values[i]) / (65535.0f * 65535.0f) * farDistance;
+  return distances;
+}
+
+/// Gives texels in odd columns or rows of a rectangle a distance, from their neighbours that have one.
+void fillBetween(std::vector<float>& distances, int width, int height) {
+  // Along a plane 1/distance is nearly linear; where it jumps, two surfaces meet.
+  const auto between = [](float a, float b) {
+    constexpr float kJump = 1.5f;
+    return std::max(a, b) < kJump * std::min(a, b) ? 2 * a * b / (a + b) : a;
+  };
+  for (int y = 0; y < height; y += 2)
+    for (int x = 1; x < width; x += 2) {
+      float* at = &distances[size_t(y) * width + x];
+      *at = between(at[-1], at[x + 1 < width ? 1 : -1]);
+    }
+  for (int y = 1; y < height; y += 2)
+    for (int x = 0; x < width; ++x) {
+      float* at = &distances[size_t(y) * width + x];
+      *at = between(at[-width], at[y + 1 < height ? width : -width]);
+    }
+}
+
+/// Casts the texels of a part of one map on the CPU, row by row: paraboloidValue(distance / farDistance) in 16 bits,
+/// 65535 where nothing is met. Coarse: a ray for every second texel of every second row; texels between have the mean
+/// of their neighbours on one surface, where these are nearly equal, else the nearest one's. Thread-safe.
+std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels,
+                              bool coarse = false) {
+  const int n = in.resolution, step = coarse ? 2 : 1, width = texels.x1 - texels.x0;
+  const mat3 worldFromLight = frameOf(pose);
+  const vec3 origin = pose.origin();
+  std::vector<Ray> rays;
+  std::vector<uint32_t> texelOfRay;
+  rays.reserve(size_t(texelsTraced(texels, coarse)));
+  texelOfRay.reserve(size_t(texelsTraced(texels, coarse)));
+  // 8×8 blocks keep neighbouring rays neighbours in memory, for the ray tracer's packets.
+  const int block = 8 * step;
+  for (int by = texels.y0; by < texels.y1; by += block)
+    for (int bx = texels.x0; bx < texels.x1; bx += block)
+      for (int y = by; y < std::min(by + block, texels.y1); y += step)
+        for (int x = bx; x < std::min(bx + block, texels.x1); x += step) {
+          const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
+          if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
+          rays.push_back({origin, worldFromLight * d, in.farDistance});
+          texelOfRay.push_back(uint32_t((y - texels.y0) * width + x - texels.x0));
+        }
+  std::vector<float> met(rays.size());
+  in.rays->distances(rays, met);
+  std::vector<float> distances(size_t(texels.area()), kInfinity);
+  for (size_t i = 0; i < rays.size(); ++i) distances[texelOfRay[i]] = met[i];
+  if (coarse) fillBetween(distances, width, texels.y1 - texels.y0);
+  std::vector<uint16_t> values(distances.size(), 65535);
+  for (size_t i = 0; i < distances.size(); ++i)
+    if (distances[i] < in.farDistance)
+      values[i] = uint16_t(paraboloidValue(distances[i] / in.farDistance) * 65535.0f + 0.5f);
+  return values;
+}
+
+} // namespace
 
 ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   const gl::PassScope scope = context_.scope(stage_);
@@ -83,17 +166,6 @@ std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {
   return readMap(arrays_[array], int(slot % kLayersPerArray), farDistance_);
 }
 
-std::vector<float> readMap(const gl::Texture& array, int layer, float farDistance) {
-  const int resolution = array.width();
-  std::vector<uint16_t> values(size_t(resolution) * resolution);
-  array.readLayer(layer, std::span(values), GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT);
-  std::vector<float> distances(values.size());
-  for (size_t i = 0; i < values.size(); ++i)
-    distances[i] =
-        values[i] == 65535 ? kInfinity : float(values[i]) * float(values[i]) / (65535.0f * 65535.0f) * farDistance;
-  return distances;
-}
-
 MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, const MapPose& pose) {
   const gl::PassScope scope = context_.scope(StageId::MapComparison);
   CHECK(in.rays != nullptr);
@@ -107,6 +179,90 @@ MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, 
   glTextureSubImage3D(scratch.name(), 0, 0, 0, 1, in.resolution, in.resolution, 1, GL_DEPTH_COMPONENT,
                       GL_UNSIGNED_SHORT, texels.data());
   return {in.resolution, readMap(scratch, 0, in.farDistance), readMap(scratch, 1, in.farDistance)};
+}
+
+// Raster -------------------------------------------------------------------------------------------------------------
+// Paper 1: a cube whose corner (1,1,1) points along the normal, so that three faces cover the hemisphere, with off-axis
+// frusta that reach over [-2,1]² around each face's axis; then one pass brings the faces into the paraboloid map.
+
+void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array,
+                                   int layer) {
+  const int faceResolution = in.resolution * 3 / 2;
+  if (!faces_ || faces_.width() != faceResolution) {
+    faces_ = gl::Texture(name_ + "/faces", {.kind = gl::TextureKind::Array,
+                                            .format = GL_DEPTH_COMPONENT32F,
+                                            .width = faceResolution,
+                                            .height = faceResolution,
+                                            .layers = 3});
+    facesFramebuffer_ = gl::Framebuffer(name_ + "/faces");
+    layerFramebuffer_ = gl::Framebuffer(name_ + "/layer");
+  }
+  // An orthonormal cube frame with (1,1,1)/√3 along z of the light's frame.
+  const float a = std::sqrt(2.0f / 3), b = std::sqrt(1.0f / 6), c = std::sqrt(0.5f), h = std::sqrt(1.0f / 3);
+  const vec3 axes[3] = {{a, 0, h}, {-b, c, h}, {-b, -c, h}};
+  const mat3 worldFromLight = frameOf(pose);
+  const vec3 origin = pose.origin();
+  const float near = in.farDistance * 1e-5f;
+
+  facesFramebuffer_.bind();
+  gl::PipelineState{.depthTest = true, .depthWrite = true, .width = faceResolution, .height = faceResolution}.apply();
+  for (int face = 0; face < 3; ++face) {
+    const vec3 right = worldFromLight * axes[(face + 1) % 3], up = worldFromLight * axes[(face + 2) % 3],
+               forward = worldFromLight * axes[face];
+    // x' = (x/z + 2)·2/3 - 1: [-2,1] to [-1,1]; reversed depth near/z.
+    const vec4 rows[4] = {vec4(right * (2.0f / 3) + forward * (1.0f / 3), 0),
+                          vec4(up * (2.0f / 3) + forward * (1.0f / 3), 0), vec4(0, 0, 0, near), vec4(forward, 0)};
+    mat4 clipFromRelative = glm::transpose(mat4(rows[0], rows[1], rows[2], rows[3]));
+    mat4 relativeFromWorld(1);
+    relativeFromWorld[3] = vec4(-origin, 1);
+    facesFramebuffer_.attachDepthLayer(faces_, face);
+    const float nothing = 0;
+    glClearNamedFramebufferfv(facesFramebuffer_.name(), GL_DEPTH, 0, &nothing);
+    in.scene.draw(DrawKind::Depth, clipFromRelative * relativeFromWorld);
+  }
+
+  const gl::Program& program = context_.programs.get({.fragment = "map_resample.frag"});
+  program.set("resolution", float(in.resolution));
+  program.set("nearDistance", near);
+  program.set("farDistance", in.farDistance);
+  program.set("axisX", axes[0]);
+  program.set("axisY", axes[1]);
+  program.set("axisZ", axes[2]);
+  program.use();
+  faces_.bind(0);
+  layerFramebuffer_.attachDepthLayer(array, layer);
+  layerFramebuffer_.bind();
+  gl::PipelineState{
+      .depthTest = true, .depthWrite = true, .depthFunc = GL_ALWAYS, .width = in.resolution, .height = in.resolution}
+      .apply();
+  gl::drawFullscreen();
+}
+
+/// Maps are drawn whole: a part costs the same three faces.
+void ParaboloidMapPass::drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
+  for (const MapJob& job : jobs)
+    rasterInto(in, in.poses[job.slot], arrays_[job.slot / kLayersPerArray], int(job.slot % kLayersPerArray));
+}
+
+// Rays ---------------------------------------------------------------------------------------------------------------
+
+void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
+  // In batches, so that the texels of 2048 maps need not wait in memory together (64 MiB at 128²).
+  constexpr size_t kBatch = 64;
+  std::vector<std::vector<uint16_t>> maps(std::min(kBatch, jobs.size()));
+  for (size_t begin = 0; begin < jobs.size(); begin += kBatch) {
+    gl::pulse();
+    const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
+    parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i)
+        maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].coarse);
+    });
+    for (size_t i = 0; i < batch.size(); ++i) {
+      const auto& [slot, t, coarse] = batch[i];
+      glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, t.x0, t.y0, int(slot % kLayersPerArray),
+                          t.x1 - t.x0, t.y1 - t.y0, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
+    }
+  }
 }
 
 } // namespace lambent

@@ -58,7 +58,4 @@ class LightVolume {
   int steps_ = -1;
 };
 
-/// Makes the gather of pixels' light from such a volume (`lpv`).
-std::unique_ptr<Gather> makeVolumeGather(PassContext context);
-
 } // namespace lambent

@@ -88,26 +88,10 @@ struct Connection {
   }
 };
 
-/// VPLs of the set with the slots they are in.
-struct VplPlaces {
-  std::vector<DensityPoint> points;
-  std::vector<uint32_t> slots;
-};
-
-VplPlaces placesOf(const VplSet& set) {
-  VplPlaces result;
-  for (uint32_t i = 0; i < set.slots.size(); ++i)
-    if (set.slots[i].alive) {
-      result.points.push_back({set.slots[i].position, set.slots[i].normal});
-      result.slots.push_back(i);
-    }
-  return result;
-}
-
 /// The VPLs as samples look for them; radii are those of set.cells.
 struct Neighbours {
   const VplSet& set;
-  const VplPlaces& vpls;
+  const LivePoints& vpls;
   const NeighbourTree& tree;
   float limit; // m: no sample lies farther from who draws or has it
 
@@ -275,7 +259,7 @@ class CellSampler {
 
 /// Notes who looks at the VPL: mailbox points of the VPLs nearest to it, not its own, which sees it by definition. Only
 /// that one where none of them does.
-void findViewers(const Vpl& vpl, const VplSet& set, const VplPlaces& vpls, const NeighbourTree& tree,
+void findViewers(const Vpl& vpl, const VplSet& set, const LivePoints& vpls, const NeighbourTree& tree,
                  const RayQuery& rays, VplCell& cell, RayCounts& counts) {
   std::array<uint32_t, SurfaceSample::kNear> index;
   std::array<float, SurfaceSample::kNear> distance2;
@@ -364,7 +348,7 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   if (drifted) set.cellLimit = radiusLimit;
   radiusLimit = set.cellLimit;
   if (set.cells.size() != slots) set.cells.assign(slots, {}); // slots may have changed: redraw all
-  const VplPlaces vpls = placesOf(set);
+  const LivePoints vpls = livePoints<Vpl>(set.slots);
   const NeighbourTree tree(vpls.points);
   const Neighbours neighbours{set, vpls, tree, kReachLimit * radiusLimit};
   // Scale of a cell: 0.9 of the distance to its third neighbour. Chords reach four times as far.
@@ -410,11 +394,8 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
   if (places.empty() && dirty.empty()) return {};
 
   constexpr size_t kGrain = 32;
-  const auto blocks = [](size_t n) { return (n + kGrain - 1) / kGrain; };
-  std::vector<RayCounts> perBlock(blocks(slots));
-  std::vector<std::vector<uint32_t>> concerned(blocks(slots)); // slots that got or lost samples
-  parallelFor(slots, kGrain, [&](size_t begin, size_t end) {
-    RayCounts& count = perBlock[begin / kGrain];
+  std::vector<std::vector<uint32_t>> concerned((slots + kGrain - 1) / kGrain); // slots that got or lost samples
+  parallelCount(slots, kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<uint32_t>& owners = concerned[begin / kGrain];
     CellSampler sampler(rays, neighbours, seed);
     const Connection connected{rays, count};
@@ -508,18 +489,15 @@ std::vector<uint32_t> updateCells(VplSet& set, const RayQuery& rays, const Dirty
     shared.emplace_back(first, last);
   }
   std::vector<uint8_t> made(candidates.size());
-  perBlock.resize(std::max(perBlock.size(), blocks(candidates.size())));
-  parallelFor(candidates.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(candidates.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t slot = candidates[i];
-      made[i] =
-          assemble(set.slots[slot], set.cells[slot], shared[i], dirty, perhaps[slot], rays, perBlock[begin / kGrain]);
+      made[i] = assemble(set.slots[slot], set.cells[slot], shared[i], dirty, perhaps[slot], rays, count);
     }
   });
   std::vector<uint32_t> changed;
   for (size_t i = 0; i < candidates.size(); ++i)
     if (made[i]) changed.push_back(candidates[i]);
-  for (const RayCounts& c : perBlock) counts += c;
   return changed;
 }
 

@@ -43,8 +43,7 @@ void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView
                      const VisibilityUpdate& update, RayCounts& counts) {
   const mat4 viewFromWorld = glm::inverse(camera.worldFromView);
   constexpr size_t kGrain = 64;
-  std::vector<RayCounts> perBlock((vpls.size() + kGrain - 1) / kGrain);
-  parallelFor(vpls.size(), kGrain, [&](size_t begin, size_t end) {
+  parallelCount(vpls.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<Ray> block;
     std::vector<uint32_t> owner;
     for (size_t i = begin; i < end; ++i) {
@@ -66,11 +65,10 @@ void verifyMailboxes(std::span<Vpl> vpls, const RayQuery& rays, const CameraView
     }
     std::vector<uint8_t> blocked(block.size());
     rays.occluded(block, blocked);
-    perBlock[begin / kGrain].occlusion += block.size();
+    count.occlusion += block.size();
     for (size_t j = 0; j < block.size(); ++j)
       if (blocked[j]) vpls[owner[j]].valid = false;
   });
-  for (const RayCounts& c : perBlock) counts += c;
 }
 
 void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePoint> points, int raysPerPoint,
@@ -87,8 +85,7 @@ void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePo
       const size_t tries = std::min<size_t>(raysPerPoint, open.size());
       const size_t count = std::min(kPointsPerBlock, points.size() - first);
       std::vector<uint32_t> found(count * tries, kNone); // slot that this ray verified
-      std::vector<RayCounts> shot(count);
-      parallelFor(count, 16, [&](size_t begin, size_t end) {
+      parallelCount(count, 16, counts, [&](size_t begin, size_t end, RayCounts& shot) {
         std::vector<Ray> block;
         std::vector<size_t> place;
         for (size_t p = begin; p < end; ++p) {
@@ -106,11 +103,10 @@ void verifyByPoints(VplSet& set, const RayQuery& rays, std::span<const VisiblePo
         }
         std::vector<uint8_t> blocked(block.size());
         rays.occluded(block, blocked);
-        shot[begin].occlusion = block.size();
+        shot.occlusion = block.size();
         for (size_t j = 0; j < block.size(); ++j)
           if (blocked[j]) found[place[j]] = kNone;
       });
-      for (const RayCounts& c : shot) counts += c;
       for (size_t j = 0; j < found.size(); ++j)
         if (found[j] != kNone && !set.slots[found[j]].valid) {
           set.slots[found[j]].valid = true;

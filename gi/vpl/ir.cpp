@@ -26,8 +26,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
     const auto share = [&](uint32_t b) { return slots / bounces + (b < slots % bounces ? 1 : 0); };
     constexpr size_t kGrain = 64;
     const size_t photons = share(0);
-    std::vector<RayCounts> perBlock((photons + kGrain - 1) / kGrain);
-    parallelFor(photons, kGrain, [&](size_t begin, size_t end) {
+    parallelCount(photons, kGrain, log.candidates, [&](size_t begin, size_t end, RayCounts& count) {
       std::vector<Photon> flying;
       std::vector<uint32_t> number; // j of each
       for (size_t j = begin; j < end; ++j) {
@@ -42,7 +41,7 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
         for (const Photon& p : flying) rays.push_back(p.ray);
         hits.resize(rays.size());
         in.rays.closest(rays, hits);
-        perBlock[begin / kGrain].closest += rays.size();
+        count.closest += rays.size();
         size_t left = 0;
         for (size_t i = 0; i < hits.size(); ++i) {
           const SurfaceHit& h = hits[i];
@@ -64,7 +63,6 @@ VplChanges placeByPhotons(VplSet& set, const VplUpdate& in, VplUpdateLog& log) {
         firstSlot += share(b);
       }
     });
-    for (const RayCounts& c : perBlock) log.candidates += c;
   }
   return adoptVpls(set, placed, in, log);
 }

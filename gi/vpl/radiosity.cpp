@@ -3,11 +3,11 @@
 //
 // At each path vertex: one light chosen in proportion to what it could bring, one shadow ray, one cosine-distributed
 // ray. The cosine ray meets a constant sky directly (that is its whole estimator); emitters, and a sky that is not, by
-// multiple importance sampling (gi/lighting/light_paths.h) with the shadow rays, so a VPL close to a lamp stays finite in
-// variance. Noise of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic 13
-// % and 24 %. The paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices, from
-// the middle to the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one order
-// for all, the first light shone on the middle of every cell only, the last on its rim.
+// multiple importance sampling (gi/lighting/light_paths.h) with the shadow rays, so a VPL close to a lamp stays finite
+// in variance. Noise of 16 paths under a 1.5 m × 0.8 m quad at 1 m and 0.2 m: 16 % and 17 %; with the balance heuristic
+// 13 % and 24 %. The paths of one VPL share stratified numbers at the first vertex: the points of its cell in slices,
+// from the middle to the rim, the lights in slices, directions in 4×4 strata. Each in an order of its own: with one
+// order for all, the first light shone on the middle of every cell only, the last on its rim.
 //
 // In two steps. Tracing finds the vertices, which depend on geometry alone; lighting connects them to the lights and
 // adds up. What is traced is kept (gi/vpl/kept_paths.h), and each step is done again only for paths that need it. The
@@ -331,11 +331,11 @@ class VplEstimator {
 PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& rays, const LightSet& lights,
                             const RadianceUpdate& update) {
   constexpr size_t kGrain = 16;
-  std::vector<PathCounts> perBlock((jobs.size() + kGrain - 1) / kGrain);
   const bool dark = lights.empty() || update.bounces < 1;
   vec3 Vpl::*const result = update.use == RadianceUse::Rendering ? &Vpl::radiance : &Vpl::samplerRadiance;
   const Orders orders(uint32_t(update.paths));
-  parallelFor(jobs.size(), kGrain, [&](size_t begin, size_t end) {
+  PathCounts all;
+  parallelCount(jobs.size(), kGrain, all, [&](size_t begin, size_t end, PathCounts& counts) {
     VplEstimator estimator(rays, lights, update, orders);
     KeptPaths scratch;
     for (size_t i = begin; i < end; ++i) {
@@ -347,7 +347,6 @@ PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& r
         job.vpl->*result = vec3(0);
         continue;
       }
-      PathCounts& counts = perBlock[begin / kGrain];
       if (job.path >= 0) {
         job.vpl->*result = estimator.estimateOne(*job.vpl, job.path, scratch, counts);
         continue;
@@ -355,8 +354,6 @@ PathCounts estimateRadiance(std::span<const RadianceJob> jobs, const RayQuery& r
       counts.lit += estimator.estimate(*job.vpl, job.cell, kept, job.vpl->*result, counts);
     }
   });
-  PathCounts all;
-  for (const PathCounts& c : perBlock) all += c;
   return all;
 }
 
@@ -364,12 +361,7 @@ void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const Li
                       uint32_t seed, RayCounts& counts, RadianceUse use, std::span<const VplCell* const> cells) {
   std::vector<RadianceJob> jobs;
   for (size_t i = 0; i < vpls.size(); ++i) jobs.push_back({vpls[i], cells.empty() ? nullptr : cells[i], nullptr});
-  RadianceUpdate update;
-  update.paths = paths;
-  update.bounces = bounces;
-  update.seed = seed;
-  update.use = use;
-  counts += estimateRadiance(jobs, rays, lights, update).rays;
+  counts += estimateRadiance(jobs, rays, lights, {.paths = paths, .bounces = bounces, .seed = seed, .use = use}).rays;
 }
 
 } // namespace lambent

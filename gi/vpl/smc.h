@@ -131,13 +131,29 @@ void estimateRadiance(std::span<Vpl* const> vpls, const RayQuery& rays, const Li
 /// make areas along every edge too large (measured: 15 % more light in an empty room).
 inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot(normalA, normalB) > -0.5f; }
 
+/// A place of a light.
+struct DensityPoint {
+  vec3 position, normal;
+};
+/// The points of those lights that are alive, and which these are.
+struct LivePoints {
+  std::vector<DensityPoint> points;
+  std::vector<uint32_t> slots;
+};
+template <class Light> LivePoints livePoints(std::span<const Light> lights) {
+  LivePoints live;
+  for (uint32_t i = 0; i < lights.size(); ++i)
+    if (lights[i].alive) {
+      live.points.push_back({lights[i].position, lights[i].normal});
+      live.slots.push_back(i);
+    }
+  return live;
+}
+
 /// Stage 6. Area that each point stands for, π r_k² / k, with r_k the distance to the k-th nearest of `among` (paper 1,
 /// eq. 7 solved for area). A query point that is itself in `among` is passed over when `self` says so. With KnnSide
 /// only neighbours on the same side count. Points with
 /// fewer than k neighbours get the area of the neighbours they have, scaled, and never more than `areaLimit`, m².
-struct DensityPoint {
-  vec3 position, normal;
-};
 std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::span<const DensityPoint> among,
                                     bool self, int k, DensityEstimator estimator, float areaLimit);
 /// k for rendering, paper 1, eq. 8, read as ⌊√(N/32)⌋. The reading ⌊√N/32⌋, 1 at N = 2048, finds 35 % too much light
@@ -233,9 +249,9 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
                                    std::span<const VirtualLight> lights, const GatherSettings& settings,
                                    RayCounts& counts, GlossyGather* glossy = nullptr);
 
-/// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/vpl_shading.glsl shares the formula): cosines over
-/// squared distance, the distance widened by the VPL's own area and the result clamped as the settings say, 1/m².
-/// Within 3e-7 of itself for squared distances and areas of 1e-20 to 1e20 m².
+/// Geometry term of a VPL at a receiver as the gather uses it (shaders/lib/vpl_shading.glsl shares the formula):
+/// cosines over squared distance, the distance widened by the VPL's own area and the result clamped as the settings
+/// say, 1/m². Within 3e-7 of itself for squared distances and areas of 1e-20 to 1e20 m².
 float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area, const GatherSettings& settings);
 
 } // namespace lambent

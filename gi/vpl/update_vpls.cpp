@@ -51,17 +51,6 @@ void place(Vpl& v, const SceneView& view, uint32_t instanceIndex) {
     v.alive = v.valid = false;
 }
 
-std::vector<DensityPoint> densityPoints(std::span<const Vpl> vpls, std::vector<uint32_t>& index) {
-  std::vector<DensityPoint> points;
-  index.clear();
-  for (uint32_t i = 0; i < vpls.size(); ++i)
-    if (vpls[i].alive) {
-      points.push_back({vpls[i].position, vpls[i].normal});
-      index.push_back(i);
-    }
-  return points;
-}
-
 /// No VPL stands for more than this, m²: 16 times the mean share. An isolated VPL's disk would else reach far beyond
 /// the surface it is on (the paper's clothes line).
 float areaLimit(const VplSet& set) { return 16 * set.visibleArea / float(std::max<size_t>(16, set.slots.size())); }
@@ -71,28 +60,23 @@ int samplerPaths(const SmcSettings& settings) { return std::max(1, settings.path
 
 /// The sampler's densities, k = 1.
 void estimateSamplerDensities(VplSet& set, const SmcSettings& settings) {
-  std::vector<uint32_t> index;
-  const std::vector<DensityPoint> points = densityPoints(set.slots, index);
-  const std::vector<float> areas = representedAreas(points, points, true, 1, settings.density, areaLimit(set));
-  for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].candidateArea = areas[i];
-}
-
-RadianceUpdate radianceUpdate(const VplUpdate& in, const ChangesSince& since, RadianceUse use) {
-  RadianceUpdate update;
-  update.paths = use == RadianceUse::Rendering ? in.settings.paths : samplerPaths(in.settings);
-  update.bounces = in.settings.bounces;
-  update.seed = in.seed;
-  update.use = use;
-  update.moved = &since.moved;
-  update.lightsChanged = since.lights;
-  update.instancesChanged = since.instances;
-  update.lastRays = in.effects.lastRays;
-  return update;
+  const LivePoints live = livePoints<Vpl>(set.slots);
+  const std::vector<float> areas =
+      representedAreas(live.points, live.points, true, 1, settings.density, areaLimit(set));
+  for (size_t i = 0; i < areas.size(); ++i) set.slots[live.slots[i]].candidateArea = areas[i];
 }
 
 void light(std::span<const RadianceJob> jobs, const VplUpdate& in, const ChangesSince& since, RadianceUse use,
            VplUpdateLog& log) {
-  const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights, radianceUpdate(in, since, use));
+  const RadianceUpdate update{.paths = use == RadianceUse::Rendering ? in.settings.paths : samplerPaths(in.settings),
+                              .bounces = in.settings.bounces,
+                              .seed = in.seed,
+                              .use = use,
+                              .moved = &since.moved,
+                              .lightsChanged = since.lights,
+                              .instancesChanged = since.instances,
+                              .lastRays = in.effects.lastRays};
+  const PathCounts counts = estimateRadiance(jobs, in.rays, in.lights, update);
   log.paths += counts;
   log.radiosity += counts.rays;
   if (use == RadianceUse::Rendering) log.relit += uint32_t(counts.lit);
@@ -110,11 +94,10 @@ void estimateLight(VplSet& set, const VplUpdate& in, const ChangesSince& since, 
       changed = updateCells(set, in.rays, since.moved, moved, std::sqrt(areaLimit(set) / kPi), in.seed, log.cells);
     } else {
       set.cells.clear();
-      std::vector<uint32_t> index;
-      const std::vector<DensityPoint> points = densityPoints(set.slots, index);
-      const std::vector<float> areas =
-          representedAreas(points, points, true, neighboursForRendering(settings), settings.density, areaLimit(set));
-      for (size_t i = 0; i < index.size(); ++i) set.slots[index[i]].area = areas[i];
+      const LivePoints live = livePoints<Vpl>(set.slots);
+      const std::vector<float> areas = representedAreas(
+          live.points, live.points, true, neighboursForRendering(settings), settings.density, areaLimit(set));
+      for (size_t i = 0; i < areas.size(); ++i) set.slots[live.slots[i]].area = areas[i];
     }
   }
   CpuScope scope(log.stages, key(StageId::Radiosity));
@@ -235,11 +218,10 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const ChangesSince& since, 
   VplChanges changes;
   {
     CpuScope scope(log.stages, key(StageId::Replace));
-    std::vector<uint32_t> index;
     std::vector<DensityPoint> queries;
     for (const Vpl& v : set.pool) queries.push_back({v.position, v.normal});
     const std::vector<float> areas =
-        representedAreas(queries, densityPoints(set.slots, index), false, 1, settings.density, areaLimit(set));
+        representedAreas(queries, livePoints<Vpl>(set.slots).points, false, 1, settings.density, areaLimit(set));
     for (size_t i = 0; i < set.pool.size(); ++i) set.pool[i].candidateArea = areas[i];
     size_t alive = 0, invalid = 0;
     for (const Vpl& v : set.slots) alive += v.alive, invalid += v.alive && !v.valid;

@@ -14,7 +14,6 @@ class CubeGatherTest : public GlTest {
     settings.gather.near = 0;
     settings.image.exposure = 1;
   }
-  SceneView still() const { return room.scene.view(kStill); }
   /// A ray for every pixel and light.
   Image byRays() const {
     Settings every = settings;
@@ -94,94 +93,6 @@ TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
   other.scene.lights = room.scene.lights;
   EXPECT_GT(relativeDifference(firstFrame(settings, other.scene.view()), fresh), 0.05)
       << "the block makes a difference";
-}
-
-/// The cube comes where nothing changes for long, goes where a lamp moves, and neither is seen.
-TEST_F(CubeGatherTest, StandsInWhereNothingChanges) {
-  settings = {};
-  settings.smc = {.vpls = 512, .bounces = 2};
-  settings.image.exposure = 1;
-  settings.cube.resolution = 64;
-  settings.stillCache = {.after = 20, .perFrame = 64};
-  Viewer gi(settings);
-  gi.run(room.scene.view());
-  double mean = 0, most = 0;
-  const auto step = [&](bool counts) {
-    const double now = meanLuminance(gi.read(Buffer::Irradiance));
-    if (counts) most = std::max(most, std::abs(now / mean - 1));
-    mean = now;
-  };
-  step(false);
-  int alone = 0, frames = 0;
-  for (; frames < 200 && alone < 3; ++frames) {
-    const FrameStats& stats = gi.run(still());
-    EXPECT_TRUE(frames + 1 >= settings.stillCache.after || stats.raysCube.closest == 0) << frames;
-    alone += !stats.plan.on(EffectId::Gather);
-    step(frames > 5); // before, the history is short
-  }
-  ASSERT_EQ(alone, 3);
-  EXPECT_GT(frames, settings.stillCache.after + 16 + 4);
-  const Image cube = gi.read(Buffer::Irradiance);
-  Settings own = settings;
-  applyTechnique(own, "ibrr");
-  EXPECT_EQ(cube.pixels, firstFrame(own, room.scene.view()).pixels) << "the light of ibrr";
-  EXPECT_FALSE(gi.run(still()).plan.on(EffectId::Redraw)) << "and then nothing is done";
-
-  // The camera alone: no light is sampled, no map drawn, nothing gathered.
-  const mat4 pose = room.scene.camera.worldFromView;
-  room.scene.camera.worldFromView[3].x += 0.05f;
-  const FrameStats& walk = gi.run(room.scene.view(kCameraChanged));
-  EXPECT_FALSE(walk.plan.on(EffectId::Gather));
-  EXPECT_FALSE(walk.plan.on(EffectId::Replace));
-  EXPECT_EQ(walk.raysCandidates.closest + walk.raysCube.closest + walk.mapsDrawn, 0u);
-  room.scene.camera.worldFromView = pose;
-  gi.run(room.scene.view(kCameraChanged));
-  step(false);
-
-  room.scene.lights[0].position.x += 0.01f;
-  EXPECT_TRUE(gi.run(room.scene.view(kLightsChanged)).plan.on(EffectId::Gather));
-  step(true);
-  for (int f = 0; f < 18; ++f) {
-    EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
-    step(true);
-  }
-  std::printf("largest step of mean light from frame to frame: %.2f %%\n", 100 * most);
-  EXPECT_LT(most, 0.02);
-}
-
-/// A cube that is wanted again before it is gone shows the light of now, and settings may change while it stands in.
-TEST_F(CubeGatherTest, StandsInWithTheLightOfNow) {
-  settings = {};
-  settings.smc = {.vpls = 128, .bounces = 2};
-  settings.image.exposure = 1;
-  settings.cube.resolution = 32;
-  settings.stillCache = {.after = 4, .perFrame = 256};
-  Viewer gi(settings);
-  gi.run(room.scene.view());
-  const auto untilAlone = [&] {
-    for (int f = 0; f < 200; ++f)
-      if (!gi.run(still()).plan.on(EffectId::Gather)) return;
-    FAIL() << "it never stands in";
-  };
-  const auto isThatOfNow = [&](const char* when) {
-    Settings own = gi.settings();
-    applyTechnique(own, "ibrr");
-    EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, firstFrame(own, room.scene.view()).pixels) << when;
-  };
-  untilAlone();
-  room.scene.lights[0].position.x = -0.4f;
-  gi.run(room.scene.view(kLightsChanged));
-  untilAlone();
-  isThatOfNow("after a lamp moved");
-  gi.settings().gather.disk = 2;
-  EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
-  untilAlone();
-  isThatOfNow("after a setting changed");
-  gi.settings().stillCache.after = 0;
-  for (int f = 0; f < 20; ++f) EXPECT_TRUE(gi.run(still()).plan.on(EffectId::Gather));
-  gi.settings().stillCache.after = 4;
-  gi.settings().effects[EffectId::Gather] = EffectMode::Off;
-  for (int f = 0; f < 12; ++f) gi.run(still());
 }
 
 TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) { expectDarkBesideLit(settings, 0.01); }

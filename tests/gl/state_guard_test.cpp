@@ -129,11 +129,6 @@ std::vector<Step> allSteps() {
     s.cube.levels = 1;
     s.smc.vpls = 16;
   });
-  smc("a still cache", [](Settings& s) {
-    s.stillCache.after = 1;
-    s.stillCache.perFrame = 64;
-  });
-  for (int i = 0; i < 3; ++i) steps.push_back({"a still cache, still " + std::to_string(i), [](Settings&) {}, true});
   return steps;
 }
 

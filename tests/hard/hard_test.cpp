@@ -2,7 +2,7 @@
 // irradiance; energy lies between bounds, where a case says so frames follow each other, positions, normals and light
 // of the virtual lights are whole, and GL has nothing to say.
 #include "engine/core/error.h"
-#include "gi/measure/runs/whole.h"
+#include "gi/measure/runs/runs.h"
 #include "gi/plan/presets.h"
 #include "hard_case.h"
 #include "tests/gl/gl_fixture.h"

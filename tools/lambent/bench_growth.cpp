@@ -23,28 +23,20 @@ constexpr size_t kMostLines = 5; // of a plot, besides the frame
 /// Draws the frames of another view than it is given.
 class OnScaledView final : public Runner {
  public:
-  OnScaledView(const Variant& v, std::shared_ptr<ScaledView> scaled)
-      : inner_(wholeFrames(v)), scaled_(std::move(scaled)) {}
-  const FrameStats& run(const SceneView& view) override { return inner_->run(scaled_->of(view)); }
+  OnScaledView(const Variant& v, ScaledView scaled) : inner_(wholeFrames(v)), scaled_(std::move(scaled)) {}
+  const FrameStats& run(const SceneView& view) override { return inner_->run(scaled_(view)); }
   std::vector<TrackedValue> at(std::span<const vec2> points) const override { return inner_->at(points); }
 
  private:
   std::unique_ptr<Runner> inner_;
-  std::shared_ptr<ScaledView> scaled_;
+  ScaledView scaled_;
 };
-
-template <class Scaled> std::shared_ptr<ScaledView> scaledBy(float factor, const SceneAssets& assets) {
-  if constexpr (std::is_constructible_v<Scaled, const SceneAssets&, uint32_t>)
-    return std::make_shared<Scaled>(assets, uint32_t(factor));
-  else
-    return std::make_shared<Scaled>(std::conditional_t<std::is_same_v<Scaled, SplitLights>, uint32_t, float>(factor));
-}
 
 /// One thing, of which a view has more by a factor, and all else the same.
 struct Growing {
   const char *name, *title;
   std::vector<float> factors;
-  std::shared_ptr<ScaledView> (*scaled)(float, const SceneAssets&) = nullptr; // null: by the settings
+  ScaledView (*scaled)(float, const SceneAssets&) = nullptr; // null: by the settings
   double (*count)(const SceneView&) = nullptr;
 };
 constexpr float kRoot = 1.41421356f;
@@ -52,22 +44,22 @@ const Growing kGrowing[] = {{"vpls", "virtual lights, N", {0.25f, 0.5f, 1, 2}},
                             {"pixels",
                              "pixels",
                              {0.5f, kRoot / 2, 1, kRoot, 2},
-                             scaledBy<ResizedPicture>,
+                             [](float f, const SceneAssets&) { return resizedPicture(f); },
                              [](const SceneView& v) { return double(v.camera.width) * v.camera.height; }},
                             {"lights",
                              "punctual lights, of the same intensity in all",
                              {1, 2, 4, 8},
-                             scaledBy<SplitLights>,
+                             [](float f, const SceneAssets&) { return splitLights(uint32_t(f)); },
                              [](const SceneView& v) { return double(v.lights.size()); }},
                             {"instances",
                              "instances, of the same triangles in all",
                              {1, 2, 4, 8},
-                             scaledBy<SplitInstances>,
+                             [](float f, const SceneAssets& a) { return splitInstances(a, uint32_t(f)); },
                              [](const SceneView& v) { return double(v.instances.size()); }},
                             {"triangles",
                              "triangles, of the same surface in all",
                              {1, 2, 3, 4},
-                             scaledBy<SplitTriangles>,
+                             [](float f, const SceneAssets& a) { return splitTriangles(a, uint32_t(f)); },
                              [](const SceneView& v) { return double(trianglesOf(v)); }}};
 
 /// The camera a two-hundredth of the scene aside and back, in eight steps.
@@ -91,8 +83,8 @@ std::vector<Variant> variantsOf(const Growing& growing, LaunchContext& opened, s
       values.push_back(v.settings.smc.vpls);
       continue;
     }
-    const std::shared_ptr<ScaledView> scaled = growing.scaled(factor, *view.assets);
-    values.push_back(growing.count(scaled->of(view)));
+    const ScaledView scaled = growing.scaled(factor, *view.assets);
+    values.push_back(growing.count(scaled(view)));
     v.make = [scaled](const Variant& own) { return std::make_unique<OnScaledView>(own, scaled); };
   }
   return variants;

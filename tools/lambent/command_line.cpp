@@ -104,11 +104,6 @@ std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
 
 } // namespace
 
-std::string guessText(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise) {
-  const std::string near = nearestName(name, known);
-  return near.empty() ? otherwise : "did you mean " + near + "?";
-}
-
 Command::Command(CLI::App& app, const std::string& name, const std::string& help)
     : command_(app.add_subcommand(name, help)), to_(command_) {}
 

@@ -2,6 +2,7 @@
 // was misspelt. CLI11 is in command_line.cpp alone: it takes four seconds to compile, in every file that names it.
 #pragma once
 
+#include "engine/core/text.h"
 #include "tools/launch/launch.h"
 
 #include <functional>
@@ -12,9 +13,6 @@
 #include <vector>
 
 namespace lambent {
-
-/// "did you mean NEAR?", or `otherwise` where no name is near.
-std::string guessText(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise);
 
 /// What every command has.
 struct OutputOptions {

@@ -1,11 +1,11 @@
 // lambent soak SCENE: many frames in which anything may change, through the whole frame. After each all must be whole
-// (gi/measure/runs/whole.h); memory, of the program and of OpenGL, must not grow.
+// (gi/measure/runs/runs.h); memory, of the program and of OpenGL, must not grow.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/core/rng.h"
 #include "engine/gl/objects.h"
 #include "engine/platform/gl_context.h"
-#include "gi/measure/runs/whole.h"
+#include "gi/measure/runs/runs.h"
 #include "tools/lambent/commands.h"
 
 #include <algorithm>

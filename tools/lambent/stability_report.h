@@ -1,8 +1,8 @@
 // What `lambent stability` writes: tables in Markdown and CSV, series in CSV, plots.
 #pragma once
 
-#include "gi/measure/ranking.h"
 #include "gi/measure/stability.h"
+#include "gi/measure/statistics.h"
 #include "tools/lambent/report.h"
 
 namespace lambent {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/platform/gl_context.h"
-#include "gi/measure/against_truth.h"
-#include "gi/measure/ranking.h"
+#include "gi/measure/picture_error.h"
+#include "gi/measure/statistics.h"
 #include "gi/plan/presets.h"
 #include "tools/lambent/commands.h"
 

@@ -1,11 +1,11 @@
 // Light of pixels from the layered depth cube.
-#include "gi/cube/draw/cube_gather.h"
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 #include "engine/gl/ring.h"
 #include "gi/cube/cube_file.h"
 #include "gi/cube/draw/hemicube_pass.h"
 #include "gi/gather/draw_gather.h"
+#include "gi/gather/gathers.h"
 #include "gi/near/near_light.h"
 #include "shaders/shared/layered_cube.h"
 #include "shaders/shared/octahedral.h"
@@ -26,9 +26,12 @@ class CubeGather : public Gather {
   explicit CubeGather(PassContext context) : context_(context) {}
 
   SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
-    if (in.stores && update(in, stats)) nearDone_ = 0;
-    if (in.stores && cube_.pending() == 0 && nearDone_ < kAllNear && traceNear(in, stats)) upload();
-    if (nearDone_ != kAllNear) return {};
+    if (in.stores && update(in, stats)) uploaded_ = false;
+    if (in.stores && !uploaded_) {
+      traceNear(in, stats);
+      upload();
+    }
+    if (!uploaded_) return {};
     stats.cubeEntries = entries_.buffer.bytes() / sizeof(CubeTexel);
     stats.cubes = cube_.surfaces().cubes().size();
     stats.cubeBytes = entries_.buffer.bytes() + firsts_.buffer.bytes() + nodes_.buffer.bytes();
@@ -60,12 +63,12 @@ class CubeGather : public Gather {
     Clock::time_point saved = Clock::now();
     Clock::duration saveAfter = std::chrono::seconds(5);
     hemicubes_.prepare(in.frame.world, in.frame.settings.hemicubes.maker);
-    for (uint32_t total = 0, put = 0;; first = false) {
+    for (uint32_t total = 0;; first = false) {
       const CubeWork work = cube_.update({in.frame.world.view.boundsWorld, in.frame.world.rays,
                                           first && !opened_ ? in.frame.world.moved : kNothingMoved,
                                           first && in.frame.world.view.changes.first && !opened_, lights.slots,
                                           lights.direct, in.frame.settings.cube, in.frame.settings.gather, &hemicubes_},
-                                         std::min(kAtOnce, in.most));
+                                         kAtOnce);
       stats.raysCube += work.rays;
       hemicubes_.tell(stats);
       changed |= work.changed;
@@ -83,7 +86,7 @@ class CubeGather : public Gather {
         saved = Clock::now();
         saveAfter = std::max(saveAfter, 20 * (saved - begin));
       }
-      if (done || (put += work.lightsIn) >= in.most) return std::exchange(opened_, false) || changed;
+      if (done) return std::exchange(opened_, false) || changed;
     }
   }
 
@@ -113,22 +116,16 @@ class CubeGather : public Gather {
     }
   }
 
-  /// What bounds take from near lights, at entries that light reaches: all, or in frames that put few lights at once
-  /// the next few. Whether it is done.
-  bool traceNear(const GatherInputs& in, FrameStats& stats) {
-    constexpr size_t kPerLight = 2048; // entries
+  /// What bounds take from near lights, at entries that light reaches.
+  void traceNear(const GatherInputs& in, FrameStats& stats) {
     const size_t entries = cube_.surfaces().entries().size();
     const GatherSettings& gather = in.frame.settings.gather;
-    if (nearDone_ == 0) near_.assign(entries, vec3(0));
-    if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) {
-      nearDone_ = kAllNear;
-      return true;
-    }
+    near_.assign(entries, vec3(0));
+    if (gather.near == 0 || (gather.disk == 0 && gather.clamp == 0)) return;
     const CpuScope scope(stats.stages, key(StageId::NearLight));
-    const size_t begin = nearDone_, end = std::min(entries, begin + kPerLight * std::min<size_t>(in.most, entries));
     std::vector<SurfaceHit> places;
     std::vector<uint32_t> of;
-    for (size_t e = begin; e < end; ++e) {
+    for (size_t e = 0; e < entries; ++e) {
       if (cube_.irradiance(e) == vec3(0)) continue;
       const CubeEntry& entry = cube_.surfaces().entries()[e];
       SurfaceHit& place = places.emplace_back();
@@ -149,8 +146,6 @@ class CubeGather : public Gather {
                                                       .seed = in.frame.seed},
                                                      stats.raysNear);
     for (size_t i = 0; i < of.size(); ++i) near_[of[i]] = light[i];
-    nearDone_ = end < entries ? end : kAllNear;
-    return nearDone_ == kAllNear;
   }
 
   vec3 irradiance(size_t entry) const { return cube_.irradiance(entry) + near_[entry]; }
@@ -187,6 +182,7 @@ class CubeGather : public Gather {
     copy(entries_, "cube/entries", GL_RGBA32UI, std::span<const CubeTexel>(texels));
     copy(firsts_, "cube/firsts", GL_R32UI, std::span<const uint32_t>(firsts));
     copy(nodes_, "cube/nodes", GL_RGBA32UI, surfaces.nodes());
+    uploaded_ = true;
   }
 
   /// What a shader fetches by number.
@@ -212,9 +208,8 @@ class CubeGather : public Gather {
   PassContext context_;
   HemicubePass hemicubes_{context_};
   LayeredCube cube_;
-  static constexpr size_t kAllNear = ~size_t(0);
   std::vector<vec3> near_; // by entry
-  size_t nearDone_ = 0;    // entries below it have theirs
+  bool uploaded_ = false;  // as the cube is now
   bool opened_ = false;    // from a file, and not uploaded yet
   float brightest_ = 1;    // W/m²
   Texels firsts_, entries_, nodes_;

@@ -45,11 +45,8 @@ void HemicubePass::measureMakers(std::span<const Hemicube> hemicubes) {
 }
 
 void HemicubePass::cast(std::span<Hemicube> hemicubes) {
-  std::vector<RayCounts> counts(hemicubes.size());
-  parallelFor(hemicubes.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) castHemicube(hemicubes[i], *rays_, counts[i]);
-  });
-  for (const RayCounts& c : counts) counts_ += c;
+  parallelCount(hemicubes.size(), 1, counts_,
+                [&](size_t i, size_t, RayCounts& count) { castHemicube(hemicubes[i], *rays_, count); });
 }
 
 /// As many as fit are drawn before the first is read back, straight to where it is kept: the GPU waits once.

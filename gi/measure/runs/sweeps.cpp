@@ -32,20 +32,10 @@ std::vector<Assignments> jointDesign(bool quick) {
   static const Worth worths[] = {{"1024", "8", "64"}, {"2048", "16", "128"}, {"4096", "32", "128"}};
   std::vector<Assignments> sets;
   for (const char* vpls : {"256", "512", "1024", "2048", "4096", "8192"})
-    for (const Worth& w : worths)
-      sets.push_back({{"smc.vpls", vpls},
-                      {"smc.points", w.points},
-                      {"smc.paths", w.paths},
-                      {"shadow.resolution", w.resolution},
-                      {"gather.mode", "interleaved"}});
+    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "interleaved"));
   if (quick) return {sets.front()};
   for (const char* mode : {"multires-interleaved", "multires"})
-    for (const char* vpls : {"512", "2048"})
-      sets.push_back({{"smc.vpls", vpls},
-                      {"smc.points", "2048"},
-                      {"smc.paths", "16"},
-                      {"shadow.resolution", "128"},
-                      {"gather.mode", mode}});
+    for (const char* vpls : {"512", "2048"}) sets.push_back(worth(vpls, "2048", "16", "128", mode));
   return sets;
 }
 
@@ -119,8 +109,7 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"rsm.resolution", "rsm.vpls", "rsm.exact", "rsm.coarsest", "rsm.finest", "rsm.depth", "rsm.normal", "rsm.tau"},
        "of techniques from reflective shadow maps; their curves: --curve clusters"},
       {{"lpv.cells", "lpv.size", "lpv.steps", "lpv.occlusion"}, "of light propagation volumes; their table: --volume"},
-      {{"cube.resolution", "cube.levels", "cube.split", "cube.visibility", "cube.hemicube", "cube.after",
-        "cube.perFrame"},
+      {{"cube.resolution", "cube.levels", "cube.split", "cube.visibility", "cube.hemicube"},
        "of the layered depth cube; their table: bench --cube"},
       {{"smc.cache", "shadow.maker", "area.tracer", "cube.maker", "frame.overlap"},
        "time alone: the picture is the same, or a frame late"},

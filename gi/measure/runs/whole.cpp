@@ -1,4 +1,4 @@
-#include "gi/measure/runs/whole.h"
+#include "gi/measure/runs/runs.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // The truth that is traced beside a window is the truth, of the present view, and says when it starts anew.
 #include "engine/trace/embree_query.h"
-#include "gi/measure/against_truth.h"
+#include "gi/measure/picture_error.h"
 #include "gi/reference/live_reference.h"
 #include "tests/support/hand_scene.h"
 

@@ -1,6 +1,5 @@
 // Rankings must not hold noise for a difference, nor a difference for noise.
 #include "engine/core/rng.h"
-#include "gi/measure/ranking.h"
 #include "gi/measure/stability.h"
 #include "gi/measure/statistics.h"
 

@@ -50,8 +50,8 @@ class ScaledViewTest : public ::testing::Test {
 };
 
 TEST_F(ScaledViewTest, TrianglesAreCutInSquareNumbersOnTheSameSurface) {
-  SplitTriangles three(scene.assets, 3);
-  const SceneView view = three.of(scene.view());
+  const ScaledView three = splitTriangles(scene.assets, 3);
+  const SceneView view = three(scene.view());
   EXPECT_EQ(trianglesOf(view), 9 * trianglesOf(scene.view()));
   for (size_t m = 0; m < scene.assets.meshes.size(); ++m) {
     const Mesh &whole = scene.assets.meshes[m], &cut = view.assets->meshes[m];
@@ -98,8 +98,8 @@ TEST_F(ScaledViewTest, CutEdgesMeetWithoutGaps) {
 }
 
 TEST_F(ScaledViewTest, PiecesHaveTheTrianglesOfTheWhole) {
-  SplitInstances parts(scene.assets, 4);
-  const SceneView view = parts.of(scene.view());
+  const ScaledView parts = splitInstances(scene.assets, 4);
+  const SceneView view = parts(scene.view());
   EXPECT_EQ(view.instances.size(), 6 * 2 + 2 * 4u); // a wall has two triangles
   EXPECT_EQ(trianglesOf(view), trianglesOf(scene.view()));
   std::set<uint32_t> ids;
@@ -127,8 +127,8 @@ TEST_F(ScaledViewTest, PiecesOfAMovedInstanceSayWhereTheyWere) {
   InstanceView& block = scene.instances[6];
   block.worldFromObjectBefore[3] = vec4(5, 0, 0, 1);
   block.moved = true;
-  SplitInstances parts(scene.assets, 2);
-  for (const InstanceView& i : parts.of(scene.view()).instances)
+  const ScaledView parts = splitInstances(scene.assets, 2);
+  for (const InstanceView& i : parts(scene.view()).instances)
     if (i.moved) {
       EXPECT_GT(i.boundsWorldBefore.lo.x, 4);
     }
@@ -137,8 +137,8 @@ TEST_F(ScaledViewTest, PiecesOfAMovedInstanceSayWhereTheyWere) {
 TEST_F(ScaledViewTest, LightsShareTheirIntensity) {
   scene.lights.push_back(scene.lights[0]);
   scene.lights.back().position = vec3(-1, 1, 0);
-  SplitLights split(5);
-  const SceneView view = split.of(scene.view());
+  const ScaledView split = splitLights(5);
+  const SceneView view = split(scene.view());
   ASSERT_EQ(view.lights.size(), 10u);
   vec3 sum(0);
   std::set<uint32_t> ids;
@@ -149,10 +149,10 @@ TEST_F(ScaledViewTest, LightsShareTheirIntensity) {
 }
 
 TEST_F(ScaledViewTest, APictureOfAnotherSizeHasItsShape) {
-  const SceneView view = ResizedPicture(1.5f).of(scene.view());
+  const SceneView view = resizedPicture(1.5f)(scene.view());
   EXPECT_EQ(view.camera.width, 24);
   EXPECT_EQ(view.camera.height, 18);
-  EXPECT_EQ(ResizedPicture(0.01f).of(scene.view()).camera.height, 1);
+  EXPECT_EQ(resizedPicture(0.01f)(scene.view()).camera.height, 1);
 }
 
 } // namespace lambent::test::scaled_view_test
