@@ -14,23 +14,11 @@ void FrameTimes::add(double seconds, const FrameStats& stats) {
   if (frames_.size() > kMost) frames_.pop_front();
 }
 
-size_t FrameTimes::lastSecond() const {
+double FrameTimes::meanMs() const {
   double ms = 0;
   size_t first = frames_.size();
   while (first > 0 && ms < 1000) ms += frames_[--first].wholeMs;
-  return first;
-}
-
-double FrameTimes::meanMs() const {
-  double ms = 0;
-  const size_t first = lastSecond();
-  for (size_t i = first; i < frames_.size(); ++i) ms += frames_[i].wholeMs;
   return first < frames_.size() ? ms / double(frames_.size() - first) : 0;
-}
-
-double FrameTimes::perSecond() const {
-  const double ms = meanMs();
-  return ms > 0 ? 1000 / ms : 0;
 }
 
 } // namespace lambent

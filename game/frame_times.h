@@ -17,12 +17,10 @@ class FrameTimes {
     double cpuMs = 0, gpuMs = 0;
   };
   const std::deque<Frame>& frames() const { return frames_; } // oldest first
-  double perSecond() const;                                   // over the last second
-  double meanMs() const;
+  double meanMs() const;                                      // over the last second
 
  private:
   static constexpr size_t kMost = 240;
-  size_t lastSecond() const; // index of its first frame
   std::deque<Frame> frames_;
 };
 

@@ -15,6 +15,7 @@
 #include <string>
 
 struct GLFWwindow;
+struct ImVec2;
 
 namespace lambent {
 
@@ -54,11 +55,25 @@ struct HudModel {
   std::optional<GoalShown> goal = {};
 };
 
+/// A small window over the image, as long as this lives, that takes no input. Its point `pivot` (0 to 1 of its own
+/// size) stands at `at`.
+class Overlay {
+ public:
+  Overlay(const char* id, const ImVec2& at, const ImVec2& pivot);
+  ~Overlay();
+  Overlay(const Overlay&) = delete;
+};
+
 /// What was pressed in the menu.
 struct MenuChoice {
   bool resume = false, restart = false, home = false, quit = false;
   std::string scene = {}; // to be opened
 };
+
+/// Draws, behind the panel: which virtual light is at the crosshair; the link to its mailbox, the point from which it
+/// is known to be seen; the points of its cell, the surface that it stands for; its light paths; and what its shadow
+/// map shows. `scale`: of the display's pixels.
+void drawVplAtCrosshair(const Viewer& gi, const CameraView& camera, float scale);
 
 class Hud {
  public:
@@ -91,13 +106,7 @@ class Hud {
 
  private:
   void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
-  void drawDay(HudModel& model);
-  void drawLights(Scene& scene);
-  void drawImageSection(HudModel& model, Viewer& gi);
-  void drawPlayer(HudModel& model);
-  void drawTime(HudModel& model);
   void drawQuality(HudModel& model, Viewer& gi);
-  void drawPace(Pacer& pacer);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawFigures(const FrameStats& stats);
@@ -105,7 +114,6 @@ class Hud {
   void drawSetting(Settings& settings, const struct SettingRow& row);
   void change(Settings& settings, const std::function<void(Settings&)>& edit);
   void drawSpeed(const HudModel& model, const FrameTimes& times);
-  void drawViewLegend(const HudModel& model);
   void drawGoal(const GoalShown& goal) const;
   void drawOffer(const HudModel& model) const;
   void drawHelp() const;

@@ -29,6 +29,114 @@ bool choose(const char* label, const std::vector<std::string>& names, std::strin
   return changed;
 }
 
+/// How bright, apart from the colour: the largest channel.
+void editIntensity(PunctualLight& light) {
+  const float strength = std::max(maxComponent(light.intensity), 1e-6f);
+  vec3 color = light.intensity / strength;
+  float wanted = strength;
+  const char* unit = light.type == LightType::Directional ? "W/m2" : "W/sr";
+  const bool brighter = ImGui::SliderFloat(unit, &wanted, 1e-3f, 1e4f, "%.4g", ImGuiSliderFlags_Logarithmic);
+  const bool other = ImGui::ColorEdit3("colour", &color.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs);
+  if (brighter || other) light.intensity = std::max(wanted, 0.0f) * glm::max(color, vec3(0));
+}
+
+/// The way the light travels, as where it comes from: around from south to east, and above the horizon. Of a light that
+/// hangs on something else, that moves it.
+void editDirection(Scene& scene, Entity e) {
+  WorldTransform& world = scene.registry.get<WorldTransform>(e);
+  Transform& place = scene.registry.get<Transform>(e);
+  if (scene.registry.has<Parent>(e) || place.matrix) return;
+  const vec3 from = glm::normalize(vec3(world.worldFromNode[2])); // lights shine along -Z
+  float around = glm::degrees(std::atan2(from.x, from.z));
+  float above = glm::degrees(std::asin(glm::clamp(from.y, -1.0f, 1.0f)));
+  bool turned = ImGui::SliderFloat("from, degrees (0 is +Z, 90 is +X)", &around, -180, 180, "%.0f");
+  turned |= ImGui::SliderFloat("above, degrees", &above, -89, 89, "%.0f");
+  if (!turned) return;
+  const float a = glm::radians(around), h = glm::radians(above);
+  place.rotation = rotationTowards(-vec3(std::sin(a) * std::cos(h), std::sin(h), std::cos(a) * std::cos(h)));
+  world.worldFromNode = place.local();
+}
+
+void drawImage(HudModel& model, Viewer& gi) {
+  std::string view = bufferNames()[size_t(model.buffer)];
+  if (choose("show (1 ... 0)", bufferNames(), view)) model.buffer = bufferByName(view);
+  float ev = std::log2(std::max(gi.exposure(), 1e-6f));
+  if (ImGui::SliderFloat("exposure, EV", &ev, -12, 12, "%+.1f")) gi.settings().image.exposure = std::exp2(ev);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first frame measures it.");
+  if (model.buffer != Buffer::Vpls && !model.lightsStay) return;
+  ImGui::Checkbox("virtual lights stay where they are", &model.lightsStay);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("fly off and look at them from elsewhere");
+}
+
+void drawPlayer(HudModel& model) {
+  ImGui::Text("%s (G changes it, H: home)", model.gait == Gait::Walk  ? "walking"
+                                            : model.gait == Gait::Fly ? "flying"
+                                                                      : "flying through walls");
+  ImGui::SliderFloat("speed, times", &model.speed, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
+  ImGui::Checkbox("flashlight (Q)", &model.torch);
+  ImGui::ColorEdit3("lamps (L), W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
+}
+
+void drawTime(HudModel& model) {
+  ImGui::Checkbox("time stands still (P)", &model.paused);
+  float time = float(model.time);
+  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f") && !model.recordedSeconds)
+    model.time = time; // a recording's time only goes on
+  if (model.hasPath) ImGui::Checkbox("follow the camera path (F)", &model.followPath);
+}
+
+void drawDay(HudModel& model) {
+  bool on = model.hour.has_value();
+  if (ImGui::Checkbox("a clear sky and its sun", &on)) model.hour = on ? std::optional(12.0) : std::nullopt;
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("in place of the scene's own sky and suns; lamps stay");
+  if (!model.hour) {
+    ImGui::TextDisabled("T lets a day go by");
+    return;
+  }
+  float hour = float(*model.hour);
+  if (ImGui::SliderFloat("hour", &hour, 0, 23.99f, "%.2f")) model.hour = double(hour);
+  ImGui::Checkbox("goes by: a day in 96 s (T)", &model.dayRuns);
+}
+
+void drawLights(Scene& scene) {
+  bool any = false;
+  scene.registry.each<PunctualLight>([&](Entity e, PunctualLight& light) {
+    const Name* name = scene.registry.tryGet<Name>(e);
+    const char* kind = light.type == LightType::Directional ? "sun"
+                       : light.type == LightType::Spot      ? "spotlight"
+                                                            : "lamp";
+    ImGui::PushID(int(e.id()));
+    if (ImGui::TreeNode("light", "%s (%s)", name ? name->value.c_str() : "unnamed", kind)) {
+      editIntensity(light);
+      if (light.type != LightType::Point) editDirection(scene, e);
+      ImGui::TreePop();
+    }
+    ImGui::PopID();
+    any = true;
+  });
+  int glowing = 0;
+  for (const Material& material : scene.assets.materials) glowing += material.emits();
+  if (!any) ImGui::TextDisabled("no lamps (L gives you one)");
+  if (glowing > 0) ImGui::TextDisabled("and %d glowing material%s", glowing, glowing == 1 ? "" : "s");
+}
+
+/// The governor with its target, or the image's scale by hand.
+void drawPace(Pacer& pacer) {
+  bool governs = pacer.governs();
+  if (ImGui::Checkbox("hold the time of a frame", &governs)) {
+    if (governs)
+      pacer.govern(pacer.targetMs());
+    else
+      pacer.hold(pacer.scale());
+  }
+  float value = governs ? float(pacer.targetMs()) : pacer.scale();
+  if (governs && ImGui::SliderFloat("target, ms", &value, 4, 500, "%.0f", ImGuiSliderFlags_Logarithmic))
+    pacer.govern(double(value));
+  if (!governs && ImGui::SliderFloat("image scale", &value, 0.1f, 1, "%.2f")) pacer.hold(value);
+  ImGui::TextDisabled("%s", pacer.text().c_str());
+}
+
 } // namespace
 
 void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats) {
@@ -57,7 +165,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   const auto section = [&](const char* name, bool open) {
     return ImGui::CollapsingHeader(name, open && size.y >= kLow * scale_ ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   };
-  if (section("Image", true)) drawImageSection(model, gi);
+  if (section("Image", true)) drawImage(model, gi);
   if (section("You", true)) drawPlayer(model);
   if (section("Time", false)) drawTime(model);
   if (section("Time of day", true)) drawDay(model);
@@ -73,35 +181,6 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   ImGui::End();
 }
 
-void Hud::drawImageSection(HudModel& model, Viewer& gi) {
-  std::string view = bufferNames()[size_t(model.buffer)];
-  if (choose("show (1 ... 0)", bufferNames(), view)) model.buffer = bufferByName(view);
-  float ev = std::log2(std::max(gi.exposure(), 1e-6f));
-  if (ImGui::SliderFloat("exposure, EV", &ev, -12, 12, "%+.1f")) gi.settings().image.exposure = std::exp2(ev);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("+1 is twice as bright ([ and ] change a third). The first frame measures it.");
-  if (model.buffer != Buffer::Vpls && !model.lightsStay) return;
-  ImGui::Checkbox("virtual lights stay where they are", &model.lightsStay);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("fly off and look at them from elsewhere");
-}
-
-void Hud::drawPlayer(HudModel& model) {
-  ImGui::Text("%s (G changes it, H: home)", model.gait == Gait::Walk  ? "walking"
-                                            : model.gait == Gait::Fly ? "flying"
-                                                                      : "flying through walls");
-  ImGui::SliderFloat("speed, times", &model.speed, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
-  ImGui::Checkbox("flashlight (Q)", &model.torch);
-  ImGui::ColorEdit3("lamps (L), W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);
-}
-
-void Hud::drawTime(HudModel& model) {
-  ImGui::Checkbox("time stands still (P)", &model.paused);
-  float time = float(model.time);
-  if (ImGui::SliderFloat("time, s", &time, 0, float(model.duration), "%.2f") && !model.recordedSeconds)
-    model.time = time; // a recording's time only goes on
-  if (model.hasPath) ImGui::Checkbox("follow the camera path (F)", &model.followPath);
-}
-
 void Hud::drawQuality(HudModel& model, Viewer& gi) {
   std::string technique = techniqueOf(gi.settings()).name;
   if (choose("technique", techniqueNames(), technique))
@@ -115,22 +194,6 @@ void Hud::drawQuality(HudModel& model, Viewer& gi) {
   drawPace(model.pacer);
   model.backToDefaults = ImGui::Button("back to defaults");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("all settings, exposure and speed; those of the command line stay");
-}
-
-/// The governor with its target, or the image's scale by hand.
-void Hud::drawPace(Pacer& pacer) {
-  bool governs = pacer.governs();
-  if (ImGui::Checkbox("hold the time of a frame", &governs)) {
-    if (governs)
-      pacer.govern(pacer.targetMs());
-    else
-      pacer.hold(pacer.scale());
-  }
-  float value = governs ? float(pacer.targetMs()) : pacer.scale();
-  if (governs && ImGui::SliderFloat("target, ms", &value, 4, 500, "%.0f", ImGuiSliderFlags_Logarithmic))
-    pacer.govern(double(value));
-  if (!governs && ImGui::SliderFloat("image scale", &value, 0.1f, 1, "%.2f")) pacer.hold(value);
-  ImGui::TextDisabled("%s", pacer.text().c_str());
 }
 
 /// Each effect with whether it runs and why; a click goes from auto to forced on to forced off.

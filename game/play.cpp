@@ -3,7 +3,6 @@
 #include "engine/core/error.h"
 #include "engine/gl/objects.h"
 #include "engine/gl/pulse.h"
-#include "game/vpl_view.h"
 
 #include <epoxy/gl.h>
 

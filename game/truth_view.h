@@ -11,7 +11,7 @@ namespace lambent {
 enum class TruthMode { Off, Split, Heat };
 constexpr TruthMode nextMode(TruthMode mode) { return TruthMode((int(mode) + 1) % 3); }
 
-/// Returns the reference buffer of what a buffer shows; none for those that are no light.
+/// Returns the reference buffer of what a buffer shows, which has its number; none for those that are no light.
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer);
 
 /// Frames that were drawn (a settled one stays) since anything about the view or its light last changed.

@@ -119,13 +119,11 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
     if (r.bundled) bundled.push_back(r.name);
   }
   for (const std::string& name : names.empty() ? bundled : names) {
-    const auto& all = contentRecipes();
-    const auto it = std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
-    if (it == all.end()) {
+    const auto recipe = std::ranges::find(contentRecipes(), name, &ContentRecipe::name);
+    if (recipe == contentRecipes().end())
       throw InputError("content " + name,
                        "no such scene (" + guessText(name, known, "see lambent content --help") + ")");
-    }
-    chosen.push_back(&*it);
+    chosen.push_back(&*recipe);
   }
   const std::filesystem::path base = output.out.empty() ? findContentFolder() : std::filesystem::path(output.out);
   Value j = Value::list();
@@ -145,8 +143,7 @@ void declareSettings(CLI::App& app) {
   auto words = std::make_shared<std::vector<std::string>>();
   auto output = std::make_shared<OutputOptions>();
   Command command(app, "settings", "every setting with default, range and cost");
-  command.scenes(*words, "WORD", "only settings with this word in their name (smc, shadow.bias), else in their text",
-                 false);
+  command.texts("WORD", *words, "only settings with this word in their name (smc, shadow.bias), else in their text");
   command.output(*output, "");
   command.run([words, output] { listSettings(*words, *output); });
 }
@@ -166,7 +163,7 @@ void declareContent(CLI::App& app) {
     known += "\n  " + r.name + (r.bundled ? " (bundled): " : ": ") + r.description;
   Command command(app, "content", "generates scenes (default: the bundled ones)");
   command.footer(known);
-  command.scenes(*names, "NAME", "scenes to make", false);
+  command.texts("NAME", *names, "scenes to make");
   command.output(*output, "folder to write to (default: the bundled scenes' own)");
   command.run([names, output] { generate(*names, *output); });
 }
