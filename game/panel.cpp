@@ -70,9 +70,8 @@ void drawImage(HudModel& model, Viewer& gi) {
 }
 
 void drawPlayer(HudModel& model) {
-  ImGui::Text("%s (G changes it, H: home)", model.gait == Gait::Walk  ? "walking"
-                                            : model.gait == Gait::Fly ? "flying"
-                                                                      : "flying through walls");
+  constexpr const char* kGaits[] = {"walking", "flying", "flying through walls"};
+  ImGui::Text("%s (G changes it, H: home)", kGaits[int(model.gait)]);
   ImGui::SliderFloat("speed, times", &model.speed, 0.1f, 10, "%.2f", ImGuiSliderFlags_Logarithmic);
   ImGui::Checkbox("flashlight (Q)", &model.torch);
   ImGui::ColorEdit3("lamps (L), W/sr", &model.lampIntensity.x, ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_Float);

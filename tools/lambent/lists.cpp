@@ -67,29 +67,21 @@ Value valueOf(const Technique& t) {
                    kReconstructions[int(t.axes.reconstruction)], "waits", t.waits ? t.waits : "");
 }
 
-/// Every combination of the first three axes, the light put together as the gather wants it.
-template <class Visit> void forAllCombinations(const Visit& visit) {
-  for (size_t s = 0; s < std::size(kSources); ++s)
-    for (size_t v = 0; v < std::size(kVisibilities); ++v)
-      for (size_t g = 0; g < std::size(kGathers); ++g) {
-        const Axes axes{VplSource(s), VplVisibility(v), GatherMode(g), reconstructionOf(GatherMode(g), true)};
-        visit(axes, whyNot(axes));
-      }
-}
-
 void listTechniques(const OutputOptions& output) {
   Value j;
   for (const Technique& t : techniqueTable()) j["techniques"].add(valueOf(t));
   std::map<std::string, int> reasons;
   int together = 0;
-  forAllCombinations([&](const Axes& axes, const std::string& reason) {
-    j["combinations"].add(Value::of("source", rowOf(axes.source).name, "visibility", rowOf(axes.visibility).name,
-                                    "gather", rowOf(axes.gather).name, "why_not", reason));
-    if (reason.empty())
-      ++together;
-    else
-      ++reasons[reason];
-  });
+  // Every combination of the first three axes, the light put together as the gather wants it.
+  for (size_t s = 0; s < std::size(kSources); ++s)
+    for (size_t v = 0; v < std::size(kVisibilities); ++v)
+      for (size_t g = 0; g < std::size(kGathers); ++g) {
+        const std::string reason =
+            whyNot(Axes{VplSource(s), VplVisibility(v), GatherMode(g), reconstructionOf(GatherMode(g), true)});
+        j["combinations"].add(Value::of("source", kSources[s].name, "visibility", kVisibilities[v].name, "gather",
+                                        kGathers[g].name, "why_not", reason));
+        ++(reason.empty() ? together : reasons[reason]);
+      }
   writeJson(output.json, j);
   if (output.quiet) return;
   std::printf("%-16s %-6s %-11s %-12s %-17s %s\n", "technique", "lights", "visibility", "gathered", "put together", "");

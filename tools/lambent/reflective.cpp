@@ -261,6 +261,18 @@ std::string tableOf(const PaperFigure& figure, const Value& rows) {
   return tableText(columns, rows);
 }
 
+/// One setting over its values, ascending; the value in use is among them.
+struct Sweep {
+  const char *technique, *setting, *unit;
+  std::vector<double> values;
+};
+const std::vector<Sweep> kPatchSweeps{
+    {"multires-gather", "multires.depth", "share of the view distance", {0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}},
+    {"multires-gather", "multires.normal", "range of a component, 0 to 2", {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2}}},
+    kClusterSweeps{
+        {"hisr", "rsm.tau", "share of the brightest map's light", {0, 0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.3}},
+        {"isr", "rsm.depth", "share of the distance", {0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}}};
+
 } // namespace
 
 std::vector<std::string> reflectiveFigureNames() {
@@ -333,22 +345,6 @@ void reflectiveFigure(const AccuracyOptions& options) {
     std::printf("%s, %d x %d\n\n%s\nreport (differences times 8): %s\n", figure.title, opened.camera.width,
                 opened.camera.height, tableOf(figure, printed).c_str(), folder.c_str());
 }
-
-namespace {
-
-/// One setting over its values, ascending; the value in use is among them.
-struct Sweep {
-  const char *technique, *setting, *unit;
-  std::vector<double> values;
-};
-const std::vector<Sweep> kPatchSweeps{
-    {"multires-gather", "multires.depth", "share of the view distance", {0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}},
-    {"multires-gather", "multires.normal", "range of a component, 0 to 2", {0, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2}}},
-    kClusterSweeps{
-        {"hisr", "rsm.tau", "share of the brightest map's light", {0, 0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.3}},
-        {"isr", "rsm.depth", "share of the distance", {0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}}};
-
-} // namespace
 
 void accuracyCurve(const AccuracyOptions& options) {
   const std::string& kind = options.curve;
