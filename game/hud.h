@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/scene/scene.h"
-#include "game/frame_times.h"
 #include "game/pace.h"
 #include "game/rules/body.h"
 #include "game/truth_view.h"
@@ -22,6 +21,24 @@ namespace lambent {
 namespace gl {
 class Texture;
 }
+
+/// How fast frames follow one another, and what they spend their time on: for the corner of the window.
+class FrameTimes {
+ public:
+  /// Adds a frame that came `seconds` after the one before.
+  void add(double seconds, const FrameStats& stats);
+
+  struct Frame {
+    double wholeMs = 0; // from frame to frame
+    double cpuMs = 0, gpuMs = 0;
+  };
+  const std::deque<Frame>& frames() const { return frames_; } // oldest first
+  double meanMs() const;                                      // over the last second
+
+ private:
+  static constexpr size_t kMost = 240;
+  std::deque<Frame> frames_;
+};
 
 /// How far the scene's goal is.
 struct GoalShown {

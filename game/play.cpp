@@ -326,11 +326,11 @@ void Play::obey(const Wishes& wishes, float seconds) {
   if (wishes.record) toggleRecording();
   if (wishes.buffer && *wishes.buffer < int(bufferNames().size())) model_.buffer = Buffer(*wishes.buffer);
   if (wishes.exposure != 0) gi_.settings().image.exposure = gi_.exposure() * std::exp2(float(wishes.exposure) / 3);
-  if (wishes.truth) showTruth(nextMode(truth_.mode()));
+  if (wishes.truth) showTruth(TruthMode((int(truth_.mode()) + 1) % 3));
   if (truth_.mode() == TruthMode::Split) {
     constexpr float kSharePerSecond = 0.5f;
-    truth_.moveDivider(kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider);
-    truth_.divider = wishes.dividerAt.value_or(truth_.divider);
+    const float moved = truth_.divider + kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider;
+    truth_.divider = wishes.dividerAt.value_or(glm::clamp(moved, 0.0f, 1.0f));
   }
   if (wishes.reloadShaders) {
     const std::vector<std::string> messages = gi_.reloadShaders();
