@@ -3,12 +3,12 @@
 #include "engine/core/error.h"
 #include "engine/core/image.h"
 #include "engine/gl/state_guard.h"
-#include "game/scene_list.h"
 
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -31,6 +31,22 @@ GlContext openWindow(const LaunchOptions& launch, const Preferences& preferences
   useThreads(launch.threads); // before there is a context
   const auto [width, height] = !launch.size.empty() ? sizeOf(launch.size) : preferences.window.value_or(kWindow);
   return GlContext::window("Lambent", width, height);
+}
+
+/// Files of the bundled scenes, and of those that `lambent content` has made next to them: content/NAME/NAME.gltf, by
+/// name. Empty where there is no such folder.
+std::vector<std::string> bundledScenes() {
+  std::vector<std::string> scenes;
+  try {
+    std::error_code failure;
+    for (const auto& entry : fs::directory_iterator(findContentFolder(), failure)) {
+      const fs::path file = entry.path() / entry.path().filename().replace_extension(".gltf");
+      if (std::error_code none; fs::exists(file, none)) scenes.push_back(file.string());
+    }
+  } catch (const InputError&) { // there is no folder; files can still be dropped
+  }
+  std::ranges::sort(scenes);
+  return scenes;
 }
 
 fs::path preferencesFile(const GameOptions& options) {
@@ -198,8 +214,7 @@ void App::choose() {
   const MenuChoice choice = hud_.drawMenu(scenes_, false);
   show();
   writeState();
-  if (choice.quit) glfwSetWindowShouldClose(context_.handle(), GLFW_TRUE);
-  if (!choice.scene.empty()) open(choice.scene);
+  obey(choice);
   glfwWaitEventsTimeout(kTurnSeconds);
 }
 
@@ -227,6 +242,10 @@ void App::play(double seconds) {
   }
   context_.swap();
   writeState();
+  obey(choice);
+}
+
+void App::obey(const MenuChoice& choice) {
   menu_ &= !choice.resume && !choice.restart && !choice.home;
   if (choice.restart) play_->restart();
   if (choice.home) play_->home();

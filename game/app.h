@@ -27,7 +27,7 @@ class App {
   void choose(); // while there is none
   void play(double seconds);
   void prepare(LoadedScene loaded);
-  void obeyMenu();
+  void obey(const MenuChoice& choice);
   void showProgress(const Progressed& progress);
   void cancelLoading();
   void writeState() const;

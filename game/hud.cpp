@@ -19,9 +19,6 @@ namespace {
 
 constexpr double kMessageSeconds = 8;
 
-constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                                      ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing |
-                                      ImGuiWindowFlags_NoNav;
 constexpr ImGuiWindowFlags kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                      ImGuiWindowFlags_AlwaysAutoResize;
 
@@ -49,7 +46,41 @@ void centre(float width) {
   ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
 }
 
+/// Says what the window shows, where it is not the image.
+void drawViewLegend(const HudModel& model) {
+  if (model.buffer == Buffer::Beauty) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Overlay window("view", {0.5f * size.x, size.y - 8}, {0.5f, 1});
+  ImGui::Text("%s: %s (1: the image)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
+}
+
 } // namespace
+
+void FrameTimes::add(double seconds, const FrameStats& stats) {
+  Frame frame{1000 * seconds, 0, 0};
+  for (const StageTime& s : stats.stages) {
+    frame.gpuMs += s.gpuMs;
+    if (s.gpuMs <= 0) frame.cpuMs += s.cpuMs; // of the others it is the time to ask the GPU, or to wait for it
+  }
+  frames_.push_back(frame);
+  if (frames_.size() > kMost) frames_.pop_front();
+}
+
+double FrameTimes::meanMs() const {
+  double ms = 0;
+  size_t first = frames_.size();
+  while (first > 0 && ms < 1000) ms += frames_[--first].wholeMs;
+  return first < frames_.size() ? ms / double(frames_.size() - first) : 0;
+}
+
+Overlay::Overlay(const char* id, const ImVec2& at, const ImVec2& pivot) {
+  ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+  ImGui::SetNextWindowBgAlpha(0.6f);
+  ImGui::Begin(id, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+}
+Overlay::~Overlay() { ImGui::End(); }
 
 Hud::Hud(GLFWwindow* window) {
   IMGUI_CHECKVERSION();
@@ -160,10 +191,9 @@ void Hud::forgetFrame() { keptFrame_.reset(); }
 /// Frames per second, and what the last ones spent their time on.
 void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({size.x - 8, 8}, ImGuiCond_Always, {1, 0});
-  ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("speed", nullptr, kOverlay);
-  ImGui::Text("%4.0f fps %6.1f ms", times.perSecond(), times.meanMs());
+  const Overlay window("speed", {size.x - 8, 8}, {1, 0});
+  const double ms = times.meanMs();
+  ImGui::Text("%4.0f fps %6.1f ms", ms > 0 ? 1000 / ms : 0, ms);
   if (model.recordedSeconds) ImGui::TextColored({1, 0.35f, 0.3f, 1}, "recording %.1f s", *model.recordedSeconds);
   const auto& frames = times.frames();
   if (size.x >= 480 * scale_ && frames.size() > 1) {
@@ -197,7 +227,6 @@ void Hud::drawSpeed(const HudModel& model, const FrameTimes& times) {
   }
   if (model.pacer.scale() < 1) ImGui::TextDisabled("image at %.0f %%", 100 * double(model.pacer.scale()));
   if (model.goal) drawGoal(*model.goal);
-  ImGui::End();
 }
 
 /// What the goal has of what it wants.
@@ -214,17 +243,6 @@ void Hud::drawGoal(const GoalShown& goal) const {
   ImGui::TextColored(color, goal.reached ? "done" : "bring daylight here");
 }
 
-/// Says what the window shows, where it is not the image.
-void Hud::drawViewLegend(const HudModel& model) {
-  if (model.buffer == Buffer::Beauty) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * size.x, size.y - 8}, ImGuiCond_Always, {0.5f, 1});
-  ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("view", nullptr, kOverlay);
-  ImGui::Text("%s: %s (1: the image)", bufferNames()[size_t(model.buffer)].c_str(), kViews[size_t(model.buffer)]);
-  ImGui::End();
-}
-
 /// A point where one looks, and what could be done there.
 void Hud::drawOffer(const HudModel& model) const {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -233,11 +251,8 @@ void Hud::drawOffer(const HudModel& model) const {
   list->AddCircleFilled(middle, 2.5f * scale_, IM_COL32(0, 0, 0, 120));
   list->AddCircleFilled(middle, 1.5f * scale_, IM_COL32(255, 255, 255, 200));
   if (model.offer.empty()) return;
-  ImGui::SetNextWindowPos({middle.x, middle.y + 24 * scale_}, ImGuiCond_Always, {0.5f, 0});
-  ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("offer", nullptr, kOverlay);
+  const Overlay window("offer", {middle.x, middle.y + 24 * scale_}, {0.5f, 0});
   ImGui::TextUnformatted(model.offer.c_str());
-  ImGui::End();
 }
 
 void Hud::drawHelp() const {
@@ -265,14 +280,11 @@ void Hud::drawMessages() {
   std::erase_if(messages_, [](const Message& m) { return m.until < ImGui::GetTime(); });
   if (messages_.empty()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({8, size.y - 8}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y});
-  ImGui::SetNextWindowBgAlpha(0.6f);
-  ImGui::Begin("messages", nullptr, kOverlay);
+  const Overlay window("messages", {8, size.y - 8}, {0, 1});
   ImGui::PushTextWrapPos(size.x - 40 * scale_);
   for (const Message& m : messages_) ImGui::TextUnformatted(m.text.c_str());
   ImGui::PopTextWrapPos();
-  ImGui::End();
 }
 
 } // namespace lambent

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/scene/scene.h"
-#include "game/frame_times.h"
 #include "game/pace.h"
 #include "game/rules/body.h"
 #include "game/truth_view.h"
@@ -15,12 +14,31 @@
 #include <string>
 
 struct GLFWwindow;
+struct ImVec2;
 
 namespace lambent {
 
 namespace gl {
 class Texture;
 }
+
+/// How fast frames follow one another, and what they spend their time on: for the corner of the window.
+class FrameTimes {
+ public:
+  /// Adds a frame that came `seconds` after the one before.
+  void add(double seconds, const FrameStats& stats);
+
+  struct Frame {
+    double wholeMs = 0; // from frame to frame
+    double cpuMs = 0, gpuMs = 0;
+  };
+  const std::deque<Frame>& frames() const { return frames_; } // oldest first
+  double meanMs() const;                                      // over the last second
+
+ private:
+  static constexpr size_t kMost = 240;
+  std::deque<Frame> frames_;
+};
 
 /// How far the scene's goal is.
 struct GoalShown {
@@ -54,11 +72,25 @@ struct HudModel {
   std::optional<GoalShown> goal = {};
 };
 
+/// A small window over the image, as long as this lives, that takes no input. Its point `pivot` (0 to 1 of its own
+/// size) stands at `at`.
+class Overlay {
+ public:
+  Overlay(const char* id, const ImVec2& at, const ImVec2& pivot);
+  ~Overlay();
+  Overlay(const Overlay&) = delete;
+};
+
 /// What was pressed in the menu.
 struct MenuChoice {
   bool resume = false, restart = false, home = false, quit = false;
   std::string scene = {}; // to be opened
 };
+
+/// Draws, behind the panel: which virtual light is at the crosshair; the link to its mailbox, the point from which it
+/// is known to be seen; the points of its cell, the surface that it stands for; its light paths; and what its shadow
+/// map shows. `scale`: of the display's pixels.
+void drawVplAtCrosshair(const Viewer& gi, const CameraView& camera, float scale);
 
 class Hud {
  public:
@@ -91,13 +123,7 @@ class Hud {
 
  private:
   void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
-  void drawDay(HudModel& model);
-  void drawLights(Scene& scene);
-  void drawImageSection(HudModel& model, Viewer& gi);
-  void drawPlayer(HudModel& model);
-  void drawTime(HudModel& model);
   void drawQuality(HudModel& model, Viewer& gi);
-  void drawPace(Pacer& pacer);
   void drawStages(const FrameStats& stats);
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawFigures(const FrameStats& stats);
@@ -105,7 +131,6 @@ class Hud {
   void drawSetting(Settings& settings, const struct SettingRow& row);
   void change(Settings& settings, const std::function<void(Settings&)>& edit);
   void drawSpeed(const HudModel& model, const FrameTimes& times);
-  void drawViewLegend(const HudModel& model);
   void drawGoal(const GoalShown& goal) const;
   void drawOffer(const HudModel& model) const;
   void drawHelp() const;

@@ -88,14 +88,12 @@ bool Input::down(int key) const {
 
 bool Input::tapped(int key) {
   const bool now = down(key);
-  const bool before = std::exchange(down_[key], now);
-  return now && !before;
+  return !std::exchange(down_[key], now) && now;
 }
 
 bool Input::clicked(int button) {
   const bool now = glfwGetMouseButton(window_, button) == GLFW_PRESS;
-  const bool before = std::exchange(buttons_[button], now);
-  return now && !before;
+  return !std::exchange(buttons_[button], now) && now;
 }
 
 bool Input::escape() { return tapped(GLFW_KEY_ESCAPE); }

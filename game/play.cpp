@@ -3,7 +3,6 @@
 #include "engine/core/error.h"
 #include "engine/gl/objects.h"
 #include "engine/gl/pulse.h"
-#include "game/vpl_view.h"
 
 #include <epoxy/gl.h>
 
@@ -26,8 +25,14 @@ constexpr double kHoursPerSecond = 0.25; // of a day that runs by itself
 constexpr double kMorning = 9;           // that it begins at
 constexpr float kTorch = 5;              // intensity in its middle, of a lamp's
 
-const char* gaitText(Gait gait) {
-  return gait == Gait::Walk ? "walking" : gait == Gait::Fly ? "flying: walls stop you" : "flying through walls";
+constexpr const char *kGaits[] = {"walk", "fly", "ghost"},
+                     *kGaitTexts[] = {"walking", "flying: walls stop you", "flying through walls"};
+
+AskedFor askedFor(const LaunchOptions& launch) {
+  AskedFor asked{!launch.preset.empty() || !launch.technique.empty(), {}};
+  for (const std::string& text : launch.set) asked.settings.push_back(text.substr(0, text.find('=')));
+  if (launch.bounces) asked.settings.push_back("smc.bounces");
+  return asked;
 }
 
 } // namespace
@@ -140,15 +145,6 @@ void Play::tellWhereItIsDark() {
   if (sum * double(gi_.exposure()) < 2e-3 * image.width * image.height)
     hud_.say("it is dark here: Q is a flashlight, L a lamp, E opens doors, ] brightens the image");
 }
-
-namespace {
-AskedFor askedFor(const LaunchOptions& launch) {
-  AskedFor asked{!launch.preset.empty() || !launch.technique.empty(), {}};
-  for (const std::string& text : launch.set) asked.settings.push_back(text.substr(0, text.find('=')));
-  if (launch.bounces) asked.settings.push_back("smc.bounces");
-  return asked;
-}
-} // namespace
 
 /// The stage's settings as the person left them the last time.
 Settings Play::preferred() {
@@ -324,17 +320,17 @@ void Play::obey(const Wishes& wishes, float seconds) {
   }
   if (wishes.gait) {
     player_.setGait(Gait((int(player_.gait()) + 1) % 3));
-    hud_.say(gaitText(player_.gait()));
+    hud_.say(kGaitTexts[int(player_.gait())]);
   }
   if (wishes.followPath) toggleFollowing();
   if (wishes.record) toggleRecording();
   if (wishes.buffer && *wishes.buffer < int(bufferNames().size())) model_.buffer = Buffer(*wishes.buffer);
   if (wishes.exposure != 0) gi_.settings().image.exposure = gi_.exposure() * std::exp2(float(wishes.exposure) / 3);
-  if (wishes.truth) showTruth(nextMode(truth_.mode()));
+  if (wishes.truth) showTruth(TruthMode((int(truth_.mode()) + 1) % 3));
   if (truth_.mode() == TruthMode::Split) {
     constexpr float kSharePerSecond = 0.5f;
-    truth_.moveDivider(kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider);
-    truth_.divider = wishes.dividerAt.value_or(truth_.divider);
+    const float moved = truth_.divider + kSharePerSecond * std::min(seconds, kLongestStep) * wishes.divider;
+    truth_.divider = wishes.dividerAt.value_or(glm::clamp(moved, 0.0f, 1.0f));
   }
   if (wishes.reloadShaders) {
     const std::vector<std::string> messages = gi_.reloadShaders();
@@ -401,15 +397,13 @@ std::string Play::state() const {
                 "\"torch\": %s, \"door\": %.3f, \"lift\": %.3f, \"hour\": %.3f, "
                 "\"frame_ms\": %.2f",
                 double(p.x), double(p.y), double(p.z), double(d.x), double(d.y), double(d.z),
-                player_.gait() == Gait::Walk  ? "walk"
-                : player_.gait() == Gait::Fly ? "fly"
-                                              : "ghost",
-                player_.body().grounded() ? "true" : "false", model_.time, model_.paused ? "true" : "false",
-                model_.followPath ? "true" : "false", recorder_.recording() ? recorder_.seconds() : -1.0,
-                bufferNames()[size_t(model_.buffer)].c_str(), double(model_.pacer.scale()), double(gi_.exposure()),
-                props_.things.count(), props_.things.carried() ? thingName(*props_.things.carried()) : "",
-                model_.offer.c_str(), model_.torch ? "true" : "false", props_.movers.place("door leaf"),
-                props_.movers.place("cabin"), model_.hour.value_or(-1), times_.meanMs());
+                kGaits[int(player_.gait())], player_.body().grounded() ? "true" : "false", model_.time,
+                model_.paused ? "true" : "false", model_.followPath ? "true" : "false",
+                recorder_.recording() ? recorder_.seconds() : -1.0, bufferNames()[size_t(model_.buffer)].c_str(),
+                double(model_.pacer.scale()), double(gi_.exposure()), props_.things.count(),
+                props_.things.carried() ? thingName(*props_.things.carried()) : "", model_.offer.c_str(),
+                model_.torch ? "true" : "false", props_.movers.place("door leaf"), props_.movers.place("cabin"),
+                model_.hour.value_or(-1), times_.meanMs());
   std::string all = text;
   if (goal_) {
     std::snprintf(text, sizeof text, ", \"goal\": %.6f, \"goal_at\": %.6f, \"reached\": %s",

@@ -82,7 +82,6 @@ class Play {
   void followMoment();
   void measureGoal();
   void saveScreenshot();
-  std::string screenshotFile() const;
   template <class Action> void report(Action&& action);
 
   const GameOptions options_;

@@ -99,19 +99,17 @@ void Play::writeScreenshot(const fs::path& png) const {
 }
 
 void Play::saveScreenshot() {
-  report([&] { return screenshotFile(); });
-}
-
-std::string Play::screenshotFile() const {
-  std::error_code ignored; // writePng says it when the folder is missing
-  fs::create_directories("out", ignored);
-  int number = 1;
-  const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
-  while (fs::exists(name(), ignored)) ++number;
-  const fs::path png = name();
-  writeScreenshot(png);
-  writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
-  return "screenshot in " + png.string() + ", its light next to it as .exr";
+  report([&] {
+    std::error_code ignored; // writePng says it when the folder is missing
+    fs::create_directories("out", ignored);
+    int number = 1;
+    const auto name = [&] { return fs::absolute("out/screenshot-" + std::to_string(number) + ".png"); };
+    while (fs::exists(name(), ignored)) ++number;
+    const fs::path png = name();
+    writeScreenshot(png);
+    writeExr(fs::path(png).replace_extension(".exr"), gi_.read(Buffer::Beauty));
+    return "screenshot in " + png.string() + ", its light next to it as .exr";
+  });
 }
 
 } // namespace lambent

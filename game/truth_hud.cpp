@@ -1,5 +1,5 @@
 // What the panel and the window show of the truth.
-#include "game/truth_view.h"
+#include "game/hud.h"
 #include "shaders/shared/error_color.h"
 
 #include <imgui/imgui.h>
@@ -38,12 +38,7 @@ void row(const char* name, const std::string& own, const std::string& truth, con
 
 std::string plural(int count, const char* noun) { return std::to_string(count) + " " + noun + (count == 1 ? "" : "s"); }
 
-const std::string& nameOf(ReferenceBuffer buffer) {
-  static const Buffer kShown[] = {Buffer::Beauty, Buffer::Direct, Buffer::Indirect, Buffer::Irradiance};
-  for (const Buffer shown : kShown)
-    if (referenceOf(shown) == buffer) return bufferNames()[size_t(shown)];
-  return bufferNames()[0];
-}
+const std::string& nameOf(ReferenceBuffer buffer) { return bufferNames()[size_t(buffer)]; }
 
 /// What may be said of the image's error for the present.
 std::string verdict(const AgainstTruth& against) {
@@ -65,11 +60,13 @@ void drawColorBar(float width, float height) {
   ImGui::Dummy({width, height});
 }
 
-/// Text that ends at the right, stands in the middle or begins at the left of a line: `at` 1, 0.5 or 0.
-void textAt(float at, float width, const std::string& text) {
-  const float left = ImGui::GetStyle().WindowPadding.x;
-  ImGui::SetCursorPosX(left + at * (width - ImGui::CalcTextSize(text.c_str()).x));
-  ImGui::TextUnformatted(text.c_str());
+/// Texts of one line, each of which ends at the right, stands in the middle or begins at the left: at 1, 0.5 or 0.
+void textsAlong(float width, const std::vector<std::pair<float, std::string>>& texts) {
+  const float left = ImGui::GetStyle().WindowPadding.x, line = ImGui::GetCursorPosY();
+  for (const auto& [at, text] : texts) {
+    ImGui::SetCursorPos({left + at * (width - ImGui::CalcTextSize(text.c_str()).x), line});
+    ImGui::TextUnformatted(text.c_str());
+  }
 }
 
 } // namespace
@@ -124,14 +121,10 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
   if (view.mode() == TruthMode::Off) return;
   const bool heat = view.mode() == TruthMode::Heat;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({size.x - 8, size.y - 8}, ImGuiCond_Always, {1, 1});
-  ImGui::SetNextWindowBgAlpha(0.6f);
   // A window of its own for each: one that grows would be cut off for a frame.
   const LiveTruth* truth = view.truth();
   const char* id = !referenceOf(shown) ? "no truth" : !truth ? "truth again" : heat ? "truth heat" : "truth split";
-  ImGui::Begin(id, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  const Overlay window(id, {size.x - 8, size.y - 8}, {1, 1});
   constexpr float kWidth = 260;
   if (!referenceOf(shown)) {
     ImGui::Text("no truth of %s:", bufferNames()[size_t(shown)].c_str());
@@ -145,16 +138,8 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
     } else {
       const std::string full = percent(view.fullErrorNow(), "%.3g %%");
       drawColorBar(kWidth, 10);
-      const float line = ImGui::GetCursorPosY();
-      for (const auto& [at, text] : {std::pair{0.0f, "-" + full}, {0.5f, std::string("0")}, {1.0f, "+" + full}}) {
-        ImGui::SetCursorPosY(line);
-        textAt(at, kWidth, text);
-      }
-      const float words = ImGui::GetCursorPosY();
-      for (const auto& [at, text] : {std::pair{0.0f, "GI too dark"}, {1.0f, "GI too bright"}}) {
-        ImGui::SetCursorPosY(words);
-        textAt(at, kWidth, text);
-      }
+      textsAlong(kWidth, {{0.0f, "-" + full}, {0.5f, "0"}, {1.0f, "+" + full}});
+      textsAlong(kWidth, {{0.0f, "GI too dark"}, {1.0f, "GI too bright"}});
       ImGui::Text("of the truth's mean, %s", plural(int(truth->samples), "sample").c_str());
     }
     ImGui::Text("%s RMSE %s, bias %s", nameOf(truth->buffer).c_str(), percent(a.error.rmseShare()).c_str(),
@@ -164,7 +149,6 @@ void drawTruthLegend(const TruthView& view, Buffer shown) {
                 number(truth->ms / truth->samples, " ms a sample").c_str());
     ImGui::TextUnformatted(verdict(a).c_str());
   }
-  ImGui::End();
 }
 
 } // namespace lambent

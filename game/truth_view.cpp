@@ -8,18 +8,9 @@
 namespace lambent {
 
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer) {
-  switch (buffer) {
-  case Buffer::Beauty:
-    return ReferenceBuffer::Beauty;
-  case Buffer::Direct:
-    return ReferenceBuffer::Direct;
-  case Buffer::Indirect:
-    return ReferenceBuffer::Indirect;
-  case Buffer::Irradiance:
-    return ReferenceBuffer::Irradiance;
-  default:
-    return {};
-  }
+  if (buffer > Buffer::Irradiance) return {};
+  static_assert(int(Buffer::Indirect) == int(ReferenceBuffer::Indirect), "in the same order");
+  return ReferenceBuffer(buffer);
 }
 
 double FramesSpent::typicalMs() const { return spreadOf(latestMs).median; }

@@ -9,9 +9,8 @@
 namespace lambent {
 
 enum class TruthMode { Off, Split, Heat };
-constexpr TruthMode nextMode(TruthMode mode) { return TruthMode((int(mode) + 1) % 3); }
 
-/// Returns the reference buffer of what a buffer shows; none for those that are no light.
+/// Returns the reference buffer of what a buffer shows, which has its number; none for those that are no light.
 std::optional<ReferenceBuffer> referenceOf(Buffer buffer);
 
 /// Frames that were drawn (a settled one stays) since anything about the view or its light last changed.
@@ -29,7 +28,6 @@ class TruthView {
 
   TruthMode mode() const { return mode_; }
   void set(TruthMode mode);
-  void moveDivider(float share) { divider = glm::clamp(divider + share, 0.0f, 1.0f); }
 
   /// Must be called after every frame, on or off. Reads the image back where a new truth has come. With `wait`
   /// every frame waits for one: tests then see as many passes as frames. Throws what ended the tracing.

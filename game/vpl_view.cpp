@@ -1,6 +1,5 @@
-#include "game/vpl_view.h"
-
-#include "gi/viewer/viewer.h"
+// Over the view of virtual lights: the one at the crosshair, with all that the sampler knows of it.
+#include "game/hud.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <imgui/imgui.h>

@@ -37,13 +37,13 @@ std::array<vec3, kAround> around() {
   return directions;
 }
 
-/// Where rays for floor and ceiling start, from the axis: the middle and a ring.
-std::array<vec3, kAround / 2 + 1> soles(float radius) {
-  std::array<vec3, kAround / 2 + 1> places;
+/// Rays for floor and ceiling: from the middle and from a ring of this radius around it.
+std::array<Ray, kAround / 2 + 1> bundle(const vec3& middle, float radius, const vec3& direction, float reach) {
+  std::array<Ray, kAround / 2 + 1> rays;
   const auto ring = around();
-  places[0] = vec3(0);
-  for (size_t i = 1; i < places.size(); ++i) places[i] = radius * ring[2 * (i - 1)];
-  return places;
+  for (size_t i = 0; i < rays.size(); ++i)
+    rays[i] = {middle + (i > 0 ? radius * ring[2 * (i - 1)] : vec3(0)), direction, reach};
+  return rays;
 }
 
 } // namespace
@@ -245,12 +245,9 @@ float Body::clearWay(const RayQuery& rays, const vec3& direction, float length, 
 
 /// The highest floor between a step above the feet and `reach` below them.
 Body::Floor Body::floorBelow(const RayQuery& rays, float reach) const {
-  const auto places = soles(kUnder * size_.radius());
-  std::array<Ray, places.size()> down;
-  std::array<SurfaceHit, places.size()> hits;
-  const float above = 1.02f * size_.step(); // what is higher stands in the way of rays ahead
-  for (size_t i = 0; i < places.size(); ++i)
-    down[i] = {feet_ + places[i] + vec3(0, above, 0), {0, -1, 0}, above + reach};
+  const vec3 above(0, 1.02f * size_.step(), 0); // what is higher stands in the way of rays ahead
+  const auto down = bundle(feet_ + above, kUnder * size_.radius(), {0, -1, 0}, above.y + reach);
+  std::array<SurfaceHit, down.size()> hits;
   rays.closest(down, hits);
   Floor floor;
   for (const SurfaceHit& hit : hits) {
@@ -262,12 +259,9 @@ Body::Floor Body::floorBelow(const RayQuery& rays, float reach) const {
 
 /// How far the head can rise, up to `reach`; below zero where it is too low to stand.
 float Body::headroom(const RayQuery& rays, float reach) const {
-  const auto places = soles(kUnder * size_.radius());
-  std::array<Ray, places.size()> up;
-  std::array<float, places.size()> met;
   const float body = size_.height - size_.step();
-  for (size_t i = 0; i < places.size(); ++i)
-    up[i] = {feet_ + places[i] + vec3(0, size_.step(), 0), {0, 1, 0}, body + reach};
+  const auto up = bundle(feet_ + vec3(0, size_.step(), 0), kUnder * size_.radius(), {0, 1, 0}, body + reach);
+  std::array<float, up.size()> met;
   rays.distances(up, met);
   return std::min(reach, *std::ranges::min_element(met) - body);
 }

@@ -20,6 +20,12 @@ constexpr double kCertain = 3;  // standard errors
 constexpr uint32_t kMost = 512; // then it is known well enough
 constexpr std::string_view kMark = ", goal ";
 
+std::vector<vec3> figuresOf(std::span<const LightView> suns) {
+  std::vector<vec3> all;
+  for (const LightView& sun : suns) all.insert(all.end(), {sun.direction, sun.intensity});
+  return all;
+}
+
 } // namespace
 
 std::unique_ptr<Goal> Goal::find(const Scene& scene) {
@@ -61,17 +67,6 @@ Goal::Goal(const Scene& scene, Entity entity, std::string what, float wanted)
     places_.push_back(place);
   }
 }
-
-namespace {
-std::vector<vec3> figuresOf(std::span<const LightView> suns) {
-  std::vector<vec3> all;
-  for (const LightView& sun : suns) {
-    all.push_back(sun.direction);
-    all.push_back(sun.intensity);
-  }
-  return all;
-}
-} // namespace
 
 std::vector<SurfaceHit> Goal::surfaces() const {
   const SceneView& view = solids_.view();

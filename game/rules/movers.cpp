@@ -77,19 +77,16 @@ void Movers::addButtons(size_t index) {
   }
 }
 
-const Movers::Button* Movers::buttonOf(uint32_t instance) const {
-  const auto found = std::ranges::find_if(buttons_, [&](const Button& b) { return b.entity.id() == instance; });
-  return found != buttons_.end() ? &*found : nullptr;
-}
-
-const Movers::Mover* Movers::moverOf(uint32_t instance) const {
-  const auto found = std::ranges::find_if(movers_, [&](const Mover& m) { return m.entity.id() == instance; });
-  return found != movers_.end() ? &*found : nullptr;
+std::pair<const Movers::Mover*, const Movers::Button*> Movers::found(uint32_t instance) const {
+  for (const Button& button : buttons_)
+    if (button.entity.id() == instance) return {&movers_[button.mover], &button};
+  for (const Mover& mover : movers_)
+    if (mover.entity.id() == instance) return {&mover, nullptr};
+  return {};
 }
 
 std::string Movers::offer(uint32_t instance) const {
-  const Button* button = buttonOf(instance);
-  const Mover* mover = button ? &movers_[button->mover] : moverOf(instance);
+  const auto [mover, button] = found(instance);
   if (!mover) return {};
   const std::string the = std::string("the ") + mover->kind->noun;
   if (mover->kind->heights.empty()) return (mover->target == 0 ? "open " : "shut ") + the;
@@ -97,17 +94,14 @@ std::string Movers::offer(uint32_t instance) const {
 }
 
 bool Movers::use(uint32_t instance) {
-  const Button* button = buttonOf(instance);
-  const Mover* found = button ? &movers_[button->mover] : moverOf(instance);
-  if (!found) return false;
-  send(movers_[size_t(found - movers_.data())], button ? button->stop : kNext);
-  return true;
-}
-
-void Movers::send(Mover& mover, int stop) {
+  const auto [at, button] = found(instance);
+  if (!at) return false;
+  Mover& mover = movers_[size_t(at - movers_.data())];
+  const int stop = button ? button->stop : kNext;
   mover.used = true;
   mover.from = mover.target;
   mover.target = stop == kNext ? (mover.target + 1) % mover.kind->stops() : stop;
+  return true;
 }
 
 bool Movers::update(double seconds) {

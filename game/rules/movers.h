@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lambent {
@@ -59,10 +60,9 @@ class Movers {
   void addButtons(size_t mover);
   void step(Mover& mover, double seconds);
   void apply(const Mover& mover);
-  void send(Mover& mover, int stop);
   void reset(Mover& mover);
-  const Button* buttonOf(uint32_t instance) const;
-  const Mover* moverOf(uint32_t instance) const;
+  /// What using the instance would move, and the button that the instance is; null: there is none.
+  std::pair<const Mover*, const Button*> found(uint32_t instance) const;
 
   Scene& scene_;
   std::vector<Mover> movers_;

@@ -38,6 +38,16 @@ void walk(Body& body, const RayQuery& rays, const vec3& velocity, float seconds,
   for (float t = 0; t < seconds - 0.5f * frame; t += frame) body.move(rays, {}, {velocity}, frame);
 }
 
+/// Jumps, and goes on for so many frames; the highest that its feet were.
+float jump(Body& body, const RayQuery& rays, const vec3& velocity, int frames) {
+  float highest = 0;
+  for (int i = 0; i < frames; ++i) {
+    body.move(rays, {}, {velocity, i == 0}, kFrame);
+    highest = std::max(highest, body.feet().y);
+  }
+  return highest;
+}
+
 TEST(Body, FallsToTheFloorAndStands) {
   const Room room;
   Body body;
@@ -98,12 +108,7 @@ TEST(Body, JumpsOntoWhatItCannotStepOnto) {
   Body body = standing(room.rays, {0, 0, 0});
   walk(body, room.rays, {2, 0, 0}, 1);
   EXPECT_LT(body.feet().x, 1);
-  float highest = 0;
-  for (int i = 0; i < 60; ++i) {
-    body.move(room.rays, {}, {{2, 0, 0}, i == 0}, kFrame);
-    highest = std::max(highest, body.feet().y);
-  }
-  EXPECT_NEAR(highest, body.size().jump(), 0.02f);
+  EXPECT_NEAR(jump(body, room.rays, {2, 0, 0}, 60), body.size().jump(), 0.02f);
   EXPECT_NEAR(body.feet().y, 0.5f, 0.01f);
   EXPECT_GT(body.feet().x, 2);
 }
@@ -117,12 +122,7 @@ TEST(Body, HitsItsHeadAndGoesUnderNothingTooLow) {
   EXPECT_LT(body.feet().x, 1);
   walk(body, room.rays, {-2, 0, 0}, 2);
   EXPECT_LT(body.feet().x, -2) << "below 1.9 m";
-  float highest = 0;
-  for (int i = 0; i < 30; ++i) {
-    body.move(room.rays, {}, {vec3(0), i == 0}, kFrame);
-    highest = std::max(highest, body.feet().y);
-  }
-  EXPECT_NEAR(highest, 1.9f - body.size().height, 0.02f);
+  EXPECT_NEAR(jump(body, room.rays, vec3(0), 30), 1.9f - body.size().height, 0.02f);
 }
 
 TEST(Body, WalksUpAGentleSlopeAndNoSteepOne) {

@@ -164,6 +164,7 @@ void accuracyLight(const AccuracyOptions& options) {
 /// Bias and error of direct light against path tracing, as set, and by other means.
 void accuracyDirect(const AccuracyOptions& options) {
   Study study(options, options.launch.scene, {.size = "320x180", .set = {{"effects.indirect", "off"}}});
+  if (!study.opened->settings.direct.on) throw InputError("settings", "direct light is off (--direct needs direct.on)");
   study.trace(256, ReferenceBuffer::Direct);
   std::vector<Variant> variants{study.variant("as set"), study.variant("maps alone", {{"shadow.rays", "off"}}),
                                 study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}})};
@@ -309,7 +310,7 @@ void declareAccuracy(CLI::App& app) {
   auto o = std::make_shared<AccuracyOptions>();
   Command command(app, "accuracy",
                   "what approximations cost in error: shadow maps of virtual lights, or a form of its own");
-  command.scenes(o->scenes, "SCENE", "glTF or shot file; several with --report");
+  command.texts("SCENE", o->scenes, "glTF or shot file; several with --report", true);
   command.launch(o->launch);
   command.output(o->output, "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
   command.number("--lights", &o->slots, 1, 32768, "virtual lights to compare");

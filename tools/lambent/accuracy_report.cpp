@@ -71,6 +71,11 @@ Plot frontPlot(const std::string& title, const Figures& figures, State state, bo
   return plot;
 }
 
+std::string frontPlots(const std::string& title, const Figures& figures, bool relative, int height) {
+  return svgOf({frontPlot(title, figures, State::Moving, relative), frontPlot(title, figures, State::Still, relative)},
+               2, 540, height);
+}
+
 /// Of a knob: its points in each scene, in the order in which they should become dearer.
 struct KnobCurve {
   std::string scene;
@@ -295,11 +300,9 @@ std::string sectionOf(const std::string& name, const SweptScene& scene, const Fi
   std::vector<TableColumn> columns{{"number", ""}};
   columns.insert(columns.end(), kPointColumns.begin(), kPointColumns.end());
   std::string page =
-      "<h2>" + escaped(name) + "</h2>" +
-      svgOf({frontPlot(name, figures, State::Moving, false), frontPlot(name, figures, State::Still, false)}, 2, 540,
-            340) +
-      "<p>The front in motion</p>" + htmlTable(columns, frontRows(figures, State::Moving, false)) +
-      "<p>Milliseconds of its stages</p>" + frontStages(figures) + "<p>The front standing still</p>" +
+      "<h2>" + escaped(name) + "</h2>" + frontPlots(name, figures, false, 340) + "<p>The front in motion</p>" +
+      htmlTable(columns, frontRows(figures, State::Moving, false)) + "<p>Milliseconds of its stages</p>" +
+      frontStages(figures) + "<p>The front standing still</p>" +
       htmlTable(columns, frontRows(figures, State::Still, false)) +
       format("<p>Truth: %d paths a pixel, which leaves a relMSE of %.2g. Errors below: white 0, black %.0f %% "
              "and more.</p>",
@@ -355,9 +358,7 @@ void accuracyReport(const AccuracyOptions& options) {
     }
     for (State state : kStates) paths.add(pathRow(r.scenes[s], r.figures[s], state));
   }
-  const std::string front =
-      svgOf({frontPlot("All scenes", r.all, State::Moving, true), frontPlot("All scenes", r.all, State::Still, true)},
-            2, 540, 380);
+  const std::string front = frontPlots("All scenes", r.all, true, 380);
   std::string page =
       openingOf(r, options, frames, front) +
       format("<h2>Presets by rule</h2><p>Among the default and the joint sweep: the longest ladder of the front whose "

@@ -166,7 +166,7 @@ std::string growthCsv(const Value& sweeps) {
 void benchGrowth(const BenchOptions& options) {
   Study study(options, options.launch.scene, {});
   LaunchContext& opened = *study.opened;
-  needSampledLights(opened.settings);
+  needSampledLights(techniqueOf(opened.settings).name);
   const fs::path folder = reportFolder(options.output.out, "out/bench");
   if (!opened.shot) opened.settings.effects[EffectId::Redraw] = EffectMode::On;
   const bool lit = !opened.at(0).lights.empty();

@@ -93,7 +93,7 @@ Value rowOf(const BenchOptions& options, const std::string& file, std::string& m
   LaunchContext& opened = *study.opened;
   machine = machineText(study.context);
   if (!opened.shot) throw InputError(file, "not a shot (a .json file)");
-  needSampledLights(opened.settings);
+  needSampledLights(techniqueOf(opened.settings).name);
   if (opened.settings.frame.overlap)
     throw InputError("setting frame.overlap", "cannot be on here (what runs beside a frame is no part of its time)");
   RunPlan plan = benchPlan(options, opened);

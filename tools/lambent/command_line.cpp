@@ -107,15 +107,6 @@ std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
 Command::Command(CLI::App& app, const std::string& name, const std::string& help)
     : command_(app.add_subcommand(name, help)), to_(command_) {}
 
-void Command::scene(std::string& value, const std::string& name, const std::string& help, bool required) {
-  to_->add_option(name, value, help)->required(required);
-}
-
-void Command::scenes(std::vector<std::string>& values, const std::string& name, const std::string& help,
-                     bool required) {
-  to_->add_option(name, values, help)->required(required);
-}
-
 void Command::launch(LaunchOptions& options) { addLaunchOptions(*command_, options); }
 
 void Command::output(OutputOptions& options, const std::string& outHelp) {
@@ -128,15 +119,15 @@ void Command::output(OutputOptions& options, const std::string& outHelp) {
   flag("--quiet", options.quiet, "print nothing but errors");
 }
 
-void Command::text(const std::string& name, std::string& value, const std::string& help) {
-  to_->add_option(name, value, help);
+void Command::text(const std::string& name, std::string& value, const std::string& help, bool required) {
+  to_->add_option(name, value, help)->required(required);
 }
 void Command::choice(const std::string& name, std::string& value, const std::vector<std::string>& of,
                      const std::string& help) {
   to_->add_option(name, value, help)->check(CLI::IsMember(of));
 }
-void Command::texts(const std::string& name, std::vector<std::string>& values, const std::string& help) {
-  to_->add_option(name, values, help);
+void Command::texts(const std::string& name, std::vector<std::string>& values, const std::string& help, bool required) {
+  to_->add_option(name, values, help)->required(required);
 }
 void Command::list(const std::string& name, std::vector<std::string>& values, const std::string& help,
                    const std::vector<std::string>& of) {

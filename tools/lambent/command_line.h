@@ -25,16 +25,14 @@ class Command {
  public:
   Command(CLI::App& app, const std::string& name, const std::string& help);
 
-  /// What stands without a name.
-  void scene(std::string& value, const std::string& name, const std::string& help, bool required = true);
-  void scenes(std::vector<std::string>& values, const std::string& name, const std::string& help, bool required = true);
   /// The options that all share that draw; --out (unless its help is empty), --json, --quiet.
   void launch(LaunchOptions& options);
   void output(OutputOptions& options, const std::string& outHelp);
 
-  void text(const std::string& name, std::string& value, const std::string& help);
+  /// Named without dashes: what stands without a name. Must be given where `required`.
+  void text(const std::string& name, std::string& value, const std::string& help, bool required = false);
+  void texts(const std::string& name, std::vector<std::string>& values, const std::string& help, bool required = false);
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& of, const std::string& help);
-  void texts(const std::string& name, std::vector<std::string>& values, const std::string& help);
   /// Comma-separated; of these alone, where there are any.
   void list(const std::string& name, std::vector<std::string>& values, const std::string& help,
             const std::vector<std::string>& of = {});

@@ -67,29 +67,21 @@ Value valueOf(const Technique& t) {
                    kReconstructions[int(t.axes.reconstruction)], "waits", t.waits ? t.waits : "");
 }
 
-/// Every combination of the first three axes, the light put together as the gather wants it.
-template <class Visit> void forAllCombinations(const Visit& visit) {
-  for (size_t s = 0; s < std::size(kSources); ++s)
-    for (size_t v = 0; v < std::size(kVisibilities); ++v)
-      for (size_t g = 0; g < std::size(kGathers); ++g) {
-        const Axes axes{VplSource(s), VplVisibility(v), GatherMode(g), reconstructionOf(GatherMode(g), true)};
-        visit(axes, whyNot(axes));
-      }
-}
-
 void listTechniques(const OutputOptions& output) {
   Value j;
   for (const Technique& t : techniqueTable()) j["techniques"].add(valueOf(t));
   std::map<std::string, int> reasons;
   int together = 0;
-  forAllCombinations([&](const Axes& axes, const std::string& reason) {
-    j["combinations"].add(Value::of("source", rowOf(axes.source).name, "visibility", rowOf(axes.visibility).name,
-                                    "gather", rowOf(axes.gather).name, "why_not", reason));
-    if (reason.empty())
-      ++together;
-    else
-      ++reasons[reason];
-  });
+  // Every combination of the first three axes, the light put together as the gather wants it.
+  for (size_t s = 0; s < std::size(kSources); ++s)
+    for (size_t v = 0; v < std::size(kVisibilities); ++v)
+      for (size_t g = 0; g < std::size(kGathers); ++g) {
+        const std::string reason =
+            whyNot(Axes{VplSource(s), VplVisibility(v), GatherMode(g), reconstructionOf(GatherMode(g), true)});
+        j["combinations"].add(Value::of("source", kSources[s].name, "visibility", kVisibilities[v].name, "gather",
+                                        kGathers[g].name, "why_not", reason));
+        ++(reason.empty() ? together : reasons[reason]);
+      }
   writeJson(output.json, j);
   if (output.quiet) return;
   std::printf("%-16s %-6s %-11s %-12s %-17s %s\n", "technique", "lights", "visibility", "gathered", "put together", "");
@@ -119,13 +111,11 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
     if (r.bundled) bundled.push_back(r.name);
   }
   for (const std::string& name : names.empty() ? bundled : names) {
-    const auto& all = contentRecipes();
-    const auto it = std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
-    if (it == all.end()) {
+    const auto recipe = std::ranges::find(contentRecipes(), name, &ContentRecipe::name);
+    if (recipe == contentRecipes().end())
       throw InputError("content " + name,
                        "no such scene (" + guessText(name, known, "see lambent content --help") + ")");
-    }
-    chosen.push_back(&*it);
+    chosen.push_back(&*recipe);
   }
   const std::filesystem::path base = output.out.empty() ? findContentFolder() : std::filesystem::path(output.out);
   Value j = Value::list();
@@ -145,8 +135,7 @@ void declareSettings(CLI::App& app) {
   auto words = std::make_shared<std::vector<std::string>>();
   auto output = std::make_shared<OutputOptions>();
   Command command(app, "settings", "every setting with default, range and cost");
-  command.scenes(*words, "WORD", "only settings with this word in their name (smc, shadow.bias), else in their text",
-                 false);
+  command.texts("WORD", *words, "only settings with this word in their name (smc, shadow.bias), else in their text");
   command.output(*output, "");
   command.run([words, output] { listSettings(*words, *output); });
 }
@@ -166,7 +155,7 @@ void declareContent(CLI::App& app) {
     known += "\n  " + r.name + (r.bundled ? " (bundled): " : ": ") + r.description;
   Command command(app, "content", "generates scenes (default: the bundled ones)");
   command.footer(known);
-  command.scenes(*names, "NAME", "scenes to make", false);
+  command.texts("NAME", *names, "scenes to make");
   command.output(*output, "folder to write to (default: the bundled scenes' own)");
   command.run([names, output] { generate(*names, *output); });
 }

@@ -95,21 +95,14 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   const LightSet lights = collectLights(view);
   const vec3 size = view.boundsWorld.size();
 
-  Value j;
-  j["file"] = opened->scene.file.string();
-  j["triangles"] = placedTriangles;
-  j["mesh_triangles"] = meshTriangles;
-  j["meshes"] = assets.meshes.size();
-  j["instances"] = view.instances.size();
-  j["skinned_instances"] = skinned;
-  j["morphed_instances"] = morphed;
-  j["materials"] = assets.materials.size();
-  j["images"] = assets.images.size();
-  j["image_mib"] = double(texels) * 4 / (1 << 20);
-  j["size_m"] = listOf(size);
-  j["animations"] = opened->scene.animations.size();
+  Value j =
+      Value::of("file", opened->scene.file.string(), "triangles", placedTriangles, "mesh_triangles", meshTriangles,
+                "meshes", assets.meshes.size(), "instances", view.instances.size(), "skinned_instances", skinned,
+                "morphed_instances", morphed, "materials", assets.materials.size(), "images", assets.images.size(),
+                "image_mib", double(texels) * 4 / (1 << 20), "size_m", listOf(size), "animations",
+                opened->scene.animations.size(), "warnings", opened->scene.warnings, "notes", opened->notes, "lights",
+                Value::list(), "emitters", Value::list(), "cameras", Value::list());
   std::string lightLines;
-  j["lights"] = Value::list();
   for (const LightView& l : view.lights) {
     lightLines += format("  light      %s, %.3g %.3g %.3g %s\n", typeName(l.type), l.intensity.x, l.intensity.y,
                          l.intensity.z, l.type == LightType::Directional ? "W/m2" : "W/sr");
@@ -117,27 +110,24 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
     j["lights"].add(Value::of("type", typeName(l.type), "position", listOf(position), "direction", listOf(l.direction),
                               "intensity", listOf(l.intensity)));
   }
-  j["emitters"] = Value::list();
   for (const Emitter& e : lights.emitters)
     j["emitters"].add(
         Value::of("triangles", e.triangleCount, "power_w_per_sr", e.power, "double_sided", e.doubleSided));
-  j["cameras"] = Value::list();
   for (const NamedCamera& c : sceneCameras(opened->scene)) j["cameras"].add(c.name);
-  j["effects"] = Value::list();
   // Of a frame some time after the start, so that what moves by itself shows.
-  const EffectPlan plan =
-      planEffects(opened->at(1.0 / 30), opened->settings,
-                  {.first = false,
-                   .settingsChanged = false,
-                   .drawingChanged = false,
-                   .needs = needsOf(opened->settings),
-                   .status = {.settled = true}});
+  const EffectPlan plan = planEffects(opened->at(1.0 / 30), opened->settings,
+                                      {.first = false,
+                                       .settingsChanged = false,
+                                       .drawingChanged = false,
+                                       .needs = needsOf(opened->settings),
+                                       .status = {.settled = true}});
+  std::string effectLines;
   for (size_t i = 0; i < kEffects; ++i) {
     const Effect& e = plan[EffectId(i)];
-    j["effects"].add(Value::of("name", effectRow(EffectId(i)).name, "on", e.on, "reason", e.reason));
+    const char* name = effectRow(EffectId(i)).name;
+    j["effects"].add(Value::of("name", name, "on", e.on, "reason", e.reason));
+    effectLines += format("  %-11s %-3s  ", name, e.on ? "on" : "off") + printable(e.reason) + "\n";
   }
-  j["warnings"] = opened->scene.warnings;
-  j["notes"] = opened->notes;
   writeJson(output.json, j);
   if (output.quiet) return;
 
@@ -153,11 +143,7 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   for (const Emitter& e : lights.emitters)
     std::printf("  emitter    %u triangles, %.3g W/sr%s\n", e.triangleCount, double(e.power),
                 e.doubleSided ? " on each side" : "");
-  std::printf("effects, with the VPLs settled\n");
-  for (size_t i = 0; i < kEffects; ++i) {
-    const Effect& e = plan[EffectId(i)];
-    std::printf("  %-11s %-3s  %s\n", effectRow(EffectId(i)).name, e.on ? "on" : "off", printable(e.reason).c_str());
-  }
+  std::printf("effects, with the VPLs settled\n%s", effectLines.c_str());
   for (const std::string& w : opened->scene.warnings) std::printf("warning: %s\n", printable(w).c_str());
   for (const std::string& n : opened->notes) std::printf("note: %s\n", printable(n).c_str());
 }
@@ -172,9 +158,9 @@ void inspectPresets(const OutputOptions& output) {
   writeJson(output.json, rows);
   if (output.quiet) return;
   std::printf("%s", tableText(std::vector<TableColumn>{{"preset", "preset"},
-                                                      {"set", "sets"},
-                                                      {"time", "time of a frame", "%.2f"},
-                                                      {"error", "relMSE of indirect light", "%.2f"}},
+                                                       {"set", "sets"},
+                                                       {"time", "time of a frame", "%.2f"},
+                                                       {"error", "relMSE of indirect light", "%.2f"}},
                               rows)
                         .c_str());
   std::printf("of the default's, in hall, citadel and Cornell box together (docs/measurements/presets.md)\n");
@@ -229,7 +215,7 @@ void doctor(const OutputOptions& output) {
 void declareRender(CLI::App& app) {
   auto options = std::make_shared<RenderOptions>();
   Command command(app, "render", "one view of a scene as a picture");
-  command.scene(options->launch.scene, "SCENE", "glTF or shot file");
+  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
   command.output(options->output, "picture, .png or linear .exr (default lambent.png)");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "draw"));
@@ -243,7 +229,7 @@ void declareInspect(CLI::App& app) {
   auto output = std::make_shared<OutputOptions>();
   auto presets = std::make_shared<bool>(false);
   Command command(app, "inspect", "what a scene holds and which effects it calls for");
-  command.scene(launch->scene, "SCENE", "glTF or shot file", false);
+  command.text("SCENE", launch->scene, "glTF or shot file");
   command.launch(*launch);
   command.output(*output, "");
   command.flag("--presets", *presets, "what the presets set, cost and bring, as measured; without SCENE");

@@ -13,14 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct FigureValue {
-  Value operator()(uint64_t n) const { return n; }
-  Value operator()(bool on) const { return on; }
-  Value operator()(double ms) const { return ms; }
-  Value operator()(const std::string& text) const { return text; }
-  Value operator()(const RayCounts& c) const { return Value::of("closest", c.closest, "occlusion", c.occlusion); }
-};
-
 uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
   for (char c : text) hash = mix64(hash ^ uint8_t(c));
   return hash;
@@ -88,7 +80,14 @@ Value figuresOf(const FrameStats& s) {
     const std::string name = row.name;
     const size_t dot = name.find('.');
     Value& at = dot == std::string::npos ? figures[name] : figures[name.substr(0, dot)][name.substr(dot + 1)];
-    at = std::visit(FigureValue{}, row.value(s));
+    at = std::visit(
+        [](const auto& figure) -> Value {
+          if constexpr (std::is_same_v<decltype(figure), const RayCounts&>)
+            return Value::of("closest", figure.closest, "occlusion", figure.occlusion);
+          else
+            return figure;
+        },
+        row.value(s));
   }
   figures["shadow_maker_times"] = s.makerTimes;
   figures["area_tracer"] = s.areaTracer;

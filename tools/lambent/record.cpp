@@ -260,7 +260,7 @@ void record(const RecordOptions& options) {
 void declareRecord(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   Command command(app, "record", "every frame of a shot: pictures, frames.csv, video");
-  command.scene(options->launch.scene, "SHOT", "shot file (.json)");
+  command.text("SHOT", options->launch.scene, "shot file (.json)", true);
   command.launch(options->launch);
   command.output(options->output, "folder (default out/NAME)");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "record"));

@@ -171,7 +171,7 @@ void soak(const SoakOptions& options) {
 void declareSoak(CLI::App& app) {
   auto options = std::make_shared<SoakOptions>();
   Command command(app, "soak", "many frames in which anything changes: each is checked, memory must not grow");
-  command.scene(options->launch.scene, "SCENE", "glTF or shot file");
+  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
   command.output(options->output, "");
   command.number("--frames", &options->frames, 1, 100000000, "so many (2000)");

@@ -1,14 +1,17 @@
 // lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7), or
 // of those from reflective shadow maps against every texel of these (paper 3, fig. 5).
+#include "gi/measure/stability.h"
 #include "engine/core/error.h"
+#include "gi/measure/statistics.h"
 #include "gi/plan/techniques.h"
 #include "tools/lambent/picture.h"
-#include "tools/lambent/stability_report.h"
+#include "tools/lambent/plot.h"
 #include "tools/lambent/study.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <map>
+#include <sstream>
 
 namespace lambent {
 
@@ -25,6 +28,37 @@ struct StabilityOptions {
   bool quick = false;
 
   bool pathTraced() const { return truth == "path"; }
+};
+
+/// Errors of one technique at some of the watched pixels.
+struct GroupErrors {
+  StabilityErrors mean; // over the seeds
+  StatisticRuns error,
+      change;       // |E| and |E'| of each seed, and against halves of the truth: what rankings are made from
+  double still = 0; // |E| of the same views standing still, where ShotRun::still is set
+};
+
+/// One technique over one shot.
+struct TechniqueRun {
+  std::string name;
+  uint32_t vpls = 0;       // N; those of most in a frame where it varies; 0: every pixel has its own clusters
+  PixelSeries series = {}; // of the first seed
+  GroupErrors marked = {}, grid = {};
+  Latency latency = {}; // the worst of the seeds
+  double placeMs = 0;   // median time per frame of placing virtual lights, mean over the seeds
+};
+
+/// One shot. The first `marked` pixels are the shot's own, the others its grid.
+struct ShotRun {
+  std::string name;
+  double fps = 30;
+  size_t marked = 0;
+  PixelSeries truth;
+  std::vector<size_t> steps; // frames in which the scene changes by a step
+  bool still = false;        // also measured standing still
+  double truthError = 0;     // standard error of a value of the truth, RMS, tone-mapped luminance
+  Image picture; // values of the display: the first frame, with the marked pixels numbered; empty: none are marked
+  std::vector<TechniqueRun> techniques;
 };
 
 /// What one seed's series adds to the means over `seeds`, and to what is known of them.
@@ -49,8 +83,7 @@ constexpr int kPicturePaths = 32; // per pixel of the picture that shows where t
 constexpr int kStillFrames = 6;   // to measure each time at which a shot stands still
 
 bool drawsWholeFrames(const Settings& settings) {
-  return settings.own || watchesDirect(settings) || needsOf(settings).reflective() ||
-         needsOf(settings).maps;
+  return settings.own || watchesDirect(settings) || needsOf(settings).reflective() || needsOf(settings).maps;
 }
 
 /// The truth first, path traced in two halves, then each technique with each seed.
@@ -197,6 +230,159 @@ void measureStill(const StabilityOptions& options, const std::string& file, std:
   shot.still = true;
 }
 
+/// Paper 1, table 1: |E'| of smc over that of ir in the sequence that a shot of ours follows.
+const std::map<std::string, double> kPublished{
+    {"office", 0.57}, {"citadel", 0.61}, {"maze", 0.57}, {"atrium", 0.32}, {"citadel-moving", 0.22}};
+
+/// |E'| of what a technique is compared with: of ir as in paper 1, among techniques from reflective maps of rsm. 0:
+/// none.
+double simplestChange(const ShotRun& shot, const TechniqueRun& t) {
+  const char* name = needsOf(techniqueByName(t.name)).reflective() ? "rsm" : "ir";
+  const auto simplest = std::ranges::find(shot.techniques, name, &TechniqueRun::name);
+  return simplest != shot.techniques.end() ? simplest->grid.mean.change : 0;
+}
+
+/// What is ranked, as rows of figures name it.
+struct Statistic {
+  const char *key, *title;
+  GroupErrors TechniqueRun::*pixels;
+  StatisticRuns GroupErrors::*runs;
+};
+constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::marked, &GroupErrors::error},
+                                     {"change_marked", "|E'| marked", &TechniqueRun::marked, &GroupErrors::change},
+                                     {"error_grid", "|E| grid", &TechniqueRun::grid, &GroupErrors::error},
+                                     {"change_grid", "|E'| grid", &TechniqueRun::grid, &GroupErrors::change}};
+
+/// Of the shot's techniques. Empty where no pixel is marked: there is nothing to know of them.
+std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& statistic) {
+  std::vector<StatisticRuns> all;
+  for (const TechniqueRun& t : s.techniques)
+    if (s.marked > 0 || statistic.pixels != &TechniqueRun::marked) all.push_back(t.*statistic.pixels.*statistic.runs);
+  return estimatesOf(all);
+}
+
+Value figuresOf(const ShotRun& s, size_t index) {
+  const TechniqueRun& t = s.techniques[index];
+  Value row = Value::of("shot", s.name, "technique", t.name, "vpls", t.vpls, "frames", s.truth.size(), "pixels_marked",
+                        s.marked, "pixels_grid", s.truth.front().size() - s.marked, "steps", s.steps, "error_marked",
+                        t.marked.mean.error, "change_marked", t.marked.mean.change, "error_grid", t.grid.mean.error,
+                        "change_grid", t.grid.mean.change, "bias_grid", t.grid.mean.bias, "l90_median",
+                        t.latency.median, "l90_worst_tenth", t.latency.worstTenth, "l90_followed", t.latency.followed,
+                        "l90_count", t.latency.count, "place_ms", t.placeMs, "truth_error", s.truthError);
+  for (const Statistic& statistic : kStatistics)
+    if (const auto estimates = estimatesOf(s, statistic); !estimates.empty() && !std::isnan(estimates[index].error))
+      row[std::string(statistic.key) + "_se"] = estimates[index].error;
+  if (t.latency.count > 0) row["l90"] = std::vector{t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
+  if (const double simplest = simplestChange(s, t); simplest > 0)
+    row["change_over_simplest"] = t.grid.mean.change / simplest;
+  const auto published = kPublished.find(s.name.substr(0, s.name.find("-small")));
+  if (t.name == techniqueTable().front().name && published != kPublished.end()) row["paper_1"] = published->second;
+  if (!s.still) return row;
+  row["error_still_marked"] = t.marked.still;
+  row["error_still_grid"] = t.grid.still;
+  row["error_over_still"] = std::vector{t.marked.mean.error / t.marked.still, t.grid.mean.error / t.grid.still};
+  return row;
+}
+
+const std::vector<TableColumn> kColumns{{"shot", "shot"},
+                                        {"technique", "technique"},
+                                        {"vpls", "N", "%g", 1, "cut"},
+                                        {"error_marked", "\\|E\\| marked", "%.4f"},
+                                        {"change_marked", "\\|E'\\| marked", "%.4f"},
+                                        {"error_grid", "\\|E\\| grid", "%.4f"},
+                                        {"change_grid", "\\|E'\\| grid", "%.4f"},
+                                        {"bias_grid", "bias", "%+.4f"},
+                                        {"change_over_simplest", "\\|E'\\| over ir's, rsm's", "%.2f"},
+                                        {"paper_1", "paper 1", "%.2f"},
+                                        {"error_over_still", "\\|E\\| over still", "%.2f"},
+                                        {"l90", "L90, worst tenth, % followed", "%.0f"},
+                                        {"place_ms", "ms to place", "%.1f"}};
+
+std::string seriesCsv(const ShotRun& s) {
+  std::ostringstream out;
+  out << "frame,pixel,marked,truth";
+  for (const TechniqueRun& t : s.techniques) out << ',' << t.name;
+  out << '\n';
+  for (size_t f = 0; f < s.truth.size(); ++f)
+    for (size_t p = 0; p < s.truth[f].size(); ++p) {
+      out << f << ',' << p << ',' << (p < s.marked) << ',' << s.truth[f][p];
+      for (const TechniqueRun& t : s.techniques) out << ',' << t.series[f][p];
+      out << '\n';
+    }
+  return out.str();
+}
+
+/// Tone-mapped luminance of each marked pixel over time, as paper 1, fig. 7.
+std::vector<Plot> plotsOf(const ShotRun& s) {
+  std::vector<Plot> plots;
+  std::vector<double> seconds;
+  for (size_t f = 0; f < s.truth.size(); ++f) seconds.push_back(double(f) / s.fps);
+  for (size_t p = 0; p < s.marked; ++p) {
+    Plot& plot = plots.emplace_back(format("%s, pixel %zu", s.name.c_str(), p), "time, s",
+                                    "luminance, tone-mapped (0 to 1)", false);
+    const auto add = [&](const std::string& name, const PixelSeries& series, const char* colour) {
+      PlotLine& line = plot.lines.emplace_back(name, seconds, std::vector<double>{}, colour);
+      for (const auto& frame : series) line.y.push_back(frame[p]);
+    };
+    for (const TechniqueRun& t : s.techniques) add(t.name, t.series, nullptr);
+    add("truth", s.truth, "#000");
+  }
+  return plots;
+}
+
+/// A row for each technique of each shot, for programs and for the tables.
+Value stabilityFigures(const std::vector<ShotRun>& shots) {
+  Value figures = Value::list();
+  for (const ShotRun& s : shots)
+    for (size_t t = 0; t < s.techniques.size(); ++t) figures.add(figuresOf(s, t));
+  return figures;
+}
+
+/// The rows as Markdown.
+std::string stabilityTable(const Value& figures) {
+  Value rows = figures;
+  for (Value& row : rows.items())
+    for (const Statistic& statistic : kStatistics)
+      if (const std::string error = std::string(statistic.key) + "_se"; row.has(error))
+        row[statistic.key] = format("%.4f ± %.4f", row[statistic.key].number(), row[error].number());
+  return tableText(kColumns, rows);
+}
+
+/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
+std::string stabilityRankings(const std::vector<ShotRun>& shots) {
+  std::string text;
+  for (const ShotRun& s : shots)
+    for (const Statistic& statistic : kStatistics) {
+      const std::vector<UncertainValue> estimates = estimatesOf(s, statistic);
+      if (estimates.size() < 2) continue;
+      std::vector<Ranked> all;
+      for (size_t i = 0; i < estimates.size(); ++i) all.push_back({s.techniques[i].name, estimates[i]});
+      text += "- " + s.name + ", " + statistic.title + ": " + rankingText(ranked(std::move(all))) + "\n";
+    }
+  if (text.empty()) return text;
+  return "Rankings, the least first; a difference counts where seeds and the truth's noise make it in less than one of "
+         "twenty cases:\n\n" +
+         text;
+}
+
+/// stability.csv, stability.md (tables, rankings) and of each shot series-SHOT.csv and of its marked pixels a picture
+/// and plots, each in one step.
+void writeStabilityReport(const OutputOptions& output, const fs::path& folder, const std::vector<ShotRun>& shots,
+                          const std::string& conditions) {
+  const Value figures = stabilityFigures(shots);
+  std::string page = conditions + "\n\n" + stabilityTable(figures);
+  if (const std::string rankings = stabilityRankings(shots); !rankings.empty()) page += "\n" + rankings;
+  for (const ShotRun& s : shots) {
+    writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
+    if (s.marked == 0) continue;
+    writeShown(folder / ("marked-" + s.name + ".png"), s.picture);
+    page += "\n![" + s.name + ", first frame, marked pixels](marked-" + s.name + ".png)\n";
+    writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
+    page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
+  }
+  writeReport(output, folder, "stability", "Temporal stability", page, csvText(figures), figures);
+}
+
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) techniqueByName(name); // or a guess at what was meant
   const fs::path folder = reportFolder(options.output.out, "out/stability");
@@ -226,7 +412,7 @@ void stability(const StabilityOptions& options) {
 void declareStability(CLI::App& app) {
   auto options = std::make_shared<StabilityOptions>();
   Command command(app, "stability", "errors of techniques over the frames of shots, against truth");
-  command.scenes(options->shots, "SHOT", "shot files (.json)");
+  command.texts("SHOT", options->shots, "shot files (.json)", true);
   command.launch(options->launch);
   command.output(options->output, "folder for the report (default out/stability)");
   command.list("--techniques", options->techniques, "comma-separated (default smc,ir,mir,tcas)");

@@ -39,7 +39,6 @@ void needSampledLights(const std::string& technique) {
   if (!needsOf(techniqueByName(technique)).sampled())
     throw InputError("--technique " + technique, "has no sampled lights (smc, ir, mir and tcas have)");
 }
-void needSampledLights(const Settings& settings) { needSampledLights(techniqueOf(settings).name); }
 
 RunPlan planOf(LaunchContext& opened, int frames) {
   const int all = opened.shot ? opened.shot->frameCount() : 60;

@@ -35,7 +35,6 @@ void lightByEveryTexel(Settings& settings);
 void useFewLights(MeasureOptions& options);
 /// Throws InputError where the technique does not sample its lights.
 void needSampledLights(const std::string& technique);
-void needSampledLights(const Settings& settings);
 
 /// The first frames of the shot (0: all; of a scene 60).
 RunPlan planOf(LaunchContext& opened, int frames);

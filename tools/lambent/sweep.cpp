@@ -186,13 +186,12 @@ class SceneSweep {
     RunPlan plan{.view = [&](int frame) { return viewAt(skipped + frame); },
                  .frames = moving + still,
                  .inTurn = false,
-                 .picture = direct ? Buffer::Direct : Buffer::Irradiance,
-                 .cancelled = [] { return interrupted.load(); }};
+                 .picture = direct ? Buffer::Direct : Buffer::Irradiance};
     if (still > 0) plan.also = {moving - 1};
     if (!direct) plan.points = tracked_.points;
     Measured m = [&] {
       try {
-        return measure({variant}, plan)[0];
+        return lambent::run({variant}, plan, "", true)[0];
       } catch (const RunError&) {
         if (interrupted) throw RunError(kGoesOn);
         throw;

@@ -48,10 +48,6 @@ Figures figuresOf(const SweptScene& scene);
 /// Of the points that all scenes have.
 Figures overScenes(const std::vector<Figures>& scenes);
 
-/// Both at once: error is the geometric mean of moving and standing, cost that of frames in motion. What presets are
-/// chosen by.
-CostError bothOf(const PointFigures& point);
-
 /// Which of the points these are: CostErrors beside names, for the functions of gi/measure/front.h.
 struct Choice {
   std::vector<std::string> names;

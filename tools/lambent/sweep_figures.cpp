@@ -66,6 +66,14 @@ double meanOf(const std::vector<Value>& runs, const std::string& state, const ch
   return sum;
 }
 
+/// Both at once: error is the geometric mean of moving and standing, cost that of frames in motion. What presets are
+/// chosen by.
+CostError bothOf(const PointFigures& p) {
+  if (p.still.cost <= 0) return {};
+  return {p.moving.cost, std::sqrt(p.moving.error * p.still.error), p.moving.costNoise,
+          0.5 * std::hypot(p.moving.errorNoise, p.still.errorNoise)};
+}
+
 } // namespace
 
 const std::vector<TableColumn> kPointColumns{{"point", "point"},
@@ -167,12 +175,6 @@ Figures overScenes(const std::vector<Figures>& scenes) {
     if (points[1].size() == scenes.size()) f.still = overScenes(points[1], references[1]);
   }
   return all;
-}
-
-CostError bothOf(const PointFigures& p) {
-  if (p.still.cost <= 0) return {};
-  return {p.moving.cost, std::sqrt(p.moving.error * p.still.error), p.moving.costNoise,
-          0.5 * std::hypot(p.moving.errorNoise, p.still.errorNoise)};
 }
 
 Choice choiceOf(const Figures& figures, const std::function<CostError(const PointFigures&)>& take) {

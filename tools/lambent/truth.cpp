@@ -32,8 +32,8 @@ constexpr int kLargestSamples = 1 << 24;
 
 ReferenceBuffer referenceBufferByName(const std::string& name) {
   const std::vector<std::string> names = {"beauty", "direct", "indirect", "irradiance"};
-  for (size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return ReferenceBuffer(i);
+  if (const auto found = std::ranges::find(names, name); found != names.end())
+    return ReferenceBuffer(found - names.begin());
   throw InputError("--buffer " + name, "no such buffer of the reference (" +
                                            guessText(name, names, "beauty, direct, indirect, irradiance") + ")");
 }
@@ -173,7 +173,7 @@ void compare(const CompareOptions& options) {
 void declareReference(CLI::App& app) {
   auto options = std::make_shared<ReferenceOptions>();
   Command command(app, "reference", "path-traced truth of one view; can be continued");
-  command.scene(options->launch.scene, "SCENE", "glTF or shot file");
+  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
   command.output(options->output, "picture, linear .exr or .png (default reference.exr)");
   command.text("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
@@ -195,8 +195,8 @@ void declareReference(CLI::App& app) {
 void declareCompare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   Command command(app, "compare", "errors of picture A against B (linear .exr or .pfm)");
-  command.scene(options->a, "A", "picture to judge");
-  command.scene(options->b, "B", "picture to hold it to");
+  command.text("A", options->a, "picture to judge", true);
+  command.text("B", options->b, "picture to hold it to", true);
   command.text("--layer", options->layer, "layer of B to take, where it is an .exr with several");
   command.text("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
   command.text("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");

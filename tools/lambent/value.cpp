@@ -17,8 +17,8 @@ Json jsonOf(const Value& value) {
   for (const Value& v : value.items()) out.push_back(jsonOf(v));
   for (const auto& [name, v] : value.fields()) out[name] = jsonOf(v);
   if (value.isList() || value.isObject()) return out;
-  if (value.isBool()) return value.number() != 0;
-  if (value.isWhole()) return long(value.number());
+  if (value.isBool()) return value.whole() != 0;
+  if (value.isWhole()) return value.whole();
   return value.number();
 }
 

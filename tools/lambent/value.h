@@ -47,7 +47,8 @@ class Value {
   bool isList() const { return kind_ == Several; }
   bool isObject() const { return kind_ == Object; }
   bool isNumber() const { return kind_ == Real || kind_ == Whole || kind_ == Bool; }
-  double number() const; // a bool is 0 or 1; throws RunError where it is none
+  double number() const;                // a bool is 0 or 1; throws RunError where it is none
+  long whole() const { return whole_; } // of a whole number, and of a bool
   const std::string& text() const { return text_; }
   const List& items() const { return list_; } // of a list
   List& items() { return list_; }

@@ -18,21 +18,17 @@ void FrameLog::add(double time, const FrameStats& stats, double writeMs, const G
 void FrameLog::write(const std::filesystem::path& file) const {
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary);
-    for (size_t i = 0; i < std::max<size_t>(1, rows_.size()); ++i) {
-      const Row row = rows_.empty() ? Row{} : rows_[i];
-      const std::vector<FigureColumn> columns = columnsOf(row.stats, stages_);
-      if (i == 0) {
-        out << "time_s,write_ms" << (governed_ ? ",scale,preset" : "");
-        for (const FigureColumn& c : columns) out << ',' << c.name;
-        out << '\n';
-        if (rows_.empty()) break;
-      }
+    out << "time_s,write_ms" << (governed_ ? ",scale,preset" : "");
+    for (const FigureColumn& c : columnsOf(rows_.empty() ? FrameStats() : rows_[0].stats, stages_))
+      out << ',' << c.name;
+    out << '\n';
+    for (const Row& row : rows_) {
       char text[64];
       std::snprintf(text, sizeof text, "%.6f,%.3f", row.time, row.writeMs);
       out << text;
       std::snprintf(text, sizeof text, ",%.4f,", double(row.scale));
       if (governed_) out << text << row.preset;
-      for (const FigureColumn& c : columns) out << ',' << c.text;
+      for (const FigureColumn& c : columnsOf(row.stats, stages_)) out << ',' << c.text;
       out << '\n';
     }
     if (!out.flush()) throw RunError(file.string() + ": cannot be written");
