@@ -227,7 +227,7 @@ class Net {
       return glm::distance(g_.positions[quad[size_t(i)]], g_.positions[quad[size_t(k)]]);
     };
     const size_t first = apart(0, 2) <= apart(1, 3) ? 0 : 1; // cut along the shorter diagonal
-    for (const size_t k : {0, 1, 2, 0, 2, 3}) g_.indices.push_back(quad[(first + k) % 4]);
+    g_.addFace(quad[first], quad[first + 1], quad[(first + 2) % 4], quad[(first + 3) % 4]);
   }
 
   static constexpr double kStep = 0.05; // of slopes, in cells

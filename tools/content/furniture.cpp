@@ -6,6 +6,68 @@
 
 namespace lambent::content {
 
+namespace {
+
+/// Points on a quarter turn or an S between two profile points: `bulge` > 0 swells to the outside.
+ProfilePiece curve(const dvec2& from, const dvec2& to, double bulge, uint32_t steps) {
+  ProfilePiece piece;
+  const dvec2 along = to - from, outward = dvec2(along.y, -along.x);
+  for (uint32_t i = 0; i <= steps; ++i) {
+    const double t = double(i) / steps;
+    // The end points are taken as they are, so that neighbouring pieces meet exactly.
+    piece.push_back(i == 0 ? from : i == steps ? to : from + t * along + bulge * 4 * t * (1 - t) * outward);
+  }
+  return piece;
+}
+
+} // namespace
+
+Geometry column(double height, uint32_t segments) {
+  constexpr double kPlinth = 0.14, kAbacus = 0.12, kHalf = 0.31; // the block above and below is 0.62 m wide
+  const double foot = kPlinth, head = height - kAbacus;
+  const std::vector<ProfilePiece> profile{
+      {{0, foot}, {0.26, foot}},
+      curve({0.26, foot}, {0.26, foot + 0.10}, 0.35, 4), // torus
+      {{0.26, foot + 0.10}, {0.235, foot + 0.10}},
+      curve({0.235, foot + 0.10}, {0.225, foot + 0.16}, -0.25, 2), // hollow that leads to the shaft
+      curve({0.225, foot + 0.16}, {0.19, head - 0.34}, 0.004, 4),  // shaft, slightly swollen
+      {{0.19, head - 0.34}, {0.215, head - 0.34}},
+      curve({0.215, head - 0.34}, {0.215, head - 0.29}, 0.4, 2), // neck ring
+      {{0.215, head - 0.29}, {0.195, head - 0.29}},
+      curve({0.195, head - 0.29}, {0.29, head}, -0.18, 4), // bell of the capital
+      {{0.29, head}, {0, head}},
+  };
+  Geometry g = lathe(profile, segments);
+  g.add(box({-kHalf, 0, -kHalf}, {kHalf, kPlinth, kHalf}));
+  g.add(box({-kHalf, head, -kHalf}, {kHalf, height, kHalf}));
+  return g;
+}
+
+Geometry baluster(double height, uint32_t segments) {
+  const double neck = 0.72 * height;
+  return lathe({{{0, 0}, {0.06, 0}},
+                {{0.06, 0}, {0.06, 0.08}},
+                curve({0.06, 0.08}, {0.035, neck}, 0.06, 4),
+                curve({0.035, neck}, {0.06, height}, -0.12, 2),
+                {{0.06, height}, {0, height}}},
+               segments);
+}
+
+Geometry basin() {
+  return lathe({{{0, 0}, {0.9, 0}},
+                {{0.9, 0}, {0.9, 0.12}},
+                {{0.9, 0.12}, {0.55, 0.18}},
+                curve({0.55, 0.18}, {1.25, 0.62}, 0.22, 6),
+                {{1.25, 0.62}, {1.25, 0.72}},
+                {{1.25, 0.72}, {1.1, 0.72}},
+                curve({1.1, 0.72}, {0, 0.42}, -0.12, 6)},
+               32);
+}
+
+Geometry basinWater() {
+  return lathe({{{0, 0.5}, {0.95, 0.5}}, {{0.95, 0.5}, {0.95, 0.56}}, {{0.95, 0.56}, {0, 0.56}}}, 32);
+}
+
 Geometry chair(uint32_t segments) {
   // Cushion, post and hub on a lathe; five feet and a back of two slats and a rest.
   Geometry g = lathe({{{0, 0.42}, {0.2, 0.42}},
@@ -158,6 +220,30 @@ Geometry plinth(double width, double depth, double height) {
   Geometry g = box({-x - 0.05, -0.02, -z - 0.05}, {x + 0.05, 0.1, z + 0.05});
   g.add(box({-x, 0.09, -z}, {x, height - 0.05, z}));
   g.add(box({-x - 0.04, height - 0.06, -z - 0.04}, {x + 0.04, height, z + 0.04}));
+  return g;
+}
+
+Geometry cobbles(double length, double width, double pitch) {
+  Geometry g;
+  const int columns = int(length / pitch + 0.5), rows = int(width / pitch + 0.5);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const uint32_t id = uint32_t(row * columns + column);
+      const double x = pitch * (column + 0.5), z = pitch * (row + 0.5) - 0.5 * width;
+      const double foot = 0.485 * pitch, head = foot - 0.015, y = 0.02 + 0.01 * hashed(id, 5);
+      const auto corners = [&](double h, double level) {
+        return std::array<dvec3, 4>{dvec3(x - h, level, z + h), dvec3(x + h, level, z + h), dvec3(x + h, level, z - h),
+                                    dvec3(x - h, level, z - h)};
+      };
+      g.add(hexahedron(corners(foot, -0.02), corners(head, y)));
+    }
+  return g;
+}
+
+Geometry bench(const dvec3& seatLo, const dvec3& seatHi, const dvec3& legLo, const dvec3& legHi) {
+  Geometry g = box(seatLo, seatHi);
+  g.add(box({-legHi.x, legLo.y, legLo.z}, {-legLo.x, legHi.y, legHi.z}));
+  g.add(box(legLo, legHi));
   return g;
 }
 

@@ -17,10 +17,6 @@ constexpr double kShopLo = -4.2, kShopHi = 1.4, kDoorLo = 2.2, kDoorHi = 3.4, kS
 double storeyFloor(int storey) { return storey == 0 ? 0 : kShopHeight + kUpperHeight * (storey - 1); }
 double windowX(int window) { return kFrontWidth / kWindows * (window + 0.5) - kHalf; }
 
-struct Opening {
-  double lo, hi, sill, head;
-};
-
 std::vector<Opening> openings(int storey) {
   if (storey == 0) return {{kShopLo, kShopHi, kShopSill, kShopHead}, {kDoorLo, kDoorHi, 0, kShopHead}};
   std::vector<Opening> row;
@@ -60,40 +56,21 @@ void addFacing(Geometry& g, double x, bool forward, const dvec2& middle, const d
     g.addQuad(at(-1, -1), at(-1, 1), at(1, 1), at(1, -1));
 }
 
-/// 5 × 7 dots of a letter, row by row from above.
+/// 5 × 7 dots of each letter, row by row from above.
+constexpr std::pair<char, std::string_view> kDots[] = {
+    {'A', "01110100011000111111100011000110001"}, {'B', "11110100011000111110100011000111110"},
+    {'C', "01110100011000010000100001000101110"}, {'E', "11111100001000011110100001000011111"},
+    {'F', "11111100001000011110100001000010000"}, {'H', "10001100011000111111100011000110001"},
+    {'I', "01110001000010000100001000010001110"}, {'K', "10001100101010011000101001001010001"},
+    {'L', "10000100001000010000100001000011111"}, {'M', "10001110111010110101100011000110001"},
+    {'N', "10001110011010110011100011000110001"}, {'O', "01110100011000110001100011000101110"},
+    {'R', "11110100011000111110101001001010001"}, {'S', "01111100001000001110000010000111110"},
+    {'T', "11111001000010000100001000010000100"},
+};
+
 std::string_view dots(char letter) {
-  switch (letter) {
-  case 'A':
-    return "01110100011000111111100011000110001";
-  case 'B':
-    return "11110100011000111110100011000111110";
-  case 'C':
-    return "01110100011000010000100001000101110";
-  case 'E':
-    return "11111100001000011110100001000011111";
-  case 'F':
-    return "11111100001000011110100001000010000";
-  case 'H':
-    return "10001100011000111111100011000110001";
-  case 'I':
-    return "01110001000010000100001000010001110";
-  case 'K':
-    return "10001100101010011000101001001010001";
-  case 'L':
-    return "10000100001000010000100001000011111";
-  case 'M':
-    return "10001110111010110101100011000110001";
-  case 'N':
-    return "10001110011010110011100011000110001";
-  case 'O':
-    return "01110100011000110001100011000101110";
-  case 'R':
-    return "11110100011000111110101001001010001";
-  case 'S':
-    return "01111100001000001110000010000111110";
-  case 'T':
-    return "11111001000010000100001000010000100";
-  }
+  for (const auto& [known, dots] : kDots)
+    if (known == letter) return dots;
   throw RunError(std::string("no dots for the letter ") + letter);
 }
 
@@ -105,15 +82,8 @@ Geometry frontMasonry(int storeys) {
   const double top = storeyFloor(storeys), wall = 0.3;
   Geometry g;
   for (int s = 0; s < storeys; ++s) {
-    const double y = storeyFloor(s), lo = s ? y : -0.05, hi = storeyFloor(s + 1);
-    double x = -kHalf;
-    for (const Opening& o : openings(s)) {
-      g.add(box({x, lo, 0}, {o.lo, hi, kThick}));
-      g.add(box({o.lo, y + o.head, 0}, {o.hi, hi, kThick}));
-      if (o.sill > 0) g.add(box({o.lo, lo, 0}, {o.hi, y + o.sill, kThick}));
-      x = o.hi;
-    }
-    g.add(box({x, lo, 0}, {kHalf, hi, kThick}));
+    const double y = storeyFloor(s);
+    g.add(wallWithOpenings(openings(s), kHalf, kThick, s ? y : -0.05, y, storeyFloor(s + 1)));
   }
   // The upper storeys are solid behind their panes; the shop is a room.
   g.add(box({-kHalf, kShopHeight - 0.3, kThick}, {kHalf, top, kDepth}));
