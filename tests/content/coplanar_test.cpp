@@ -105,8 +105,7 @@ std::map<std::string, dvec3> fights(const PlacedScene& scene) {
 class Coplanar : public testing::TestWithParam<ContentRecipe> {};
 
 TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
-  if (isLarge(GetParam()) && !std::getenv("LAMBENT_TEST_LARGE"))
-    GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
+  SKIP_WHERE_TOO_LARGE(GetParam());
   const WrittenScene& w = written(GetParam());
   const PlacedScene scene(loadScene(w.scene.file));
   for (const auto& [pair, at] : fights(scene))
@@ -114,6 +113,6 @@ TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Recipes, Coplanar, testing::ValuesIn(testedRecipes()),
-                         [](const auto& info) { return testName(info.param); });
+                         [](const auto& info) { return testName(info.param.name); });
 
 } // namespace lambent::test::coplanar_test

@@ -6,23 +6,15 @@
 
 namespace lambent::test::spot_test {
 
-bool skipped(const std::string& name) { // rays against every triangle
-  return (name == "knot" || name == "garden") && !std::getenv("LAMBENT_TEST_LARGE");
-}
-
 const ContentRecipe& recipeOf(const std::string& name) {
   const auto& all = contentRecipes();
-  return *std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
+  return *std::ranges::find(all, name, &ContentRecipe::name);
 }
 
-class SpotScene : public testing::TestWithParam<const char*> {
- protected:
-  void SetUp() override {
-    if (skipped(GetParam())) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
-  }
-};
+class SpotScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(SpotScene, OneConeOf90DegreesMovesAndLightsSomeOfTheTrackedPixels) {
+  SKIP_WHERE_TOO_LARGE(recipeOf(GetParam()));
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + GetParam() + ".json");
   const WrittenScene& w = written(recipeOf(GetParam()));
   Scene scene = loadScene(w.scene.file);
@@ -68,7 +60,7 @@ TEST_P(SpotScene, OneConeOf90DegreesMovesAndLightsSomeOfTheTrackedPixels) {
 
 INSTANTIATE_TEST_SUITE_P(Shots, SpotScene,
                          testing::Values("cornell-spot", "knot", "knot-small", "garden", "garden-small"),
-                         [](const auto& info) { return testName(recipeOf(info.param)); });
+                         [](const auto& info) { return testName(info.param); });
 
 TEST(Knot, NeverMeetsItself) {
   const WrittenScene& w = written(recipeOf("knot-small"));
