@@ -106,8 +106,7 @@ class Coplanar : public testing::TestWithParam<ContentRecipe> {};
 
 TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
   SKIP_WHERE_TOO_LARGE(GetParam());
-  const WrittenScene& w = written(GetParam());
-  const PlacedScene scene(loadScene(w.scene.file));
+  const PlacedScene scene(loadScene(written(GetParam()).scene.file));
   for (const auto& [pair, at] : fights(scene))
     ADD_FAILURE() << pair << " at " << at.x << ", " << at.y << ", " << at.z << " (sink one into the other by 1 cm)";
 }

@@ -32,8 +32,7 @@ TEST_P(Walks, KeepClearOfWalls) {
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + name + ".json");
   EXPECT_EQ(shot.pixels.size(), 8u);
 
-  const WrittenScene& w = written(recipe);
-  Scene scene = loadScene(w.scene.file);
+  Scene scene = loadScene(written(recipe).scene.file);
   const PlacedScene placed(scene);
   constexpr double kStep = 0.25, kClearance = 0.25; // seconds, metres
   dvec3 before(0);

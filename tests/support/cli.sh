@@ -1,5 +1,7 @@
 # For scripts that use the program as a person does: [--long] [LAMBENT] (default build/bin/lambent), a folder for what it
-# writes, and what has passed. To be sourced in the root of the repository.
+# writes, and what has passed. To be sourced first: it goes to the root of the repository.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 long=
 [[ ${1:-} == --long ]] && long=1 && shift
 lambent=$(realpath "${1:-build/bin/lambent}")
@@ -23,6 +25,23 @@ summary() { # [NAME]
 fail() { # WHAT...
   echo "${0##*/}: $*" >&2
   failed=1
+}
+appears() { # FILE, within seconds
+  for _ in {1..500}; do
+    [[ -s $1 ]] && return
+    sleep 0.02
+  done
+  return 1
+}
+# An ffmpeg that only tells how it was asked, in $work/asked, and writes something.
+stand_in_for_ffmpeg() {
+  mkdir -p "$work/bin"
+  printf '#!/bin/sh\nprintf "%%s\\n" "$@" >"%s/asked"\nfor last; do :; done\necho video >"$last"\n' "$work" >"$work/bin/ffmpeg"
+  chmod +x "$work/bin/ffmpeg"
+}
+agrees() { # NAME SCRIPT: a Python script that fails where files in $work are wrong
+  (cd "$work" && python3 -c "$2") >"$work/stdout" 2>&1
+  result "$1" $? "$(tail -n 3 "$work/stdout")"
 }
 # Figures of `lambent stability` with "${common[@]}" keep within tests/cli/limits; shows them.
 stability() { # LIMITS NAME ARGUMENTS...

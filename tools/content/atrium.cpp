@@ -3,9 +3,7 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 

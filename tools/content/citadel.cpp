@@ -4,9 +4,7 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 
@@ -165,13 +163,13 @@ class Citadel : public SceneBuilder {
     }
     const Index roof = mesh("roof", houseRoof(full() ? 0.25 : kHouseWidth - 0.04, full() ? 0.26 : 0.9), tile_);
     const Index balcony = mesh("balcony", houseBalcony(detail(10, 5)), stone_);
-    for (const bool south : {true, false})
+    for (const auto& [side, sign, turn] : kSides)
       for (int i = 0; i < houses_; ++i) {
+        const bool south = sign > 0;
         const int kind = (i * 5 + (south ? 2 : 0)) % 7;
         const int storeys = kind % 2 ? 3 : 2;
-        const std::string name = std::string(south ? "south" : "north") + " house " + std::to_string(i);
-        const double z = (kHalfStreet + setBack(i + (south ? 1 : 0))) * (south ? 1 : -1), turn = south ? 0 : 180;
-        const dvec3 at(houseX(i), 0, z);
+        const std::string name = side + " house " + std::to_string(i);
+        const dvec3 at(houseX(i), 0, sign * (kHalfStreet + setBack(i + south)));
         place(name, shells[size_t(storeys - 2)][size_t(kind) % 4], at, turn);
         place(name + " woodwork", details[size_t(storeys - 2)], at, turn);
         place(name + " roof", roof, at + dvec3(0, storeys * kStorey, 0), turn);
@@ -275,11 +273,11 @@ class Citadel : public SceneBuilder {
     const Index plant =
         mesh("plant", fronds(detail(40, 10), 0.36, 0.42, detail(10, 3)), fabric("leaf", {0.12, 0.34, 0.09}));
     for (int i = 0; i < houses_; ++i)
-      for (const bool south : {true, false}) {
-        const std::string name = std::string(south ? "south" : "north") + " side " + std::to_string(i);
-        const double z = (kHalfStreet - 0.42) * (south ? 1 : -1);
-        if ((i + south) % 2) {
-          place(name + " barrels", barrels, {houseX(i) - 0.9, 0.02, z}, south ? 0 : 180);
+      for (const auto& [side, sign, turn] : kSides) {
+        const std::string name = side + " side " + std::to_string(i);
+        const double z = sign * (kHalfStreet - 0.42);
+        if ((i + (sign > 0)) % 2) {
+          place(name + " barrels", barrels, {houseX(i) - 0.9, 0.02, z}, turn);
         } else {
           place(name + " pots", pots, {houseX(i) + 0.2, 0.02, z});
           place(name + " plant", plant, {houseX(i) + 0.2, 0.02, z});

@@ -3,8 +3,6 @@
 // the published emitter, `cornell-spot` by a spot below the ceiling's middle.
 #include "tools/content/recipes.h"
 
-#include <array>
-
 namespace lambent::content {
 
 namespace {

@@ -31,23 +31,20 @@ class Net {
       : form_(form), cell_(cell), lo_(form.lo - 1.5 * cell),
         size_(glm::ceil((form.hi - form.lo) / cell) + 4.0) { // a border of a cell outside on every side
     values_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z));
-    for (int z = 0; z < size_.z; ++z)
-      for (int y = 0; y < size_.y; ++y)
-        for (int x = 0; x < size_.x; ++x) {
-          const double value = form.field(corner({x, y, z}));
-          const bool border = glm::any(glm::equal(glm::ivec3(x, y, z), glm::ivec3(0))) ||
-                              glm::any(glm::equal(glm::ivec3(x, y, z), size_ - 1));
-          CHECK(!border || value > 0); // else the box is too small
-          values_[index({x, y, z})] = value;
-        }
+    forEach(0, 0, [&](const glm::ivec3& i) {
+      const double value = form.field(corner(i));
+      const bool border = glm::any(glm::equal(i, glm::ivec3(0))) || glm::any(glm::equal(i, size_ - 1));
+      CHECK(!border || value > 0); // else the box is too small
+      values_[index(i)] = value;
+    });
   }
 
   Geometry surface() {
-    addVertices();
-    for (int z = 1; z + 1 < size_.z; ++z)
-      for (int y = 1; y + 1 < size_.y; ++y)
-        for (int x = 1; x + 1 < size_.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) addQuad({x, y, z}, axis);
+    cells_.assign(values_.size(), kNone);
+    forEach(0, 1, [&](const glm::ivec3& cell) { addVertices(cell); });
+    forEach(1, 1, [&](const glm::ivec3& from) {
+      for (int axis = 0; axis < 3; ++axis) addQuad(from, axis);
+    });
     for (int i = 0; i < 3; ++i) relax();
     addNormals();
     int rounds = 0;
@@ -62,6 +59,12 @@ class Net {
   }
   dvec3 corner(const glm::ivec3& i) const { return lo_ + cell_ * dvec3(i); }
   bool inside(const glm::ivec3& i) const { return values_[index(i)] < 0; }
+  /// Samples from `from` on, without the last `left` along each axis.
+  template <class Visit> void forEach(int from, int left, const Visit& visit) const {
+    for (int z = from; z < size_.z - left; ++z)
+      for (int y = from; y < size_.y - left; ++y)
+        for (int x = from; x < size_.x - left; ++x) visit(glm::ivec3(x, y, z));
+  }
 
   /// One of a cell's edges: along `axis`, at the far side of the next axis where bit 0 of `side` is set, of the one
   /// after where bit 1 is.
@@ -77,22 +80,14 @@ class Net {
       for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 4; ++side) {
           CellEdge e{axis, side, glm::ivec3(0), glm::ivec3(0)};
-          e.from[(axis + 1) % 3] = side & 1;
-          e.from[(axis + 2) % 3] = side >> 1;
-          e.to = e.from;
+          e.from[(axis + 1) % 3] = e.to[(axis + 1) % 3] = side & 1;
+          e.from[(axis + 2) % 3] = e.to[(axis + 2) % 3] = side >> 1;
           e.to[axis] = 1;
           all[e.id()] = e;
         }
       return all;
     }();
     return edges;
-  }
-
-  void addVertices() {
-    cells_.assign(values_.size(), kNone);
-    for (int z = 0; z + 1 < size_.z; ++z)
-      for (int y = 0; y + 1 < size_.y; ++y)
-        for (int x = 0; x + 1 < size_.x; ++x) addVertices({x, y, z});
   }
 
   /// A vertex for each sheet of surface in a cell. On a face of the cell two crossed edges are of one sheet; where all
@@ -123,7 +118,7 @@ class Net {
       }
     std::array<uint32_t, 12> vertices;
     vertices.fill(kNone);
-    bool any = false;
+    const size_t before = g_.positions.size();
     for (int s = 0; s < 12; ++s) {
       dvec3 sum(0);
       int count = 0;
@@ -134,9 +129,8 @@ class Net {
           vertices[e] = uint32_t(g_.positions.size());
         }
       if (count) g_.addVertex(sum / double(count), dvec3(0));
-      any |= count > 0;
     }
-    if (!any) return;
+    if (g_.positions.size() == before) return;
     cells_[index(cell)] = uint32_t(vertices_.size());
     vertices_.push_back(vertices);
   }

@@ -2,8 +2,6 @@
 
 #include "tools/content/scene_builder.h"
 
-#include <cmath>
-
 namespace lambent::content {
 
 namespace {
@@ -12,10 +10,9 @@ namespace {
 ProfilePiece curve(const dvec2& from, const dvec2& to, double bulge, uint32_t steps) {
   ProfilePiece piece;
   const dvec2 along = to - from, outward = dvec2(along.y, -along.x);
-  for (uint32_t i = 0; i <= steps; ++i) {
+  for (uint32_t i = 1; i <= steps; ++i) {
     const double t = double(i) / steps;
-    // The end points are taken as they are, so that neighbouring pieces meet exactly.
-    piece.push_back(i == 0 ? from : i == steps ? to : from + t * along + bulge * 4 * t * (1 - t) * outward);
+    piece.push_back(i == steps ? to : from + t * along + bulge * 4 * t * (1 - t) * outward);
   }
   return piece;
 }
@@ -25,19 +22,20 @@ ProfilePiece curve(const dvec2& from, const dvec2& to, double bulge, uint32_t st
 Geometry column(double height, uint32_t segments) {
   constexpr double kPlinth = 0.14, kAbacus = 0.12, kHalf = 0.31; // the block above and below is 0.62 m wide
   const double foot = kPlinth, head = height - kAbacus;
-  const std::vector<ProfilePiece> profile{
-      {{0, foot}, {0.26, foot}},
-      curve({0.26, foot}, {0.26, foot + 0.10}, 0.35, 4), // torus
-      {{0.26, foot + 0.10}, {0.235, foot + 0.10}},
-      curve({0.235, foot + 0.10}, {0.225, foot + 0.16}, -0.25, 2), // hollow that leads to the shaft
-      curve({0.225, foot + 0.16}, {0.19, head - 0.34}, 0.004, 4),  // shaft, slightly swollen
-      {{0.19, head - 0.34}, {0.215, head - 0.34}},
-      curve({0.215, head - 0.34}, {0.215, head - 0.29}, 0.4, 2), // neck ring
-      {{0.215, head - 0.29}, {0.195, head - 0.29}},
-      curve({0.195, head - 0.29}, {0.29, head}, -0.18, 4), // bell of the capital
-      {{0.29, head}, {0, head}},
-  };
-  Geometry g = lathe(profile, segments);
+  Geometry g = lathe({0, foot},
+                     {
+                         {{0.26, foot}},
+                         curve({0.26, foot}, {0.26, foot + 0.10}, 0.35, 4), // torus
+                         {{0.235, foot + 0.10}},
+                         curve({0.235, foot + 0.10}, {0.225, foot + 0.16}, -0.25, 2), // hollow that leads to the shaft
+                         curve({0.225, foot + 0.16}, {0.19, head - 0.34}, 0.004, 4),  // shaft, slightly swollen
+                         {{0.215, head - 0.34}},
+                         curve({0.215, head - 0.34}, {0.215, head - 0.29}, 0.4, 2), // neck ring
+                         {{0.195, head - 0.29}},
+                         curve({0.195, head - 0.29}, {0.29, head}, -0.18, 4), // bell of the capital
+                         {{0, head}},
+                     },
+                     segments);
   g.add(box({-kHalf, 0, -kHalf}, {kHalf, kPlinth, kHalf}));
   g.add(box({-kHalf, head, -kHalf}, {kHalf, height, kHalf}));
   return g;
@@ -45,38 +43,34 @@ Geometry column(double height, uint32_t segments) {
 
 Geometry baluster(double height, uint32_t segments) {
   const double neck = 0.72 * height;
-  return lathe({{{0, 0}, {0.06, 0}},
-                {{0.06, 0}, {0.06, 0.08}},
+  return lathe({0, 0},
+               {{{0.06, 0}},
+                {{0.06, 0.08}},
                 curve({0.06, 0.08}, {0.035, neck}, 0.06, 4),
                 curve({0.035, neck}, {0.06, height}, -0.12, 2),
-                {{0.06, height}, {0, height}}},
+                {{0, height}}},
                segments);
 }
 
 Geometry basin() {
-  return lathe({{{0, 0}, {0.9, 0}},
-                {{0.9, 0}, {0.9, 0.12}},
-                {{0.9, 0.12}, {0.55, 0.18}},
+  return lathe({0, 0},
+               {{{0.9, 0}},
+                {{0.9, 0.12}},
+                {{0.55, 0.18}},
                 curve({0.55, 0.18}, {1.25, 0.62}, 0.22, 6),
-                {{1.25, 0.62}, {1.25, 0.72}},
-                {{1.25, 0.72}, {1.1, 0.72}},
+                {{1.25, 0.72}},
+                {{1.1, 0.72}},
                 curve({1.1, 0.72}, {0, 0.42}, -0.12, 6)},
                32);
 }
 
-Geometry basinWater() {
-  return lathe({{{0, 0.5}, {0.95, 0.5}}, {{0.95, 0.5}, {0.95, 0.56}}, {{0.95, 0.56}, {0, 0.56}}}, 32);
-}
+Geometry basinWater() { return lathe({0, 0.5}, {{{0.95, 0.5}}, {{0.95, 0.56}}, {{0, 0.56}}}, 32); }
 
 Geometry chair(uint32_t segments) {
   // Cushion, post and hub on a lathe; five feet and a back of two slats and a rest.
-  Geometry g = lathe({{{0, 0.42}, {0.2, 0.42}},
-                      {{0.2, 0.42}, {0.235, 0.44}, {0.24, 0.47}, {0.225, 0.5}, {0.19, 0.515}},
-                      {{0.19, 0.515}, {0, 0.51}}},
-                     segments);
-  g.add(lathe(
-      {{{0, 0.1}, {0.05, 0.1}}, {{0.05, 0.1}, {0.05, 0.2}, {0.028, 0.22}, {0.028, 0.43}}, {{0.028, 0.43}, {0, 0.43}}},
-      segments / 2));
+  Geometry g = lathe(
+      {0, 0.42}, {{{0.2, 0.42}}, {{0.235, 0.44}, {0.24, 0.47}, {0.225, 0.5}, {0.19, 0.515}}, {{0, 0.51}}}, segments);
+  g.add(lathe({0, 0.1}, {{{0.05, 0.1}}, {{0.05, 0.2}, {0.028, 0.22}, {0.028, 0.43}}, {{0, 0.43}}}, segments / 2));
   Geometry foot = box({-0.025, 0.05, 0.02}, {0.025, 0.12, 0.3});
   foot.add(sphere(0.03, std::max(6u, segments / 2)), {0, 0.03, 0.28}); // castor
   for (int i = 0; i < 5; ++i) g.add(turned(foot, 72.0 * i));
@@ -159,13 +153,14 @@ Geometry books(double width, double height, double depth, uint32_t boards, uint3
 }
 
 Geometry pot(double radius, double height, uint32_t segments) {
-  return lathe({{{0, 0}, {0.7 * radius, 0}},
-                {{0.7 * radius, 0}, {0.85 * radius, 0.5 * height}, {0.95 * radius, height}},
-                {{0.95 * radius, height}, {radius, height}},
-                {{radius, height}, {radius, 1.12 * height}},
-                {{radius, 1.12 * height}, {0.88 * radius, 1.12 * height}},
-                {{0.88 * radius, 1.12 * height}, {0.86 * radius, height}},
-                {{0.86 * radius, height}, {0, height}}},
+  return lathe({0, 0},
+               {{{0.7 * radius, 0}},
+                {{0.85 * radius, 0.5 * height}, {0.95 * radius, height}},
+                {{radius, height}},
+                {{radius, 1.12 * height}},
+                {{0.88 * radius, 1.12 * height}},
+                {{0.86 * radius, height}},
+                {{0, height}}},
                segments);
 }
 
@@ -188,30 +183,20 @@ Geometry fronds(uint32_t count, double length, double height, uint32_t steps) {
 }
 
 Geometry barrel(uint32_t segments) {
-  return lathe({{{0, 0}, {0.26, 0}},
-                {{0.26, 0}, {0.31, 0.2}, {0.33, 0.42}, {0.31, 0.64}, {0.26, 0.84}},
-                {{0.26, 0.84}, {0.23, 0.84}},
-                {{0.23, 0.84}, {0.23, 0.8}},
-                {{0.23, 0.8}, {0, 0.8}}},
-               segments);
+  return lathe(
+      {0, 0},
+      {{{0.26, 0}}, {{0.31, 0.2}, {0.33, 0.42}, {0.31, 0.64}, {0.26, 0.84}}, {{0.23, 0.84}}, {{0.23, 0.8}}, {{0, 0.8}}},
+      segments);
 }
 
 Geometry mug(uint32_t segments) {
-  return lathe({{{0, 0}, {0.035, 0}},
-                {{0.035, 0}, {0.04, 0.03}, {0.04, 0.095}},
-                {{0.04, 0.095}, {0.034, 0.095}},
-                {{0.034, 0.095}, {0.034, 0.02}},
-                {{0.034, 0.02}, {0, 0.015}}},
+  return lathe({0, 0}, {{{0.035, 0}}, {{0.04, 0.03}, {0.04, 0.095}}, {{0.034, 0.095}}, {{0.034, 0.02}}, {{0, 0.015}}},
                segments);
 }
 
 Geometry lampShade(uint32_t segments) {
-  return lathe({{{0, -0.16}, {0.03, -0.18}},
-                {{0.03, -0.18}, {0.19, -0.28}},
-                {{0.19, -0.28}, {0.2, -0.27}},
-                {{0.2, -0.27}, {0.04, -0.15}},
-                {{0.04, -0.15}, {0.025, 0.02}},
-                {{0.025, 0.02}, {0, 0.02}}},
+  return lathe({0, -0.16},
+               {{{0.03, -0.18}}, {{0.19, -0.28}}, {{0.2, -0.27}}, {{0.04, -0.15}}, {{0.025, 0.02}}, {{0, 0.02}}},
                segments);
 }
 

@@ -7,9 +7,6 @@
 #include "tools/content/recipes.h"
 #include "tools/content/textures.h"
 
-#include <array>
-#include <string>
-
 namespace lambent::content {
 
 namespace {

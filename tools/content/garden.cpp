@@ -8,9 +8,7 @@
 #include "tools/content/textures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 
@@ -130,12 +128,13 @@ class Garden : public SceneBuilder {
   /// Slender iron columns on the bed walls; they carry a beam under the rafters on each side.
   void addColumns() {
     const double z = kBed + 0.5 * kBedWidth, foot = kBedWall + 0.04, head = roofAt(z) - 0.16;
-    const Geometry shape = lathe({{{0, foot}, {0.075, foot}},
-                                  {{0.075, foot}, {0.075, foot + 0.1}},
-                                  {{0.075, foot + 0.1}, {0.05, foot + 0.16}, {0.04, head - 0.2}},
-                                  {{0.04, head - 0.2}, {0.06, head - 0.19}, {0.06, head - 0.15}, {0.04, head - 0.14}},
-                                  {{0.04, head - 0.14}, {0.085, head}},
-                                  {{0.085, head}, {0, head}}},
+    const Geometry shape = lathe({0, foot},
+                                 {{{0.075, foot}},
+                                  {{0.075, foot + 0.1}},
+                                  {{0.05, foot + 0.16}, {0.04, head - 0.2}},
+                                  {{0.06, head - 0.19}, {0.06, head - 0.15}, {0.04, head - 0.14}},
+                                  {{0.085, head}},
+                                  {{0, head}}},
                                  detail(32, 10));
     const Index column = mesh("column", shape, iron_);
     for (const double side : {-1.0, 1.0}) {

@@ -5,9 +5,7 @@
 #include "tools/content/recipes.h"
 #include "tools/content/textures.h"
 
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 
@@ -76,10 +74,8 @@ class Hall : public SceneBuilder {
     slab.add(box({-kEnd, 0.12, -0.2}, {kEnd, kSlab - 0.1, -0.1}));
     const Index gallery = mesh("gallery floor", slab, stone_);
     const Index roof = mesh("gallery roof", box({-kEnd, 0, -0.1}, {kEnd, kRoof, depth}), plaster_);
-    for (const bool south : {true, false}) {
-      const std::string name = south ? "south" : "north";
-      const double turn = south ? 0 : 180;
-      const double z = south ? kNave : -kNave;
+    for (const auto& [name, sign, turn] : kSides) {
+      const double z = sign * kNave;
       place(name + " gallery floor", gallery, {0, kGalleryFloor - kSlab, z}, turn);
       place(name + " gallery roof", roof, {0, kEaves, z}, turn);
     }
@@ -100,18 +96,18 @@ class Hall : public SceneBuilder {
     // Transverse beams carry the gallery floor and the gallery roof.
     const double from = kArcade + kArcadeHalf, to = kGalleryBack;
     const Index joist = mesh("joist", box({-0.13, -0.26, from}, {0.13, 0, to}), timber_);
-    for (const bool south : {true, false})
+    for (const auto& [side, sign, turn] : kSides)
       for (int storey = 0; storey < 2; ++storey) {
-        const std::string name = std::string(south ? "south" : "north") + (storey ? " upper" : " lower");
-        const double z = south ? kArcade : -kArcade;
-        const double turn = south ? 180 : 0; // the moulding faces the nave
+        const std::string name = side + (storey ? " upper" : " lower");
+        const double z = sign * kArcade;
         const double ceiling = storey ? kEaves : kGalleryFloor - kSlab;
         for (int i = 0; i <= kBays; ++i) {
           const std::string number = std::to_string(i);
           place(name + " column " + number, storey ? upper : lower, {columnX(i), storey ? kGalleryFloor : 0.0, z});
-          if (i > 0 && i < kBays) place(name + " joist " + number, joist, {columnX(i), ceiling, 0}, south ? 0 : 180);
+          if (i > 0 && i < kBays) place(name + " joist " + number, joist, {columnX(i), ceiling, 0}, turn);
           if (i < kBays)
-            place(name + " arch " + number, wall, {bayX(i), storey ? kUpperSpring : kLowerSpring, z}, turn);
+            place(name + " arch " + number, wall, {bayX(i), storey ? kUpperSpring : kLowerSpring, z},
+                  180 - turn); // the moulding faces the nave
         }
       }
   }
@@ -121,10 +117,10 @@ class Hall : public SceneBuilder {
     const double half = 0.5 * kBay - 0.31; // between the plinths of two columns
     const Index stub = mesh("baluster", baluster(kRailHeight - 0.1), stone_);
     const Index rail = mesh("rail", box({-half, kRailHeight - 0.1, -0.1}, {half, kRailHeight, 0.1}), stone_);
-    for (const bool south : {true, false})
+    for (const Side& side : kSides)
       for (int bay = 0; bay < kBays; ++bay) {
-        const std::string name = std::string(south ? "south" : "north") + " rail " + std::to_string(bay);
-        const dvec3 at(bayX(bay), kGalleryFloor, south ? kArcade : -kArcade);
+        const std::string name = side.name + " rail " + std::to_string(bay);
+        const dvec3 at(bayX(bay), kGalleryFloor, side.sign * kArcade);
         place(name, rail, at);
         for (int i = 0; i < kPerBay; ++i)
           place(name + " baluster " + std::to_string(i), stub,
@@ -151,23 +147,23 @@ class Hall : public SceneBuilder {
     };
     const std::array<Kind, 4> kinds{Kind{"red", banner, curtain}, dyed("blue", blue_), dyed("gold", gold_),
                                     dyed("green", green_)};
-    for (const bool south : {true, false}) {
-      const std::string side = south ? "south" : "north";
-      const double turn = south ? 180 : 0; // the front faces the nave
+    for (const auto& [side, sign, turn] : kSides) {
+      const bool south = sign > 0;
+      const double inwards = 180 - turn; // the front faces the nave
       for (int bay = 0; bay < kBays; ++bay) {
         const Kind& kind = kinds[size_t(bay + (south ? 2 : 0)) % kinds.size()];
         if (bay % 2 == 1) {
           const double z = kNave - 0.36; // clear of the cornice
-          place(side + " banner rod " + std::to_string(bay), rod, {bayX(bay), kGalleryFloor + 0.03, south ? z : -z});
+          place(side + " banner rod " + std::to_string(bay), rod, {bayX(bay), kGalleryFloor + 0.03, sign * z});
           place(side + " banner " + kind.color + " " + std::to_string(bay), kind.banner,
-                {bayX(bay), kGalleryFloor + 0.02, south ? z : -z}, turn);
+                {bayX(bay), kGalleryFloor + 0.02, sign * z}, inwards);
         }
         const bool curtained = south ? (bay == 1 || bay == 4) : (bay == 2 || bay == 4 || bay == 6);
         if (curtained) {
-          const dvec3 at(bayX(bay), kLowerSpring - 0.16, south ? kArcade : -kArcade);
+          const dvec3 at(bayX(bay), kLowerSpring - 0.16, sign * kArcade);
           place(side + " rod " + std::to_string(bay), rod, at);
           place(side + " curtain " + kind.color + " " + std::to_string(bay), kind.curtain,
-                at + dvec3(south ? 0.55 : -0.55, -0.03, 0), turn);
+                at + dvec3(sign * 0.55, -0.03, 0), inwards);
         }
       }
     }
@@ -199,12 +195,9 @@ class Hall : public SceneBuilder {
     place("basin water", basinWater(), water_, {kBay, 0, 0.4});
     const Index seat =
         mesh("bench", bench({-0.9, 0.38, -0.22}, {0.9, 0.46, 0.22}, {0.63, 0, -0.2}, {0.75, 0.38, 0.2}), timber_);
-    for (const bool south : {true, false})
-      for (const int bay : {1, 3, 5}) {
-        const double z = kGalleryBack - 0.4;
-        place(std::string(south ? "south" : "north") + " bench " + std::to_string(bay), seat,
-              {bayX(bay), 0, south ? z : -z});
-      }
+    for (const Side& side : kSides)
+      for (const int bay : {1, 3, 5})
+        place(side.name + " bench " + std::to_string(bay), seat, {bayX(bay), 0, side.sign * (kGalleryBack - 0.4)});
   }
 
   void addLightsAndMotion() {

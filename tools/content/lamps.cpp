@@ -6,8 +6,6 @@
 #include "tools/content/plants.h"
 #include "tools/content/recipes.h"
 
-#include <string>
-
 namespace lambent::content {
 
 namespace {

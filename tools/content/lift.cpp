@@ -4,9 +4,6 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <array>
-#include <string>
-
 namespace lambent::content {
 
 namespace {

@@ -3,10 +3,7 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <array>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace lambent::content {
 

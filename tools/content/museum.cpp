@@ -6,8 +6,8 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
+#include <cmath>
 #include <map>
-#include <string>
 
 namespace lambent::content {
 
@@ -29,7 +29,7 @@ const std::map<std::string, Fineness> kFineness{
 
 /// A smooth curve through `points` (Catmull-Rom), about `steps` pieces per metre.
 ProfilePiece smooth(const std::vector<dvec2>& points, uint32_t steps) {
-  ProfilePiece piece{points.front()};
+  ProfilePiece piece;
   for (size_t i = 0; i + 1 < points.size(); ++i) {
     const dvec2 a = points[i ? i - 1 : 0], b = points[i], c = points[i + 1],
                 d = points[std::min(i + 2, points.size() - 1)];
@@ -46,10 +46,11 @@ ProfilePiece smooth(const std::vector<dvec2>& points, uint32_t steps) {
 
 /// Vessel turned on a wheel, open above, from its foot up; 0.8 m high.
 Geometry vase(const Fineness& f) {
-  return lathe({{{0, 0}, {0.11, 0}},
+  return lathe({0, 0},
+               {{{0.11, 0}},
                 smooth({{0.11, 0}, {0.13, 0.05}, {0.235, 0.32}, {0.22, 0.5}, {0.1, 0.66}, {0.095, 0.72}, {0.15, 0.8}},
                        3 * f.steps),
-                {{0.15, 0.8}, {0.135, 0.8}},
+                {{0.135, 0.8}},
                 smooth({{0.135, 0.8}, {0.08, 0.71}, {0.085, 0.66}, {0.2, 0.5}}, 2 * f.steps),
                 smooth({{0.2, 0.5}, {0.21, 0.32}, {0.12, 0.07}, {0, 0.05}}, 2 * f.steps)},
                f.segments);
@@ -57,13 +58,14 @@ Geometry vase(const Fineness& f) {
 
 Geometry roundColumn(const Fineness& f) {
   constexpr double kFoot = 0.16, kHead = kHeight - 0.14;
-  Geometry g = lathe({{{0, kFoot}, {0.3, kFoot}},
+  Geometry g = lathe({0, kFoot},
+                     {{{0.3, kFoot}},
                       smooth({{0.3, kFoot}, {0.335, kFoot + 0.06}, {0.3, kFoot + 0.12}}, 6 * f.steps),
-                      {{0.3, kFoot + 0.12}, {0.26, kFoot + 0.12}},
+                      {{0.26, kFoot + 0.12}},
                       smooth({{0.26, kFoot + 0.12}, {0.235, kFoot + 0.22}, {0.23, 1.6}, {0.2, kHead - 0.3}}, f.steps),
-                      {{0.2, kHead - 0.3}, {0.225, kHead - 0.28}},
+                      {{0.225, kHead - 0.28}},
                       smooth({{0.225, kHead - 0.28}, {0.22, kHead - 0.2}, {0.32, kHead}}, 4 * f.steps),
-                      {{0.32, kHead}, {0, kHead}}},
+                      {{0, kHead}}},
                      f.segments);
   g.add(box({-0.36, -kSunk, -0.36}, {0.36, kFoot, 0.36}));
   g.add(box({-0.34, kHead, -0.34}, {0.34, kHeight + kSunk, 0.34}));

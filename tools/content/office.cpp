@@ -4,10 +4,6 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <array>
-#include <string>
-#include <vector>
-
 namespace lambent::content {
 
 namespace {
@@ -101,9 +97,7 @@ class Office : public SceneBuilder {
   }
 
   /// Meshes of one kind of room in the room's frame, one per material.
-  struct RoomKind {
-    std::vector<Index> meshes;
-  };
+  using RoomKind = std::vector<Index>;
 
   RoomKind studyRoom() {
     const std::string n = "study ";
@@ -115,15 +109,15 @@ class Office : public SceneBuilder {
     dark.add(turned(screen(), 180), {-0.95, 0.74, 3.75});
     dark.add(turned(screen(), 165), {-0.3, 0.74, 3.75});
     dark.add(keyboard(detail(15, 2)), {-0.8, 0.74, 3.4});
-    RoomKind kind{{mesh(n + "wood", wood, wood_), mesh(n + "chairs and screens", dark, dark_)}};
+    RoomKind kind{mesh(n + "wood", wood, wood_), mesh(n + "chairs and screens", dark, dark_)};
     const std::array<Index, 3> colors{bookRed_, bookBlue_, bookPale_};
     for (uint32_t k = 0; k < 3; ++k) {
       Geometry row;
       for (const double x : {-1.35, 0.0})
         row.add(turned(books(1.2, 2.0, 0.32, 5, k, full() ? 0.032 : 0.15), 180), {x, 0, kDepth - kHalfWall - 0.2});
-      kind.meshes.push_back(mesh(n + "books " + std::to_string(k), row, colors[k]));
+      kind.push_back(mesh(n + "books " + std::to_string(k), row, colors[k]));
     }
-    addGreen(kind, n, {1.38, 0, 4.28});
+    addGreen(kind, n);
     return kind;
   }
 
@@ -139,17 +133,18 @@ class Office : public SceneBuilder {
     for (int i = 0; i < 6; ++i)
       pale.add(mug(detail(24, 6)),
                {-0.5 + (i % 2 ? 0.4 : -0.4), 0.74, 2.5 + 0.7 * (i / 2) + 0.1 * hashed(uint32_t(i))});
-    RoomKind kind{
-        {mesh(n + "table", wood, wood_), mesh(n + "chairs", dark, dark_), mesh(n + "board and mugs", pale, bookPale_)}};
-    addGreen(kind, n, {1.38, 0, 4.28});
+    RoomKind kind{mesh(n + "table", wood, wood_), mesh(n + "chairs", dark, dark_),
+                  mesh(n + "board and mugs", pale, bookPale_)};
+    addGreen(kind, n);
     return kind;
   }
 
-  void addGreen(RoomKind& kind, const std::string& name, const dvec3& place) {
-    Geometry pots = moved(pot(0.2, 0.36, detail(32, 10)), place);
+  void addGreen(RoomKind& kind, const std::string& name) {
+    const dvec3 corner(1.38, 0, 4.28);
+    Geometry pots = moved(pot(0.2, 0.36, detail(32, 10)), corner);
     pots.add(pot(0.13, 0.3, detail(24, 8)), {-1.75, 0, 1.0}); // waste bin
-    kind.meshes.push_back(mesh(name + "pots", pots, clay_));
-    kind.meshes.push_back(mesh(name + "plant", moved(fronds(detail(48, 12), 0.58, 0.4, detail(10, 3)), place), leaf_));
+    kind.push_back(mesh(name + "pots", pots, clay_));
+    kind.push_back(mesh(name + "plant", moved(fronds(detail(48, 12), 0.58, 0.4, detail(10, 3)), corner), leaf_));
   }
 
   void addRooms() {
@@ -157,8 +152,8 @@ class Office : public SceneBuilder {
     for (size_t r = 0; r < kRows.size(); ++r)
       for (int i = 0; i < columns_; ++i) {
         const RoomKind& kind = kinds[(size_t(i) + r) % 3 == 2 ? 1 : 0];
-        for (size_t m = 0; m < kind.meshes.size(); ++m)
-          place(label("furniture", r, i) + " part " + std::to_string(m), kind.meshes[m], roomPoint(i, int(r), dvec3(0)),
+        for (size_t m = 0; m < kind.size(); ++m)
+          place(label("furniture", r, i) + " part " + std::to_string(m), kind[m], roomPoint(i, int(r), dvec3(0)),
                 kRows[r].turn);
       }
   }

@@ -4,8 +4,6 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <string>
-
 namespace lambent::content {
 
 namespace {

@@ -46,25 +46,13 @@ template <class Vector> std::vector<float> flattened(const std::vector<Vector>& 
   return out;
 }
 
-void writeBytes(const std::filesystem::path& file, const void* data, size_t bytes) {
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out.write(static_cast<const char*>(data), std::streamsize(bytes));
-    out.flush();
-    if (!out) throw RunError(file.string() + ": cannot write (is the disk full?)");
-  });
-}
-
-void appendBytes(void* context, void* data, int size) {
-  const auto* bytes = static_cast<const uint8_t*>(data);
-  auto& out = *static_cast<std::vector<uint8_t>*>(context);
-  out.insert(out.end(), bytes, bytes + size);
-}
-
-std::vector<uint8_t> encodePng(const Texture& t) {
-  std::vector<uint8_t> png;
+std::string encodePng(const Texture& t) {
+  std::string png;
+  const auto append = [](void* out, void* data, int size) {
+    static_cast<std::string*>(out)->append(static_cast<const char*>(data), size_t(size));
+  };
   const int width = int(t.width), height = int(t.height);
-  if (!stbi_write_png_to_func(appendBytes, &png, width, height, 4, t.rgba.data(), 4 * width))
+  if (!stbi_write_png_to_func(append, &png, width, height, 4, t.rgba.data(), 4 * width))
     throw RunError(t.name + ".png: cannot encode");
   return png;
 }
@@ -83,8 +71,7 @@ Index SceneBuilder::accessor(const std::vector<T>& values, size_t components, ui
   const size_t bytes = values.size() * sizeof(T);
   json view{{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}};
   if (target) view["target"] = target;
-  const auto* first = reinterpret_cast<const uint8_t*>(values.data());
-  buffer_.insert(buffer_.end(), first, first + bytes);
+  buffer_.append(reinterpret_cast<const char*>(values.data()), bytes);
   buffer_.resize((buffer_.size() + 3) & ~size_t(3)); // accessors start at multiples of their component size
   json accessor{{"bufferView", added(views_, std::move(view))},
                 {"componentType", kComponentType<T>},
@@ -109,8 +96,7 @@ Index SceneBuilder::texture(Texture texture) {
 }
 
 Index SceneBuilder::material(const MaterialSpec& m) {
-  const auto whole = [](double v) { return v == std::round(v) ? json(int(v)) : json(rounded(v)); };
-  json surface{{"metallicFactor", whole(m.metalness)}, {"roughnessFactor", whole(m.roughness)}};
+  json surface{{"metallicFactor", 0}, {"roughnessFactor", m.roughness == 1 ? json(1) : json(rounded(m.roughness))}};
   json factor = array(m.albedo);
   factor.push_back(1);
   surface["baseColorFactor"] = std::move(factor);
@@ -250,18 +236,18 @@ GeneratedScene SceneBuilder::write() const {
   std::filesystem::create_directories(folder, failure);
   if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
   GeneratedScene scene{folder / (stem + ".gltf"), placedTriangles_, 0, {}};
-  const auto put = [&](const std::string& name, const void* data, size_t bytes) {
-    writeBytes(folder / name, data, bytes);
+  const auto put = [&](const std::string& name, const std::string& bytes) {
+    const std::filesystem::path file = folder / name;
+    writeAtomically(file, [&](const std::filesystem::path& temporary) {
+      if (!(std::ofstream(temporary, std::ios::binary) << bytes << std::flush))
+        throw RunError(file.string() + ": cannot write (is the disk full?)");
+    });
     scene.written.push_back(name);
-    scene.bytes += bytes;
+    scene.bytes += bytes.size();
   };
-  for (const Texture& t : textures_) {
-    const std::vector<uint8_t> png = encodePng(t);
-    put(t.name + ".png", png.data(), png.size());
-  }
-  put(stem + ".bin", buffer_.data(), buffer_.size());
-  const std::string text = gltf.dump(1) + "\n"; // the file that refers to the others comes last
-  put(stem + ".gltf", text.data(), text.size());
+  for (const Texture& t : textures_) put(t.name + ".png", encodePng(t));
+  put(stem + ".bin", buffer_);
+  put(stem + ".gltf", gltf.dump(1) + "\n"); // the file that refers to the others comes last
   return scene;
 }
 

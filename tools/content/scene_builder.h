@@ -24,8 +24,8 @@ struct MaterialSpec {
   std::string name;
   dvec3 albedo{0.7};
   Index texture = kAbsent;
-  double roughness = 1, metalness = 0;
-  Index roughnessMetalnessTexture = kAbsent; // roughness in green, metalness in blue, times the two above
+  double roughness = 1;
+  Index roughnessMetalnessTexture = kAbsent; // roughness in green, times the one above
   bool alphaMask = false;
   bool doubleSided = false;
   dvec3 emissionColor{0};      // each channel in [0, 1]
@@ -104,10 +104,18 @@ class SceneBuilder {
   json channels_ = json::array(), samplers_ = json::array();
   std::vector<Texture> textures_;
   std::vector<uint64_t> meshTriangles_;
-  std::vector<uint8_t> buffer_;
+  std::string buffer_;
   uint64_t placedTriangles_ = 0;
   bool emissiveStrength_ = false;
 };
+
+/// The sides of a plan that is alike on both.
+struct Side {
+  std::string name;
+  double sign; // of z
+  double turn; // takes what is made for the south side to this one, degrees
+};
+inline const std::array<Side, 2> kSides{{{"south", 1, 0}, {"north", -1, 180}}};
 
 /// Uniform in [0, 1), a function of its arguments alone: stands in for chance, so that every run gives the same scene.
 double hashed(uint32_t a, uint32_t b = 0);

@@ -81,12 +81,10 @@ Geometry wallWithOpening(const dvec3& lo, const dvec3& hi, const dvec2& openingL
 }
 
 Geometry crossWallWithOpening(const dvec3& lo, const dvec3& hi, const dvec2& openingLo, const dvec2& openingHi) {
-  // A quarter turn around +Y takes (x, y, z) to (z, y, -x).
-  Geometry g = wallWithOpening({-hi.z, lo.y, lo.x}, {-lo.z, hi.y, hi.x}, {-openingHi.x, openingLo.y},
-                               {-openingLo.x, openingHi.y});
-  for (auto* vectors : {&g.positions, &g.normals})
-    for (dvec3& v : *vectors) v = {v.z, v.y, -v.x};
-  return g;
+  // A quarter turn takes (x, y, z) to (z, y, -x).
+  return turned(wallWithOpening({-hi.z, lo.y, lo.x}, {-lo.z, hi.y, hi.x}, {-openingHi.x, openingLo.y},
+                                {-openingLo.x, openingHi.y}),
+                90);
 }
 
 Geometry wallWithOpenings(const std::vector<Opening>& openings, double half, double thickness, double bottom,
@@ -121,9 +119,12 @@ Geometry mappedFromSides(Geometry geometry, double tileMetres) {
   return geometry;
 }
 
-Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments) {
+Geometry lathe(const dvec2& start, const std::vector<ProfilePiece>& profile, uint32_t segments) {
   Geometry g;
-  for (const ProfilePiece& piece : profile) {
+  dvec2 from = start;
+  for (ProfilePiece piece : profile) {
+    piece.insert(piece.begin(), from);
+    from = piece.back();
     const uint32_t first = uint32_t(g.positions.size());
     const uint32_t points = uint32_t(piece.size());
     for (uint32_t i = 0; i < points; ++i) {
@@ -148,12 +149,11 @@ Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments) {
 Geometry sphere(double radius, uint32_t segments) {
   ProfilePiece meridian;
   const uint32_t rings = segments / 2;
-  for (uint32_t i = 0; i <= rings; ++i) {
+  for (uint32_t i = 1; i <= rings; ++i) {
     const double angle = 0.5 * kTau * i / rings;
-    const bool pole = i == 0 || i == rings;
-    meridian.emplace_back(pole ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle));
+    meridian.emplace_back(i == rings ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle));
   }
-  Geometry g = lathe({meridian}, segments);
+  Geometry g = lathe({0, -radius}, std::vector{meridian}, segments);
   for (size_t i = 0; i < g.positions.size(); ++i) g.normals[i] = g.positions[i] / radius;
   return g;
 }
@@ -210,7 +210,7 @@ Geometry arch(const ArchShape& shape) {
   g.addQuad({-half, 0, -z}, {-half, 0, z}, {-half, top, z}, {-half, top, -z});
   g.addQuad({half, 0, z}, {half, 0, -z}, {half, top, -z}, {half, top, z});
   // The moulding is sunk into the wall so that its back is hidden.
-  addHalfRing(g, r + 0.02, r + 0.02 + shape.mouldingWidth, z - 0.05, z + shape.mouldingDepth, shape.segments);
+  addHalfRing(g, r + 0.02, r + 0.02 + 0.16, z - 0.05, z + 0.05, shape.segments);
   return g;
 }
 

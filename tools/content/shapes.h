@@ -62,12 +62,13 @@ Geometry mappedFromAbove(Geometry geometry, double tileMetres);
 /// With texture coordinates from above, or from the side that each vertex faces most, upright; `tileMetres` a tile.
 Geometry mappedFromSides(Geometry geometry, double tileMetres);
 
-/// Piece of a profile that is shaded smoothly along its length; x is the radius and y the height.
+/// Piece of a profile that is shaded smoothly along its length, without its first point: it goes on from where the one
+/// before ends. x is the radius and y the height.
 using ProfilePiece = std::vector<dvec2>;
 
-/// Body of revolution around +Y. The pieces join end to end, from the axis at the bottom to the axis at the top, which
+/// Body of revolution around +Y. The profile goes from the axis at the bottom, `start`, to the axis at the top, which
 /// makes the body closed.
-Geometry lathe(const std::vector<ProfilePiece>& profile, uint32_t segments);
+Geometry lathe(const dvec2& start, const std::vector<ProfilePiece>& profile, uint32_t segments);
 
 Geometry sphere(double radius, uint32_t segments);
 
@@ -76,7 +77,6 @@ Geometry sphere(double radius, uint32_t segments);
 /// face.
 struct ArchShape {
   double bay = 3.4, height = 1.8, thickness = 0.5, radius = 1.4;
-  double mouldingWidth = 0.16, mouldingDepth = 0.05;
   uint32_t segments = 20;
 };
 Geometry arch(const ArchShape& shape);

@@ -3,7 +3,6 @@
 #include "engine/core/image.h"
 #include "tools/content/scene_builder.h"
 
-#include <array>
 #include <cmath>
 
 namespace lambent::content {
