@@ -40,9 +40,11 @@ void addRoom(SceneBuilder& s) {
   s.place("tall block", block({dvec2(423, 247), dvec2(265, 296), dvec2(314, 456), dvec2(472, 406)}, 330), white);
 }
 
-void addCamera(SceneBuilder& s) {
+/// With its camera.
+GeneratedScene finished(SceneBuilder& s) {
   const dvec3 eye = placed(278, 273, -800);
   s.camera("front", eye, eye - dvec3(0, 0, 1), 39.3);
+  return s.write();
 }
 
 } // namespace
@@ -55,8 +57,7 @@ GeneratedScene writeCornell(const Order& order) {
   const double below = kHeight - 1.0;
   emitter.addQuad(placed(343, below, 227), placed(343, below, 332), placed(213, below, 332), placed(213, below, 227));
   s.place("emitter", emitter, s.glowing("emitter", {1, 0.706, 0.235}, 17, 0.78));
-  addCamera(s);
-  return s.write();
+  return finished(s);
 }
 
 GeneratedScene writeCornellSpot(const Order& order) {
@@ -65,8 +66,7 @@ GeneratedScene writeCornellSpot(const Order& order) {
   // Tilted to the red wall: that wall, the floor and both blocks are lit, ceiling and green wall by reflected light
   // alone.
   s.spot("spot", {1, 0.93, 0.8}, 22, {0, 0.97 * kHeight * kScale, 0.35}, {-0.45, -1, -0.3});
-  addCamera(s);
-  return s.write();
+  return finished(s);
 }
 
 } // namespace lambent::content

@@ -232,15 +232,18 @@ Geometry bench(const dvec3& seatLo, const dvec3& seatHi, const dvec3& legLo, con
   return g;
 }
 
+Geometry downwardSheet(const dvec3& lo, const dvec3& hi) {
+  Geometry g;
+  g.addQuad(lo, {hi.x, lo.y, lo.z}, hi, {lo.x, lo.y, hi.z});
+  return g;
+}
+
 Geometry panelHousing(double width, double depth) {
   return box({-0.5 * width - 0.04, -0.05, -0.5 * depth - 0.04}, {0.5 * width + 0.04, 0.02, 0.5 * depth + 0.04});
 }
 
 Geometry panelEmitter(double width, double depth) {
-  const double x = 0.5 * width, z = 0.5 * depth, y = -0.06;
-  Geometry g;
-  g.addQuad({-x, y, -z}, {x, y, -z}, {x, y, z}, {-x, y, z});
-  return g;
+  return downwardSheet({-0.5 * width, -0.06, -0.5 * depth}, {0.5 * width, -0.06, 0.5 * depth});
 }
 
 } // namespace lambent::content

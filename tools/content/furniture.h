@@ -49,6 +49,9 @@ Geometry lampShade(uint32_t segments);
 /// Block with a foot and a cap, for a sculpture.
 Geometry plinth(double width, double depth, double height);
 
+/// Sheet between two corners at the same height that faces down.
+Geometry downwardSheet(const dvec3& lo, const dvec3& hi);
+
 /// Flat fixture on a ceiling at y = 0, and the sheet 1 cm below it that emits downwards.
 Geometry panelHousing(double width, double depth);
 Geometry panelEmitter(double width, double depth);

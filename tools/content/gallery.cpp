@@ -33,14 +33,17 @@ class Gallery : public SceneBuilder {
 
  private:
   static double roomX(int room) { return kPitch * room; }
+  /// Of a room along X: from the middle of one cross wall to that of the next, `outside` beyond the first and the last.
+  static std::pair<double, double> extent(int room, double outside) {
+    return {roomX(room) - (room ? 0.5 * kWall : outside),
+            roomX(room) + kLength + (room + 1 < kRooms ? 0.5 * kWall : outside)};
+  }
 
   void addShell() {
     const double w = kWall, lo = -kSunk, hi = kHeight + kSunk;
     place("floor", mappedFromSides(box({-w - 0.1, -0.3, -w - 0.1}, {kEast + w + 0.1, 0, kWidth + w + 0.1}), 1.8), oak_);
     for (int room = 0; room < kRooms; ++room) {
-      // From the middle of one cross wall to that of the next.
-      const double x0 = roomX(room) - (room ? 0.5 * w : w),
-                   x1 = roomX(room) + kLength + (room + 1 < kRooms ? 0.5 * w : w);
+      const auto [x0, x1] = extent(room, w);
       Geometry walls;
       for (const double z : {-w, kWidth}) walls.add(box({x0, lo, z}, {x1, hi, z + w}));
       if (room == 0) walls.add(box({-w, lo, 0}, {0, hi, kWidth}));
@@ -63,9 +66,8 @@ class Gallery : public SceneBuilder {
 
   /// A ceiling with an opening under a box of glass that glows: sky through frosted panes, parted by bars.
   void addRoof(int room) {
-    const double x0 = roomX(room) - (room ? 0.5 * kWall : kWall + 0.05);
-    const double x1 = roomX(room) + kLength + (room + 1 < kRooms ? 0.5 * kWall : kWall + 0.05), top = kHeight + 0.3,
-                 out = kWall + 0.05;
+    const double top = kHeight + 0.3, out = kWall + 0.05;
+    const auto [x0, x1] = extent(room, out);
     const double lo = roomX(room) + 1.6, hi = roomX(room) + kLength - 1.6, z1 = kWidth + out;
     Geometry slab = box({x0, kHeight, -out}, {lo, top, z1});
     slab.add(box({hi, kHeight, -out}, {x1, top, z1}));
@@ -88,12 +90,9 @@ class Gallery : public SceneBuilder {
       bars.add(box({lo - 0.02, kHeight + 0.07, z - 0.03}, {hi + 0.02, kHeight + 0.2, z + 0.03}));
     }
     place("roof bars" + number, bars, iron_);
-    Geometry panes;
-    panes.addQuad({lo, top + 0.45, kRoofLo}, {hi, top + 0.45, kRoofLo}, {hi, top + 0.45, kRoofHi},
-                  {lo, top + 0.45, kRoofHi});
     const std::array<dvec3, kRooms> colors{dvec3(0.85, 0.93, 1), dvec3(1, 0.9, 0.75), dvec3(0.8, 0.9, 1)};
     const std::array<double, kRooms> radiances{5, 1.2, 3.5};
-    place("roof light" + number, panes,
+    place("roof light" + number, downwardSheet({lo, top + 0.45, kRoofLo}, {hi, top + 0.45, kRoofHi}),
           glowing("roof light" + number, colors[size_t(room)], radiances[size_t(room)], 0.7));
   }
 

@@ -59,11 +59,7 @@ Geometry knot(uint32_t rings, uint32_t sides, bool fine) {
       const dvec3 around = knotPoint(s, a + kStep, fine) - knotPoint(s, a - kStep, fine);
       g.addVertex(knotPoint(s, a, fine), glm::normalize(glm::cross(around, lengthwise)));
     }
-  for (uint32_t i = 0; i < rings; ++i)
-    for (uint32_t k = 0; k < sides; ++k) {
-      const uint32_t next = (i + 1) % rings, beside = (k + 1) % sides;
-      g.addFace(i * sides + k, i * sides + beside, next * sides + beside, next * sides + k);
-    }
+  g.addGrid(0, rings, sides, true, true);
   return g;
 }
 

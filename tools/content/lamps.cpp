@@ -14,23 +14,28 @@ constexpr double kLength = 16, kHalfWidth = 4, kHeight = 3.6, kWall = 0.3; // in
 constexpr double kSunk = 0.05;                                             // walls reach that far into their like
 constexpr uint32_t kDetail = 10;                                           // segments of round things
 
+struct Panel {
+  double width, depth; // metres
+  dvec3 color;
+  double radiance;
+};
+const std::array<Panel, 4> kPanels{{{0.3, 0.3, {1, 0.9, 0.75}, 9},
+                                    {0.9, 0.25, {0.8, 0.9, 1}, 5},
+                                    {0.6, 0.6, {1, 0.95, 0.9}, 4},
+                                    {0.15, 0.15, {1, 0.5, 0.3}, 40}}};
+
 class Lamps : public SceneBuilder {
  public:
   explicit Lamps(const Order& order) : SceneBuilder(order) {
-    const dvec3 colors[4] = {{1, 0.9, 0.75}, {0.8, 0.9, 1}, {1, 0.95, 0.9}, {1, 0.5, 0.3}};
-    const double radiances[4] = {9, 5, 4, 40};
-    for (int k = 0; k < 4; ++k) {
-      housings_[k] = mesh("housing " + std::to_string(k), panelHousing(kWidths[k], kDepths[k]), metal_);
-      panels_[k] = mesh("panel " + std::to_string(k), panelEmitter(kWidths[k], kDepths[k]),
-                        glowing("panel light " + std::to_string(k), colors[k], radiances[k]));
+    for (const Panel& p : kPanels) {
+      const std::string kind = std::to_string(housings_.size());
+      housings_.push_back(mesh("housing " + kind, panelHousing(p.width, p.depth), metal_));
+      panels_.push_back(
+          mesh("panel " + kind, panelEmitter(p.width, p.depth), glowing("panel light " + kind, p.color, p.radiance)));
     }
     addRoom();
     addObstacles();
-    for (int row = 0; row < 4; ++row)
-      for (int i = 0; i < 8; ++i) addPanel(row, i);                                                   // 32
-    for (int i = 0; i < 10; ++i) addTube(i);                                                          // 42
-    for (int i = 0; i < 7; ++i) addPost(i);                                                           // 49
-    place("lantern", sphere(0.14, kDetail), glowing("lantern", {1, 0.72, 0.4}, 30), {4.5, 1.3, 1.2}); // 50
+    addLamps();
     camera("along", {0.7, 1.7, 2.6}, {8, 1.0, -0.6}, 62);
   }
 
@@ -70,28 +75,29 @@ class Lamps : public SceneBuilder {
     place("table west", tables, {6.4, 0, -2.2}, -35);
   }
 
-  void addPanel(int row, int i) {
-    const int kind = (3 * row + i) % 4;
-    const std::string name = std::to_string(row) + " " + std::to_string(i);
-    place("panel housing " + name, housings_[kind], {1.2 + 1.95 * i, kHeight, -3 + 2.0 * row});
-    place("panel " + name, panels_[kind], {1.2 + 1.95 * i, kHeight, -3 + 2.0 * row});
-  }
-
-  void addTube(int i) {
-    const double side = i % 2 ? 1 : -1, x = 1.5 + 1.5 * i;
-    place("tube " + std::to_string(i), tube_, {x, 1.1 + 0.18 * (i % 5), side * (kHalfWidth - 0.06)});
-  }
-
-  void addPost(int i) {
-    const dvec3 at(2.6 + 1.9 * i, 0, i % 2 ? 3.1 : -3.2);
-    place("post " + std::to_string(i), post_, at);
-    place("ball " + std::to_string(i), ball_, at + dvec3(0, 0.72, 0));
+  void addLamps() {
+    for (int row = 0; row < 4; ++row)
+      for (int i = 0; i < 8; ++i) { // 32
+        const size_t kind = size_t(3 * row + i) % kPanels.size();
+        const std::string name = std::to_string(row) + " " + std::to_string(i);
+        const dvec3 at(1.2 + 1.95 * i, kHeight, -3 + 2.0 * row);
+        place("panel housing " + name, housings_[kind], at);
+        place("panel " + name, panels_[kind], at);
+      }
+    for (int i = 0; i < 10; ++i) // 42
+      place("tube " + std::to_string(i), tube_,
+            {1.5 + 1.5 * i, 1.1 + 0.18 * (i % 5), (i % 2 ? 1 : -1) * (kHalfWidth - 0.06)});
+    for (int i = 0; i < 7; ++i) { // 49
+      const dvec3 at(2.6 + 1.9 * i, 0, i % 2 ? 3.1 : -3.2);
+      place("post " + std::to_string(i), post_, at);
+      place("ball " + std::to_string(i), ball_, at + dvec3(0, 0.72, 0));
+    }
+    place("lantern", sphere(0.14, kDetail), glowing("lantern", {1, 0.72, 0.4}, 30), {4.5, 1.3, 1.2}); // 50
   }
 
   Index white_ = paint("white paint", {0.74, 0.74, 0.72}), wood_ = paint("wood", {0.45, 0.3, 0.17});
   Index metal_ = paint("grey paint", {0.35, 0.36, 0.38}), leaf_ = fabric("leaf", {0.14, 0.36, 0.1});
-  static constexpr double kWidths[4] = {0.3, 0.9, 0.6, 0.15}, kDepths[4] = {0.3, 0.25, 0.6, 0.15};
-  Index housings_[4], panels_[4];
+  std::vector<Index> housings_, panels_; // by kind
   Index tube_ = mesh("tube", box({-0.45, -0.02, -0.02}, {0.45, 0.02, 0.02}), glowing("tube", {0.55, 0.75, 1}, 12));
   Index post_ = mesh("post", box({-0.05, -0.01, -0.05}, {0.05, 0.65, 0.05}), metal_);
   Index ball_ = mesh("ball", sphere(0.08, kDetail), glowing("ball", {1, 0.6, 0.3}, 14));

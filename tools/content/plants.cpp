@@ -34,16 +34,12 @@ void addLeaf(Geometry& g, const Leaf& leaf) {
     return leaf.base + leaf.length * (v * along - leaf.droop * v * v * up) +
            half * (u * side + leaf.fold * std::abs(u) * up);
   };
-  const uint32_t first = uint32_t(g.positions.size()), stride = columns + 1;
+  const uint32_t first = uint32_t(g.positions.size());
   for (uint32_t row = 0; row <= leaf.rows; ++row)
     for (uint32_t column = 0; column <= columns; ++column)
       g.addVertex(at(2.0 * column / columns - 1, double(row) / leaf.rows), dvec3(0));
   const size_t firstIndex = g.indices.size();
-  for (uint32_t row = 0; row < leaf.rows; ++row)
-    for (uint32_t column = 0; column < columns; ++column) {
-      const uint32_t a = first + row * stride + column, b = a + stride;
-      g.addFace(a, a + 1, b + 1, b);
-    }
+  g.addGrid(first, leaf.rows + 1, columns + 1, false);
   // Smooth: the mean of the faces around a vertex, weighted by their areas.
   for (size_t i = firstIndex; i < g.indices.size(); i += 3) {
     const auto corner = [&](size_t k) { return g.positions[g.indices[i + k]]; };

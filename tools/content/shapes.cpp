@@ -16,6 +16,15 @@ void Geometry::addFace(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   indices.insert(indices.end(), {a, b, c, a, c, d});
 }
 
+void Geometry::addGrid(uint32_t first, uint32_t rows, uint32_t columns, bool round, bool closed) {
+  for (uint32_t row = 0; row < rows - !closed; ++row)
+    for (uint32_t column = 0; column < columns - !round; ++column) {
+      const uint32_t here = first + row * columns, next = first + (row + 1) % rows * columns;
+      const uint32_t beside = (column + 1) % columns;
+      addFace(here + column, here + beside, next + beside, next + column);
+    }
+}
+
 void Geometry::addQuad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
   const dvec3 normal = glm::normalize(glm::cross(c - a, d - b));
   const uint32_t first = addVertex(a, normal);
@@ -153,7 +162,7 @@ Geometry sphere(double radius, uint32_t segments) {
     const double angle = 0.5 * kTau * i / rings;
     meridian.emplace_back(i == rings ? 0.0 : radius * std::sin(angle), -radius * std::cos(angle));
   }
-  Geometry g = lathe({0, -radius}, std::vector{meridian}, segments);
+  Geometry g = lathe({0, -radius}, {meridian}, segments);
   for (size_t i = 0; i < g.positions.size(); ++i) g.normals[i] = g.positions[i] / radius;
   return g;
 }
@@ -255,11 +264,7 @@ Geometry rod(const std::vector<dvec3>& line, double radius, uint32_t sides, doub
   const auto thickness = [&](uint32_t i) { return radius * (1 - taper * i / (points - 1)); };
   for (uint32_t i = 0; i < points; ++i)
     for (uint32_t s = 0; s < sides; ++s) g.addVertex(line[i] + thickness(i) * outward(i, s), outward(i, s));
-  for (uint32_t i = 0; i + 1 < points; ++i)
-    for (uint32_t s = 0; s < sides; ++s) {
-      const uint32_t a = i * sides + s, b = i * sides + (s + 1) % sides;
-      g.addFace(a, b, b + sides, a + sides);
-    }
+  g.addGrid(0, points, sides, true);
   for (const bool end : {false, true}) {
     const uint32_t i = end ? points - 1 : 0, middle = uint32_t(g.positions.size());
     const dvec3 normal = end ? direction(i) : -direction(i);

@@ -22,6 +22,9 @@ struct Geometry {
   uint32_t addVertex(const dvec3& position, const dvec3& normal);
   /// Two triangles between vertices that are there, counter-clockwise seen from their front.
   void addFace(uint32_t a, uint32_t b, uint32_t c, uint32_t d);
+  /// Faces between rows of `columns` vertices each, which were added from `first` on; where they are `round` the last
+  /// one of a row goes on at its first one, where the grid is `closed` the last row at the first one.
+  void addGrid(uint32_t first, uint32_t rows, uint32_t columns, bool round, bool closed = false);
   /// Flat quad a, b, c, d, counter-clockwise seen from its front.
   void addQuad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);
   /// Adds a copy of `part`, moved by `offset`. Both have texture coordinates or neither has.

@@ -218,12 +218,7 @@ Geometry streetLamp(uint32_t segments) {
   return g;
 }
 
-Geometry lampLens() {
-  Geometry g;
-  const double y = kLensHeight;
-  g.addQuad({-0.12, y, kArm - 0.3}, {0.12, y, kArm - 0.3}, {0.12, y, kArm + 0.3}, {-0.12, y, kArm + 0.3});
-  return g;
-}
+Geometry lampLens() { return downwardSheet({-0.12, kLensHeight, kArm - 0.3}, {0.12, kLensHeight, kArm + 0.3}); }
 
 /// Saloon car along X, its front at +X, wheels on y = 0; its lights are sheets.
 Geometry carBody() {
