@@ -38,19 +38,17 @@ class Atrium : public SceneBuilder {
     const double o = outer_ + kWall, top = storeys_ * kStorey;
     place("floor", box({-o - 0.1, -0.3, -o - 0.1}, {o + 0.1, 0, o + 0.1}), paint("floor", {0.5, 0.46, 0.4}));
     place("roof", box({-o - 0.2, top - 0.05, -o - 0.2}, {o + 0.2, top + 0.3, o + 0.2}), plaster_);
-    Geometry walls = box({-o, -0.05, outer_}, {o, top, o});
-    walls.add(box({-o, -0.05, -o}, {o, top, -outer_}));
-    walls.add(box({outer_, -0.05, -outer_}, {o, top, outer_}));
-    walls.add(box({-o, -0.05, -outer_}, {-outer_, top, outer_}));
-    place("outer walls", walls, paint("wall", {0.68, 0.52, 0.36}));
+    const auto ring = [](double in, double out, double y0, double y1) {
+      Geometry g = box({-out, y0, in}, {out, y1, out});
+      g.add(box({-out, y0, -out}, {out, y1, -in}));
+      g.add(box({in, y0, -in}, {out, y1, in}));
+      g.add(box({-out, y0, -in}, {-in, y1, in}));
+      return g;
+    };
+    place("outer walls", ring(outer_, o, -0.05, top), paint("wall", {0.68, 0.52, 0.36}));
 
     // Gallery floors stand out a little over the arcade.
-    const double in = court_ - 0.1, out = outer_ + 0.1;
-    Geometry ring = box({-out, 0, in}, {out, kSlab, out});
-    ring.add(box({-out, 0, -out}, {out, kSlab, -in}));
-    ring.add(box({in, 0, -in}, {out, kSlab, in}));
-    ring.add(box({-out, 0, -in}, {-in, kSlab, in}));
-    const Index slab = mesh("gallery floor", ring, stone_);
+    const Index slab = mesh("gallery floor", ring(court_ - 0.1, outer_ + 0.1, 0, kSlab), stone_);
     for (int i = 1; i <= storeys_; ++i) place("gallery floor " + std::to_string(i), slab, {0, i * kStorey - kSlab, 0});
     const Index beam = mesh("beam", box({-0.15, -0.3, -court_}, {0.15, 0.02, court_}), timber_);
     for (int i = 1; i < bays_; ++i) place("beam " + std::to_string(i), beam, {(i - 0.5 * bays_) * kBay, top - 0.05, 0});
