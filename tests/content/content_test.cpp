@@ -157,6 +157,6 @@ TEST_P(Content, NodeNamesAreUnique) { // shots address nodes by name
 }
 
 INSTANTIATE_TEST_SUITE_P(Recipes, Content, testing::ValuesIn(testedRecipes()),
-                         [](const auto& info) { return testName(info.param); });
+                         [](const auto& info) { return testName(info.param.name); });
 
 } // namespace lambent::test::content_test

@@ -105,15 +105,13 @@ std::map<std::string, dvec3> fights(const PlacedScene& scene) {
 class Coplanar : public testing::TestWithParam<ContentRecipe> {};
 
 TEST_P(Coplanar, NoTwoMaterialsShareAFace) {
-  if (isLarge(GetParam()) && !std::getenv("LAMBENT_TEST_LARGE"))
-    GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
-  const WrittenScene& w = written(GetParam());
-  const PlacedScene scene(loadScene(w.scene.file));
+  SKIP_WHERE_TOO_LARGE(GetParam());
+  const PlacedScene scene(loadScene(written(GetParam()).scene.file));
   for (const auto& [pair, at] : fights(scene))
     ADD_FAILURE() << pair << " at " << at.x << ", " << at.y << ", " << at.z << " (sink one into the other by 1 cm)";
 }
 
 INSTANTIATE_TEST_SUITE_P(Recipes, Coplanar, testing::ValuesIn(testedRecipes()),
-                         [](const auto& info) { return testName(info.param); });
+                         [](const auto& info) { return testName(info.param.name); });
 
 } // namespace lambent::test::coplanar_test

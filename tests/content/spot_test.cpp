@@ -6,26 +6,17 @@
 
 namespace lambent::test::spot_test {
 
-bool skipped(const std::string& name) { // rays against every triangle
-  return (name == "knot" || name == "garden") && !std::getenv("LAMBENT_TEST_LARGE");
-}
-
 const ContentRecipe& recipeOf(const std::string& name) {
   const auto& all = contentRecipes();
-  return *std::find_if(all.begin(), all.end(), [&](const ContentRecipe& r) { return r.name == name; });
+  return *std::ranges::find(all, name, &ContentRecipe::name);
 }
 
-class SpotScene : public testing::TestWithParam<const char*> {
- protected:
-  void SetUp() override {
-    if (skipped(GetParam())) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
-  }
-};
+class SpotScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(SpotScene, OneConeOf90DegreesMovesAndLightsSomeOfTheTrackedPixels) {
+  SKIP_WHERE_TOO_LARGE(recipeOf(GetParam()));
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + GetParam() + ".json");
-  const WrittenScene& w = written(recipeOf(GetParam()));
-  Scene scene = loadScene(w.scene.file);
+  Scene scene = loadScene(written(recipeOf(GetParam())).scene.file);
   const PlacedScene placed(scene);
   EXPECT_EQ(shot.pixels.size(), 8u);
 
@@ -68,11 +59,10 @@ TEST_P(SpotScene, OneConeOf90DegreesMovesAndLightsSomeOfTheTrackedPixels) {
 
 INSTANTIATE_TEST_SUITE_P(Shots, SpotScene,
                          testing::Values("cornell-spot", "knot", "knot-small", "garden", "garden-small"),
-                         [](const auto& info) { return testName(recipeOf(info.param)); });
+                         [](const auto& info) { return testName(info.param); });
 
 TEST(Knot, NeverMeetsItself) {
-  const WrittenScene& w = written(recipeOf("knot-small"));
-  const PlacedScene placed(loadScene(w.scene.file));
+  const PlacedScene placed(loadScene(written(recipeOf("knot-small")).scene.file));
   constexpr double kAside = 2e-3, kAbovePlinth = 0.58; // metres; the knot is sunk into its plinth
   int checked = 0;
   size_t number = 0;
@@ -91,8 +81,7 @@ TEST(Garden, PlantsStayInsideTheHouse) {
   constexpr double kHalfLength = 5.4, kHalfWidth = 3.3, kEaves = 2.7, kRidge = 4.1; // inside of the house, metres
   for (const char* name : {"garden", "garden-small"}) {
     SCOPED_TRACE(name);
-    const WrittenScene& w = written(recipeOf(name));
-    const PlacedScene placed(loadScene(w.scene.file));
+    const PlacedScene placed(loadScene(written(recipeOf(name)).scene.file));
     int leaves = 0;
     for (const PlacedTriangle& t : placed.triangles()) {
       if (!t.sheet) continue;

@@ -18,7 +18,7 @@ std::vector<Walk> walks() {
     for (const ContentRecipe& r : contentRecipes())
       if (r.name == scene && !r.bundled) found.push_back({entry.path().stem().string(), r});
   }
-  std::sort(found.begin(), found.end(), [](const Walk& a, const Walk& b) { return a.name < b.name; });
+  std::ranges::sort(found, {}, &Walk::name);
   return found;
 }
 
@@ -28,12 +28,11 @@ class Walks : public testing::TestWithParam<Walk> {};
 
 TEST_P(Walks, KeepClearOfWalls) {
   const auto& [name, recipe] = GetParam();
-  if (isLarge(recipe) && !std::getenv("LAMBENT_TEST_LARGE")) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE";
+  SKIP_WHERE_TOO_LARGE(recipe);
   const Shot shot = loadShot(std::string(LAMBENT_SOURCE_DIR "/content/shots/") + name + ".json");
   EXPECT_EQ(shot.pixels.size(), 8u);
 
-  const WrittenScene& w = written(recipe);
-  Scene scene = loadScene(w.scene.file);
+  Scene scene = loadScene(written(recipe).scene.file);
   const PlacedScene placed(scene);
   constexpr double kStep = 0.25, kClearance = 0.25; // seconds, metres
   dvec3 before(0);
@@ -63,10 +62,7 @@ TEST_P(Walks, KeepClearOfWalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shots, Walks, testing::ValuesIn(walks()), [](const auto& info) {
-  std::string name = info.param.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Shots, Walks, testing::ValuesIn(walks()),
+                         [](const auto& info) { return testName(info.param.name); });
 
 } // namespace lambent::test::walk_test

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
@@ -14,16 +16,19 @@
 
 namespace lambent {
 
-/// A recipe's name with only the letters that a test's name may have.
-inline std::string testName(const ContentRecipe& recipe) {
-  std::string name = recipe.name;
-  for (char& c : name) c = c == '-' ? '_' : c;
+/// A name with only the letters that a test's name may have.
+inline std::string testName(std::string name) {
+  std::ranges::replace(name, '-', '_');
   return name;
 }
 /// More than some 30 000 triangles: each ray against all of them takes too long for every run of the tests.
-inline bool isLarge(const ContentRecipe& r) {
-  return !r.bundled && !r.name.ends_with("-small") && r.name != "museum-15k" && r.name != "museum-26k";
+inline bool tooLarge(const ContentRecipe& r) {
+  return !r.bundled && !r.name.ends_with("-small") && r.name != "museum-15k" && r.name != "museum-26k" &&
+         !std::getenv("LAMBENT_TEST_LARGE");
 }
+#define SKIP_WHERE_TOO_LARGE(recipe)                                                                                   \
+  if (tooLarge(recipe)) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE"
+
 inline void PrintTo(const ContentRecipe& recipe, std::ostream* out) { *out << recipe.name; }
 
 struct WrittenScene {

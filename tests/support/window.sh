@@ -1,5 +1,7 @@
 # For scripts that use the walkthrough as a person does: a display of its own, keys, and what the program says of itself
-# (--state). To be sourced in the root of the repository; needs Xvfb and xdotool.
+# (--state). To be sourced first; needs Xvfb and xdotool.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
 root=$PWD
 work=$(mktemp -d)
 failed=0 checks=0
@@ -27,6 +29,12 @@ play() { # ARGUMENTS...
   "$root/build/bin/walkthrough" --state state.json "$@" 2>errors &
   pid=$!
   xdotool mousemove 160 170 # keys go to the window under the pointer, and the panel is elsewhere
+}
+
+stop() { # the program that is played
+  kill "$pid"
+  wait "$pid" 2>/dev/null
+  pid=""
 }
 
 # A Python expression over the state `s`.

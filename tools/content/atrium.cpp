@@ -1,12 +1,9 @@
 // An atrium: galleries on several storeys around a roofed court, lit by one moving lantern that casts the shadows of
 // columns and balustrades all around. The court's middle is the origin, its floor y = 0.
 #include "tools/content/furniture.h"
-#include "tools/content/hall_parts.h"
 #include "tools/content/recipes.h"
 
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 
@@ -16,55 +13,45 @@ constexpr double kBay = 3.4, kGallery = 3.0, kHalfArcade = 0.25, kWall = 0.3; //
 constexpr double kSpring = 2.6, kArch = 1.8, kSlab = 0.4, kStorey = kSpring + kArch + kSlab;
 constexpr double kRail = 0.95;
 
-class AtriumBuilder {
+class Atrium : public SceneBuilder {
  public:
-  explicit AtriumBuilder(SceneSize size)
-      : full_(size == SceneSize::Full), bays_(full_ ? 5 : 3), storeys_(full_ ? 4 : 2), court_(0.5 * kBay * bays_),
-        outer_(court_ + 2 * kHalfArcade + kGallery) {}
-
-  GeneratedScene write(const std::filesystem::path& folder) {
+  explicit Atrium(const Order& order)
+      : SceneBuilder(order), bays_(full() ? 5 : 3), storeys_(full() ? 4 : 2), court_(0.5 * kBay * bays_),
+        outer_(court_ + 2 * kHalfArcade + kGallery) {
     addShell();
     for (int storey = 0; storey < storeys_; ++storey)
       for (int side = 0; side < 4; ++side) addSide(storey, side);
     addCourt();
     addLantern();
-    s_.camera("court", {-0.1 * court_, 1.7, 0.85 * court_}, {0.5 * court_, 2.6, -0.6 * court_});
-    s_.camera("gallery", {-court_, 1.7, court_ + 1.9}, {court_, 1.6, court_ + 1.2});
-    s_.camera("upstairs", {-court_ + 1, kStorey + 1.7, court_ + 0.9}, {0.4 * court_, kStorey - 1, -court_});
-    return s_.gltf.write(folder, full_ ? "atrium" : "atrium-small");
+    camera("court", {-0.1 * court_, 1.7, 0.85 * court_}, {0.5 * court_, 2.6, -0.6 * court_});
+    camera("gallery", {-court_, 1.7, court_ + 1.9}, {court_, 1.6, court_ + 1.2});
+    camera("upstairs", {-court_ + 1, kStorey + 1.7, court_ + 0.9}, {0.4 * court_, kStorey - 1, -court_});
   }
 
  private:
-  uint32_t detail(uint32_t full, uint32_t small) const { return full_ ? full : small; }
-
   /// Places a mesh on one side of the court: x along it, z outwards from the middle.
   void onSide(const std::string& name, Index mesh, int side, const dvec3& at, double turn = 0) {
-    const double angle = glm::radians(90.0 * side), c = std::round(std::cos(angle)), s = std::round(std::sin(angle));
-    s_.place(name, mesh, {c * at.x + s * at.z, at.y, c * at.z - s * at.x}, 90.0 * side + turn);
+    place(name, mesh, turned(at, 90.0 * side), 90.0 * side + turn);
   }
 
   void addShell() {
     const double o = outer_ + kWall, top = storeys_ * kStorey;
-    s_.place("floor", box({-o - 0.1, -0.3, -o - 0.1}, {o + 0.1, 0, o + 0.1}), s_.paint("floor", {0.5, 0.46, 0.4}));
-    s_.place("roof", box({-o - 0.2, top - 0.05, -o - 0.2}, {o + 0.2, top + 0.3, o + 0.2}), plaster_);
-    Geometry walls = box({-o, -0.05, outer_}, {o, top, o});
-    walls.add(box({-o, -0.05, -o}, {o, top, -outer_}));
-    walls.add(box({outer_, -0.05, -outer_}, {o, top, outer_}));
-    walls.add(box({-o, -0.05, -outer_}, {-outer_, top, outer_}));
-    s_.place("outer walls", walls, s_.paint("wall", {0.68, 0.52, 0.36}));
+    place("floor", box({-o - 0.1, -0.3, -o - 0.1}, {o + 0.1, 0, o + 0.1}), paint("floor", {0.5, 0.46, 0.4}));
+    place("roof", box({-o - 0.2, top - 0.05, -o - 0.2}, {o + 0.2, top + 0.3, o + 0.2}), plaster_);
+    const auto ring = [](double in, double out, double y0, double y1) {
+      Geometry g = box({-out, y0, in}, {out, y1, out});
+      g.add(box({-out, y0, -out}, {out, y1, -in}));
+      g.add(box({in, y0, -in}, {out, y1, in}));
+      g.add(box({-out, y0, -in}, {-in, y1, in}));
+      return g;
+    };
+    place("outer walls", ring(outer_, o, -0.05, top), paint("wall", {0.68, 0.52, 0.36}));
 
     // Gallery floors stand out a little over the arcade.
-    const double in = court_ - 0.1, out = outer_ + 0.1;
-    Geometry ring = box({-out, 0, in}, {out, kSlab, out});
-    ring.add(box({-out, 0, -out}, {out, kSlab, -in}));
-    ring.add(box({in, 0, -in}, {out, kSlab, in}));
-    ring.add(box({-out, 0, -in}, {-in, kSlab, in}));
-    const Index slab = s_.mesh("gallery floor", ring, stone_);
-    for (int i = 1; i <= storeys_; ++i)
-      s_.place("gallery floor " + std::to_string(i), slab, {0, i * kStorey - kSlab, 0});
-    const Index beam = s_.mesh("beam", box({-0.15, -0.3, -court_}, {0.15, 0.02, court_}), timber_);
-    for (int i = 1; i < bays_; ++i)
-      s_.place("beam " + std::to_string(i), beam, {(i - 0.5 * bays_) * kBay, top - 0.05, 0});
+    const Index slab = mesh("gallery floor", ring(court_ - 0.1, outer_ + 0.1, 0, kSlab), stone_);
+    for (int i = 1; i <= storeys_; ++i) place("gallery floor " + std::to_string(i), slab, {0, i * kStorey - kSlab, 0});
+    const Index beam = mesh("beam", box({-0.15, -0.3, -court_}, {0.15, 0.02, court_}), timber_);
+    for (int i = 1; i < bays_; ++i) place("beam " + std::to_string(i), beam, {(i - 0.5 * bays_) * kBay, top - 0.05, 0});
   }
 
   void addSide(int storey, int side) {
@@ -94,77 +81,58 @@ class AtriumBuilder {
     return g;
   }
 
-  Geometry bench() const {
-    Geometry g = box({-0.9, 0.38, -0.22}, {0.9, 0.46, 0.22});
-    for (const double x : {-0.75, 0.63}) g.add(box({x, 0, -0.2}, {x + 0.12, 0.38, 0.2}));
-    return g;
-  }
-
   std::array<Index, 3> banners() {
-    const Index red = s_.mesh("red banner",
-                              cloth({.width = 1.4,
-                                     .drop = 2.4,
-                                     .folds = 3.5,
-                                     .foldDepthTop = 0.02,
-                                     .foldDepthBottom = 0.06,
-                                     .columns = detail(40, 12),
-                                     .rows = detail(12, 4)}),
-                              s_.fabric("red cloth", {0.66, 0.06, 0.05}));
-    return {red, s_.gltf.addMeshVariant("blue banner", red, s_.fabric("blue cloth", {0.07, 0.16, 0.58})),
-            s_.gltf.addMeshVariant("gold banner", red, s_.fabric("gold cloth", {0.76, 0.5, 0.1}))};
+    const Index red = mesh("red banner",
+                           cloth({.width = 1.4,
+                                  .drop = 2.4,
+                                  .folds = 3.5,
+                                  .foldDepthTop = 0.02,
+                                  .foldDepthBottom = 0.06,
+                                  .columns = detail(40, 12),
+                                  .rows = detail(12, 4)}),
+                           fabric("red cloth", {0.66, 0.06, 0.05}));
+    return {red, variant("blue banner", red, fabric("blue cloth", {0.07, 0.16, 0.58})),
+            variant("gold banner", red, fabric("gold cloth", {0.76, 0.5, 0.1}))};
   }
 
   void addCourt() {
     const double reach = 0.55 * court_;
-    const Index tub = s_.mesh("tub", pot(0.5, 0.6, detail(48, 12)), stone_);
+    const Index tub = mesh("tub", pot(0.5, 0.6, detail(48, 12)), stone_);
     const Index palm =
-        s_.mesh("palm", fronds(detail(120, 24), 1.3, 0.66, detail(16, 4)), s_.fabric("leaf", {0.1, 0.34, 0.08}));
+        mesh("palm", fronds(detail(120, 24), 1.3, 0.66, detail(16, 4)), fabric("leaf", {0.1, 0.34, 0.08}));
     for (int side = 0; side < 4; ++side) {
       onSide("tub " + std::to_string(side), tub, side, {reach, 0, reach});
       onSide("palm " + std::to_string(side), palm, side, {reach, 0, reach});
     }
-    s_.place("basin", basin(), stone_);
-    s_.place("basin water",
-             lathe({{{0, 0.5}, {0.95, 0.5}}, {{0.95, 0.5}, {0.95, 0.56}}, {{0.95, 0.56}, {0, 0.56}}}, 32),
-             s_.paint("water", {0.16, 0.34, 0.36}));
+    place("basin", basin(), stone_);
+    place("basin water", basinWater(), paint("water", {0.16, 0.34, 0.36}));
   }
 
   /// Goes around the court at the height of a hand, between the basin and the palms.
   void addLantern() {
-    constexpr int kKeys = 24;
-    constexpr double kPeriod = 20, kHeight = 1.9; // seconds, metres
+    constexpr double kPeriod = 20; // seconds
     const double radius = 0.42 * court_;
-    const Index node = s_.lamp("lantern", {1, 0.82, 0.58}, 60, {radius, kHeight, 0});
-    std::vector<double> times;
-    std::vector<dvec3> places;
-    for (int i = 0; i <= kKeys; ++i) {
-      const double angle = 2 * glm::pi<double>() * i / kKeys;
-      times.push_back(kPeriod * i / kKeys);
-      places.emplace_back(radius * std::cos(angle), kHeight, radius * std::sin(angle));
-    }
-    s_.gltf.animateTranslation(node, times, places);
+    const auto path = [&](double angle) { return dvec3(radius * std::cos(angle), 1.9, radius * std::sin(angle)); };
+    animate(lamp("lantern", {1, 0.82, 0.58}, 60, path(0)), kPeriod, path);
   }
 
-  bool full_;
   int bays_, storeys_;   // bays of one side
   double court_, outer_; // half the court's side; |x| and |z| of the outer walls' inner faces
-  SceneBuilder s_;
-  const Index stone_ = s_.paint("stone", {0.66, 0.62, 0.54}), plaster_ = s_.paint("plaster", {0.74, 0.7, 0.62});
-  const Index timber_ = s_.paint("timber", {0.33, 0.21, 0.12});
-  const Index column_ = s_.mesh("column", column(kSpring, detail(40, 8)), stone_);
+  const Index stone_ = paint("stone", {0.66, 0.62, 0.54}), plaster_ = paint("plaster", {0.74, 0.7, 0.62});
+  const Index timber_ = paint("timber", {0.33, 0.21, 0.12});
+  const Index column_ = mesh("column", column(kSpring, detail(40, 8)), stone_);
   const Index corner_ =
-      s_.mesh("corner", box({-kHalfArcade, 0, -kHalfArcade}, {kHalfArcade, kArch, kHalfArcade}), plaster_);
-  const Index arch_ = s_.mesh(
+      mesh("corner", box({-kHalfArcade, 0, -kHalfArcade}, {kHalfArcade, kArch, kHalfArcade}), plaster_);
+  const Index arch_ = mesh(
       "arch", arch({.bay = kBay, .height = kArch, .thickness = 2 * kHalfArcade, .segments = detail(40, 8)}), plaster_);
-  const Index balustrade_ = s_.mesh("balustrade", balustrade(), stone_);
-  const Index bench_ = s_.mesh("bench", bench(), timber_);
+  const Index balustrade_ = mesh("balustrade", balustrade(), stone_);
+  const Index bench_ =
+      mesh("bench", bench({-0.9, 0.38, -0.22}, {0.9, 0.46, 0.22}, {0.63, 0, -0.2}, {0.75, 0.38, 0.2}), timber_);
   const std::array<Index, 3> banners_ = banners();
 };
 
 } // namespace
 
-GeneratedScene writeAtrium(const std::filesystem::path& folder, SceneSize size) {
-  return AtriumBuilder(size).write(folder);
-}
+GeneratedScene writeAtrium(const Order& order) { return Atrium(order).write(); }
 
 } // namespace lambent::content

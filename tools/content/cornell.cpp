@@ -3,8 +3,6 @@
 // the published emitter, `cornell-spot` by a spot below the ceiling's middle.
 #include "tools/content/recipes.h"
 
-#include <array>
-
 namespace lambent::content {
 
 namespace {
@@ -20,64 +18,55 @@ dvec3 placed(double x, double y, double z) {
 
 /// Upright block over four corners (published x and z), counter-clockwise from above.
 Geometry block(const std::array<dvec2, 4>& corners, double height) {
-  Geometry g;
-  const auto at = [&](size_t i, double y) { return placed(corners[i % 4].x, y, corners[i % 4].y); };
-  g.addQuad(at(0, height), at(1, height), at(2, height), at(3, height));
-  g.addQuad(at(3, 0), at(2, 0), at(1, 0), at(0, 0));
-  for (size_t i = 0; i < 4; ++i) g.addQuad(at(i, 0), at(i + 1, 0), at(i + 1, height), at(i, height));
-  return g;
+  std::array<dvec3, 4> low, high;
+  for (size_t i = 0; i < 4; ++i) {
+    low[i] = placed(corners[i].x, 0, corners[i].y);
+    high[i] = placed(corners[i].x, height, corners[i].y);
+  }
+  return hexahedron(low, high);
 }
 
 /// The room and its two blocks; what lights them is left to the caller.
-void addRoom(GltfWriter& gltf) {
-  const Index white = gltf.addMaterial({.name = "white", .albedo = {0.73, 0.73, 0.73}});
-  const Index red = gltf.addMaterial({.name = "red", .albedo = {0.63, 0.065, 0.05}});
-  const Index green = gltf.addMaterial({.name = "green", .albedo = {0.14, 0.45, 0.091}});
-  const auto place = [&](const char* name, const Geometry& g, Index material) {
-    gltf.addNode({.name = name, .mesh = gltf.addMesh(name, g, material)});
-  };
-
+void addRoom(SceneBuilder& s) {
+  const Index white = s.paint("white", {0.73, 0.73, 0.73});
+  const Index red = s.paint("red", {0.63, 0.065, 0.05}), green = s.paint("green", {0.14, 0.45, 0.091});
   const dvec3 lo = placed(kWidth, 0, kDepth), hi = placed(0, kHeight, 0); // inside of the room
-  place("floor", box({lo.x - kWall, lo.y - kWall, lo.z - kWall}, {hi.x + kWall, lo.y, hi.z}), white);
-  place("ceiling", box({lo.x - kWall, hi.y, lo.z - kWall}, {hi.x + kWall, hi.y + kWall, hi.z}), white);
-  place("back wall", box({lo.x - kWall, lo.y, lo.z - kWall}, {hi.x + kWall, hi.y, lo.z}), white);
-  place("left wall", box({lo.x - kWall, lo.y, lo.z}, {lo.x, hi.y, hi.z}), red);
-  place("right wall", box({hi.x, lo.y, lo.z}, {hi.x + kWall, hi.y, hi.z}), green);
-  place("short block", block({dvec2(130, 65), dvec2(82, 225), dvec2(240, 272), dvec2(290, 114)}, 165), white);
-  place("tall block", block({dvec2(423, 247), dvec2(265, 296), dvec2(314, 456), dvec2(472, 406)}, 330), white);
+  s.place("floor", box({lo.x - kWall, lo.y - kWall, lo.z - kWall}, {hi.x + kWall, lo.y, hi.z}), white);
+  s.place("ceiling", box({lo.x - kWall, hi.y, lo.z - kWall}, {hi.x + kWall, hi.y + kWall, hi.z}), white);
+  s.place("back wall", box({lo.x - kWall, lo.y, lo.z - kWall}, {hi.x + kWall, hi.y, lo.z}), white);
+  s.place("left wall", box({lo.x - kWall, lo.y, lo.z}, {lo.x, hi.y, hi.z}), red);
+  s.place("right wall", box({hi.x, lo.y, lo.z}, {hi.x + kWall, hi.y, hi.z}), green);
+  s.place("short block", block({dvec2(130, 65), dvec2(82, 225), dvec2(240, 272), dvec2(290, 114)}, 165), white);
+  s.place("tall block", block({dvec2(423, 247), dvec2(265, 296), dvec2(314, 456), dvec2(472, 406)}, 330), white);
 }
 
-void addCamera(GltfWriter& gltf) {
-  const Index camera = gltf.addPerspectiveCamera("front", 39.3);
-  gltf.addNode({.name = "front", .translation = placed(278, 273, -800), .camera = camera});
+/// With its camera.
+GeneratedScene finished(SceneBuilder& s) {
+  const dvec3 eye = placed(278, 273, -800);
+  s.camera("front", eye, eye - dvec3(0, 0, 1), 39.3);
+  return s.write();
 }
 
 } // namespace
 
-GeneratedScene writeCornell(const std::filesystem::path& folder) {
-  GltfWriter gltf;
-  addRoom(gltf);
-
+GeneratedScene writeCornell(const Order& order) {
+  SceneBuilder s(order);
+  addRoom(s);
   // Hangs 5 mm below the ceiling; it lights the side that it faces, so the gap stays dark.
-  const Index lamp = gltf.addMaterial(
-      {.name = "emitter", .albedo = {0.78, 0.78, 0.78}, .emissionColor = {1, 0.706, 0.235}, .emissionRadiance = 17});
   Geometry emitter;
   const double below = kHeight - 1.0;
   emitter.addQuad(placed(343, below, 227), placed(343, below, 332), placed(213, below, 332), placed(213, below, 227));
-  gltf.addNode({.name = "emitter", .mesh = gltf.addMesh("emitter", emitter, lamp)});
-
-  addCamera(gltf);
-  return gltf.write(folder, "cornell");
+  s.place("emitter", emitter, s.glowing("emitter", {1, 0.706, 0.235}, 17, 0.78));
+  return finished(s);
 }
 
-GeneratedScene writeCornellSpot(const std::filesystem::path& folder) {
-  SceneBuilder s;
-  addRoom(s.gltf);
+GeneratedScene writeCornellSpot(const Order& order) {
+  SceneBuilder s(order);
+  addRoom(s);
   // Tilted to the red wall: that wall, the floor and both blocks are lit, ceiling and green wall by reflected light
   // alone.
   s.spot("spot", {1, 0.93, 0.8}, 22, {0, 0.97 * kHeight * kScale, 0.35}, {-0.45, -1, -0.3});
-  addCamera(s.gltf);
-  return s.gltf.write(folder, "cornell-spot");
+  return finished(s);
 }
 
 } // namespace lambent::content

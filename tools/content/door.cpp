@@ -3,7 +3,6 @@
 // bounced. Node "door leaf" turns around its hinge: rotation 0 is shut, 90 degrees stands out into the dark room. The
 // doorway's middle is the origin, on the dark room's side of the wall; Z is south, the floor is y = 0.
 #include "tools/content/furniture.h"
-#include "tools/content/hall_parts.h"
 #include "tools/content/recipes.h"
 
 namespace lambent::content {
@@ -19,16 +18,10 @@ constexpr double kDoorHalf = 0.45, kDoorHeight = 2.1;
 constexpr double kOverlap = 0.08, kSeal = 0.004, kLeaf = 0.06;
 constexpr uint32_t kDetail = 12; // segments of round things
 
-Geometry moved(const Geometry& part, const dvec3& by) {
-  Geometry g;
-  g.add(part, by);
-  return g;
-}
-
 } // namespace
 
-GeneratedScene writeDoor(const std::filesystem::path& folder) {
-  SceneBuilder s;
+GeneratedScene writeDoor(const Order& order) {
+  SceneBuilder s(order);
   const Index white = s.paint("white paint", {0.74, 0.72, 0.68}), ochre = s.paint("ochre paint", {0.68, 0.46, 0.16});
   const Index boards = s.paint("boards", {0.44, 0.31, 0.2}), wood = s.paint("wood", {0.5, 0.33, 0.18});
   const Index blue = s.paint("blue cloth", {0.2, 0.27, 0.5}), pale = s.paint("pale paint", {0.78, 0.76, 0.7});
@@ -59,14 +52,13 @@ GeneratedScene writeDoor(const std::filesystem::path& folder) {
   s.place("chest", box({1.5, -0.01, 3.9}, {2.3, 0.6, 4.5}), ochre);
   // The bright room.
   s.place("sofa", box({-1.2, -0.01, north + 0.1}, {1.0, 0.42, north + 0.95}), blue);
-  const Index glow = s.gltf.addMaterial(
-      {.name = "panel light", .albedo = {0.8, 0.8, 0.8}, .emissionColor = {1, 0.86, 0.66}, .emissionRadiance = 60});
+  const Index glow = s.glowing("panel light", {1, 0.86, 0.66}, 60);
   s.place("panel housing", panelHousing(0.9, 0.6), wood, {-1.2, kHeight, -1.5});
   s.place("panel", panelEmitter(0.9, 0.6), glow, {-1.2, kHeight, -1.5});
 
   s.camera("dark room", {-1.95, 1.6, 4.2}, {0.75, 1.15, 0.5}, 65);
   s.camera("bright room", {1.9, 1.6, -3.9}, {-0.4, 1.2, 0}, 65);
-  return s.gltf.write(folder, "door");
+  return s.write();
 }
 
 } // namespace lambent::content

@@ -31,23 +31,20 @@ class Net {
       : form_(form), cell_(cell), lo_(form.lo - 1.5 * cell),
         size_(glm::ceil((form.hi - form.lo) / cell) + 4.0) { // a border of a cell outside on every side
     values_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z));
-    for (int z = 0; z < size_.z; ++z)
-      for (int y = 0; y < size_.y; ++y)
-        for (int x = 0; x < size_.x; ++x) {
-          const double value = form.field(corner({x, y, z}));
-          const bool border = glm::any(glm::equal(glm::ivec3(x, y, z), glm::ivec3(0))) ||
-                              glm::any(glm::equal(glm::ivec3(x, y, z), size_ - 1));
-          CHECK(!border || value > 0); // else the box is too small
-          values_[index({x, y, z})] = value;
-        }
+    forEach(0, 0, [&](const glm::ivec3& i) {
+      const double value = form.field(corner(i));
+      const bool border = glm::any(glm::equal(i, glm::ivec3(0))) || glm::any(glm::equal(i, size_ - 1));
+      CHECK(!border || value > 0); // else the box is too small
+      values_[index(i)] = value;
+    });
   }
 
   Geometry surface() {
-    addVertices();
-    for (int z = 1; z + 1 < size_.z; ++z)
-      for (int y = 1; y + 1 < size_.y; ++y)
-        for (int x = 1; x + 1 < size_.x; ++x)
-          for (int axis = 0; axis < 3; ++axis) addQuad({x, y, z}, axis);
+    cells_.assign(values_.size(), kNone);
+    forEach(0, 1, [&](const glm::ivec3& cell) { addVertices(cell); });
+    forEach(1, 1, [&](const glm::ivec3& from) {
+      for (int axis = 0; axis < 3; ++axis) addQuad(from, axis);
+    });
     for (int i = 0; i < 3; ++i) relax();
     addNormals();
     int rounds = 0;
@@ -62,6 +59,12 @@ class Net {
   }
   dvec3 corner(const glm::ivec3& i) const { return lo_ + cell_ * dvec3(i); }
   bool inside(const glm::ivec3& i) const { return values_[index(i)] < 0; }
+  /// Samples from `from` on, without the last `left` along each axis.
+  template <class Visit> void forEach(int from, int left, const Visit& visit) const {
+    for (int z = from; z < size_.z - left; ++z)
+      for (int y = from; y < size_.y - left; ++y)
+        for (int x = from; x < size_.x - left; ++x) visit(glm::ivec3(x, y, z));
+  }
 
   /// One of a cell's edges: along `axis`, at the far side of the next axis where bit 0 of `side` is set, of the one
   /// after where bit 1 is.
@@ -77,22 +80,14 @@ class Net {
       for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 4; ++side) {
           CellEdge e{axis, side, glm::ivec3(0), glm::ivec3(0)};
-          e.from[(axis + 1) % 3] = side & 1;
-          e.from[(axis + 2) % 3] = side >> 1;
-          e.to = e.from;
+          e.from[(axis + 1) % 3] = e.to[(axis + 1) % 3] = side & 1;
+          e.from[(axis + 2) % 3] = e.to[(axis + 2) % 3] = side >> 1;
           e.to[axis] = 1;
           all[e.id()] = e;
         }
       return all;
     }();
     return edges;
-  }
-
-  void addVertices() {
-    cells_.assign(values_.size(), kNone);
-    for (int z = 0; z + 1 < size_.z; ++z)
-      for (int y = 0; y + 1 < size_.y; ++y)
-        for (int x = 0; x + 1 < size_.x; ++x) addVertices({x, y, z});
   }
 
   /// A vertex for each sheet of surface in a cell. On a face of the cell two crossed edges are of one sheet; where all
@@ -123,7 +118,7 @@ class Net {
       }
     std::array<uint32_t, 12> vertices;
     vertices.fill(kNone);
-    bool any = false;
+    const size_t before = g_.positions.size();
     for (int s = 0; s < 12; ++s) {
       dvec3 sum(0);
       int count = 0;
@@ -134,9 +129,8 @@ class Net {
           vertices[e] = uint32_t(g_.positions.size());
         }
       if (count) g_.addVertex(sum / double(count), dvec3(0));
-      any |= count > 0;
     }
-    if (!any) return;
+    if (g_.positions.size() == before) return;
     cells_[index(cell)] = uint32_t(vertices_.size());
     vertices_.push_back(vertices);
   }
@@ -227,7 +221,7 @@ class Net {
       return glm::distance(g_.positions[quad[size_t(i)]], g_.positions[quad[size_t(k)]]);
     };
     const size_t first = apart(0, 2) <= apart(1, 3) ? 0 : 1; // cut along the shorter diagonal
-    for (const size_t k : {0, 1, 2, 0, 2, 3}) g_.indices.push_back(quad[(first + k) % 4]);
+    g_.addFace(quad[first], quad[first + 1], quad[(first + 2) % 4], quad[(first + 3) % 4]);
   }
 
   static constexpr double kStep = 0.05; // of slopes, in cells
@@ -268,5 +262,97 @@ Form limbs(std::vector<Limb> parts) {
 }
 
 Geometry meshed(const Form& form, double cell) { return Net(form, cell).surface(); }
+
+Form recliningFigure() {
+  return limbs({
+      {{0.22, 0.24, 0.0}, {-0.4, 0.6, 0.0}, 0.2, 0.19, 0.1},         // trunk
+      {{-0.46, 0.66, -0.22}, {-0.46, 0.66, 0.22}, 0.11, 0.11, 0.16}, // shoulders
+      {{-0.48, 0.72, 0.0}, {-0.52, 0.86, 0.0}, 0.07, 0.06, 0.08},    // neck
+      {{-0.54, 0.92, 0.0}, {-0.5, 0.94, 0.0}, 0.1, 0.09, 0.05},      // head
+      {{-0.48, 0.64, 0.26}, {-0.74, 0.1, 0.3}, 0.085, 0.07, 0.08},   // the arm it leans on
+      {{-0.74, 0.1, 0.3}, {-0.34, 0.05, 0.34}, 0.075, 0.055, 0.06},
+      {{-0.46, 0.66, -0.26}, {-0.06, 0.56, -0.34}, 0.085, 0.065, 0.08}, // the other one, on its thigh
+      {{-0.06, 0.56, -0.34}, {0.4, 0.52, -0.16}, 0.065, 0.05, 0.06},
+      {{0.22, 0.26, -0.1}, {0.66, 0.66, -0.12}, 0.17, 0.12, 0.14}, // raised leg
+      {{0.66, 0.66, -0.12}, {0.9, 0.06, -0.12}, 0.115, 0.065, 0.07},
+      {{0.88, 0.05, -0.12}, {1.08, 0.04, -0.12}, 0.065, 0.055, 0.06},
+      {{0.22, 0.2, 0.12}, {0.78, 0.15, 0.2}, 0.17, 0.12, 0.14}, // lying leg
+      {{0.78, 0.15, 0.2}, {1.3, 0.07, 0.14}, 0.115, 0.065, 0.08},
+      {{-0.12, 0.36, -0.6}, {-0.12, 0.36, 0.6}, 0.085, 0.085, 0.1, true}, // pierced below the breast
+  });
+}
+
+Form drapedFigure() {
+  Form body = limbs({
+      {{0.0, 0.95, 0.0}, {0.03, 1.3, 0.0}, 0.125, 0.13, 0.12},       // trunk
+      {{-0.14, 1.38, 0.0}, {0.19, 1.41, 0.02}, 0.07, 0.07, 0.12},    // shoulders
+      {{0.03, 1.4, 0.0}, {0.04, 1.55, 0.01}, 0.055, 0.048, 0.06},    // neck
+      {{0.045, 1.64, 0.02}, {0.04, 1.7, 0.0}, 0.085, 0.095, 0.03},   // head
+      {{0.04, 1.7, -0.07}, {0.04, 1.66, -0.11}, 0.05, 0.05, 0.05},   // knot of hair
+      {{-0.16, 1.37, 0.0}, {-0.27, 1.08, 0.02}, 0.065, 0.056, 0.06}, // arm that hangs, hand at the hip
+      {{-0.27, 1.08, 0.02}, {-0.15, 0.9, 0.14}, 0.056, 0.05, 0.04},
+      {{0.21, 1.39, 0.02}, {0.31, 1.12, 0.1}, 0.065, 0.056, 0.06}, // arm that is bent
+      {{0.31, 1.12, 0.1}, {0.12, 1.22, 0.24}, 0.056, 0.05, 0.04},
+  });
+  // The skirt's folds deepen and spread towards the floor.
+  const Field trunk = body.field;
+  body.field = [trunk](const dvec3& p) {
+    const double down = glm::clamp((0.98 - p.y) / 1.0, 0.0, 1.0);
+    const double angle = std::atan2(p.z, p.x);
+    const double folds = std::cos(9 * angle + 2.2 * down) + 0.5 * std::cos(5 * angle - 3 * down);
+    const double radius = 0.135 + 0.035 * down + 0.1 * down * down * down + 0.02 * down * folds;
+    const double side = std::hypot(p.x - 0.02 * down, 1.15 * p.z) - radius;
+    const double skirt =
+        0.7 * -joined(-side, 0.5 - std::abs(p.y - 0.48), 0.05); // side slopes by more than one per metre
+    return joined(trunk(p), skirt, 0.08);
+  };
+  body.lo = {-0.4, -0.08, -0.36};
+  body.hi = {0.42, 1.84, 0.36};
+  return body;
+}
+
+Form piercedForm() {
+  return limbs({
+      {{0.0, 0.1, 0.0}, {-0.04, 0.42, 0.0}, 0.12, 0.23, 0.1},
+      {{-0.04, 0.42, 0.0}, {0.04, 0.8, 0.0}, 0.25, 0.33, 0.2},
+      {{0.12, 0.76, -0.7}, {-0.02, 0.68, 0.7}, 0.13, 0.19, 0.12, true},
+      {{-0.42, 0.38, 0.55}, {-0.22, 0.52, 0.22}, 0.2, 0.1, 0.12, true},
+  });
+}
+
+Form bird() {
+  return limbs({
+      {{0.0, 0.08, 0.0}, {0.0, 0.1, 0.0}, 0.1, 0.09, 0.05},
+      {{0.0, 0.12, 0.0}, {-0.02, 0.38, 0.0}, 0.065, 0.045, 0.08},
+      {{-0.02, 0.38, 0.0}, {-0.02, 0.85, 0.0}, 0.05, 0.125, 0.1},
+      {{-0.02, 0.85, 0.0}, {0.06, 1.25, 0.0}, 0.125, 0.08, 0.2},
+      {{0.06, 1.25, 0.0}, {0.15, 1.5, 0.0}, 0.08, 0.035, 0.2},
+  });
+}
+
+Form growth() {
+  return limbs({
+      {{0.05, 0.2, 0.02}, {-0.12, 0.26, 0.1}, 0.22, 0.2, 0.1},
+      {{0.18, 0.28, -0.08}, {0.22, 0.44, -0.1}, 0.2, 0.16, 0.12},
+      {{-0.08, 0.3, 0.05}, {-0.12, 0.6, -0.02}, 0.2, 0.19, 0.16},
+      {{-0.12, 0.6, -0.02}, {-0.26, 0.74, 0.06}, 0.17, 0.13, 0.14},
+      {{-0.06, 0.62, -0.04}, {0.08, 0.86, -0.06}, 0.16, 0.13, 0.14},
+      {{0.08, 0.86, -0.06}, {0.1, 0.98, -0.02}, 0.12, 0.11, 0.1},
+      {{0.3, 0.5, 0.3}, {0.1, 0.56, 0.14}, 0.16, 0.08, 0.1, true},
+  });
+}
+
+Form gourd() {
+  Form form;
+  form.field = [](const dvec3& q) {
+    const dvec3 p = q - dvec3(0, 0.42, 0);
+    const double length = std::max(glm::length(p), 1e-6), up = p.y / length, across2 = 1 - up * up;
+    const double ribs = std::cos(9 * std::atan2(p.z, p.x) + 5 * up);
+    return 0.6 * (length - 0.4 - 0.05 * up * up - 0.045 * across2 * across2 * ribs + 0.03 * across2 * std::sin(4 * up));
+  };
+  form.lo = {-0.48, -0.06, -0.48};
+  form.hi = {0.48, 0.9, 0.48};
+  return form;
+}
 
 } // namespace lambent::content

@@ -8,9 +8,7 @@
 #include "tools/content/textures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 namespace lambent::content {
 
@@ -28,38 +26,29 @@ constexpr double kPlinthWall = 0.7; // brick base of the outer walls
 /// Height of the roof's inside above |z|.
 double roofAt(double z) { return kRidge + (kEaves - kRidge) * std::abs(z) / kHalfWidth; }
 
-class GardenBuilder {
+class Garden : public SceneBuilder {
  public:
-  explicit GardenBuilder(SceneSize size) : full_(size == SceneSize::Full) {}
-
-  GeneratedScene write(const std::filesystem::path& folder) {
+  explicit Garden(const Order& order) : SceneBuilder(order) {
     addHouse();
     addFrames();
     addBeds();
     addColumns();
     addPlanting();
     addPots();
-    s_.spot("spot", {1, 0.93, 0.78}, 110, {-2.7, 3.75, 0.4}, {0.6, -1, -0.15});
-    s_.camera("path", {-4.9, 1.55, 0.35}, {1.5, 0.85, -0.2}, 60);
-    s_.camera("low", {-3.2, 0.35, 0.5}, {3, 0.45, -0.3}, 55);
-    return s_.gltf.write(folder, full_ ? "garden" : "garden-small");
+    spot("spot", {1, 0.93, 0.78}, 110, {-2.7, 3.75, 0.4}, {0.6, -1, -0.15});
+    camera("path", {-4.9, 1.55, 0.35}, {1.5, 0.85, -0.2}, 60);
+    camera("low", {-3.2, 0.35, 0.5}, {3, 0.45, -0.3}, 55);
   }
 
  private:
-  uint32_t detail(uint32_t full, uint32_t small) const { return full_ ? full : small; }
-
   void addHouse() {
     const double x = kHalfLength, z = kHalfWidth, w = kWall, out = z + w + 0.1;
-    Geometry floor = box({-x - w - 0.1, -0.3, -out}, {x + w + 0.1, 0, out});
-    mapFromAbove(floor, 1.6);
-    s_.place("floor", floor,
-             s_.gltf.addMaterial(
-                 {.name = "paving", .albedo = {0.95, 0.86, 0.78}, .texture = s_.gltf.addTexture(stoneSlabs("slabs"))}));
+    place("floor", mappedFromAbove(box({-x - w - 0.1, -0.3, -out}, {x + w + 0.1, 0, out}), 1.6),
+          paint("paving", {0.95, 0.86, 0.78}, texture(stoneSlabs("slabs"))));
 
     Geometry walls;
     for (const double side : {-1.0, 1.0}) {
-      const double near = side * z, far = side * (z + w);
-      walls.add(box({-x - kSunk, -kSunk, std::min(near, far)}, {x + kSunk, kEaves + kSunk, std::max(near, far)}));
+      walls.add(box({-x - kSunk, -kSunk, side * z}, {x + kSunk, kEaves + kSunk, side * (z + w)}));
       // Gable wall: reaches a little into the roof.
       const double from = side < 0 ? -x - w : x, to = from + w;
       const double top = roofAt(z + kSunk) + kSunk;
@@ -67,7 +56,7 @@ class GardenBuilder {
           prism({{z + kSunk, -kSunk}, {-z - kSunk, -kSunk}, {-z - kSunk, top}, {0, kRidge + kSunk}, {z + kSunk, top}},
                 from, to));
     }
-    s_.place("walls", walls, panes_);
+    place("walls", walls, panes_);
     Geometry roof;
     for (const double side : {-1.0, 1.0}) {
       // The two slopes overlap at the ridge.
@@ -76,14 +65,14 @@ class GardenBuilder {
       if (side < 0) std::swap(slope[1], slope[3]);
       roof.add(prism(slope, -x - w - 0.1, x + w + 0.1));
     }
-    s_.place("roof", roof, panes_);
+    place("roof", roof, panes_);
 
     const double in = 0.07; // the brick base stands in front of the panes
     Geometry base = box({-x - kSunk, -kSunk, -z - kSunk}, {x + kSunk, kPlinthWall, -z + in});
     base.add(box({-x - kSunk, -kSunk, z - in}, {x + kSunk, kPlinthWall, z + kSunk}));
     base.add(box({-x - kSunk, -kSunk, -z}, {-x + in, kPlinthWall, z}));
     base.add(box({x - in, -kSunk, -z}, {x + kSunk, kPlinthWall, z}));
-    s_.place("brick base", base, brick_);
+    place("brick base", base, brick_);
   }
 
   /// Glazing bars of walls and roof, in front of the panes.
@@ -92,8 +81,7 @@ class GardenBuilder {
     const double z = kHalfWidth, low = kPlinthWall - 0.02;
     Geometry frame;
     for (const double side : {-1.0, 1.0}) {
-      const double face = side * (z - kDeep), back = side * (z + 0.02);
-      frame.add(box({-kBar, low, std::min(face, back)}, {kBar, kEaves + 0.02, std::max(face, back)}));
+      frame.add(box({-kBar, low, side * (z - kDeep)}, {kBar, kEaves + 0.02, side * (z + 0.02)}));
       // Rafter, from the post to a little beyond the ridge, where it meets the other one.
       const double slope = (kRidge - kEaves) / z;
       const dvec2 foot(side * (z - 0.01), kEaves), top(-side * 0.01, kRidge + 0.01 * slope);
@@ -102,27 +90,25 @@ class GardenBuilder {
       if (side < 0) std::swap(rafter[1], rafter[3]);
       frame.add(prism(rafter, -0.8 * kBar, 0.8 * kBar));
     }
-    const Index mesh = s_.mesh("frame", frame, paint_);
+    const Index bars = mesh("frame", frame, paint_);
     const int bays = int(2 * kHalfLength / kBay);
-    for (int i = 1; i < bays; ++i) s_.place("frame " + std::to_string(i), mesh, {i * kBay - kHalfLength, 0, 0});
+    for (int i = 1; i < bays; ++i) place("frame " + std::to_string(i), bars, {i * kBay - kHalfLength, 0, 0});
     // Rails along the walls and bars of the gables.
     const double x = kHalfLength;
     Geometry rails;
     for (const double y : {kPlinthWall + 0.01, 1.65, kEaves - 0.06})
       for (const double side : {-1.0, 1.0}) {
-        const double face = side * (z - kDeep + 0.01), back = side * (z + 0.02);
-        rails.add(box({-x - 0.02, y, std::min(face, back)}, {x + 0.02, y + 0.05, std::max(face, back)}));
-        const double end = side * (x - kDeep + 0.01), behind = side * (x + 0.02);
-        rails.add(box({std::min(end, behind), y, -z}, {std::max(end, behind), y + 0.05, z}));
+        rails.add(box({-x - 0.02, y, side * (z - kDeep + 0.01)}, {x + 0.02, y + 0.05, side * (z + 0.02)}));
+        rails.add(box({side * (x - kDeep + 0.01), y, -z}, {side * (x + 0.02), y + 0.05, z}));
       }
     for (const double side : {-1.0, 1.0})
       for (int i = -2; i <= 2; ++i) {
-        const double at = 1.1 * i, end = side * (x - kDeep), behind = side * (x + 0.02);
-        rails.add(box({std::min(end, behind), low, at - kBar},
-                      {std::max(end, behind), roofAt(std::abs(at) + kBar) + 0.01, at + kBar}));
+        const double at = 1.1 * i;
+        rails.add(box({side * (x - kDeep), low, at - kBar},
+                      {side * (x + 0.02), roofAt(std::abs(at) + kBar) + 0.01, at + kBar}));
       }
-    s_.place("rails", rails, paint_);
-    s_.place("ridge beam", box({-x - 0.02, kRidge - 0.16, -0.04}, {x + 0.02, kRidge + 0.02, 0.04}), paint_);
+    place("rails", rails, paint_);
+    place("ridge beam", box({-x - 0.02, kRidge - 0.16, -0.04}, {x + 0.02, kRidge + 0.02, 0.04}), paint_);
   }
 
   /// Walls of the beds with a stone coping, and the soil behind them.
@@ -130,37 +116,33 @@ class GardenBuilder {
     const double x = kHalfLength - 0.02;
     for (const double side : {-1.0, 1.0}) {
       const std::string name = side < 0 ? "north " : "south ";
-      const double inner = side * kBed, outer = side * (kBed + kBedWidth);
-      s_.place(name + "bed wall", box({-x, -0.02, std::min(inner, outer)}, {x, kBedWall, std::max(inner, outer)}),
-               brick_);
-      const double edge = side * (kBed - 0.03), behind = side * (kBed + kBedWidth + 0.03);
-      s_.place(name + "coping",
-               box({-x - 0.01, kBedWall - 0.01, std::min(edge, behind)},
-                   {x + 0.01, kBedWall + 0.05, std::max(edge, behind)}),
-               stone_);
-      const double front = side * (kBed + 0.1), wall = side * (kHalfWidth + 0.01);
-      s_.place(name + "soil", box({-x - 0.01, -0.03, std::min(front, wall)}, {x + 0.01, kSoil, std::max(front, wall)}),
-               soil_);
+      const auto along = [&](double in, double out, double y0, double y1) { // |z| from, to
+        return box({-x - 0.01, y0, side * in}, {x + 0.01, y1, side * out});
+      };
+      place(name + "bed wall", box({-x, -0.02, side * kBed}, {x, kBedWall, side * (kBed + kBedWidth)}), brick_);
+      place(name + "coping", along(kBed - 0.03, kBed + kBedWidth + 0.03, kBedWall - 0.01, kBedWall + 0.05), stone_);
+      place(name + "soil", along(kBed + 0.1, kHalfWidth + 0.01, -0.03, kSoil), soil_);
     }
   }
 
   /// Slender iron columns on the bed walls; they carry a beam under the rafters on each side.
   void addColumns() {
     const double z = kBed + 0.5 * kBedWidth, foot = kBedWall + 0.04, head = roofAt(z) - 0.16;
-    const Geometry shape = lathe({{{0, foot}, {0.075, foot}},
-                                  {{0.075, foot}, {0.075, foot + 0.1}},
-                                  {{0.075, foot + 0.1}, {0.05, foot + 0.16}, {0.04, head - 0.2}},
-                                  {{0.04, head - 0.2}, {0.06, head - 0.19}, {0.06, head - 0.15}, {0.04, head - 0.14}},
-                                  {{0.04, head - 0.14}, {0.085, head}},
-                                  {{0.085, head}, {0, head}}},
+    const Geometry shape = lathe({0, foot},
+                                 {{{0.075, foot}},
+                                  {{0.075, foot + 0.1}},
+                                  {{0.05, foot + 0.16}, {0.04, head - 0.2}},
+                                  {{0.06, head - 0.19}, {0.06, head - 0.15}, {0.04, head - 0.14}},
+                                  {{0.085, head}},
+                                  {{0, head}}},
                                  detail(32, 10));
-    const Index column = s_.mesh("column", shape, iron_);
+    const Index column = mesh("column", shape, iron_);
     for (const double side : {-1.0, 1.0}) {
       const std::string name = side < 0 ? "north " : "south ";
       for (int i = -1; i <= 1; ++i)
-        s_.place(name + "column " + std::to_string(i + 2), column, {2 * kBay * i + 0.5 * kBay, 0, side * z});
+        place(name + "column " + std::to_string(i + 2), column, {2 * kBay * i + 0.5 * kBay, 0, side * z});
       const double x = kHalfLength + 0.01;
-      s_.place(name + "beam", box({-x, head - 0.01, side * z - 0.05}, {x, head + 0.1, side * z + 0.05}), iron_);
+      place(name + "beam", box({-x, head - 0.01, side * z - 0.05}, {x, head + 0.1, side * z + 0.05}), iron_);
     }
   }
 
@@ -171,15 +153,15 @@ class GardenBuilder {
 
   Kind kind(const std::string& name, const Plant& plant, Index leaf) {
     Kind k{name};
-    if (!plant.stems.indices.empty()) k.stems = s_.mesh(name + " stems", plant.stems, stem_);
-    k.leaves = s_.mesh(name + " leaves", plant.leaves, leaf);
+    if (!plant.stems.indices.empty()) k.stems = mesh(name + " stems", plant.stems, stem_);
+    k.leaves = mesh(name + " leaves", plant.leaves, leaf);
     return k;
   }
 
   void plant(const Kind& k, const dvec3& at, double turn) {
     const std::string number = " " + std::to_string(++planted_);
-    if (k.stems != kAbsent) s_.place(k.name + " stems" + number, k.stems, at, turn);
-    s_.place(k.name + " leaves" + number, k.leaves, at, turn);
+    if (k.stems != kAbsent) place(k.name + " stems" + number, k.stems, at, turn);
+    place(k.name + " leaves" + number, k.leaves, at, turn);
   }
 
   /// Tall plants stand at the outer walls, low ones at the path.
@@ -209,46 +191,41 @@ class GardenBuilder {
 
   /// Pots on the path, one with a tree.
   void addPots() {
-    const Index small = s_.mesh("pot", pot(0.19, 0.36, detail(40, 12)), clay_);
-    const Index large = s_.mesh("tub", pot(0.3, 0.5, detail(48, 12)), clay_);
+    const Index small = mesh("pot", pot(0.19, 0.36, detail(40, 12)), clay_);
+    const Index large = mesh("tub", pot(0.3, 0.5, detail(48, 12)), clay_);
     const std::array<std::pair<dvec3, const Kind*>, 5> planted{{{dvec3(-2.3, 0, 0.82), &fern_},
                                                                 {dvec3(-1.2, 0, -0.86), &red_},
                                                                 {dvec3(0.3, 0, 0.85), &broad_},
                                                                 {dvec3(2.9, 0, -0.75), &grass_},
                                                                 {dvec3(3.6, 0, 0.8), &fern_}}};
     for (size_t i = 0; i < planted.size(); ++i) {
-      s_.place("pot " + std::to_string(i + 1), small, planted[i].first);
+      place("pot " + std::to_string(i + 1), small, planted[i].first);
       plant(*planted[i].second, planted[i].first + dvec3(0, 0.355, 0), 75.0 * double(i));
     }
-    s_.place("tub", large, {4.3, 0, -0.1});
+    place("tub", large, {4.3, 0, -0.1});
     plant(tree_, {4.3, 0.495, -0.1}, 200);
   }
 
-  bool full_;
-  SceneBuilder s_;
   uint32_t planted_ = 0;
-  const Index panes_ = s_.paint("whitewashed panes", {0.71, 0.73, 0.7}), paint_ = s_.paint("frame", {0.3, 0.42, 0.36});
-  const Index brick_ = s_.paint("brick", {0.47, 0.22, 0.14}), stone_ = s_.paint("stone", {0.58, 0.55, 0.48});
-  const Index soil_ = s_.paint("soil", {0.12, 0.085, 0.06}), iron_ = s_.paint("iron", {0.62, 0.62, 0.58});
-  const Index clay_ = s_.paint("clay", {0.55, 0.27, 0.16}), stem_ = s_.paint("stem", {0.24, 0.27, 0.11});
+  const Index panes_ = paint("whitewashed panes", {0.71, 0.73, 0.7}), paint_ = paint("frame", {0.3, 0.42, 0.36});
+  const Index brick_ = paint("brick", {0.47, 0.22, 0.14}), stone_ = paint("stone", {0.58, 0.55, 0.48});
+  const Index soil_ = paint("soil", {0.12, 0.085, 0.06}), iron_ = paint("iron", {0.62, 0.62, 0.58});
+  const Index clay_ = paint("clay", {0.55, 0.27, 0.16}), stem_ = paint("stem", {0.24, 0.27, 0.11});
   const PlantDetail leafy_{detail(3, 2), detail(4, 3)};
   const Kind broad_ =
-      kind("broad-leaved", broadLeaved(detail(16, 9), 0.85, leafy_), s_.fabric("broad leaf", {0.1, 0.33, 0.07}));
-  const Kind red_ =
-      kind("red-leaved", broadLeaved(detail(14, 8), 0.4, leafy_), s_.fabric("red leaf", {0.5, 0.06, 0.1}));
+      kind("broad-leaved", broadLeaved(detail(16, 9), 0.85, leafy_), fabric("broad leaf", {0.1, 0.33, 0.07}));
+  const Kind red_ = kind("red-leaved", broadLeaved(detail(14, 8), 0.4, leafy_), fabric("red leaf", {0.5, 0.06, 0.1}));
   const Kind fern_ =
-      kind("fern", fern(detail(11, 6), detail(11, 5), 0.62, leafy_), s_.fabric("fern leaf", {0.17, 0.42, 0.08}));
-  const Kind grass_ = kind("grass", grass(detail(56, 24), 0.55, leafy_), s_.fabric("grass blade", {0.36, 0.5, 0.15}));
+      kind("fern", fern(detail(11, 6), detail(11, 5), 0.62, leafy_), fabric("fern leaf", {0.17, 0.42, 0.08}));
+  const Kind grass_ = kind("grass", grass(detail(56, 24), 0.55, leafy_), fabric("grass blade", {0.36, 0.5, 0.15}));
   const Kind bamboo_ =
-      kind("bamboo", bamboo(detail(8, 5), detail(16, 8), 2.1, leafy_), s_.fabric("bamboo leaf", {0.22, 0.46, 0.12}));
+      kind("bamboo", bamboo(detail(8, 5), detail(16, 8), 2.1, leafy_), fabric("bamboo leaf", {0.22, 0.46, 0.12}));
   const Kind tree_ = kind("tree", tree(detail(11, 6), detail(5, 3), detail(8, 5), 1.6, leafy_),
-                          s_.fabric("tree leaf", {0.12, 0.36, 0.1}));
+                          fabric("tree leaf", {0.12, 0.36, 0.1}));
 };
 
 } // namespace
 
-GeneratedScene writeGarden(const std::filesystem::path& folder, SceneSize size) {
-  return GardenBuilder(size).write(folder);
-}
+GeneratedScene writeGarden(const Order& order) { return Garden(order).write(); }
 
 } // namespace lambent::content

@@ -3,14 +3,12 @@
 #include "tools/content/recipes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace lambent::content {
 
 namespace {
 
-constexpr double kTau = 6.283185307179586;
 constexpr double kHalfWidth = 3.2, kHalfDepth = 3.4, kHeight = 3.6, kWall = 0.3; // inside, metres
 constexpr double kSunk = 0.05;                                                   // walls reach that far into their like
 constexpr double kPlinth = 0.55;                                                 // top of the plinth
@@ -61,12 +59,7 @@ Geometry knot(uint32_t rings, uint32_t sides, bool fine) {
       const dvec3 around = knotPoint(s, a + kStep, fine) - knotPoint(s, a - kStep, fine);
       g.addVertex(knotPoint(s, a, fine), glm::normalize(glm::cross(around, lengthwise)));
     }
-  for (uint32_t i = 0; i < rings; ++i)
-    for (uint32_t k = 0; k < sides; ++k) {
-      const uint32_t next = (i + 1) % rings, beside = (k + 1) % sides;
-      const std::array quad{i * sides + k, i * sides + beside, next * sides + beside, next * sides + k};
-      for (const size_t corner : {0, 1, 2, 0, 2, 3}) g.indices.push_back(quad[corner]);
-    }
+  g.addGrid(0, rings, sides, true, true);
   return g;
 }
 
@@ -80,9 +73,8 @@ Geometry plinth() {
 
 } // namespace
 
-GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size) {
-  const bool full = size == SceneSize::Full;
-  SceneBuilder s;
+GeneratedScene writeKnot(const Order& order) {
+  SceneBuilder s(order);
   const Index pale = s.paint("pale paint", {0.74, 0.72, 0.67}), ochre = s.paint("ochre paint", {0.68, 0.36, 0.1});
   const Index blue = s.paint("blue paint", {0.13, 0.27, 0.56}), floor = s.paint("floor", {0.4, 0.29, 0.2});
   const Index stone = s.paint("stone", {0.52, 0.5, 0.47}), marble = s.paint("marble", {0.7, 0.67, 0.61});
@@ -97,14 +89,14 @@ GeneratedScene writeKnot(const std::filesystem::path& folder, SceneSize size) {
   s.place("end walls", ends, pale);
 
   s.place("plinth", plinth(), stone);
-  const Geometry carved = full ? knot(1050, 150, true) : knot(280, 40, false);
+  const Geometry carved = s.full() ? knot(1050, 150, true) : knot(280, 40, false);
   double lowest = 0;
   for (const dvec3& p : carved.positions) lowest = std::min(lowest, p.y);
   s.place("knot", carved, marble, {0, kPlinth - 0.015 - lowest, 0});
 
   s.spot("spot", {1, 0.94, 0.84}, 60, {-2.3, 3.3, 1.4}, {1.05, -1, -0.6});
   s.camera("front", {-0.4, 1.6, 3.0}, {-0.12, 1.25, 0}, 54);
-  return s.gltf.write(folder, full ? "knot" : "knot-small");
+  return s.write();
 }
 
 } // namespace lambent::content

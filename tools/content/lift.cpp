@@ -2,11 +2,7 @@
 // and node "cabin" of the lift rises before them: it takes the light of one storey after the other and throws it back
 // into the room. The hall's middle is x = z = 0, Z is south, the floor is y = 0.
 #include "tools/content/furniture.h"
-#include "tools/content/hall_parts.h"
 #include "tools/content/recipes.h"
-
-#include <array>
-#include <string>
 
 namespace lambent::content {
 
@@ -31,8 +27,8 @@ Geometry cabin() {
 
 } // namespace
 
-GeneratedScene writeLift(const std::filesystem::path& folder) {
-  SceneBuilder s;
+GeneratedScene writeLift(const Order& order) {
+  SceneBuilder s(order);
   const Index white = s.paint("white paint", {0.74, 0.73, 0.7}), stone = s.paint("stone", {0.52, 0.49, 0.45});
   const Index steel = s.paint("lacquer", {0.26, 0.5, 0.5}), pale = s.paint("pale paint", {0.78, 0.77, 0.74});
   const Index wood = s.paint("wood", {0.46, 0.3, 0.17});
@@ -65,12 +61,8 @@ GeneratedScene writeLift(const std::filesystem::path& folder) {
     const double y = kStorey * i, ceiling = y + kStorey - (i + 1 < kStoreys ? kSlab : 0);
     if (i > 0) s.place("slab " + storey, slab, {0, y, 0});
     const dvec3 hung(face - 0.9, ceiling, 0.95);
-    const Index glow = s.gltf.addMaterial({.name = "light " + storey,
-                                           .albedo = {0.8, 0.8, 0.8},
-                                           .emissionColor = kColors[size_t(i)],
-                                           .emissionRadiance = 60});
     s.place("panel housing " + storey, housing, hung);
-    s.place("panel " + storey, panelEmitter(0.6, 0.9), glow, hung);
+    s.place("panel " + storey, panelEmitter(0.6, 0.9), s.glowing("light " + storey, kColors[size_t(i)], 60), hung);
     s.place("table " + storey, desk, {back + 0.45, y, -0.7});
   }
 
@@ -78,8 +70,7 @@ GeneratedScene writeLift(const std::filesystem::path& folder) {
   for (const double side : {-1.0, 1.0})
     s.place(side < 0 ? "north rail" : "south rail", box({-0.05, lo, -0.06}, {0.05, hi, 0.06}), steel,
             {-h + 0.02, 0, side * (0.5 * kCabin + 0.12)});
-  Geometry globe = sphere(0.38, 16);
-  for (dvec3& p : globe.positions) p.y += 1.2;
+  Geometry globe = moved(sphere(0.38, 16), {0, 1.2, 0});
   globe.add(box({-0.3, -0.01, -0.3}, {0.3, 0.85, 0.3}));
   s.place("globe", globe, pale, {1.1, 0, -1.3});
   s.place("bench", box({0.2, -0.01, 1.95}, {1.8, 0.45, 2.4}), wood);
@@ -87,7 +78,7 @@ GeneratedScene writeLift(const std::filesystem::path& folder) {
   s.place("cabin", cabin(), steel, {-h + kCabinGap + 0.5 * kCabin, kCabinWall + 0.02, 0});
   s.camera("hall", {2.15, 1.6, 2.1}, {-1.1, 3.5, -1.5}, 78);
   s.camera("above", {2.15, 7.6, 2.1}, {-1.1, 4.0, -1.5}, 78);
-  return s.gltf.write(folder, "lift");
+  return s.write();
 }
 
 } // namespace lambent::content

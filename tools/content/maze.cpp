@@ -1,13 +1,9 @@
 // A maze under a ceiling with 13 static lamps: a column at every junction, walls in four colours. Most of what the
 // camera sees is lit around two or three corners. North-west corner at the origin, the floor is y = 0.
-#include "tools/content/maze_plan.h"
-
 #include "tools/content/furniture.h"
-#include "tools/content/hall_parts.h"
 #include "tools/content/recipes.h"
 
-#include <array>
-#include <string>
+#include <string_view>
 
 namespace lambent::content {
 
@@ -16,14 +12,37 @@ namespace {
 constexpr double kCell = 2.2, kHeight = 2.8, kHalfWall = 0.12; // metres
 constexpr double kSunk = 0.05;                                 // walls reach that far into floor and ceiling
 
+/// A maze, drawn: + a junction, - and | a wall between two junctions, * a cell with a lamp. A square of cells; a text
+/// row of junctions and one of cells take turns. Columns go east, rows go south.
+using MazePlan = std::vector<std::string_view>;
+
+const MazePlan kFull{
+    "+-+-+-+-+-+-+-+-+-+-+-+-+-+-+-+-+", "|*|       |     |  *      |     |", "+ + +-+ +-+ +-+ + + + +-+ + +-+ +",
+    "| |   |       |   | | |   | |   |", "+ +-+-+-+-+-+ +-+ + + + + + + +-+", "|   |       |           |   |   |",
+    "+-+ + + +-+ +-+-+-+ +-+-+-+-+ + +", "| |   |    *|   |           |*| |", "+ +-+-+ + +-+ + + +-+-+-+-+ + + +",
+    "|     | |       |           |   |", "+ + + + + +-+-+ +-+ +-+ + +-+ + +", "| |   |   |   |   |   | |*    | |",
+    "+ + + +-+-+ + +-+ +-+-+ + +-+-+ +", "| |   |     |   |      *| |     |", "+ +-+ + +-+ + + +-+-+-+ + + + + +",
+    "|  *| |     |     |     |   |   |", "+-+ +-+-+-+ +-+-+ + + + + +-+-+-+", "|   |       |   |  *| | |     | |",
+    "+ +-+ +-+-+-+ + +-+-+ + +-+-+ + +", "|     |       |       | |   | |*|", "+ +-+-+ +-+ +-+-+ +-+-+ +-+ + + +",
+    "|     | | | |     |         | | |", "+-+-+ + + + + +-+-+ +-+-+-+-+ + +", "| |   | | | |     | |   |       |",
+    "+ + +-+ + + +-+-+ + + + + +-+-+ +", "| |   | | | | |   | | |  *|     |", "+ +-+ + + + + + +-+-+ +-+-+ + + +",
+    "|   | | | | |*|       |   |   | |", "+ + + + + + + +-+-+-+-+ + + +-+-+", "| | | | |   |           | |     |",
+    "+ +-+ + + + + +-+ + + + + + +-+ +", "|  *    |     |       |        *|", "+-+-+-+-+-+-+-+-+-+-+-+-+-+-+-+-+",
+};
+
+const MazePlan kSmall{
+    "+-+-+-+-+-+-+", "|*    |   |*|", "+ +-+ + + + +", "|  *| |*|   |", "+ + + + +-+ +",
+    "|*|   |  *| |", "+ +-+-+-+ +-+", "| |  *  |  *|", "+ +-+ + + + +", "|  *     *  |",
+    "+-+-+-+-+-+ +", "|*     *   *|", "+-+-+-+-+-+-+",
+};
+
 } // namespace
 
-GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size) {
-  const MazePlan& plan = mazePlan(size);
-  const bool full = size == SceneSize::Full;
+GeneratedScene writeMaze(const Order& order) {
+  const MazePlan& plan = order.size == SceneSize::Full ? kFull : kSmall;
   const size_t cells = plan.size() / 2;
   const double side = kCell * double(cells);
-  SceneBuilder s;
+  SceneBuilder s(order);
 
   const Index floor = s.paint("floor", {0.42, 0.4, 0.37}), ceiling = s.paint("ceiling", {0.74, 0.73, 0.7});
   s.place("floor", box({-0.6, -0.3, -0.6}, {side + 0.6, 0, side + 0.6}), floor);
@@ -48,13 +67,13 @@ GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size) {
     if (!walls[k].positions.empty()) s.place("walls " + std::to_string(k), walls[k], paints[k]);
 
   const Index stone = s.paint("stone", {0.66, 0.61, 0.52}), iron = s.paint("iron", {0.16, 0.15, 0.15});
-  const Index pillar = s.mesh("column", column(kHeight, full ? 28 : 8), stone);
+  const Index pillar = s.mesh("column", column(kHeight, s.full() ? 28 : 8), stone);
   for (size_t row = 0; row <= cells; ++row)
     for (size_t column = 0; column <= cells; ++column)
       s.place("column " + std::to_string(row) + " " + std::to_string(column), pillar,
               {kCell * double(column), 0, kCell * double(row)});
 
-  const Index shade = s.mesh("lamp shade", lampShade(full ? 32 : 10), iron);
+  const Index shade = s.mesh("lamp shade", lampShade(s.full() ? 32 : 10), iron);
   constexpr std::array<dvec3, 4> kColors{dvec3(1, 0.75, 0.45), dvec3(1, 0.9, 0.75), dvec3(0.75, 0.88, 1),
                                          dvec3(1, 0.6, 0.35)};
   int lamps = 0;
@@ -70,7 +89,7 @@ GeneratedScene writeMaze(const std::filesystem::path& folder, SceneSize size) {
   const double middle = kCell * (double(cells / 2) + 0.5);
   s.camera("middle", {middle, 1.65, middle}, {middle + 1, 1.6, middle + 0.4});
   s.camera("corner", {0.5 * kCell, 1.65, 0.5 * kCell}, {kCell, 1.5, 2 * kCell});
-  return s.gltf.write(folder, full ? "maze" : "maze-small");
+  return s.write();
 }
 
 } // namespace lambent::content

@@ -34,16 +34,12 @@ void addLeaf(Geometry& g, const Leaf& leaf) {
     return leaf.base + leaf.length * (v * along - leaf.droop * v * v * up) +
            half * (u * side + leaf.fold * std::abs(u) * up);
   };
-  const uint32_t first = uint32_t(g.positions.size()), stride = columns + 1;
+  const uint32_t first = uint32_t(g.positions.size());
   for (uint32_t row = 0; row <= leaf.rows; ++row)
     for (uint32_t column = 0; column <= columns; ++column)
       g.addVertex(at(2.0 * column / columns - 1, double(row) / leaf.rows), dvec3(0));
   const size_t firstIndex = g.indices.size();
-  for (uint32_t row = 0; row < leaf.rows; ++row)
-    for (uint32_t column = 0; column < columns; ++column) {
-      const uint32_t a = first + row * stride + column, b = a + stride;
-      g.indices.insert(g.indices.end(), {a, a + 1, b + 1, a, b + 1, b});
-    }
+  g.addGrid(first, leaf.rows + 1, columns + 1, false);
   // Smooth: the mean of the faces around a vertex, weighted by their areas.
   for (size_t i = firstIndex; i < g.indices.size(); i += 3) {
     const auto corner = [&](size_t k) { return g.positions[g.indices[i + k]]; };
@@ -64,11 +60,6 @@ std::vector<dvec3> stalk(double reach, double height, uint32_t pieces) {
   return line;
 }
 
-dvec3 moved(const dvec3& direction, double degrees) {
-  const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
-  return {c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x};
-}
-
 } // namespace
 
 Plant broadLeaved(uint32_t leaves, double height, PlantDetail detail) {
@@ -77,7 +68,7 @@ Plant broadLeaved(uint32_t leaves, double height, PlantDetail detail) {
     const double turn = kGoldenAngle * i, tall = height * (0.45 + 0.55 * hashed(i, 21));
     const double reach = height * (0.25 + 0.3 * hashed(i, 22));
     const std::vector<dvec3> line = stalk(reach, tall, detail.rows);
-    const dvec3 foot = 0.02 * moved({0, 0, 1}, turn); // stalks stand beside each other
+    const dvec3 foot = 0.02 * turned(dvec3(0, 0, 1), turn); // stalks stand beside each other
     plant.stems.add(turned(rod(line, 0.008, detail.sides, 0.5), turn), foot);
     Geometry blade;
     addLeaf(blade, {.base = line.back(),
@@ -142,13 +133,13 @@ Plant bamboo(uint32_t canes, uint32_t leavesPerCane, double height, PlantDetail 
   for (uint32_t i = 0; i < canes; ++i) {
     const double turn = kGoldenAngle * i, tall = height * (0.6 + 0.4 * hashed(i, 51));
     const double reach = 0.08 * height * (0.4 + hashed(i, 52));
-    const dvec3 foot = 0.06 * std::sqrt(i + 0.5) * moved({0, 0, 1}, turn);
+    const dvec3 foot = 0.06 * std::sqrt(i + 0.5) * turned(dvec3(0, 0, 1), turn);
     plant.stems.add(turned(rod(stalk(reach, tall, detail.rows + 1), 0.013, detail.sides, 0.6), turn), foot);
     Geometry leaves;
     for (uint32_t k = 0; k < leavesPerCane; ++k) {
       const double t = 0.3 + 0.7 * (k + 1.0) / leavesPerCane;
       addLeaf(leaves, {.base = stalkPoint(reach, tall, t),
-                       .along = moved({0, 0.15, 1}, kGoldenAngle * k),
+                       .along = turned(dvec3(0, 0.15, 1), kGoldenAngle * k),
                        .length = 0.2 + 0.1 * hashed(k, 53 + i),
                        .width = 0.026,
                        .droop = 0.4 + 0.4 * hashed(k, 73 + i),

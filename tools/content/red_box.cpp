@@ -4,8 +4,6 @@
 #include "tools/content/furniture.h"
 #include "tools/content/recipes.h"
 
-#include <string>
-
 namespace lambent::content {
 
 namespace {
@@ -17,8 +15,8 @@ constexpr uint32_t kDetail = 12;                                             // 
 
 } // namespace
 
-GeneratedScene writeRedBox(const std::filesystem::path& folder) {
-  SceneBuilder s;
+GeneratedScene writeRedBox(const Order& order) {
+  SceneBuilder s(order);
   const Index white = s.paint("white paint", {0.76, 0.76, 0.75}), ceiling = s.paint("ceiling", {0.79, 0.79, 0.78});
   const Index floor = s.paint("floor", {0.56, 0.55, 0.53}), red = s.paint("red", {0.72, 0.03, 0.02});
   const Index wood = s.paint("wood", {0.48, 0.32, 0.18}), clay = s.paint("clay", {0.5, 0.4, 0.34});
@@ -38,9 +36,8 @@ GeneratedScene writeRedBox(const std::filesystem::path& folder) {
   for (int i = 1; i < 4; ++i)
     for (const double side : {-1.0, 1.0})
       s.place((side < 0 ? "north pier " : "south pier ") + std::to_string(i), pier, {3.0 * i, 0, side * (z - 0.02)});
-  Geometry bench = box({-0.8, 0.4, -0.19}, {0.8, 0.46, 0.19});
-  for (const double x : {-0.7, 0.6}) bench.add(box({x, -0.01, -0.17}, {x + 0.1, 0.41, 0.17}));
-  s.place("bench", bench, wood, {4.6, 0, z - 0.24});
+  s.place("bench", bench({-0.8, 0.4, -0.19}, {0.8, 0.46, 0.19}, {0.6, -0.01, -0.17}, {0.7, 0.41, 0.17}), wood,
+          {4.6, 0, z - 0.24});
   const Index pots = s.mesh("pot", pot(0.16, 0.34, kDetail), clay);
   const Index plants = s.mesh("plant", fronds(14, 0.45, 0.4, 3), leaf);
   int number = 0;
@@ -50,8 +47,7 @@ GeneratedScene writeRedBox(const std::filesystem::path& folder) {
     s.place("plant " + n, plants, {x, 0, z - 0.3});
   }
 
-  const Index glow = s.gltf.addMaterial(
-      {.name = "panel light", .albedo = {0.8, 0.8, 0.8}, .emissionColor = {1, 0.95, 0.86}, .emissionRadiance = 20});
+  const Index glow = s.glowing("panel light", {1, 0.95, 0.86}, 20);
   const Index housing = s.mesh("panel housing", panelHousing(1.2, 0.5), wood);
   const Index panel = s.mesh("panel", panelEmitter(1.2, 0.5), glow);
   for (const bool east : {false, true}) {
@@ -65,7 +61,7 @@ GeneratedScene writeRedBox(const std::filesystem::path& folder) {
   s.place("red box", box({-half, -half, -half}, {half, half, half}), red, {6, 0.9, -0.5});
 
   s.camera("along", {0.5, 1.65, 0.75}, {7.5, 1.2, -0.15}, 62);
-  return s.gltf.write(folder, "red-box");
+  return s.write();
 }
 
 } // namespace lambent::content

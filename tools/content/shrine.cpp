@@ -4,7 +4,6 @@
 // in the scene "door": rotation 0 is shut. The doorway's middle is the origin, on the court's side; Z is south, the
 // floor is y = 0.
 #include "tools/content/furniture.h"
-#include "tools/content/hall_parts.h"
 #include "tools/content/recipes.h"
 
 namespace lambent::content {
@@ -23,8 +22,8 @@ constexpr double kOverlap = 0.06, kSeal = 0.004, kLeaf = 0.06;
 
 } // namespace
 
-GeneratedScene writeShrine(const std::filesystem::path& folder) {
-  SceneBuilder s;
+GeneratedScene writeShrine(const Order& order) {
+  SceneBuilder s(order);
   const Index slate = s.paint("slate", {0.06, 0.06, 0.065}), basalt = s.paint("basalt", {0.08, 0.075, 0.07});
   const Index plaster = s.paint("plaster", {0.6, 0.52, 0.42}), stone = s.paint("stone", {0.5, 0.46, 0.4});
   const Index wood = s.paint("wood", {0.16, 0.1, 0.06});
@@ -35,10 +34,8 @@ GeneratedScene writeShrine(const std::filesystem::path& folder) {
   // The court: its roof is open over a strip beside the door.
   Geometry roof = box({-kCourtHalf - w - 0.1, kHeight, 1.7}, {kCourtHalf + w + 0.1, top, kCourtSouth + w + 0.1});
   roof.add(box({-kCourtHalf - w - 0.1, kHeight, -0.1}, {kCourtHalf + w + 0.1, top, 0.2}));
-  for (const double side : {-1.0, 1.0}) {
-    const double a = side * 0.8, b = side * (kCourtHalf + w + 0.1);
-    roof.add(box({std::min(a, b), kHeight, 0.2}, {std::max(a, b), top, 1.7}));
-  }
+  for (const double side : {-1.0, 1.0})
+    roof.add(box({side * 0.8, kHeight, 0.2}, {side * (kCourtHalf + w + 0.1), top, 1.7}));
   s.place("court roof", roof, basalt);
   Geometry court = box({-kCourtHalf - w, lo, -kSunk}, {-kCourtHalf, hi, kCourtSouth + kSunk});
   court.add(box({kCourtHalf, lo, -kSunk}, {kCourtHalf + w, hi, kCourtSouth + kSunk}));
@@ -75,7 +72,7 @@ GeneratedScene writeShrine(const std::filesystem::path& folder) {
   s.sun({0, -0.88, 0.47}, {1, 0.93, 0.82}, 40);
   s.camera("court", {0, 1.6, 5.2}, {0, 1.0, 0}, 65);
   s.camera("altar", {1.4, 1.6, -1.2}, {kAltarX, 1.0, kAltarZ}, 65);
-  return s.gltf.write(folder, "shrine");
+  return s.write();
 }
 
 } // namespace lambent::content

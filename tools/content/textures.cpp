@@ -37,16 +37,23 @@ double clouds(double u, double v, uint32_t cells, uint32_t seed, int octaves) {
   return sum / total;
 }
 
-/// Texture of `size` × `size` from a function of (u, v) at the texels' middles that gives its linear colour.
-template <class Color> Texture painted(const std::string& name, uint32_t size, const Color& color) {
+/// Texture of `size` × `size` from a function of (u, v) at the texels' middles that gives their bytes.
+template <class Texel> Texture fromTexels(const std::string& name, uint32_t size, const Texel& texel) {
   Texture t{name, size, size, {}};
   for (uint32_t y = 0; y < size; ++y)
     for (uint32_t x = 0; x < size; ++x) {
-      const dvec3 c = color((x + 0.5) / size, (y + 0.5) / size);
-      for (int channel = 0; channel < 3; ++channel) t.rgba.push_back(encoded(c[channel]));
-      t.rgba.push_back(255);
+      const std::array<uint8_t, 4> bytes = texel((x + 0.5) / size, (y + 0.5) / size);
+      t.rgba.insert(t.rgba.end(), bytes.begin(), bytes.end());
     }
   return t;
+}
+
+/// The same from a function that gives the linear colour.
+template <class Color> Texture painted(const std::string& name, uint32_t size, const Color& color) {
+  return fromTexels(name, size, [&](double u, double v) {
+    const dvec3 c = color(u, v);
+    return std::array<uint8_t, 4>{encoded(c.x), encoded(c.y), encoded(c.z), 255};
+  });
 }
 
 /// Where water stands on the asphalt: 0 dry to 1 wet.
@@ -55,38 +62,25 @@ double wetness(double u, double v) { return glm::smoothstep(-0.12, 0.22, clouds(
 } // namespace
 
 Texture stoneSlabs(const std::string& name) {
-  constexpr uint32_t kSize = 128, kRows = 4, kColumns = 2, kJoint = 1; // texels
-  Texture t{name, kSize, kSize, {}};
-  for (uint32_t y = 0; y < kSize; ++y)
-    for (uint32_t x = 0; x < kSize; ++x) {
-      const uint32_t row = y * kRows / kSize;
-      const uint32_t slab = kSize / kColumns, height = kSize / kRows;
-      const uint32_t shifted = (x + (row % 2) * slab / 2) % kSize;
-      const bool joint = shifted % slab < kJoint || y % height < kJoint;
-      const double tint = hashed(shifted / slab + 100, row) - 0.5;
-      const double grain = hashed(x, y + 1000) - 0.5;
-      const double light = joint ? 0.24 : 0.46 + 0.12 * tint + 0.04 * grain;
-      const dvec3 color = light * dvec3(1.04, 1.0, 0.92 - 0.05 * tint);
-      for (const double channel : {color.x, color.y, color.z}) t.rgba.push_back(encoded(channel));
-      t.rgba.push_back(255);
-    }
-  return t;
+  constexpr uint32_t kSize = 128, kSlab = kSize / 2, kHeight = kSize / 4, kJoint = 1; // texels
+  return painted(name, kSize, [](double u, double v) {
+    const uint32_t x = uint32_t(u * kSize), y = uint32_t(v * kSize), row = y / kHeight;
+    const uint32_t shifted = (x + (row % 2) * kSlab / 2) % kSize;
+    const bool joint = shifted % kSlab < kJoint || y % kHeight < kJoint;
+    const double tint = hashed(shifted / kSlab + 100, row) - 0.5;
+    const double grain = hashed(x, y + 1000) - 0.5;
+    const double light = joint ? 0.24 : 0.46 + 0.12 * tint + 0.04 * grain;
+    return light * dvec3(1.04, 1.0, 0.92 - 0.05 * tint);
+  });
 }
 
 Texture lattice(const std::string& name) {
-  constexpr uint32_t kSize = 64;
   constexpr double kBar = 0.09; // half width of a bar, in cells across the diagonal
-  Texture t{name, kSize, kSize, {}};
-  for (uint32_t y = 0; y < kSize; ++y)
-    for (uint32_t x = 0; x < kSize; ++x) {
-      const double u = (x + 0.5) / kSize, v = (y + 0.5) / kSize;
-      const auto nearLine = [](double s) { return std::abs(s - std::round(s)) < kBar; };
-      const bool bar = nearLine(u + v) || nearLine(u - v);
-      for (int channel = 0; channel < 3; ++channel)
-        t.rgba.push_back(encoded(0.5)); // also where cut away, so that filtering does not darken the bars' edges
-      t.rgba.push_back(bar ? 255 : 0);
-    }
-  return t;
+  return fromTexels(name, 64, [](double u, double v) {
+    const auto nearLine = [](double s) { return std::abs(s - std::round(s)) < kBar; };
+    const uint8_t color = encoded(0.5); // also where cut away, so that filtering does not darken the bars' edges
+    return std::array<uint8_t, 4>{color, color, color, uint8_t(nearLine(u + v) || nearLine(u - v) ? 255 : 0)};
+  });
 }
 
 Texture bricks(const std::string& name) {
@@ -114,14 +108,10 @@ Texture asphalt(const std::string& name) {
 }
 
 Texture asphaltFinish(const std::string& name) {
-  constexpr uint32_t kSize = 128;
-  Texture t{name, kSize, kSize, {}};
-  for (uint32_t y = 0; y < kSize; ++y)
-    for (uint32_t x = 0; x < kSize; ++x) { // a quantity, not a colour: stored as it is
-      const double roughness = glm::mix(0.85, 0.3, wetness((x + 0.5) / kSize, (y + 0.5) / kSize));
-      for (const int byte : {255, int(std::lround(255 * roughness)), 0, 255}) t.rgba.push_back(uint8_t(byte));
-    }
-  return t;
+  return fromTexels(name, 128, [](double u, double v) { // a quantity, not a colour: stored as it is
+    const double roughness = glm::mix(0.85, 0.3, wetness(u, v));
+    return std::array<uint8_t, 4>{255, uint8_t(std::lround(255 * roughness)), 0, 255};
+  });
 }
 
 Texture plaster(const std::string& name) {

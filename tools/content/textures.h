@@ -1,7 +1,7 @@
 // Small textures computed from formulas; no picture files are taken from elsewhere.
 #pragma once
 
-#include "tools/content/gltf_writer.h"
+#include "tools/content/scene_builder.h"
 
 namespace lambent::content {
 
