@@ -1,7 +1,6 @@
 // Cells of VPLs: the surface that each stands for.
 #include "engine/core/rng.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/statistics.h"
 
 namespace lambent::test::cells_test {
 

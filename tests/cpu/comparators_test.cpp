@@ -1,9 +1,6 @@
 // The techniques that paper 1 compares with: means over independent seeds against path tracing, what sets them apart,
 // and what the frame relies on (slots, moved slots, determinism, empty scenes).
-#include "engine/core/parallel.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
 
 namespace lambent::test::comparators_test {
 

@@ -1,9 +1,6 @@
 // Deformed instances as rays, emitters and riders see them.
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "engine/scene/surface_point.h"
-#include "engine/trace/embree_query.h"
-#include "gi/lighting/light_set.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

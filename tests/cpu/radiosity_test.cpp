@@ -1,8 +1,6 @@
 // Closed forms of the VPL radiance estimate.
 
 #include "tests/support/comparator_world.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
 
 namespace lambent::test::radiosity_test {
 

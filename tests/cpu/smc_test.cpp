@@ -2,8 +2,6 @@
 #include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
 
 #include <numbers>
 

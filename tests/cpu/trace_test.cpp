@@ -1,7 +1,5 @@
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
 #include "tests/support/hand_scene.h"
 
 namespace lambent::test::trace_test {

@@ -1,6 +1,5 @@
 #include "engine/gpu_trace/gpu_rays.h"
 
-#include "engine/core/sampling.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/random_world.h"
 

@@ -1,8 +1,9 @@
 // Small scenes made by hand: quads with a material each, one mesh and one instance per quad or group.
 #pragma once
 
-#include "engine/scene/scene_view.h"
-#include "tests/support/pixels.h"
+#include "engine/trace/embree_query.h"
+#include "gi/lighting/light_set.h"
+#include "tests/support/test.h"
 
 namespace lambent::test {
 
@@ -68,5 +69,16 @@ CameraView cameraAt(const vec3& eye, const vec3& target, float fovY, int width =
 inline CameraRay pixelRay(const CameraView& camera, int x, int y) {
   return cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
 }
+
+/// As rays and light paths see it, when nothing moves.
+struct TracedScene {
+  SceneView view;
+  EmbreeQuery rays;
+  LightSet lights;
+
+  explicit TracedScene(const HandScene& scene) : view(scene.view()), rays(scene.assets), lights(collectLights(view)) {
+    rays.update(view, true);
+  }
+};
 
 } // namespace lambent::test

@@ -1,7 +1,6 @@
 // Virtual lights with exact areas: spread evenly over the inside of a box.
 #pragma once
 
-#include "engine/core/rng.h"
 #include "gi/vpl/vpl_set.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,6 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
 // gather must agree with it, clamped alike, or with what bounds take given back.
 #include "gi/near/near_light.h"
-#include "tests/support/effort.h"
 #include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
 

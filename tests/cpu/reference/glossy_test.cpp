@@ -3,7 +3,6 @@
 #include "gi/lighting/receivers.h"
 #include "gi/reference/state_file.h"
 #include "gi/vpl/smc.h"
-#include "tests/support/effort.h"
 #include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
 
