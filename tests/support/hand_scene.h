@@ -70,6 +70,21 @@ inline CameraRay pixelRay(const CameraView& camera, int x, int y) {
   return cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
 }
 
+/// All that a query says of rays.
+struct Answers {
+  std::vector<SurfaceHit> hits;
+  std::vector<float> distances;
+  std::vector<uint8_t> blocked;
+
+  Answers(const RayQuery& query, std::span<const Ray> rays)
+      : hits(rays.size()), distances(rays.size()), blocked(rays.size()) {
+    query.closest(rays, hits);
+    query.distances(rays, distances);
+    query.occluded(rays, blocked);
+  }
+  auto free() const { return std::ranges::count(blocked, 0); }
+};
+
 /// As rays and light paths see it, when nothing moves.
 struct TracedScene {
   SceneView view;

@@ -23,9 +23,7 @@ struct Room : LitBox, TracedScene {
   /// Lights of equal areas, anywhere on the walls.
   std::vector<VirtualLight> spread(int count, uint32_t seed) {
     std::vector<Vpl> vpls = spreadOverBox(size, albedo, count, seed);
-    std::vector<Vpl*> all;
-    for (Vpl& v : vpls) all.push_back(&v);
-    estimateRadiance(all, rays, lights, 16, kBounces, 1, counts);
+    relight(vpls, rays, lights, 16, kBounces);
     VplSet set;
     set.slots = std::move(vpls);
     return lightsOf(set);

@@ -90,9 +90,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     std::vector<double> means;
     for (uint32_t set = 0; set < kSets; ++set) {
       std::vector<Vpl> vpls = spreadOverBox(room.size, room.albedo, kPerSet, set);
-      std::vector<Vpl*> all;
-      for (Vpl& v : vpls) all.push_back(&v);
-      estimateRadiance(all, s.rays, s.lights, 16, 2, 1, counts);
+      relight(vpls, s.rays, s.lights, 16, 2);
       VplSet whole;
       whole.slots = std::move(vpls);
       GlossyGather glossy{view, {}};
