@@ -1,5 +1,5 @@
-// The choice of one light out of many (gi/lighting/light_tree.h): what it says of itself, that nothing is left out, and how
-// far it is from weighing all lights.
+// The choice of one light out of many (gi/lighting/light_tree.h): what it says of itself, that nothing is left out, and
+// how far it is from weighing all lights.
 #include "gi/lighting/light_set.h"
 #include "tests/support/test.h"
 

@@ -352,8 +352,10 @@ class HostState {
  private:
   /// What has one value in the whole context: as no pass expects it, or as a new context has it.
   static void set(bool odd) {
-    for (const HostSwitch& w : kHostSwitches) // at first cubes have seams, and a host may leave it so
-      w.odd == odd && w.what != GL_TEXTURE_CUBE_MAP_SEAMLESS ? glEnable(w.what) : glDisable(w.what);
+    for (const HostSwitch& w : kHostSwitches) {
+      const bool on = w.odd == odd && w.what != GL_TEXTURE_CUBE_MAP_SEAMLESS; // which is off at first
+      on ? glEnable(w.what) : glDisable(w.what);
+    }
     glBlendColor(odd ? 0.1f : 0, odd ? 0.2f : 0, odd ? 0.3f : 0, odd ? 0.4f : 0);
     glLogicOp(odd ? GL_XOR : GL_COPY);
     glDepthFunc(odd ? GL_NOTEQUAL : GL_LESS);
