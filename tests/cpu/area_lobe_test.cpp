@@ -1,7 +1,6 @@
 // Lobes of area lights by linearly transformed cosines against numerical integrals of the lobe itself.
 #include "gi/lighting/area_lobe.h"
 #include "tests/support/area_pieces.h"
-#include "tests/support/effort.h"
 
 namespace lambent::test::area_lobe_test {
 

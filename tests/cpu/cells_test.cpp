@@ -1,7 +1,6 @@
 // Cells of VPLs: the surface that each stands for.
 #include "engine/core/rng.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/statistics.h"
 
 namespace lambent::test::cells_test {
 
@@ -255,7 +254,6 @@ TEST(Cells, DoNotReachThroughAWall) {
   lights.punctual.resize(1);
   lights.punctual[0].position = {1, 1, 0};
   VplSet set;
-  std::vector<Vpl*> all;
   for (int i = 0; i < 20; ++i) // few on the dark side, many on the bright one
     set.slots.push_back(vplAt({-0.05f, 0, -0.95f + 0.1f * float(i)}, {0, 1, 0}, uint64_t(i) + 1, {-1, 1, 0}));
   Rng rng(1, Stream::Test, 2);
@@ -264,12 +262,7 @@ TEST(Cells, DoNotReachThroughAWall) {
         vplAt({0.05f + 1.9f * rng.next(), 0, 2 * rng.next() - 1}, {0, 1, 0}, uint64_t(i) + 100, {1, 1, 0.5f}));
   RayCounts counts;
   updateCells(set, rays, {}, allSlots(set), 1, 1, counts);
-  std::vector<const VplCell*> cells;
-  for (uint32_t i = 0; i < set.slots.size(); ++i) {
-    all.push_back(&set.slots[i]);
-    cells.push_back(&set.cells[i]);
-  }
-  estimateRadiance(all, rays, lights, 16, 1, 1, counts, RadianceUse::Rendering, cells);
+  relight(set.slots, rays, lights, 16, 1, 1, set.cells);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(set.slots[i].radiance, vec3(0)) << i;
   double bright = 0;
   for (size_t i = 20; i < set.slots.size(); ++i) bright += luminance(set.slots[i].radiance);

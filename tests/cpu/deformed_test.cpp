@@ -1,9 +1,6 @@
 // Deformed instances as rays, emitters and riders see them.
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "engine/scene/surface_point.h"
-#include "engine/trace/embree_query.h"
-#include "gi/lighting/light_set.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -20,12 +17,6 @@ std::vector<Ray> raysAtSheet(uint32_t count, uint32_t seed) {
     rays.push_back({origin, target - origin});
   }
   return rays;
-}
-
-std::vector<SurfaceHit> hitsOf(const EmbreeQuery& query, const std::vector<Ray>& rays) {
-  std::vector<SurfaceHit> hits(rays.size());
-  query.closest(rays, hits);
-  return hits;
 }
 
 /// A waved sheet beside a flat one, both instances of one mesh, turned and scaled.
@@ -64,11 +55,8 @@ TEST(DeformedRays, MeetWhatAMeshOfTheSameVerticesShows) {
   rigid.update(baked.view());
 
   const std::vector<Ray> rays = raysAtSheet(3000, 1);
-  const auto hits = hitsOf(query, rays), wanted = hitsOf(rigid, rays);
-  std::vector<uint8_t> blocked(rays.size());
-  std::vector<float> distances(rays.size());
-  query.occluded(rays, blocked);
-  query.distances(rays, distances);
+  const auto [hits, distances, blocked] = Answers(query, rays);
+  const std::vector<SurfaceHit> wanted = Answers(rigid, rays).hits;
   int onWaves = 0, differing = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(blocked[i] != 0, hits[i].valid() && hits[i].t < rays[i].tMax);
@@ -104,7 +92,7 @@ TEST(DeformedRays, RefittedForManyFramesHitsAsBuiltAnew) {
     EmbreeQuery anew(sheets.scene.assets);
     anew.update(sheets.scene.view());
     const std::vector<Ray> rays = raysAtSheet(500, frame);
-    const auto a = hitsOf(refitted, rays), b = hitsOf(anew, rays);
+    const auto a = Answers(refitted, rays).hits, b = Answers(anew, rays).hits;
     int waved = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
       ASSERT_EQ(a[i].t, b[i].t) << "frame " << frame << ", ray " << i;
@@ -144,7 +132,7 @@ TEST(DeformedRays, RigidInstancesAreBitIdenticalBesideThem) {
   sheets.scene.reshape(0, sheets.shifted({0, 0, 50}));
   beside.update(sheets.scene.view());
   const std::vector<Ray> rays = raysAtSheet(1000, 3);
-  const auto a = hitsOf(alone, rays), b = hitsOf(beside, rays);
+  const auto a = Answers(alone, rays).hits, b = Answers(beside, rays).hits;
   int rigid = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     if (a[i].instance != 1) continue;
@@ -177,7 +165,7 @@ TEST(SurfacePoint, IsWhereTheHitWasAlsoAfterTheSurfaceMoved) {
   const SceneView view = scene.view();
   query.update(view);
   const std::vector<Ray> rays = raysAtSheet(1000, 5);
-  const auto hits = hitsOf(query, rays);
+  const auto hits = Answers(query, rays).hits;
   int seen[2] = {0, 0};
   for (size_t i = 0; i < rays.size(); ++i) {
     const SurfaceHit& h = hits[i];

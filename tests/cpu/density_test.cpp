@@ -1,7 +1,6 @@
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "gi/vpl/smc.h"
-#include "tests/support/statistics.h"
+#include "tests/support/test.h"
 
 namespace lambent::test::density_test {
 

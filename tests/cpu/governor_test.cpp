@@ -1,8 +1,6 @@
 // The governor against simulated machines: what a frame costs is a constant, pixels, virtual lights, and noise.
 #include "gi/plan/governor.h"
 
-#include "engine/core/rng.h"
-
 #include "tests/support/test.h"
 
 namespace lambent::test::governor_test {

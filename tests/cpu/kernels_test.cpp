@@ -1,7 +1,5 @@
 // Numeric kernels over random and extreme arguments, against long double or closed forms. The bounds are those that
 // their headers state.
-#include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "gi/vpl/smc.h"
 #include "shaders/shared/ggx.h"
 #include "shaders/shared/octahedral.h"

@@ -1,11 +1,7 @@
-// The choice of one light out of many (gi/lighting/light_tree.h): what it says of itself, that nothing is left out, and how
-// far it is from weighing all lights.
-#include "engine/core/rng.h"
+// The choice of one light out of many (gi/lighting/light_tree.h): what it says of itself, that nothing is left out, and
+// how far it is from weighing all lights.
 #include "gi/lighting/light_set.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
-
-#include <chrono>
+#include "tests/support/test.h"
 
 namespace lambent::test::light_tree_test {
 

@@ -1,10 +1,7 @@
 // Photons from every kind of light against closed forms, through the `ir` sampler where the light must end up in VPLs,
 // and the resampling that the comparators share.
-#include "engine/core/rng.h"
 #include "gi/lighting/photons.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
 
 namespace lambent::test::photons_test {
 

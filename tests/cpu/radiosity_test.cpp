@@ -1,8 +1,6 @@
 // Closed forms of the VPL radiance estimate.
 
 #include "tests/support/comparator_world.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
 
 namespace lambent::test::radiosity_test {
 
@@ -14,7 +12,6 @@ AnalyticQuery floorPlane() {
 const AnalyticQuery plane = floorPlane();
 
 TEST(Radiosity, PointSpotAndSunOnAPlane) {
-
   const vec3 at(1, 0, -0.5f);
   const float albedo = 0.6f;
   LightSet lights;
@@ -58,7 +55,6 @@ TEST(Radiosity, PointSpotAndSunOnAPlane) {
 }
 
 TEST(Radiosity, LightsAddUp) {
-
   LightSet all;
   vec3 sum(0);
   for (int i = 0; i < 5; ++i) {
@@ -121,12 +117,9 @@ TEST(Radiosity, PointsOfACellMeetEveryLight) {
   for (const int paths : {8, 16, 64}) {
     std::vector<double> values;
     for (uint64_t id = 1; id <= 400; ++id) {
-      Vpl v = vplAt(vec3(0), {0, 1, 0}, id, 0.5f);
-      Vpl* one = &v;
-      const VplCell* cells = &cell;
-      RayCounts counts;
-      estimateRadiance({&one, 1}, rays, lights, paths, 1, 1, counts, RadianceUse::Rendering, {&cells, 1});
-      values.push_back(v.radiance.x);
+      std::vector<Vpl> one{vplAt(vec3(0), {0, 1, 0}, id, 0.5f)};
+      relight(one, rays, lights, paths, 1, 1, {&cell, 1});
+      values.push_back(one[0].radiance.x);
     }
     EXPECT_NEAR(meanOf(values).mean / truth, 1, 0.03) << paths << " paths";
   }
@@ -191,7 +184,6 @@ TEST(Radiosity, NoLightAndLightInAClosedBoxGiveZero) {
 }
 
 TEST(Radiosity, LightOnTheSurfaceStaysFinite) {
-
   LightSet lights;
   lights.punctual.resize(1); // exactly at the VPL
   EXPECT_EQ(radianceOf(vplAt({0, 0, 0}, {0, 1, 0}, 1, 0.5f), plane, lights, 3), vec3(0));

@@ -1,7 +1,6 @@
 // The set of virtual lights through thousands of frames in which anything may move, come, go, deform or switch: every
 // light stands on the object that carries it, none shines from inside a solid, all numbers are finite, and memory does
 // not grow.
-#include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/random_world.h"
 

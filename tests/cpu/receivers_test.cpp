@@ -2,7 +2,6 @@
 #include "engine/core/rng.h"
 #include "gi/lighting/receivers.h"
 #include "tests/support/hand_scene.h"
-#include "tests/support/statistics.h"
 
 namespace lambent::test::receivers_test {
 

@@ -1,7 +1,6 @@
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "gi/lighting/light_set.h"
-#include "tests/support/statistics.h"
+#include "tests/support/test.h"
 
 namespace lambent::test::sampling_test {
 

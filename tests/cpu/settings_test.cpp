@@ -1,7 +1,6 @@
 // Settings as typed rows, presets, and what goes together on the four axes.
 #include "gi/plan/settings.h"
 
-#include "engine/core/error.h"
 #include "gi/plan/presets.h"
 
 #include "tests/support/test.h"

@@ -1,8 +1,6 @@
 // When a set of VPLs in a still world is taken to have settled: not too early, and at all.
 #include "gi/vpl/smc.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
+#include "tests/support/hand_scene.h"
 
 namespace lambent::test::settling_test {
 

@@ -1,16 +1,11 @@
 // The sky's model, its sampling, and the light that VPLs and photons take from it.
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "engine/scene/scene.h"
-#include "engine/trace/analytic_query.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_paths.h"
 #include "gi/lighting/photons.h"
 #include "tests/support/comparator_world.h"
 #include "tests/support/daylight.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
 
 namespace lambent::test::sky_test {
 

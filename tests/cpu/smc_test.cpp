@@ -2,8 +2,6 @@
 #include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/comparator_world.h"
-#include "tests/support/effort.h"
-#include "tests/support/statistics.h"
 
 #include <numbers>
 
@@ -238,15 +236,7 @@ TEST_F(Smc, KeptValuesEqualEstimatingAgain) {
   room.update();
   for (int i = 0; i < 3; ++i) room.update();
   std::vector<Vpl> again = room.set.slots;
-  std::vector<Vpl*> all;
-  std::vector<const VplCell*> cells;
-  for (size_t i = 0; i < again.size(); ++i) {
-    all.push_back(&again[i]);
-    cells.push_back(&room.set.cells[i]);
-  }
-  RayCounts counts;
-  estimateRadiance(all, room.rays, room.lights, room.settings.paths, room.settings.bounces, 1, counts,
-                   RadianceUse::Rendering, cells);
+  relight(again, room.rays, room.lights, room.settings.paths, room.settings.bounces, 1, room.set.cells);
   for (size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].radiance, room.set.slots[i].radiance);
 }
 

@@ -2,6 +2,7 @@
 #include "engine/trace/embree_query.h"
 #include "gi/vpl/sources.h"
 #include "tests/support/hand_scene.h"
+#include "tests/support/spread_lights.h"
 
 namespace lambent::test::surface_samples_test {
 
@@ -95,13 +96,7 @@ TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
   EXPECT_LT(log.paths.retraced, 1000u * 4) << "only what touches the box or starts on it";
   // As if lit from scratch.
   std::vector<Vpl> again = set.slots;
-  std::vector<Vpl*> all;
-  std::vector<const VplCell*> cells;
-  for (size_t i = 0; i < again.size(); ++i) all.push_back(&again[i]), cells.push_back(&set.cells[i]);
-  RayCounts counts;
-  const SceneView view = scene.view();
-  estimateRadiance(all, *rays, collectLights(view), settings.paths, settings.bounces, 1, counts, RadianceUse::Rendering,
-                   cells);
+  relight(again, *rays, collectLights(scene.view()), settings.paths, settings.bounces, 1, set.cells);
   for (size_t i = 0; i < again.size(); ++i) ASSERT_EQ(again[i].radiance, set.slots[i].radiance) << i;
 }
 

@@ -1,7 +1,5 @@
 #include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
 #include "tests/support/hand_scene.h"
 
 namespace lambent::test::trace_test {
@@ -22,13 +20,8 @@ TEST(Trace, EmbreeAgreesWithClosedForms) {
     Rng rng(1, Stream::Test, i);
     rays.push_back({{1.5f, 0.4f, rng.next() * 4 - 2}, sampleSphere(rng.next2()), i % 3 ? kInfinity : 1.2f});
   }
-  std::vector<SurfaceHit> a(rays.size()), b(rays.size());
-  std::vector<float> t(rays.size());
-  std::vector<uint8_t> blocked(rays.size());
-  embree.closest(rays, a);
-  analytic.closest(rays, b);
-  embree.distances(rays, t);
-  embree.occluded(rays, blocked);
+  const auto [a, t, blocked] = Answers(embree, rays);
+  const std::vector<SurfaceHit> b = Answers(analytic, rays).hits;
   int hits = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(a[i].valid(), b[i].valid());
@@ -84,12 +77,9 @@ TEST(Trace, NoRaySlipsThroughTheJointsOfAClosedBox) {
         const vec3 from = vec3(turned * vec4(vec3(-1, -0.5f, -1.8f) + rng.next3() * vec3(2.5f, 1.4f, 2.3f), 1));
         rays.push_back({from, to - from});
       }
-  std::vector<SurfaceHit> hits(rays.size());
-  std::vector<uint8_t> blocked(rays.size());
-  query.closest(rays, hits);
-  query.occluded(rays, blocked);
-  EXPECT_EQ(std::count_if(hits.begin(), hits.end(), [](const SurfaceHit& h) { return !h.valid(); }), 0);
-  EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 0), 0);
+  const Answers met(query, rays);
+  EXPECT_TRUE(std::ranges::all_of(met.hits, &SurfaceHit::valid));
+  EXPECT_EQ(met.free(), 0);
 }
 
 TEST(Trace, MovedInstancesAreFound) {
@@ -114,8 +104,7 @@ TEST(Trace, AlphaMaskLetsRaysThrough) {
   EXPECT_FALSE(rays.occluded(left));
   EXPECT_TRUE(rays.occluded(right));
   EXPECT_NEAR(rays.closest(right).albedo.y, 1, 1e-3);
-  std::vector<float> t(2);
-  rays.distances(std::vector{left, right}, t);
+  const std::vector<float> t = Answers(rays, std::vector{left, right}).distances;
   EXPECT_EQ(t[0], kInfinity);
   EXPECT_NEAR(t[1], 1, 1e-5);
 }
@@ -129,12 +118,7 @@ TEST(Trace, NotANumberIsAMissAndDoesNotAbort) {
   const std::vector<Ray> bad{{{nan, 1, 0}, {0, -1, 0}},      {{0, 1, 0}, {0, nan, 0}}, {{0, 1, 0}, {0, -kInfinity, 0}},
                              {{0, 1, 0}, {0, -1, 0}, nan},   {{0, 1, 0}, {0, 0, 0}},   {{0, 1, 0}, {0, -1, 0}, -1},
                              {{kInfinity, 1, 0}, {0, -1, 0}}};
-  std::vector<SurfaceHit> hits(bad.size());
-  std::vector<uint8_t> blocked(bad.size());
-  std::vector<float> t(bad.size());
-  rays.closest(bad, hits);
-  rays.occluded(bad, blocked);
-  rays.distances(bad, t);
+  const auto [hits, t, blocked] = Answers(rays, bad);
   for (size_t i = 0; i < bad.size(); ++i) {
     EXPECT_FALSE(hits[i].valid()) << i;
     EXPECT_FALSE(blocked[i]) << i;

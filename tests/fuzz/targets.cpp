@@ -28,6 +28,16 @@ fs::path fileWith(std::string_view bytes, const std::string& extension) {
   return file;
 }
 
+/// What `write` writes to a file.
+template <class Write> std::string written(const std::string& extension, const Write& write) {
+  const fs::path file = fileWith("", extension);
+  write(file);
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  fs::remove(file);
+  return bytes;
+}
+
 /// Runs a reader of a file and removes it.
 template <class Read> void reading(std::string_view bytes, const std::string& extension, const Read& read) {
   const fs::path file = fileWith(bytes, extension);
@@ -196,12 +206,7 @@ std::vector<std::string> pictureSeeds() {
   append<float>(pfm, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
   std::string grey = "Pf 3 1 1\n";
   append<float>(grey, {1, 2, 3});
-  const fs::path file = fileWith("", ".exr");
-  writeExr(file, Image(5, 4, vec3(0.5f)));
-  std::ifstream in(file, std::ios::binary);
-  const std::string exr{std::istreambuf_iterator<char>(in), {}};
-  fs::remove(file);
-  return {pfm, grey, exr};
+  return {pfm, grey, written(".exr", [](const fs::path& file) { writeExr(file, Image(5, 4, vec3(0.5f))); })};
 }
 
 /// Of a reference of this size, by this key.
@@ -223,14 +228,9 @@ void state(std::string_view bytes) {
 }
 
 std::vector<std::string> stateSeeds() {
-  const fs::path file = fileWith("", ".state");
   ReferenceSums sums(4, 3);
   sums.samples = 7;
-  saveReference(file, sums, State::kKey);
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  fs::remove(file);
-  return {bytes};
+  return {written(".state", [&](const fs::path& file) { saveReference(file, sums, State::kKey); })};
 }
 
 } // namespace

@@ -3,9 +3,6 @@
 #include "engine/gl/query_ring.h"
 #include "gl_fixture.h"
 
-#include <chrono>
-#include <thread>
-
 namespace lambent::test::counts_test {
 
 class CountsTest : public GlTest {

@@ -4,18 +4,13 @@
 
 namespace lambent::test::display_test {
 
-class DisplayTest : public GlTest {
+class DisplayTest : public GatherTest {
  protected:
   /// A frame of the room whose beauty is `radiance` (row 0 at the top), by way of an upload.
   FrameResults frameWith(const Image& radiance) {
-    gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
-    gpu->place(room.scene.instances);
     FrameResults frame;
-    frame.surfaces = gbufferPass.run({*gpu, room.scene.camera});
-    texture = gl::Texture("radiance", {.format = GL_RGBA32F, .width = radiance.width, .height = radiance.height});
-    for (int y = 0; y < radiance.height; ++y) // rows from the bottom
-      glTextureSubImage2D(texture.name(), 0, 0, radiance.height - 1 - y, radiance.width, 1, GL_RGB, GL_FLOAT,
-                          &radiance.pixels[size_t(y) * radiance.width]);
+    frame.surfaces = surfaces(room.scene);
+    texture = textureOf(radiance);
     frame.indirect = {&texture};
     frame.picture = {frame.indirect.irradiance};
     frame.farDistance = 3.5f;
@@ -23,8 +18,6 @@ class DisplayTest : public GlTest {
   }
 
   Room room;
-  std::unique_ptr<GpuScene> gpu;
-  SurfacePass gbufferPass{passes};
   gl::Texture texture;
   DisplayPass displayPass{passes};
 };

@@ -1,7 +1,5 @@
 // The frame as a whole, through the interface that programs use.
 #include "frames.h"
-#include "gi/viewer/viewer.h"
-#include "tests/support/images.h"
 
 namespace lambent::test::frame_test {
 

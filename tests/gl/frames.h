@@ -3,7 +3,6 @@
 
 #include "gi/direct/direct_light.h"
 #include "gi/plan/effects.h"
-#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 
 namespace lambent::test {

@@ -3,50 +3,36 @@
 
 namespace lambent::test::gbuffer_test {
 
-using GBufferTest = GlTest;
-
-/// Draws `scene` and gives the frame results that readBuffer needs.
-FrameResults drawn(SurfacePass& pass, GpuScene& gpu, const HandScene& scene) {
-  gpu.place(scene.instances);
-  FrameResults results;
-  results.surfaces = pass.run({gpu, scene.camera});
-  return results;
-}
-
-void expectAgreesWithRays(SurfacePass& pass, gl::ProgramCache& programs, const Room& room) {
-  GpuScene gpu(programs, room.scene.assets);
-  const FrameResults frame = drawn(pass, gpu, room.scene);
-  const Image depth = readBuffer(Buffer::Depth, frame), normal = readBuffer(Buffer::Normal, frame);
-  const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
-  int differing = 0;
-  for (const auto [x, y] : Pixels(depth)) {
-    const CameraRay ray = pixelRay(room.scene.camera, x, y);
-    const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
-    const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
-    if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
+class GBufferTest : public GatherTest {
+ protected:
+  void expectAgreesWithRays(const Room& room) {
+    const GBuffer frame = surfaces(room.scene);
+    const Image depth = surfaceBuffer(Buffer::Depth, frame), normal = surfaceBuffer(Buffer::Normal, frame);
+    const vec3 forward = -vec3(room.scene.camera.worldFromView[2]);
+    int differing = 0;
+    for (const auto [x, y] : Pixels(depth)) {
+      const CameraRay ray = pixelRay(room.scene.camera, x, y);
+      const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+      const float wanted = glm::dot(hit.position - room.scene.camera.position(), forward);
+      if (std::abs(depth.at(x, y).x - wanted) > 1e-4f || glm::length(normal.at(x, y) - hit.normal) > 1e-3f) ++differing;
+    }
+    EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
   }
-  EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
-}
+};
 
-TEST_F(GBufferTest, PerspectiveAgreesWithRays) {
-  SurfacePass pass(passes);
-  expectAgreesWithRays(pass, programs, Room());
-}
+TEST_F(GBufferTest, PerspectiveAgreesWithRays) { expectAgreesWithRays(Room()); }
 
 TEST_F(GBufferTest, OrthographicAgreesWithRays) {
-  SurfacePass pass(passes);
   Room room;
   room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.85f), vec3(0, -0.1f, -1), 1);
   room.scene.camera.orthoHalfHeight = 0.6f; // all rays start inside the room
-  expectAgreesWithRays(pass, programs, room);
+  expectAgreesWithRays(room);
 }
 
 TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
-  SurfacePass pass(passes);
   const Room room;
-  GpuScene gpu(programs, room.scene.assets);
-  const FrameResults frame = drawn(pass, gpu, room.scene);
-  const Image albedo = readBuffer(Buffer::Albedo, frame), normal = readBuffer(Buffer::Normal, frame);
+  const GBuffer frame = surfaces(room.scene);
+  const Image albedo = surfaceBuffer(Buffer::Albedo, frame), normal = surfaceBuffer(Buffer::Normal, frame);
   EXPECT_GT(albedo.at(0, 24).x, albedo.at(0, 24).y) << "the red wall is on the left";
   EXPECT_GT(albedo.at(63, 24).y, albedo.at(63, 24).x);
   EXPECT_NEAR(normal.at(32, 0).y, -1, 1e-3f) << "the ceiling is at the top";
@@ -55,29 +41,25 @@ TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
 
 /// The product of what positions differ by between pixels is nothing in single precision; a direction is still needed.
 TEST_F(GBufferTest, PixelsOfALengthWithoutSquareHaveNormals) {
-  SurfacePass pass(passes);
   HandScene scene;
   scene.quad({-4e-11f, -4e-11f, -2e-11f}, {8e-11f, 0, 0}, {0, 8e-11f, 0}, scene.material(vec3(0.5f)));
   scene.assets.meshes[0].normals.assign(4, vec3(1, 0, 0)); // no help
   scene.camera = cameraAt(vec3(0), {0, 0, -1}, 1);
   scene.camera.near = 1e-13f;
-  GpuScene gpu(programs, scene.assets);
-  const FrameResults frame = drawn(pass, gpu, scene);
-  const Image normal = readBuffer(Buffer::Normal, frame);
+  const GBuffer frame = surfaces(scene);
+  const Image normal = surfaceBuffer(Buffer::Normal, frame);
   for (const vec3& n : normal.pixels) ASSERT_NEAR(glm::length(n), 1, 1e-3f);
-  EXPECT_GT(readBuffer(Buffer::Depth, frame).at(32, 24).x, 0);
+  EXPECT_GT(surfaceBuffer(Buffer::Depth, frame).at(32, 24).x, 0);
 }
 
 /// Behind a surface its shading normal is turned, not given up for that of the triangle.
 TEST_F(GBufferTest, BackSidesTurnTheShadingNormal) {
-  SurfacePass pass(passes);
   HandScene scene;
   scene.quad({-4, -4, -2}, {0, 8, 0}, {8, 0, 0}, scene.material(vec3(0.5f), vec3(0), true)); // its front looks away
   const vec3 tilted = glm::normalize(vec3(0.3f, 0, -1));
   scene.assets.meshes[0].normals.assign(4, tilted);
   scene.camera = cameraAt(vec3(0), {0, 0, -1}, 0.5f);
-  GpuScene gpu(programs, scene.assets);
-  const Image normal = readBuffer(Buffer::Normal, drawn(pass, gpu, scene));
+  const Image normal = surfaceBuffer(Buffer::Normal, surfaces(scene));
   for (const vec3& n : normal.pixels) ASSERT_LT(glm::length(n + tilted), 1e-3f);
 }
 
@@ -94,10 +76,8 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   mirror[3][0] = 2; // x → 2 - x keeps the quad in its place
   scene.instances[2].worldFromObject = mirror;
   scene.camera = cameraAt(vec3(0, 0, 4), vec3(0), 1.6f);
-  SurfacePass pass(passes);
-  GpuScene gpu(programs, scene.assets);
-  const FrameResults frame = drawn(pass, gpu, scene);
-  const Image emission = readBuffer(Buffer::Emission, frame), normal = readBuffer(Buffer::Normal, frame);
+  const GBuffer frame = surfaces(scene);
+  const Image emission = surfaceBuffer(Buffer::Emission, frame), normal = surfaceBuffer(Buffer::Normal, frame);
   // The picture is 64 pixels for 2·4·tan(0.8)·4/3 ≈ 10.98 m.
   const auto pixelAt = [](float x) { return int(32 + x * 64 / 10.98f); };
   EXPECT_EQ(emission.at(pixelAt(-3), 24).x, 2);
@@ -105,7 +85,7 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   EXPECT_EQ(emission.at(pixelAt(1), 24).x, 2);
   EXPECT_EQ(emission.at(pixelAt(3), 24).x, 3);
   for (float x : {-3.0f, -1.0f, 1.0f, 3.0f}) EXPECT_NEAR(normal.at(pixelAt(x), 24).z, 1, 1e-3f) << x;
-  EXPECT_EQ(readBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
+  EXPECT_EQ(surfaceBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
 }
 
 TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
@@ -122,10 +102,8 @@ TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   scene.quad(vec3(-2, -3, 0), vec3(4, 0, 0), vec3(0, 2, 0), plain);
   scene.assets.meshes[2].colors.assign(4, vec4(0.25f, 0.5f, 0.75f, 1));
   scene.camera = cameraAt(vec3(0, 0, 5), vec3(0), 1.0f);
-  SurfacePass pass(passes);
-  GpuScene gpu(programs, scene.assets);
-  const FrameResults frame = drawn(pass, gpu, scene);
-  const Image albedo = readBuffer(Buffer::Albedo, frame), depth = readBuffer(Buffer::Depth, frame);
+  const GBuffer frame = surfaces(scene);
+  const Image albedo = surfaceBuffer(Buffer::Albedo, frame), depth = surfaceBuffer(Buffer::Depth, frame);
   const float pixelsPerMetre = 24 / (5 * std::tan(0.5f));
   const auto at = [&](const Image& i, float x, float y) {
     return i.at(int(32 + x * pixelsPerMetre), int(24 - y * pixelsPerMetre));

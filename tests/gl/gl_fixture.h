@@ -6,17 +6,15 @@
 #include "engine/gl/program.h"
 #include "engine/platform/gl_context.h"
 #include "engine/trace/analytic_query.h"
-#include "engine/trace/embree_query.h"
 #include "gi/frame/composed_technique.h"
 #include "gi/lighting/dirty_region.h"
-#include "gi/lighting/light_set.h"
 #include "gi/sources/packed_lights.h"
 #include "gi/surfaces/surfaces.h"
 #include "gi/viewer/picture.h"
 #include "gi/viewer/viewer.h"
 #include "shaders/shared/paraboloid.h"
+#include "tests/support/hand_scene.h"
 #include "tests/support/images.h"
-#include "tests/support/traced_scene.h"
 
 namespace lambent::test {
 
@@ -46,6 +44,14 @@ inline gl::Texture textureOf(int width, int height, std::span<const vec4> texels
   gl::Texture texture("given", {.format = GL_RGBA32F, .width = width, .height = height});
   glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, texels.data());
   return texture;
+}
+
+/// Of an image, whose row 0 is at the top.
+inline gl::Texture textureOf(const Image& image) {
+  std::vector<vec4> texels;
+  for (int y = image.height - 1; y >= 0; --y)
+    for (int x = 0; x < image.width; ++x) texels.push_back(vec4(image.at(x, y), 1));
+  return textureOf(image.width, image.height, texels);
 }
 
 /// RGBA values of a float texture, row 0 at the bottom.

@@ -96,16 +96,11 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
   // Two metals side by side on one plane: a constant in the filter's input must come out in each one's own colour.
   HandScene scene;
   const vec3 colors[2] = {{1, 0.7f, 0.3f}, {0.5f, 0.6f, 0.9f}};
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 2; ++i)
     scene.quad({i ? 0.0f : -9.0f, -9, 0}, {9, 0, 0}, {0, 18, 0}, scene.glossyMaterial(colors[i], 0.5f, 1));
-  }
   scene.camera = cameraAt({0, 0, 3}, vec3(0), 1);
   const GBuffer gbuffer = surfaces(scene);
-  const gl::Texture black("black", {.format = GL_RGBA32F, .width = 64, .height = 48}),
-      constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 48});
-  black.clear();
-  const float value[4] = {2, 3, 4, 1};
-  glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
+  const gl::Texture black = textureOf(Image(64, 48)), constant = textureOf(Image(64, 48, vec3(2, 3, 4)));
   for (const bool on : {true, false})
     for (const FilterKernel kernel : {FilterKernel::Separable, FilterKernel::Whole}) {
       const SurfaceLighting raw{&black, &constant, true};

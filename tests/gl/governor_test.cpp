@@ -2,8 +2,6 @@
 // same on every machine; the pictures are real.
 #include "frames.h"
 #include "gi/plan/governor.h"
-#include "gi/viewer/viewer.h"
-#include "tests/support/images.h"
 
 namespace lambent::test::governor_test {
 

@@ -1,6 +1,5 @@
 #include "engine/gpu_trace/gpu_rays.h"
 
-#include "engine/core/sampling.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/random_world.h"
 
@@ -21,18 +20,12 @@ std::vector<Ray> raysIn(const Aabb& box, size_t count, uint32_t seed) {
 
 /// Rays of which the two say different things: something or nothing, or places that lie apart by more than both grains.
 int differences(const RayQuery& a, const RayQuery& b, std::span<const Ray> rays) {
-  std::vector<SurfaceHit> hitsA(rays.size()), hitsB(rays.size());
-  std::vector<float> t(rays.size());
-  std::vector<uint8_t> blocked(rays.size());
-  a.closest(rays, hitsA);
-  b.closest(rays, hitsB);
-  b.distances(rays, t);
-  b.occluded(rays, blocked);
+  const Answers byA(a, rays), byB(b, rays);
   int count = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
-    const SurfaceHit &x = hitsA[i], &y = hitsB[i];
-    EXPECT_EQ(t[i], y.t);
-    EXPECT_EQ(blocked[i] != 0, y.valid());
+    const SurfaceHit &x = byA.hits[i], &y = byB.hits[i];
+    EXPECT_EQ(byB.distances[i], y.t);
+    EXPECT_EQ(byB.blocked[i] != 0, y.valid());
     const auto apart = [&](float t) { return std::abs((x.t - t) * glm::dot(x.geometricNormal, rays[i].direction)); };
     if (x.valid() != y.valid() || (x.valid() && apart(y.t) > 2 * a.rayEpsilon())) {
       ++count;
@@ -88,17 +81,14 @@ TEST_F(GpuRaysTest, MasksAreCutOutAsEmbreeDoes) {
         Rng rng(5, Stream::Test, i);
         rays.push_back({{2 * rng.next() - 1, 1, 2 * rng.next() - 1}, {0, -1, 0}});
       }
-      std::vector<uint8_t> blocked(rays.size());
       EXPECT_LE(differences(embree, gpu, rays), 2);
-      embree.occluded(rays, blocked);
-      const auto through = std::count(blocked.begin(), blocked.end(), 0);
+      const auto through = Answers(embree, rays).free();
       EXPECT_GT(through, 500);
       EXPECT_LT(through, 3500);
       embree.setAlphaTest(AlphaTest::None);
       gpu.setAlphaTest(AlphaTest::None);
       EXPECT_EQ(differences(embree, gpu, rays), 0);
-      gpu.occluded(rays, blocked);
-      EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 0), 0);
+      EXPECT_EQ(Answers(gpu, rays).free(), 0);
     }
   }
 }
@@ -137,9 +127,7 @@ TEST_F(GpuRaysTest, NothingSlipsThroughJoints) {
     const vec3 at = glm::mix(mesh.positions[t.x], mesh.positions[t.y], i % 3 == 0 ? 0.0f : rng.next());
     rays.push_back({origin, at - origin});
   }
-  std::vector<uint8_t> blocked(rays.size());
-  gpu.occluded(rays, blocked);
-  EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 0), 0);
+  EXPECT_EQ(Answers(gpu, rays).free(), 0);
 }
 
 TEST_F(GpuRaysTest, RaysAlongAxesAndThatAreNone) {
@@ -161,8 +149,7 @@ TEST_F(GpuRaysTest, RaysAlongAxesAndThatAreNone) {
   rays.push_back({vec3(0), vec3(0, 0, 1), -1});
   rays.push_back({vec3(0), vec3(0)});
   rays.push_back({vec3(0), vec3(0, 0, 1), 0.999f}); // ends before the wall
-  std::vector<SurfaceHit> hits(rays.size());
-  gpu.closest(rays, hits);
+  const std::vector<SurfaceHit> hits = Answers(gpu, rays).hits;
   for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(hits[i].valid(), i < 6) << i;
   EXPECT_FLOAT_EQ(hits[0].t, 1.3f);
   gpu.closest(std::span<const Ray>(), std::span<SurfaceHit>()); // none is fine

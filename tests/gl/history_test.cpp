@@ -1,7 +1,6 @@
 // Light averaged over pictures: what it comes to in a still view, while the camera moves, and when light changes.
 #include "gi/plan/techniques.h"
 #include "still_room.h"
-#include "tests/support/images.h"
 
 namespace lambent::test::history_test {
 
@@ -20,11 +19,7 @@ class HistoryTest : public StillRoomTest {
     return s;
   }
   /// Every light at every pixel.
-  Image allLights() const {
-    Viewer gi(with(settings, GatherMode::Full, 0));
-    gi.run(room.scene.view());
-    return gi.read(Buffer::Irradiance);
-  }
+  Image allLights() const { return firstFrame(with(settings, GatherMode::Full, 0), room.scene.view()); }
 };
 
 TEST_F(HistoryTest, AStillViewComesToHoldEveryLightAndSleeps) {
@@ -52,14 +47,12 @@ TEST_F(HistoryTest, NearLightIsAveragedToo) {
   settings.history.frames = 64;
   Settings many = with(settings, GatherMode::Full, 0);
   many.gather.near = 256;
-  Viewer truth(many), one(with(settings, GatherMode::Interleaved, 0)), gi(settings);
-  truth.run(room.scene.view());
-  one.run(room.scene.view());
-  gi.run(room.scene.view());
-  for (int i = 1; i < 64; ++i) gi.run(still());
-  const Image expected = truth.read(Buffer::Irradiance), averaged = gi.read(Buffer::Irradiance);
+  Viewer gi(settings);
+  stand(gi, 64);
+  const Image expected = firstFrame(many, room.scene.view()), averaged = gi.read(Buffer::Irradiance),
+              one = firstFrame(with(settings, GatherMode::Interleaved, 0), room.scene.view());
   // One pattern for all pixels, unmixed: 0.52.
-  EXPECT_LT(relativeRmse(averaged, expected), 0.48 * relativeRmse(one.read(Buffer::Irradiance), expected));
+  EXPECT_LT(relativeRmse(averaged, expected), 0.48 * relativeRmse(one, expected));
   EXPECT_NEAR(meanLuminance(averaged), meanLuminance(expected), 0.01 * meanLuminance(expected));
 }
 
@@ -97,15 +90,13 @@ TEST_F(HistoryTest, TakesNoLightFromOtherSurfaces) {
     gi.run(view(kCameraChanged));
   }
   const Image last = gi.read(Buffer::Irradiance);
-  gi.settings() = with(settings, GatherMode::Full, 0); // the same lights
-  gi.run(still());
-  EXPECT_LT(relativeRmse(last, gi.read(Buffer::Irradiance)), 0.11); // 0.09; any plane taken: 0.13
+  gi.settings() = with(settings, GatherMode::Full, 0);         // the same lights
+  EXPECT_LT(relativeRmse(last, nextFrame(gi, still())), 0.11); // 0.09; any plane taken: 0.13
 }
 
 TEST_F(HistoryTest, FollowsLightThatChanges) {
   Viewer gi(settings);
-  gi.run(room.scene.view());
-  for (int i = 1; i < 20; ++i) gi.run(still());
+  stand(gi, 20);
   for (const float intensity : {4.0f, 0.25f, 0.3f}) { // twice at once, then by a fifth
     room.scene.lights[0].intensity = vec3(intensity);
     const double first = meanLuminance(nextFrame(gi, view(kLightsChanged))), wanted = meanLuminance(allLights());
@@ -120,8 +111,7 @@ TEST_F(HistoryTest, FollowsLightThatChanges) {
 /// The governor changes the picture's size while frames run: what is kept is looked up at the size that it has.
 TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
   Viewer gi(settings);
-  gi.run(room.scene.view());
-  for (int i = 1; i < 16; ++i) gi.run(still());
+  stand(gi, 16);
   for (const int width : {64, 48, 96}) {
     room.scene.picture(width, width * 3 / 4);
     const Image all = allLights(), one = firstFrame(settings, room.scene.view());
@@ -140,8 +130,7 @@ TEST_F(HistoryTest, ForgetsWhatIsNotItsOwn) {
     EXPECT_EQ(gi.read(Buffer::Irradiance).pixels, firstFrame(gi.settings(), shown.scene.view()).pixels) << what;
   };
   Viewer gi(settings);
-  gi.run(room.scene.view());
-  for (int i = 1; i < 5; ++i) gi.run(still());
+  stand(gi, 5);
   gi.settings().image.exposure = 2;
   gi.run(still());
   EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), allLights()), 0.05) << "what does not gather otherwise";
@@ -222,10 +211,8 @@ TEST_F(HistoryTest, IsAnEffectOfThePlan) {
   EXPECT_FALSE(full.run(still()).plan.on(EffectId::Redraw)) << "it sleeps";
   settings.effects[EffectId::History] = EffectMode::Off;
   settings.gather.mode = GatherMode::Interleaved;
-  Viewer off(settings), none(with(settings, GatherMode::Interleaved, 0));
-  off.run(room.scene.view());
-  none.run(room.scene.view());
-  EXPECT_EQ(off.read(Buffer::Irradiance).pixels, none.read(Buffer::Irradiance).pixels);
+  EXPECT_EQ(firstFrame(settings, room.scene.view()).pixels,
+            firstFrame(with(settings, GatherMode::Interleaved, 0), room.scene.view()).pixels);
 }
 
 /// Every technique that gathers sixteenths comes to hold all of them.
@@ -244,8 +231,7 @@ TEST_F(HistoryTest, TurnsTheClassesOfEveryGather) {
     part.history.frames = 16;
     Viewer whole(all), turned(part);
     whole.run(room.scene.view());
-    turned.run(room.scene.view());
-    for (int i = 1; i < 16; ++i) turned.run(still());
+    stand(turned, 16);
     EXPECT_LT(relativeRmse(turned.read(Buffer::Irradiance), whole.read(Buffer::Irradiance)), 2e-3) << technique;
   }
 }

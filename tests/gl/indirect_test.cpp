@@ -111,12 +111,9 @@ TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
 
 TEST_F(IndirectTest, FilterKeepsConstants) {
   Room room;
-  room.scene.camera.width = 61; // tiles with a ragged edge
-  room.scene.camera.height = 43;
+  room.scene.picture(61, 43); // tiles with a ragged edge
   const GBuffer gbuffer = surfaces(room.scene);
-  const gl::Texture constant("constant", {.format = GL_RGBA32F, .width = 64, .height = 44});
-  const float value[4] = {0.3f, 1.7f, 4000, 1};
-  glClearTexImage(constant.name(), 0, GL_RGBA, GL_FLOAT, value);
+  const gl::Texture constant = textureOf(Image(64, 44, vec3(0.3f, 1.7f, 4000)));
   const SurfaceLighting raw{&constant, nullptr, true};
   for (const bool on : {true, false}) {
     const Image image = read(Buffer::Irradiance, gbuffer, raw, filterPass.run({gbuffer, raw, {.on = on}}));
@@ -184,10 +181,9 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   scene.quad(vec3(-1, -10, 0), vec3(2, 0, 0), vec3(0, 20, 0), scene.material(vec3(0.5f, 0.25f, 1), vec3(0, 2, 0)));
   scene.camera = cameraAt(vec3(0, 0, 3), vec3(0), 1.2f);
   const GBuffer gbuffer = surfaces(scene);
-  const gl::Texture irradiance("irradiance", {.format = GL_RGBA32F, .width = 64, .height = 48});
-  std::vector<vec3> texels(64 * 48);
-  for (const auto [x, y] : Pixels(64, 48)) texels[size_t(47 - y) * 64 + x] = vec3(float(y + 1)); // rows from the bottom
-  glTextureSubImage2D(irradiance.name(), 0, 0, 0, 64, 48, GL_RGB, GL_FLOAT, texels.data());
+  Image rows(64, 48);
+  for (const auto [x, y] : Pixels(rows)) rows.at(x, y) = vec3(float(y + 1));
+  const gl::Texture irradiance = textureOf(rows);
   CompositePass composite(passes);
   const SurfaceLighting indirect{&irradiance}, direct{&irradiance};
   FrameResults results;

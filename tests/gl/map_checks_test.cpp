@@ -1,6 +1,5 @@
 // Rays that check shadow maps: averaged, they come to what a ray for every pair gives, and only where a view stands.
 #include "still_room.h"
-#include "tests/support/images.h"
 
 namespace lambent::test::map_checks_test {
 
@@ -9,8 +8,7 @@ class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface
   MapChecksTest() {
     settings.shadow.resolution = 16; // in whose texels the block's shadow is coarse
     room.scene.lights[0].intensity = {1, 0.8f, 0.5f};
-    room.scene.camera.width = 81; // no whole number of blocks
-    room.scene.camera.height = 54;
+    room.scene.picture(81, 54); // no whole number of blocks
   }
 
   /// Irradiance after 64 pictures of a still view.
@@ -18,8 +16,7 @@ class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface
     Settings s = settings;
     s.gather.checks = checks;
     Viewer gi(s);
-    gi.run(room.scene.view());
-    for (int i = 1; i < 64; ++i) gi.run(still());
+    stand(gi, 64);
     return gi.read(Buffer::Irradiance);
   }
 };

@@ -1,8 +1,5 @@
 // Which maps are drawn again where objects moved: the texels a box covers, a part drawn anew against the whole, who
 // sees a mover, and the order of the queue.
-#include "engine/core/parallel.h"
-#include "engine/core/rng.h"
-#include "engine/core/sampling.h"
 #include "gi/visibility/map_schedule.h"
 #include "gi/visibility/paraboloid_maps.h"
 #include "gl_fixture.h"

@@ -6,23 +6,21 @@ namespace lambent::test::maps_test {
 
 class MapsTest : public GatherTest {
  protected:
-  ParaboloidMapInputs inputs(const Room& room) {
-    gpu = std::make_unique<GpuScene>(programs, room.scene.assets);
-    gpu->place(room.scene.instances);
-    return {.scene = *gpu, .rays = &room.rays, .poses = poses, .jobs = jobs, .farDistance = 3.5f, .resolution = 64};
+  MapsTest() { gpu.place(room.scene.instances); }
+  ParaboloidMapInputs inputs() const {
+    return {.scene = gpu, .rays = &room.rays, .poses = poses, .jobs = jobs, .farDistance = 3.5f, .resolution = 64};
   }
 
-  std::unique_ptr<GpuScene> gpu;
-  std::vector<MapPose> poses;
+  Room room;
+  GpuScene gpu{programs, room.scene.assets};
+  std::vector<MapPose> poses{{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}}; // on the floor
   std::vector<MapJob> jobs;
+  ParaboloidMapPass pass{passes, StageId::VplMaps};
 };
 
 /// Rows of the rays' maps are packed as tightly as the convention says; another alignment for them was left behind.
 TEST_F(MapsTest, MakersLeaveThePixelStoreAlone) {
-  const Room room;
-  ParaboloidMapPass pass(passes, StageId::VplMaps);
-  poses = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}};
-  ParaboloidMapInputs in = inputs(room);
+  ParaboloidMapInputs in = inputs();
   in.maker = ShadowMaker::Rays;
   in.resolution = 33;
   pass.run(in);
@@ -32,9 +30,7 @@ TEST_F(MapsTest, MakersLeaveThePixelStoreAlone) {
 }
 
 TEST_F(MapsTest, MakersAgree) {
-  const Room room;
-  const ParaboloidMapInputs in = inputs(room);
-  ParaboloidMapPass pass(passes, StageId::VplMaps);
+  const ParaboloidMapInputs in = inputs();
   const vec3 tilted = glm::normalize(vec3(0.2f, 1, -0.3f));
   const MapPose all[] = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}, {{-1, 0.2f, 0.1f}, {1, 0, 0}, {1, 0, 0}},
                          {{1, 0, 0.5f}, {-1, 0, 0}, {-1, 0, 0}},   {{0.1f, 1, 0}, {0, -1, 0}, {0, -1, 0}},
@@ -60,13 +56,11 @@ TEST_F(MapsTest, MakersAgree) {
 }
 
 TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
-  const Room room;
-  poses = {{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}};
   jobs = {{0, TexelRect::whole(64)}};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
-    ParaboloidMapInputs in = inputs(room);
+    ParaboloidMapInputs in = inputs();
     in.maker = maker;
-    ParaboloidMapPass pass(passes, StageId::VplMaps);
+    ParaboloidMapPass pass(passes, StageId::VplMaps); // nothing drawn yet
     const ParaboloidMaps maps = pass.run(in);
     EXPECT_EQ(pass.mapsDrawn(), 1u);
     ASSERT_EQ(maps.arrays.size(), 1u);
@@ -76,15 +70,15 @@ TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
     pass.run(in);
     const std::vector<float> finely = pass.readLayer(0);
     for (size_t i = 0; i < finely.size(); i += 7)
-      if (distances[i] > 0.1f && distances[i] < 3) EXPECT_NEAR(finely[i], distances[i], 0.001f) << i;
+      if (distances[i] > 0.1f && distances[i] < 3) {
+        EXPECT_NEAR(finely[i], distances[i], 0.001f) << i;
+      }
   }
 }
 
 TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
-  const Room room;
-  poses.assign(20, {{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}});
-  const ParaboloidMapInputs in = inputs(room);
-  ParaboloidMapPass pass(passes, StageId::VplMaps);
+  poses.resize(20, poses[0]);
+  const ParaboloidMapInputs in = inputs();
   pass.run(in);
   EXPECT_EQ(pass.mapsDrawn(), 20u) << "a new array starts with all of its maps";
   const std::string report = pass.maker().report();
@@ -99,24 +93,21 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
 }
 
 TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
-  const Room room;
-  poses.assign(2100, {{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}});
-  ParaboloidMapInputs in = inputs(room);
+  poses.resize(2100, poses[0]);
+  ParaboloidMapInputs in = inputs();
   in.resolution = 8;
   in.maker = ShadowMaker::Rays;
-  ParaboloidMapPass pass(passes, StageId::VplMaps);
   EXPECT_EQ(pass.run(in).arrays.size(), 2u);
   EXPECT_EQ(pass.readLayer(0), pass.readLayer(2099));
 }
 
 /// A VPL on the floor lights the room through its map exactly where a ray from it is free.
 TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
-  Room room;
   room.scene.picture(96, 72);
   const VirtualLight vpl = lightAt({0.6f, -1, 0}, {0, 1, 0}, vec3(1), 0.01f);
   poses = {vpl.pose(1e-4f)};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {
-    ParaboloidMapInputs in = inputs(room);
+    ParaboloidMapInputs in = inputs();
     in.resolution = 128;
     in.maker = maker;
     ParaboloidMapPass mapPass(passes, StageId::VplMaps);

@@ -15,9 +15,7 @@ struct Island {
 };
 
 TEST_F(MultiresTest, NoPatchIsSmallerThanTheFinest) {
-  Room room;
-  room.scene.picture(128, 96);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(128, 96);
   uint64_t before = ~0ull;
   for (int level = 0; level <= 4; ++level) {
     const MultiresSettings settings{.coarsest = 8, .finest = 1 << level};
@@ -43,9 +41,7 @@ TEST_F(MultiresTest, NoPatchIsSmallerThanTheFinest) {
 
 /// What makes a patch of the finest size split if it might be, splits those that it is part of.
 TEST_F(MultiresTest, AboveTheFinestPatchesAreThoseOfPixels) {
-  Room room;
-  room.scene.picture(128, 96);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(128, 96);
   for (const bool edges : {true, false}) {
     multires(gbuffer, roomLights(), {.coarsest = 8, .balance = false, .edges = edges});
     const std::vector<int> single = patchLevels(gbuffer);
@@ -93,8 +89,7 @@ TEST_F(MultiresTest, FinestPatchesLightEveryPixelOfASurface) {
 }
 
 TEST_F(MultiresTest, SplattingIsGatheringAtFinestPatchesToo) {
-  Room room;
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces();
   const MultiresSettings settings{.coarsest = 4, .finest = 4, .light = 0};
   const Image gather = multires(gbuffer, roomLights(), {.coarsest = 4, .finest = 4});
   const Image splat = multires(gbuffer, roomLights(), settings, GatherMode::Splat);
@@ -111,9 +106,7 @@ TEST_F(MultiresTest, SplattingIsGatheringAtFinestPatchesToo) {
 
 /// Paper 2, 3.3.1, over view depths that nothing but the picture tells.
 TEST_F(MultiresTest, DepthSplitsWhereItsRangeIsTooLarge) {
-  Room room;
-  room.scene.picture(128, 96);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(128, 96);
   const std::vector<float> depth = depths(gbuffer);
   for (const float threshold : {0.01f, 0.05f, 0.3f}) {
     multires(gbuffer, roomLights(),
@@ -190,8 +183,7 @@ TEST_F(MultiresTest, BilinearLeaksOverAnEdgeAndBilateralDoesNot) {
 
 /// Paper 2, section 3.5, done once more from every pixel's light.
 TEST_F(MultiresTest, BilinearIsThePapersUpsampling) {
-  const Room room;
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces();
   const Image full = gathered(gbuffer, roomLights(), GatherMode::Full);
   const Image image =
       multires(gbuffer, roomLights(), {.coarsest = 4, .balance = false, .upsample = PatchUpsample::Bilinear});
@@ -234,9 +226,7 @@ TEST_F(MultiresTest, BilinearIsThePapersUpsampling) {
 
 /// As the paper's figure 3: nothing comes from texels that hold no light, and nothing goes to them.
 TEST_F(MultiresTest, AConstantStaysConstantUpsampledEitherWay) {
-  Room room;
-  room.scene.picture(131, 77);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(131, 77);
   std::vector<VirtualLight> lights;
   for (const vec3& axis : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)})
     for (const float side : {-1e6f, 1e6f}) lights.push_back(lightAt(side * axis, -side / 1e6f * axis, vec3(1e12f), 1));
@@ -252,9 +242,7 @@ TEST_F(MultiresTest, AConstantStaysConstantUpsampledEitherWay) {
 
 /// Glossy light too.
 TEST_F(MultiresTest, GlossyLightOfFinestPatchesIsUpsampledEitherWay) {
-  Room room;
-  for (Material& m : room.scene.assets.materials) m.roughness = m.metalness = 0.5f;
-  const GBuffer gbuffer = surfaces(room.scene, true);
+  const GBuffer gbuffer = glossyRoomSurfaces();
   float lo = kInfinity, hi = 0;
   for (const vec4& g : glossyTexels(gbuffer, GatherMode::Full, {})) lo = std::min(lo, g.x), hi = std::max(hi, g.x);
   for (const PatchUpsample upsample : {PatchUpsample::Bilateral, PatchUpsample::Bilinear})

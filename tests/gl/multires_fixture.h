@@ -41,6 +41,16 @@ inline std::vector<VirtualLight> roomLights() { return lightsIn(vec3(-0.9f), vec
 
 class MultiresTest : public GatherTest {
  protected:
+  Room room;
+  GBuffer roomSurfaces(int width = 64, int height = 48, bool glossy = false) {
+    room.scene.picture(width, height);
+    return surfaces(room.scene, glossy);
+  }
+  /// As when surfaces reflect half of the light in lobes.
+  GBuffer glossyRoomSurfaces() {
+    for (Material& m : room.scene.assets.materials) m.roughness = m.metalness = 0.5f;
+    return roomSurfaces(64, 48, true);
+  }
   Image gathered(const GBuffer& gbuffer, const std::vector<VirtualLight>& lights, GatherMode mode) {
     return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, with(mode)));
   }

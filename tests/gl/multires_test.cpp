@@ -4,10 +4,8 @@
 namespace lambent::test::multires_test {
 
 TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
-  Room room;
   for (const glm::ivec2 size : {glm::ivec2(64, 48), glm::ivec2(131, 77)}) {
-    room.scene.picture(size.x, size.y);
-    const GBuffer gbuffer = surfaces(room.scene);
+    const GBuffer gbuffer = roomSurfaces(size.x, size.y);
     const MultiresSettings settings{.coarsest = 4, .depth = 0};
     const Image full = gathered(gbuffer, roomLights(), GatherMode::Full);
     EXPECT_EQ(multires(gbuffer, roomLights(), settings).pixels, full.pixels);
@@ -18,9 +16,7 @@ TEST_F(MultiresTest, ThresholdZeroIsTheGatherAtEveryPixel) {
 
 /// Six lights far away, one along each axis, light every face of axis-aligned boxes alike.
 TEST_F(MultiresTest, AConstantStaysConstant) {
-  Room room;
-  room.scene.picture(131, 77);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(131, 77);
   std::vector<VirtualLight> lights(16 * 6, VirtualLight{}); // every class has all six
   for (int i = 0; i < 6; ++i) {
     vec3 axis(0);
@@ -44,9 +40,7 @@ TEST_F(MultiresTest, AConstantStaysConstant) {
 /// Each level is interpolated between the four patches of the next coarser one that are around it, so what comes to a
 /// pixel was gathered within one and a half sides of a patch, on surfaces that face its way.
 TEST_F(MultiresTest, NothingIsBrighterOrDarkerThanWhatWasGatheredAroundIt) {
-  Room room;
-  room.scene.picture(128, 96);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(128, 96);
   const std::vector<VirtualLight> lights = lightsIn(vec3(0, -0.5f, 0), vec3(0.5f), 40); // none close to a wall
   const Image full = gathered(gbuffer, lights, GatherMode::Full);
   const Image image = multires(gbuffer, lights, {.coarsest = 4});
@@ -175,9 +169,7 @@ TEST_F(MultiresTest, NoPatchHoldsBackground) {
 }
 
 TEST_F(MultiresTest, NeighboursDifferByOneLevelAtMost) {
-  Room room;
-  room.scene.picture(256, 192);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(256, 192);
   for (const bool balance : {true, false}) {
     multires(gbuffer, roomLights(), {.coarsest = 4, .balance = balance});
     const std::vector<int> levels = patchLevels(gbuffer);
@@ -232,9 +224,7 @@ TEST_F(MultiresTest, NoLightLeaksOverAnEdge) {
 }
 
 TEST_F(MultiresTest, SplattingIsGatheringTheOtherWayRound) {
-  Room room;
-  room.scene.picture(131, 77);
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces(131, 77);
   const MultiresSettings settings{.coarsest = 4, .light = 1e9f};
   for (const int count : {40, 2100}) { // two chunks of lights
     const std::vector<VirtualLight> lights = lightsIn(vec3(-0.9f), vec3(0.9f), count);
@@ -269,9 +259,7 @@ TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
 
 /// Glossy light goes the same ways.
 TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
-  Room room;
-  for (Material& m : room.scene.assets.materials) m.roughness = m.metalness = 0.5f;
-  const GBuffer gbuffer = surfaces(room.scene, true);
+  const GBuffer gbuffer = glossyRoomSurfaces();
   ASSERT_NE(gbuffer.roughnessMetalness, nullptr);
   const std::vector<vec4> full = glossyTexels(gbuffer, GatherMode::Full, {});
   ASSERT_EQ(full.size(), 64u * 48);
@@ -294,8 +282,7 @@ TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
 
 /// α of paper 2, equation 2.
 TEST_F(MultiresTest, SurfaceDetailDarkensWhatTurnsAway) {
-  const Room room;
-  const GBuffer gbuffer = surfaces(room.scene);
+  const GBuffer gbuffer = roomSurfaces();
   const Image plain = multires(gbuffer, roomLights(), {.coarsest = 4});
   const Image detailed = multires(gbuffer, roomLights(), {.coarsest = 4, .detail = 0.5f});
   const Image normal = surfaceBuffer(Buffer::Normal, gbuffer);

@@ -1,7 +1,6 @@
 // Every preset draws.
 #include "frames.h"
 #include "gi/plan/presets.h"
-#include "gi/viewer/viewer.h"
 
 namespace lambent::test::preset_test {
 

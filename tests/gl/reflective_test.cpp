@@ -61,6 +61,7 @@ class ReflectiveTest : public GatherTest {
     return read(Buffer::Unfiltered, gbuffer, GatherTest::gathered(gbuffer, lights, with(mode)));
   }
 
+  Room room;
   Aabb bounds;
   ReflectiveMapPass mapPass{passes};
   ReflectiveLightPass lightPass{passes};
@@ -190,7 +191,6 @@ TEST_F(ReflectiveTest, ASunReflectsWhatFallsOnThePlane) {
 }
 
 TEST_F(ReflectiveTest, ClustersAndTreesKeepFluxAndArea) {
-  const Room room;
   place(room.scene);
   const std::vector<LightView> lights{sunLight(4), pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3)),
                                       spotLight(vec3(-0.4f, 0.8f, 0.5f), vec3(0.2f, -1, -0.5f))};
@@ -237,7 +237,6 @@ TEST_F(ReflectiveTest, ClustersStandInTheMiddleOfTheirFlux) {
 
 /// Clusters around a corner face neither wall, and their mean normal is short. As long as it is, it would lose light.
 TEST_F(ReflectiveTest, CoarseClustersLoseNoLight) {
-  const Room room;
   place(room.scene);
   const RsmSettings fine{.resolution = 64, .coarsest = 4, .finest = 64, .tau = 1e-6f};
   RsmSettings coarse = fine;
@@ -249,7 +248,6 @@ TEST_F(ReflectiveTest, CoarseClustersLoseNoLight) {
 }
 
 TEST_F(ReflectiveTest, AGridWaitsForNothingAndClustersOnce) {
-  const Room room;
   place(room.scene);
   std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
   const RsmSettings rsm{.resolution = 32};
@@ -288,7 +286,6 @@ TEST_F(ReflectiveTest, DarkClustersAreNoVpls) {
 
 /// Every texel a light: grid, finest clusters and whole tree are the same sum.
 TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
-  const Room room;
   place(room.scene);
   const std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1, 2, 3))};
   const RsmSettings rsm{
@@ -306,7 +303,6 @@ TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
 /// Larger τ takes coarser clusters: less work, more error. At 0 every cluster is looked at that holds anything, at 1
 /// the coarsest alone, at every pixel.
 TEST_F(ReflectiveTest, TheCutFollowsTau) {
-  const Room room;
   place(room.scene);
   const GBuffer gbuffer = surfacePass.run({placed->gpu(), room.scene.camera});
   TurnCounter counter(profiler);
@@ -345,7 +341,6 @@ TEST_F(ReflectiveTest, TheCutFollowsTau) {
 /// Where a light or the camera moves by a centimetre, some clusters come to be refined and some no longer are. One of
 /// them brings its exitance times τ at most, and its parts about as much, so no pixel's error jumps by more.
 TEST_F(ReflectiveTest, ASmallMoveChangesTheCutByLittle) {
-  Room room;
   place(room.scene);
   constexpr float kTau = RsmSettings{}.tau;
   RsmSettings rsm{.resolution = 64, .coarsest = 8, .finest = 64};
@@ -429,7 +424,6 @@ TEST_F(ReflectiveTest, AClusterThatIsNotRefinedBringsLessThanTau) {
 
 /// However deep the trees: draws that begin and end within one bring the same light.
 TEST_F(ReflectiveTest, TreesInPartsAreTheSameLight) {
-  Room room;
   room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 16, 12);
   place(room.scene);
   const std::vector<LightView> lights{spotLight(vec3(-0.2f, 0.9f, 0.5f), vec3(0.1f, -1, -0.4f))};
@@ -454,7 +448,6 @@ TEST_F(ReflectiveTest, TreesInPartsAreTheSameLight) {
 
 TEST_F(ReflectiveTest, NoFragmentTurnsForLong) {
   TurnCounter counter(profiler);
-  Room room;
   room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.95f), vec3(0, -0.1f, -1), 1.4f, 8, 6);
   place(room.scene);
   const GBuffer gbuffer = surfacePass.run({placed->gpu(), room.scene.camera});
@@ -514,7 +507,6 @@ TEST_F(ReflectiveTest, SubsetsOfPixelsShareTheTree) {
 }
 
 TEST_F(ReflectiveTest, OnlyWhatChangedIsDrawn) {
-  const Room room;
   place(room.scene);
   std::vector<LightView> lights{pointLight(vec3(0.3f, 0.5f, 0.4f), vec3(1)),
                                 spotLight(vec3(0, 0.9f, 0), vec3(0, -1, 0.1f))};

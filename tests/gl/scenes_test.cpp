@@ -1,28 +1,15 @@
 // More scenes than one: beside each other in one context, and one where another was.
-#include "gi/viewer/viewer.h"
-#include "gl_fixture.h"
-#include "tests/support/images.h"
+#include "frames.h"
 
-#include <cstring>
-#include <optional>
-
-namespace lambent::test {
-
-namespace {
-
-bool sameBits(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
-}
+namespace lambent::test::scenes_test {
 
 /// The room with a lamp, and a block more where `more`.
 struct LitRoom : Room {
   explicit LitRoom(bool more = false) {
-    scene.lights.push_back({.position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     if (!more) return;
     scene.box(vec3(0.3f, -1, 0), vec3(0.6f, -0.2f, 0.3f), scene.material({0.1f, 0.2f, 0.8f}), false);
-    scene.camera.width = 40;
-    scene.camera.height = 56;
+    scene.picture(40, 56);
   }
 };
 
@@ -41,8 +28,6 @@ Settings small() {
   return s;
 }
 
-} // namespace
-
 class ScenesTest : public GlTest {
  protected:
   /// The n-th frame of a world: its lamp moves.
@@ -50,10 +35,7 @@ class ScenesTest : public GlTest {
     LightView& lamp = room.scene.lights.front();
     lamp.position.x = 0.3f - 0.1f * float(n);
     lamp.changed = n > 0;
-    SceneView view = room.scene.view();
-    if (n > 0) view.changes = {.first = false, .camera = false, .lights = true, .geometry = false, .instances = false};
-    gi.run(view);
-    return gi.read(Buffer::Beauty);
+    return nextFrame(gi, room.scene.view(n > 0 ? kLightsChanged : SceneChanges{}), Buffer::Beauty);
   }
 };
 
@@ -86,10 +68,7 @@ TEST_F(ScenesTest, TwoViewsOfOneSceneDrawWhatEachDrawsAlone) {
   const LitRoom room;
   SceneView views[2] = {room.scene.view(), room.scene.view()};
   views[1].camera = cameraAt(vec3(-0.6f, 0.5f, 0.8f), vec3(0.2f, -0.6f, -0.5f), 1.1f, 40, 30);
-  const auto run = [&](Viewer& gi, int v) {
-    gi.run(views[v]);
-    return gi.read(Buffer::Beauty);
-  };
+  const auto run = [&](Viewer& gi, int v) { return nextFrame(gi, views[v], Buffer::Beauty); };
   Image alone[2];
   for (int v = 0; v < 2; ++v) {
     Viewer gi(small());
@@ -110,9 +89,7 @@ TEST_F(ScenesTest, OneWhereAnotherWasIsDrawn) {
     applyTechnique(settings, technique);
     const LitRoom second(true);
     Viewer fresh(settings);
-    fresh.run(second.scene.view());
-    const Image expected = fresh.read(Buffer::Beauty);
-
+    const Image expected = nextFrame(fresh, second.scene.view(), Buffer::Beauty);
     Viewer gi(settings);
     std::optional<LitRoom> room(std::in_place, false);
     const SceneAssets* const place = &room->scene.assets;
@@ -120,8 +97,7 @@ TEST_F(ScenesTest, OneWhereAnotherWasIsDrawn) {
     room.reset();
     room.emplace(true);
     ASSERT_EQ(&room->scene.assets, place);
-    gi.run(room->scene.view());
-    const Image image = gi.read(Buffer::Beauty);
+    const Image image = nextFrame(gi, room->scene.view(), Buffer::Beauty);
     if (needsOf(settings).reflective())
       EXPECT_TRUE(sameBits(image, expected)) << technique;
     else // sampled with the numbers of another frame
@@ -159,4 +135,4 @@ TEST_F(ScenesTest, OneThatIsAssignedCopiedOrMovedIsOpenedAgain) {
   EXPECT_TRUE(sameBits(gi.read(Buffer::Albedo), before));
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::scenes_test

@@ -4,8 +4,6 @@
 #include "engine/gl/program.h"
 #include "tests/support/files.h"
 
-#include <chrono>
-
 namespace lambent::test {
 
 /// A copy of the shader folder, removed at the end.

@@ -2,17 +2,10 @@
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
 #include "engine/gl/state_guard.h"
-#include "gi/viewer/viewer.h"
 #include "gl_fixture.h"
 #include "tests/support/host_state.h"
-#include "tests/support/images.h"
 
-#include <chrono>
-#include <cstring>
-
-namespace lambent::test {
-
-namespace {
+namespace lambent::test::state_guard_test {
 
 /// A room with one of everything that passes have state for: lights of all types, something that glows, a textured
 /// surface with a cut-out alpha, a shape of its own, and a sky.
@@ -29,21 +22,17 @@ struct FullRoom : Room {
                      .direction = glm::normalize(vec3(0.2f, -1, -0.3f)),
                      .intensity = vec3(0.5f)}};
     scene.quad(vec3(-0.2f, 0.95f, -0.2f), vec3(0.4f, 0, 0), vec3(0, 0, 0.4f), scene.material(vec3(0), vec3(3)));
-    TextureImage& image = scene.assets.images.emplace_back();
-    image.width = image.height = 2;
-    image.texels = {u8vec4(255), u8vec4(90, 200, 90, 0), u8vec4(90, 200, 90, 255), u8vec4(255)};
+    scene.texture(2, {u8vec4(255), u8vec4(90, 200, 90, 0), u8vec4(90, 200, 90, 255), u8vec4(255)});
     const uint32_t textured = scene.material(vec3(1));
     Material& material = scene.assets.materials[textured];
     material.baseColorTexture.image = material.roughnessMetalnessTexture.image = 0;
     material.alphaMode = AlphaMode::Mask;
     material.roughness = 0.4f;
     scene.quad(vec3(0.1f, -0.9f, -0.5f), vec3(0.6f, 0, 0), vec3(0, 0.6f, 0), textured);
-    scene.assets.meshes.push_back(sheet(4, scene.material(vec3(0.5f))));
-    const uint32_t waving = scene.instance(uint32_t(scene.assets.meshes.size() - 1),
-                                           glm::scale(glm::translate(mat4(1), vec3(0.5f, -0.2f, -0.9f)), vec3(0.3f)));
+    const uint32_t waving = scene.add(sheet(4, scene.material(vec3(0.5f))),
+                                      glm::scale(glm::translate(mat4(1), vec3(0.5f, -0.2f, -0.9f)), vec3(0.3f)));
     scene.reshape(waving, waves(scene.assets.meshes.back(), 0.2f, 0));
-    scene.camera.width = 48;
-    scene.camera.height = 32;
+    scene.picture(48, 32);
   }
 };
 
@@ -132,13 +121,6 @@ std::vector<Step> allSteps() {
   return steps;
 }
 
-bool sameBits(const Image& a, const Image& b) {
-  return a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
-}
-
-} // namespace
-
 class StateGuardTest : public GlTest {
  protected:
   StateGuardTest() { settings.image.exposure = 1; }
@@ -153,9 +135,7 @@ TEST_F(StateGuardTest, EveryTechniqueLeavesEveryBindingOfItsHost) {
   Viewer gi(settings);
   const auto frame = [&](const Step& step) -> const FrameStats& {
     step.edit(gi.settings());
-    SceneView view = room.scene.view();
-    if (step.still) view.changes = {false, false, false, false, false};
-    return gi.run(view);
+    return gi.run(room.scene.view(step.still ? kStill : SceneChanges{}));
   };
   const gl::Texture target("host/target", {.width = 64, .height = 48});
   const gl::Framebuffer framebuffer("host/target", {&target});
@@ -359,4 +339,4 @@ TEST_F(StateGuardTest, CostsLittle) {
   EXPECT_LT(inner, 100);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::state_guard_test

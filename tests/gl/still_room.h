@@ -21,6 +21,11 @@ class StillRoomTest : public GlTest {
     return v;
   }
   SceneView still() const { return view(kStill); }
+  /// So many pictures of a view that stands.
+  void stand(Viewer& gi, int pictures) const {
+    gi.run(room.scene.view());
+    for (int i = 1; i < pictures; ++i) gi.run(still());
+  }
 
   Room room;
   Settings settings;

@@ -5,9 +5,6 @@
 
 #include "tests/support/test.h"
 
-#include <fstream>
-#include <sstream>
-
 namespace lambent::test::sweeps_test {
 
 TEST(Sweeps, EverySettingIsAKnobOrSaysWhyNot) {

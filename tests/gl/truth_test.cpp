@@ -1,15 +1,13 @@
 // The truth beside the picture, and the picture's error against it as colours.
-#include "gi/gather/add_pixels.h"
 #include "gl_fixture.h"
 #include "shaders/shared/error_color.h"
 
 namespace lambent::test::truth_test {
 
-class TruthTest : public GlTest {
+class TruthTest : public GatherTest {
  protected:
   TruthTest() {
-    placed_ = std::make_unique<PlacedScene>(programs, room_.scene);
-    frame_.surfaces = surfacePass_.run({placed_->gpu(), room_.scene.camera});
+    frame_.surfaces = surfaces(room_.scene);
     width_ = frame_.surfaces.width;
     height_ = frame_.surfaces.height;
     frame_.farDistance = 3.5f;
@@ -23,10 +21,11 @@ class TruthTest : public GlTest {
                                           std::sin(0.1f * float(x * y) + phase));
     return image;
   }
-  gl::Texture uploaded(const Image& image) const {
-    gl::Texture texture("radiance", {.format = GL_RGBA32F, .width = width_, .height = height_});
-    uploadPixels(texture, image.pixels, frame_.surfaces, 1);
-    return texture;
+  /// All light of the frame.
+  void fill() {
+    texture_ = textureOf(waves(1));
+    frame_.indirect = frame_.direct = {&texture_};
+    frame_.picture = {&texture_};
   }
 
   /// What `draw(framebuffer)` leaves, row 0 at the top.
@@ -44,23 +43,22 @@ class TruthTest : public GlTest {
   }
 
   Room room_;
-  std::unique_ptr<PlacedScene> placed_;
-  SurfacePass surfacePass_{passes};
   FrameResults frame_;
+  gl::Texture texture_;
   int width_ = 0, height_ = 0;
   DisplayPass display_{passes};
   TruthDisplay truth_{passes};
 };
 
 TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
-  const gl::Texture picture = uploaded(waves(0));
+  const gl::Texture picture = textureOf(waves(0));
   frame_.picture = {&picture};
   const Look look{1.5f, ToneMapper::Filmic, true, AntiAliasing::Edges};
   truth_.take(waves(2), frame_);
   const gl::Texture& right = truth_.run(Buffer::Beauty, frame_, look);
   display_.run(Buffer::Beauty, frame_, look);
   const Image8 gi = display_.read();
-  const gl::Texture other = uploaded(waves(2)); // the truth as a frame's own picture
+  const gl::Texture other = textureOf(waves(2)); // the truth as a frame's own picture
   FrameResults exact;
   exact.surfaces = frame_.surfaces;
   exact.picture = {&other};
@@ -83,10 +81,7 @@ TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
 }
 
 TEST_F(TruthTest, TheTruthOfEveryBufferIsShownAsTheBuffer) {
-  const Image values = waves(1);
-  const gl::Texture texture = uploaded(values);
-  frame_.indirect = frame_.direct = {&texture};
-  frame_.picture = {&texture};
+  fill();
   const Look look{0.7f, ToneMapper::Neutral, true, AntiAliasing::Off};
   for (const Buffer buffer : {Buffer::Beauty, Buffer::Direct, Buffer::Indirect, Buffer::Irradiance}) {
     display_.run(buffer, frame_, look);
@@ -110,10 +105,7 @@ TEST_F(TruthTest, NoErrorIsBlackAndItsSignAndSizeAreColours) {
       EXPECT_GT(luminance(errorColor(sign * (e + 0.01f))), luminance(errorColor(sign * e))) << "more is lighter";
   for (float e = 0.05f; e <= 1; e += 0.05f) EXPECT_GT(errorColor(e).x, errorColor(-e).x) << "which is which";
 
-  const Image values = waves(1);
-  const gl::Texture texture = uploaded(values);
-  frame_.indirect = frame_.direct = {&texture};
-  frame_.picture = {&texture};
+  fill();
   const Look look{3, ToneMapper::Reinhard, true, AntiAliasing::Edges}; // neither exposure nor smoothing matters
   for (const Buffer buffer : {Buffer::Beauty, Buffer::Direct, Buffer::Indirect, Buffer::Irradiance}) {
     const Image picture = readBuffer(buffer, frame_);

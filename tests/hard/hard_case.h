@@ -6,8 +6,6 @@
 #include "gi/plan/settings.h"
 #include "tests/support/hand_scene.h"
 
-#include <functional>
-
 namespace lambent::test {
 
 /// A world that may change from frame to frame.

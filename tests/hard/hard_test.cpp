@@ -1,17 +1,13 @@
 // Every hard case with every technique: all that can be read is finite, and not negative but for estimates of
 // irradiance; energy lies between bounds, where a case says so frames follow each other, positions, normals and light
 // of the virtual lights are whole, and GL has nothing to say.
-#include "engine/core/error.h"
 #include "gi/measure/runs/runs.h"
 #include "gi/plan/presets.h"
 #include "hard_case.h"
 #include "tests/gl/gl_fixture.h"
-#include "tests/support/effort.h"
+#include "tests/support/files.h"
 
-#include <fstream>
 #include <iomanip>
-#include <iterator>
-#include <sstream>
 
 namespace lambent::test::hard_test {
 
@@ -80,7 +76,9 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
                          : needs.lights == LightSupply::Fixed
                              ? name == "AllLightsRide" || name == "Slit" || name == "LongCorridor"
                              : false;
-    if (needs.sampled() && !tooDark) EXPECT_GE(mean, kLeastOfOthers * c.bounds.least) << "too little light";
+    if (needs.sampled() && !tooDark) {
+      EXPECT_GE(mean, kLeastOfOthers * c.bounds.least) << "too little light";
+    }
     return;
   }
   for (const auto& [name, value] : {std::pair("least", c.bounds.least), {"most", c.bounds.most}, {"irradiance", mean}})
@@ -117,9 +115,8 @@ TEST_F(LongHardTest, StaysWhole) {
 }
 
 TEST(HardCases, AreInTheDocument) {
-  std::ifstream in("docs/measurements/hard-cases.md");
-  ASSERT_TRUE(in) << "run from the root of the source tree";
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = readBytes("docs/measurements/hard-cases.md");
+  ASSERT_FALSE(text.empty()) << "run from the root of the source tree";
   for (const auto* cases : {&hardCases(), &longCases()})
     for (const HardCase& c : *cases) EXPECT_NE(text.find(std::string("| ") + c.name + " |"), text.npos) << c.name;
 }

@@ -2,13 +2,9 @@
 // second one that shares its objects, on a thread of their own, give it textures. This program has neither GLFW nor
 // engine/platform in it.
 #include "contexts.h"
-#include "engine/core/error.h"
 #include "gi/viewer/viewer.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/host_state.h"
-
-#include <cstring>
-#include <thread>
 
 namespace lambent::test {
 
@@ -20,11 +16,10 @@ struct LitBox {
   LitBox() {
     scene.box(vec3(-1), vec3(1), scene.material(vec3(0.7f)), true);
     scene.box(vec3(-0.5f, -1, -0.6f), vec3(0, 0.2f, -0.1f), scene.material({0.6f, 0.2f, 0.2f}), false);
-    scene.lights.push_back({.position = {0.3f, 0.6f, 0.4f}, .intensity = vec3(2)});
+    scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     scene.camera.worldFromView[3].z = 0.9f;
     scene.camera.fovY = 1.4f;
-    scene.camera.width = 40;
-    scene.camera.height = 30;
+    scene.picture(40, 30);
   }
 };
 
@@ -71,18 +66,18 @@ class HostTest : public ::testing::TestWithParam<std::unique_ptr<HostContext> (*
     if (!host) GTEST_SKIP() << "no such window system here";
     host->makeCurrent();
   }
+  std::vector<float> drawnAlone(const Settings& settings) const {
+    Viewer gi(settings);
+    gi.run(box.scene.view());
+    return texels(gi.texture(Buffer::Beauty), 40, 30);
+  }
 
   std::unique_ptr<HostContext> host;
   LitBox box;
 };
 
 TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
-  std::vector<float> alone;
-  {
-    Viewer gi(small());
-    gi.run(box.scene.view());
-    alone = texels(gi.texture(Buffer::Beauty), 40, 30);
-  }
+  const std::vector<float> alone = drawnAlone(small());
   HostState state;
   state.poison();
   const Snapshot before = snapshot();
@@ -114,12 +109,7 @@ TEST_P(HostTest, FramesInItsContextLeaveItAsItWas) {
 }
 
 TEST_P(HostTest, FramesInAContextThatSharesItsObjectsGiveItTextures) {
-  std::vector<float> alone;
-  {
-    Viewer gi(smallShared());
-    gi.run(box.scene.view());
-    alone = texels(gi.texture(Buffer::Beauty), 40, 30);
-  }
+  const std::vector<float> alone = drawnAlone(smallShared());
   HostState state;
   state.poison();
   const Snapshot before = snapshot();

@@ -4,6 +4,7 @@
 #include "engine/trace/analytic_query.h"
 #include "gi/vpl/sources.h"
 #include "tests/support/hand_scene.h"
+#include "tests/support/spread_lights.h"
 
 namespace lambent::test {
 
@@ -31,12 +32,11 @@ inline Vpl vplAt(const vec3& position, const vec3& normal, uint64_t id = 1, floa
   return v;
 }
 
-inline vec3 radianceOf(Vpl v, const RayQuery& rays, const LightSet& lights, int bounces, int paths = 16,
+inline vec3 radianceOf(const Vpl& v, const RayQuery& rays, const LightSet& lights, int bounces, int paths = 16,
                        uint32_t seed = 1) {
-  Vpl* one = &v;
-  RayCounts counts;
-  estimateRadiance({&one, 1}, rays, lights, paths, bounces, seed, counts);
-  return v.radiance;
+  std::vector<Vpl> one{v};
+  relight(one, rays, lights, paths, bounces, seed);
+  return one[0].radiance;
 }
 
 /// Whether two sets hold the same lights, bit by bit.

@@ -1,8 +1,6 @@
 // How much a test of many frames or scenes does.
 #pragma once
 
-#include "tests/support/test.h"
-
 #include <cstdlib>
 
 /// First line of a test that asks for statistics of what other tests run too: sanitizers look there.

@@ -1,8 +1,5 @@
 #include "tests/support/files.h"
 
-#include <fstream>
-#include <sstream>
-
 namespace lambent::test {
 
 TemporaryFolder::TemporaryFolder() {

@@ -1,7 +1,6 @@
 // Files of a test, and the errors that they lead to.
 #pragma once
 
-#include "engine/core/error.h"
 #include "tests/support/test.h"
 
 #include <filesystem>

@@ -1,8 +1,5 @@
 #include "tests/support/hand_scene.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace lambent::test {
 
 uint32_t HandScene::material(const vec3& albedo, const vec3& emission, bool doubleSided) {

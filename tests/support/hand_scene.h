@@ -1,8 +1,9 @@
 // Small scenes made by hand: quads with a material each, one mesh and one instance per quad or group.
 #pragma once
 
-#include "engine/scene/scene_view.h"
-#include "tests/support/pixels.h"
+#include "engine/trace/embree_query.h"
+#include "gi/lighting/light_set.h"
+#include "tests/support/test.h"
 
 namespace lambent::test {
 
@@ -68,5 +69,31 @@ CameraView cameraAt(const vec3& eye, const vec3& target, float fovY, int width =
 inline CameraRay pixelRay(const CameraView& camera, int x, int y) {
   return cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
 }
+
+/// All that a query says of rays.
+struct Answers {
+  std::vector<SurfaceHit> hits;
+  std::vector<float> distances;
+  std::vector<uint8_t> blocked;
+
+  Answers(const RayQuery& query, std::span<const Ray> rays)
+      : hits(rays.size()), distances(rays.size()), blocked(rays.size()) {
+    query.closest(rays, hits);
+    query.distances(rays, distances);
+    query.occluded(rays, blocked);
+  }
+  auto free() const { return std::ranges::count(blocked, 0); }
+};
+
+/// As rays and light paths see it, when nothing moves.
+struct TracedScene {
+  SceneView view;
+  EmbreeQuery rays;
+  LightSet lights;
+
+  explicit TracedScene(const HandScene& scene) : view(scene.view()), rays(scene.assets), lights(collectLights(view)) {
+    rays.update(view, true);
+  }
+};
 
 } // namespace lambent::test

@@ -306,7 +306,7 @@ class HostState {
       glBindImageTexture(GLuint(i), images_[size_t(i)], i % 2, GL_FALSE, i % 4, GL_READ_WRITE, GL_R32F);
     glActiveTexture(GL_TEXTURE5);
 
-    for (const HostSwitch& w : kHostSwitches) w.odd ? glEnable(w.what) : glDisable(w.what);
+    set(true);
     for (int v = 0; v < hostViewports(); ++v) {
       const GLuint i = GLuint(v);
       glViewportIndexedf(i, float(v), 2, 3, 4 + float(v));
@@ -321,42 +321,12 @@ class HostState {
       glBlendEquationSeparatei(i, GL_FUNC_REVERSE_SUBTRACT, t % 2 ? GL_MAX : GL_MIN);
       glColorMaski(i, GL_FALSE, t % 2, GL_TRUE, GL_FALSE);
     }
-    glBlendColor(0.1f, 0.2f, 0.3f, 0.4f);
-    glLogicOp(GL_XOR);
-    glDepthFunc(GL_NOTEQUAL);
-    glDepthMask(GL_FALSE);
-    glClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-    glFrontFace(GL_CW);
-    glCullFace(GL_FRONT);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    glPolygonOffset(3, 7);
-    glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
-    glPointSize(5);
-    glPointParameterf(GL_POINT_FADE_THRESHOLD_SIZE, 3);
-    glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_LOWER_LEFT);
-    glLineWidth(1.5f);
-    glPrimitiveRestartIndex(1);
-    glPatchParameteri(GL_PATCH_VERTICES, 4);
-    const float levels[] = {2, 3, 4, 5};
-    glPatchParameterfv(GL_PATCH_DEFAULT_INNER_LEVEL, levels);
-    glPatchParameterfv(GL_PATCH_DEFAULT_OUTER_LEVEL, levels);
-    glSampleCoverage(0.25f, GL_TRUE);
-    glSampleMaski(0, 0);
-    glMinSampleShading(0.5f);
-    glClampColor(GL_CLAMP_READ_COLOR, GL_TRUE);
     glStencilFuncSeparate(GL_FRONT, GL_NEVER, 3, 0x0f);
     glStencilFuncSeparate(GL_BACK, GL_GREATER, 5, 0xf0);
     glStencilMaskSeparate(GL_FRONT, 0x33);
     glStencilMaskSeparate(GL_BACK, 0x44);
     glStencilOpSeparate(GL_FRONT, GL_INCR, GL_DECR, GL_INVERT);
     glStencilOpSeparate(GL_BACK, GL_ZERO, GL_KEEP, GL_INCR_WRAP);
-    glClearColor(0.5f, 0.6f, 0.7f, 0.8f);
-    glClearDepth(0.3);
-    glClearStencil(9);
-    for (const GLenum what :
-         {GL_LINE_SMOOTH_HINT, GL_POLYGON_SMOOTH_HINT, GL_TEXTURE_COMPRESSION_HINT, GL_FRAGMENT_SHADER_DERIVATIVE_HINT})
-      glHint(what, GL_NICEST);
-    for (size_t i = 0; i < std::size(kPixelStores); ++i) glPixelStorei(kPixelStores[i], oddPixelStore(i));
     for (int i = 0; i < hostAttributes(); ++i) glVertexAttrib4f(GLuint(i), 0.1f + float(i), 0.2f, 0.3f, 0.4f);
     for (int i = 0; i < 2; ++i) glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "host");
     glBeginQuery(GL_TIME_ELAPSED, query_);
@@ -380,45 +350,53 @@ class HostState {
   }
 
  private:
-  static GLint oddPixelStore(size_t i) { return i < 10 ? GLint(i) + 2 : i < 14 ? 1 : 8; }
+  /// What has one value in the whole context: as no pass expects it, or as a new context has it.
+  static void set(bool odd) {
+    for (const HostSwitch& w : kHostSwitches) {
+      const bool on = w.odd == odd && w.what != GL_TEXTURE_CUBE_MAP_SEAMLESS; // which is off at first
+      on ? glEnable(w.what) : glDisable(w.what);
+    }
+    glBlendColor(odd ? 0.1f : 0, odd ? 0.2f : 0, odd ? 0.3f : 0, odd ? 0.4f : 0);
+    glLogicOp(odd ? GL_XOR : GL_COPY);
+    glDepthFunc(odd ? GL_NOTEQUAL : GL_LESS);
+    glDepthMask(odd ? GL_FALSE : GL_TRUE);
+    glClipControl(odd ? GL_UPPER_LEFT : GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glFrontFace(odd ? GL_CW : GL_CCW);
+    glCullFace(odd ? GL_FRONT : GL_BACK);
+    glPolygonMode(GL_FRONT_AND_BACK, odd ? GL_LINE : GL_FILL);
+    glPolygonOffset(odd ? 3 : 0, odd ? 7 : 0);
+    glProvokingVertex(odd ? GL_FIRST_VERTEX_CONVENTION : GL_LAST_VERTEX_CONVENTION);
+    glPointSize(odd ? 5 : 1);
+    glPointParameterf(GL_POINT_FADE_THRESHOLD_SIZE, odd ? 3 : 1);
+    glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, odd ? GL_LOWER_LEFT : GL_UPPER_LEFT);
+    glLineWidth(odd ? 1.5f : 1);
+    glPrimitiveRestartIndex(odd);
+    glPatchParameteri(GL_PATCH_VERTICES, odd ? 4 : 3);
+    const float levels[2][4] = {{1, 1, 1, 1}, {2, 3, 4, 5}};
+    for (const GLenum which : {GL_PATCH_DEFAULT_INNER_LEVEL, GL_PATCH_DEFAULT_OUTER_LEVEL})
+      glPatchParameterfv(which, levels[odd]);
+    glSampleCoverage(odd ? 0.25f : 1, odd);
+    glSampleMaski(0, odd ? 0 : ~0u);
+    glMinSampleShading(odd ? 0.5f : 0);
+    glClampColor(GL_CLAMP_READ_COLOR, odd ? GL_TRUE : GL_FIXED_ONLY);
+    glClearColor(odd ? 0.5f : 0, odd ? 0.6f : 0, odd ? 0.7f : 0, odd ? 0.8f : 0);
+    glClearDepth(odd ? 0.3 : 1);
+    glClearStencil(odd ? 9 : 0);
+    for (const GLenum what :
+         {GL_LINE_SMOOTH_HINT, GL_POLYGON_SMOOTH_HINT, GL_TEXTURE_COMPRESSION_HINT, GL_FRAGMENT_SHADER_DERIVATIVE_HINT})
+      glHint(what, odd ? GL_NICEST : GL_DONT_CARE);
+    for (size_t i = 0; i < std::size(kPixelStores); ++i)
+      glPixelStorei(kPixelStores[i], i < 10 ? odd * (GLint(i) + 2) : i < 14 ? odd : odd ? 8 : 4);
+  }
 
   void reset() const {
     glEndQuery(GL_TIME_ELAPSED);
     for (int i = 0; i < 2; ++i) glPopDebugGroup();
     for (int i = 0; i < hostAttributes(); ++i) glVertexAttrib4f(GLuint(i), 0, 0, 0, 1);
-    for (size_t i = 0; i < std::size(kPixelStores); ++i) glPixelStorei(kPixelStores[i], i < 14 ? 0 : 4);
-    for (const GLenum what :
-         {GL_LINE_SMOOTH_HINT, GL_POLYGON_SMOOTH_HINT, GL_TEXTURE_COMPRESSION_HINT, GL_FRAGMENT_SHADER_DERIVATIVE_HINT})
-      glHint(what, GL_DONT_CARE);
-    glClearStencil(0);
-    glClearDepth(1);
-    glClearColor(0, 0, 0, 0);
+    set(false);
     glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     glStencilMask(~0u);
     glStencilFunc(GL_ALWAYS, 0, ~0u);
-    glClampColor(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
-    glMinSampleShading(0);
-    glSampleMaski(0, ~0u);
-    glSampleCoverage(1, GL_FALSE);
-    const float levels[] = {1, 1, 1, 1};
-    glPatchParameterfv(GL_PATCH_DEFAULT_INNER_LEVEL, levels);
-    glPatchParameterfv(GL_PATCH_DEFAULT_OUTER_LEVEL, levels);
-    glPatchParameteri(GL_PATCH_VERTICES, 3);
-    glPrimitiveRestartIndex(0);
-    glLineWidth(1);
-    glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
-    glPointParameterf(GL_POINT_FADE_THRESHOLD_SIZE, 1);
-    glPointSize(1);
-    glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
-    glPolygonOffset(0, 0);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glCullFace(GL_BACK);
-    glFrontFace(GL_CCW);
-    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_LESS);
-    glLogicOp(GL_COPY);
-    glBlendColor(0, 0, 0, 0);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ZERO);
@@ -427,8 +405,6 @@ class HostState {
     glViewport(0, 0, 1, 1);
     glScissor(0, 0, 1, 1);
     glDisable(GL_SCISSOR_TEST);
-    for (const HostSwitch& w : kHostSwitches) w.odd ? glDisable(w.what) : glEnable(w.what);
-    glDisable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     for (int i = 0; i < hostImages(); ++i) glBindImageTexture(GLuint(i), 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
     for (int unit = 0; unit < hostUnits(); ++unit) {
       glBindTextureUnit(GLuint(unit), 0);

@@ -1,8 +1,5 @@
 #include "tests/support/images.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <filesystem>
 
 namespace lambent::test {
@@ -31,6 +28,11 @@ double meanLuminance(const Image& a) {
   double sum = 0;
   for (const vec3& p : a.pixels) sum += double(luminance(p)) / double(a.pixels.size());
   return sum;
+}
+
+bool sameBits(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
 }
 
 vec3 byteAt(const Image8& image, int x, int y) {

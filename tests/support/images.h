@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/image.h"
-#include "tests/support/pixels.h"
+#include "tests/support/test.h"
 
 namespace lambent::test {
 
@@ -12,6 +12,7 @@ double relativeRmse(const Image& a, const Image& b);
 double relativeDifference(const Image& a, const Image& b);
 /// Mean of the luminances.
 double meanLuminance(const Image& a);
+bool sameBits(const Image& a, const Image& b);
 vec3 byteAt(const Image8& image, int x, int y);
 
 /// Fails when the images differ by more than `bound`, and then writes NAME-actual.exr, NAME-expected.exr and

@@ -2,10 +2,7 @@
 // through the engine's own extraction, so what is said to have moved or changed is what the engine says.
 #pragma once
 
-#include "engine/core/rng.h"
 #include "engine/scene/scene.h"
-#include "engine/trace/embree_query.h"
-#include "tests/support/effort.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

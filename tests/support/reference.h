@@ -2,8 +2,7 @@
 #pragma once
 
 #include "gi/reference/path_tracer.h"
-#include "tests/support/statistics.h"
-#include "tests/support/traced_scene.h"
+#include "tests/support/hand_scene.h"
 
 namespace lambent::test {
 

@@ -1,8 +1,7 @@
-// Virtual lights with exact areas: spread evenly over the inside of a box.
+// Virtual lights with exact areas, spread evenly over the inside of a box, and radiance for lights that are given.
 #pragma once
 
-#include "engine/core/rng.h"
-#include "gi/vpl/vpl_set.h"
+#include "gi/vpl/smc.h"
 #include "tests/support/test.h"
 
 namespace lambent::test {
@@ -29,6 +28,17 @@ inline std::vector<Vpl> spreadOverBox(const vec3& size, const vec3& albedo, uint
     v.alive = true;
   }
   return vpls;
+}
+
+/// Estimates radiance from scratch, over the lights' cells where these are given.
+inline void relight(std::vector<Vpl>& vpls, const RayQuery& rays, const LightSet& lights, int paths, int bounces,
+                    uint32_t seed = 1, std::span<const VplCell> cells = {}) {
+  std::vector<Vpl*> all;
+  for (Vpl& v : vpls) all.push_back(&v);
+  std::vector<const VplCell*> standingFor;
+  for (const VplCell& c : cells) standingFor.push_back(&c);
+  RayCounts counts;
+  estimateRadiance(all, rays, lights, paths, bounces, seed, counts, RadianceUse::Rendering, standingFor);
 }
 
 } // namespace lambent::test

@@ -1,7 +1,6 @@
 // The reference and virtual lights are two ways to the same number: with exact areas and a ray for every pair, the
 // gather must agree with it, clamped alike, or with what bounds take given back.
 #include "gi/near/near_light.h"
-#include "tests/support/effort.h"
 #include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
 
@@ -24,9 +23,7 @@ struct Room : LitBox, TracedScene {
   /// Lights of equal areas, anywhere on the walls.
   std::vector<VirtualLight> spread(int count, uint32_t seed) {
     std::vector<Vpl> vpls = spreadOverBox(size, albedo, count, seed);
-    std::vector<Vpl*> all;
-    for (Vpl& v : vpls) all.push_back(&v);
-    estimateRadiance(all, rays, lights, 16, kBounces, 1, counts);
+    relight(vpls, rays, lights, 16, kBounces);
     VplSet set;
     set.slots = std::move(vpls);
     return lightsOf(set);

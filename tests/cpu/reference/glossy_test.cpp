@@ -3,7 +3,6 @@
 #include "gi/lighting/receivers.h"
 #include "gi/reference/state_file.h"
 #include "gi/vpl/smc.h"
-#include "tests/support/effort.h"
 #include "tests/support/reference.h"
 #include "tests/support/spread_lights.h"
 
@@ -91,9 +90,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     std::vector<double> means;
     for (uint32_t set = 0; set < kSets; ++set) {
       std::vector<Vpl> vpls = spreadOverBox(room.size, room.albedo, kPerSet, set);
-      std::vector<Vpl*> all;
-      for (Vpl& v : vpls) all.push_back(&v);
-      estimateRadiance(all, s.rays, s.lights, 16, 2, 1, counts);
+      relight(vpls, s.rays, s.lights, 16, 2);
       VplSet whole;
       whole.slots = std::move(vpls);
       GlossyGather glossy{view, {}};

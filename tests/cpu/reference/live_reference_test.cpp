@@ -3,16 +3,9 @@
 #include "gi/measure/picture_error.h"
 #include "gi/reference/live_reference.h"
 #include "tests/support/hand_scene.h"
-
-#include <chrono>
-#include <thread>
+#include "tests/support/images.h"
 
 namespace lambent::test::live_reference_test {
-
-bool sameImage(const Image& a, const Image& b) {
-  return a.width == b.width && a.height == b.height &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(vec3)) == 0;
-}
 
 /// A box with a lamp in it, seen from within.
 class LiveReferenceTest : public ::testing::Test {
@@ -52,8 +45,8 @@ class LiveReferenceTest : public ::testing::Test {
   void expectTruth(const LiveTruth& live, ReferenceBuffer buffer) const {
     EXPECT_EQ(live.buffer, buffer);
     const TracedPicture once = traced(buffer, live.samples);
-    EXPECT_TRUE(sameImage(live.picture.mean, once.picture.mean));
-    EXPECT_TRUE(sameImage(live.picture.error, once.picture.error));
+    EXPECT_TRUE(sameBits(live.picture.mean, once.picture.mean));
+    EXPECT_TRUE(sameBits(live.picture.error, once.picture.error));
     EXPECT_EQ(live.picture.relativeError, once.picture.relativeError);
     EXPECT_EQ(live.bounces, once.bounces);
     EXPECT_GT(live.ms, 0);

@@ -1,6 +1,5 @@
 // The reference against closed forms.
 #include "engine/trace/analytic_query.h"
-#include "tests/support/effort.h"
 #include "tests/support/reference.h"
 
 namespace lambent::test::path_tracer_test {

@@ -78,9 +78,8 @@ TEST(Animate, ClipsLoopAndLeaveOtherPropertiesAtRest) {
   GltfBuilder b = oneTriangle();
   b.json["nodes"][0]["name"] = "mover";
   b.json["nodes"][0]["scale"] = {2, 2, 2};
-  const int input = b.floats({0, 2}), output = b.floats({0, 0, 0, 2, 0, 0}, "VEC3");
-  b.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
-                           {"samplers", {{{"input", input}, {"output", output}}}}}};
+  const int times = b.floats({0, 2});
+  b.animate(0, "translation", times, b.floats({0, 0, 0, 2, 0, 0}, "VEC3"));
   Scene scene = b.load(folder);
   ASSERT_EQ(scene.animations.size(), 1u);
   EXPECT_DOUBLE_EQ(scene.animations[0].duration, 2);

@@ -1,6 +1,5 @@
 // Skins and morph targets: closed forms of the vertices, what an extraction says of them, and malformed files.
 
-#include "engine/core/parallel.h"
 #include "tests/cpu/scene/support.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -135,9 +134,8 @@ struct Face {
   }
   /// Drives the weights by keys at 0, 1, 2 s.
   void animate(const char* interpolation, const std::vector<float>& values) {
-    const int times = b.floats({0, 1, 2}), output = b.floats(values);
-    b.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}}}},
-                             {"samplers", {{{"input", times}, {"output", output}, {"interpolation", interpolation}}}}}};
+    const int times = b.floats({0, 1, 2});
+    b.animate(node, "weights", times, b.floats(values), interpolation);
   }
 };
 
@@ -339,17 +337,15 @@ TEST_F(BadDeform, MorphTargets) {
   expectError(uneven.b, "mesh 0, primitive 1: has 1 morph targets, but primitive 0 has 2");
 
   GltfBuilder plain = oneTriangle();
-  const int times = plain.floats({0}), output = plain.floats({1});
-  plain.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
-                               {"samplers", {{{"input", times}, {"output", output}}}}}};
+  const int times = plain.floats({0});
+  plain.animate(0, "weights", times, plain.floats({1}));
   EXPECT_TRUE(hasWarning(plain.load(folder), "weights of nodes without morph targets"));
 }
 
 TEST_F(BadDeform, KeysBeyondSinglePrecisionLeaveFiniteVertices) {
   Bar bar;
-  const int times = bar.b.floats({0}), output = bar.b.floats({3e38f, 3e38f, 3e38f}, "VEC3");
-  bar.b.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", bar.lower}, {"path", "scale"}}}}}},
-                               {"samplers", {{{"input", times}, {"output", output}}}}}};
+  const int times = bar.b.floats({0});
+  bar.b.animate(bar.lower, "scale", times, bar.b.floats({3e38f, 3e38f, 3e38f}, "VEC3"));
   scene = bar.b.load(folder);
   const InstanceView v = instance();
   for (const vec3& p : v.deformed->positions) EXPECT_TRUE(isFinite(p));

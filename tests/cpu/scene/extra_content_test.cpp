@@ -3,10 +3,6 @@
 
 #include "tests/cpu/scene/support.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cstdlib>
-
 namespace lambent::test::extra_content_test {
 
 void expectSound(const Scene& scene) {

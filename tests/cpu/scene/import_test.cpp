@@ -2,8 +2,6 @@
 
 #include "tests/cpu/scene/support.h"
 
-#include <algorithm>
-
 #include <stb/stb_image_write.h>
 
 namespace lambent::test::import_test {

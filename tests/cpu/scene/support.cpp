@@ -22,6 +22,13 @@ void append32(std::string& out, uint32_t v) {
 
 } // namespace
 
+void GltfBuilder::animate(int node, const char* path, int times, int values, const char* interpolation) {
+  nlohmann::json sampler = {{"input", times}, {"output", values}};
+  if (interpolation) sampler["interpolation"] = interpolation;
+  push("animations", {{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}},
+                      {"samplers", nlohmann::json::array({sampler})}});
+}
+
 std::string GltfBuilder::text() const {
   nlohmann::json out = json;
   if (!bytes.empty())
@@ -61,9 +68,7 @@ GltfBuilder oneTriangle() {
 }
 
 bool hasWarning(const Scene& scene, const std::string& text) {
-  for (const std::string& w : scene.warnings)
-    if (w.find(text) != std::string::npos) return true;
-  return false;
+  return std::ranges::any_of(scene.warnings, [&](const std::string& w) { return w.find(text) != w.npos; });
 }
 
 void expectNear(const vec3& a, const vec3& b, float tolerance) {

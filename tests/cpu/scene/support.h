@@ -3,7 +3,6 @@
 
 #include "engine/scene/scene.h"
 #include "tests/support/files.h"
-#include "tests/support/pixels.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,12 +31,9 @@ struct GltfBuilder {
     return push("accessors", a);
   }
   int floats(const std::vector<float>& data, const char* type = "SCALAR") {
-    const size_t n = std::strcmp(type, "VEC4") == 0   ? 4
-                     : std::strcmp(type, "VEC3") == 0 ? 3
-                     : std::strcmp(type, "VEC2") == 0 ? 2
-                     : std::strcmp(type, "MAT4") == 0 ? 16
-                                                      : 1;
-    return accessor(view(data), 5126, type, data.size() / n);
+    static const std::map<std::string, size_t> sizes{
+        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+    return accessor(view(data), 5126, type, data.size() / sizes.at(type));
   }
   int positions(const std::vector<vec3>& p) { return accessor(view(p), 5126, "VEC3", p.size()); }
   int indices(const std::vector<uint16_t>& i) { return accessor(view(i), 5123, "SCALAR", i.size()); }
@@ -53,6 +49,8 @@ struct GltfBuilder {
     json["scenes"][0]["nodes"].push_back(n);
     return n;
   }
+  /// Of one channel; linear where `interpolation` is not said.
+  void animate(int node, const char* path, int times, int values, const char* interpolation = nullptr);
   int push(const char* list, const nlohmann::json& item) {
     json[list].push_back(item);
     return int(json[list].size()) - 1;

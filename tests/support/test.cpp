@@ -1,4 +1,4 @@
-#include "tests/support/statistics.h"
+#include "tests/support/test.h"
 
 namespace lambent::test {
 
