@@ -42,7 +42,7 @@ const std::string& nameOf(ReferenceBuffer buffer) { return bufferNames()[size_t(
 
 /// What may be said of the image's error for the present.
 std::string verdict(const AgainstTruth& against) {
-  if (const std::optional<double> own = against.pictureRmse())
+  if (const std::optional<double> own = against.imageRmse())
     return "GI's own RMSE: " + percent(*own / against.error.meanTruth) + " of the mean";
   return "mostly the truth's own noise so far";
 }

@@ -43,8 +43,8 @@ void TruthView::update(const SceneView& view, Viewer& gi, const FrameStats& stat
   std::shared_ptr<const LiveTruth> news = reference_->take(wait);
   if (!news) return;
   truth_ = std::move(news);
-  against_ = againstTruth(gi.read(shown), truth_->picture);
-  gi.takeTruth(truth_->picture.mean);
+  against_ = againstTruth(gi.read(shown), truth_->image);
+  gi.takeTruth(truth_->image.mean);
 }
 
 void TruthView::countFrame(const SceneView& view, Settings settings, const FrameStats& stats) {

@@ -2,7 +2,7 @@
 // window or as the image's error, with the figures that go with it.
 #pragma once
 
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "gi/reference/live_reference.h"
 #include "gi/viewer/viewer.h"
 

@@ -21,8 +21,8 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,
                             .seed = in.frame.seed,
-                            .picture = in.sample,
-                            .pictures = in.averaged ? in.frame.settings.history.frames : 1},
+                            .frame = in.sample,
+                            .frames = in.averaged ? in.frame.settings.history.frames : 1},
                            stats.raysNear);
     stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }

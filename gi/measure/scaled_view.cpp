@@ -186,7 +186,7 @@ ScaledView splitTriangles(const SceneAssets& assets, uint32_t n) {
   };
 }
 
-ScaledView resizedPicture(float side) {
+ScaledView resizedImage(float side) {
   return [side](SceneView view) {
     view.camera = view.camera.scaled(side);
     return view;

@@ -39,6 +39,6 @@ ScaledView splitInstances(const SceneAssets& assets, uint32_t parts);
 /// The same surface of n² times as many triangles. `assets` are those of all views to come.
 ScaledView splitTriangles(const SceneAssets& assets, uint32_t n);
 /// A picture `side` times as wide and as high, of the same shape as nearly as whole pixels allow.
-ScaledView resizedPicture(float side);
+ScaledView resizedImage(float side);
 
 } // namespace lambent

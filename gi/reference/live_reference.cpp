@@ -56,7 +56,7 @@ class LiveReference::Tracing {
 
   std::shared_ptr<const LiveTruth> read(ReferenceBuffer buffer) const {
     return std::make_shared<LiveTruth>(LiveTruth{.buffer = buffer,
-                                                 .picture = readReference(sums_, inputs(), buffer),
+                                                 .image = readReference(sums_, inputs(), buffer),
                                                  .samples = sums_.samples,
                                                  .bounces = task_->paths.bounces,
                                                  .ms = ms_});

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/scene/view_copy.h"
-#include "gi/reference/traced_picture.h"
+#include "gi/reference/traced_image.h"
 
 #include <condition_variable>
 #include <exception>
@@ -19,7 +19,7 @@ namespace lambent {
 /// The truth after some passes.
 struct LiveTruth {
   ReferenceBuffer buffer = ReferenceBuffer::Beauty;
-  ReferencePicture picture;
+  ReferenceImage image;
   uint32_t samples = 0; // of each pixel
   int bounces = 0;
   double ms = 0; // of tracing, wall time, with whatever else ran

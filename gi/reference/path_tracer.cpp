@@ -238,10 +238,10 @@ std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, cons
   return sums;
 }
 
-ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
+ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
   const bool irradiance = buffer == ReferenceBuffer::Irradiance;
   CHECK(!(irradiance && in.glossy));
-  ReferencePicture image{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
+  ReferenceImage image{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
   image.surface.resize(sums.pixels.size());
   const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
   const bool indirect = buffer != ReferenceBuffer::Direct;

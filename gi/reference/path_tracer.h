@@ -57,7 +57,7 @@ std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, cons
 enum class ReferenceBuffer { Beauty, Direct, Indirect, Irradiance };
 
 /// An image and how well it is known.
-struct ReferencePicture {
+struct ReferenceImage {
   Image mean;
   Image error;                  // standard error of each pixel's mean; infinite for a single sample
   std::vector<uint8_t> surface; // 1 where the camera sees a surface, 0 where it sees the sky
@@ -68,6 +68,6 @@ struct ReferencePicture {
   double relativeErrorOfMean = 0;
 };
 /// Reads a buffer from the sums. Glossy sums do not give irradiance.
-ReferencePicture readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
+ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
 
 } // namespace lambent

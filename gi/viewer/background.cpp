@@ -1,6 +1,6 @@
 // The sky where no surface is seen.
 #include "engine/gl/program.h"
-#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer_stages.h"
 #include "shaders/shared/sky.h"
 
 namespace lambent {

@@ -1,12 +1,12 @@
 // The image from its parts, and the exposure that suits it.
 #include "gi/gather/draw_gather.h"
-#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer_stages.h"
 
 #include <cmath>
 
 namespace lambent {
 
-Picture CompositePass::run(const CompositeInputs& in) {
+const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Composite);
   const int width = in.surfaces.width, height = in.surfaces.height;
   if (!black_) {
@@ -31,13 +31,13 @@ Picture CompositePass::run(const CompositeInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();
-  return {&radiance_};
+  return radiance_;
 }
 
-float measureExposure(const Picture& picture) {
-  const int width = picture.radiance->width(), height = picture.radiance->height();
+float measureExposure(const gl::Texture& radiance) {
+  const int width = radiance.width(), height = radiance.height();
   std::vector<vec4> texels(size_t(width) * height);
-  picture.radiance->read(std::span(texels), GL_RGBA, GL_FLOAT);
+  radiance.read(std::span(texels), GL_RGBA, GL_FLOAT);
   double logSum = 0;
   size_t count = 0;
   for (const vec4& texel : texels) {

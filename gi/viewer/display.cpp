@@ -1,7 +1,7 @@
 // Every buffer as a display shows it, and the views that exist only for looking.
 #include "gi/gather/draw_gather.h"
-#include "gi/viewer/picture.h"
 #include "gi/viewer/viewer.h"
+#include "gi/viewer/viewer_stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,13 +45,13 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
     if (!frame.patches || !frame.patches->normalLo) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
     return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
   case Buffer::Nan:
-    return {{"MODE 0", "GREY"}, frame.picture.radiance, exposure};
+    return {{"MODE 0", "GREY"}, frame.radiance, exposure};
   case Buffer::Beauty:
   case Buffer::Vpls:
   case Buffer::ShadowMaps:
     break;
   }
-  return {{"MODE 0"}, frame.picture.radiance, exposure};
+  return {{"MODE 0"}, frame.radiance, exposure};
 }
 
 /// Images of light have edges to smooth; figures shown as colours must stay what they are.

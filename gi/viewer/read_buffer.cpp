@@ -1,7 +1,7 @@
 // Buffers as linear values on the CPU.
 #include "gi/gather/draw_gather.h"
-#include "gi/viewer/picture.h"
 #include "gi/viewer/viewer.h"
+#include "gi/viewer/viewer_stages.h"
 #include "shaders/shared/ggx.h"
 
 #include <algorithm>
@@ -116,7 +116,7 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   case Buffer::Nan:
     break;
   }
-  return rgbOf(frame.picture.radiance, width, height);
+  return rgbOf(frame.radiance, width, height);
 }
 
 } // namespace lambent

@@ -1,6 +1,6 @@
 #include "gi/gather/add_pixels.h"
-#include "gi/viewer/picture.h"
 #include "gi/viewer/viewer.h"
+#include "gi/viewer/viewer_stages.h"
 
 #include "engine/core/error.h"
 
@@ -27,7 +27,7 @@ const gl::Texture& TruthDisplay::run(Buffer buffer, const FrameResults& frame, c
   if (buffer == Buffer::Irradiance)
     shown.indirect.irradiance = &linear_;
   else
-    shown.picture.radiance = &linear_;
+    shown.radiance = &linear_;
   return display_.run(buffer == Buffer::Irradiance ? buffer : Buffer::Beauty, shown, look);
 }
 

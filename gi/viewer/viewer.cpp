@@ -3,7 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/text.h"
 #include "engine/gl/state_guard.h"
-#include "gi/viewer/picture.h"
+#include "gi/viewer/viewer_stages.h"
 
 #include <chrono>
 #include <utility>
@@ -37,7 +37,7 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const gl::StateGuard guard;
   FrameResults& results = passes_->results;
   FrameStats& stats = passes_->stats;
-  const Picture last = results.picture;
+  const gl::Texture* const last = results.radiance;
   try {
     stats = gi_.run(view, progress, host);
   } catch (...) { // the last frame stays where it was refused; what something is thrown out of in drawing is no frame
@@ -48,12 +48,12 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const gl::Counts before = gl::counts();
   results = {gi_.outputs(), last};
   if (stats.plan.on(EffectId::Redraw)) {
-    results.picture = passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
+    results.radiance = &passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
     const float asked = settings().image.exposure;
     if (asked > 0)
       exposure_ = asked;
     else if (exposure_ <= 0)
-      exposure_ = measureExposure(results.picture);
+      exposure_ = measureExposure(*results.radiance);
   }
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;
@@ -93,10 +93,10 @@ Image Viewer::read(Buffer buffer) const {
 uint32_t Viewer::texture(Buffer buffer) const {
   const FrameResults& r = passes_->results;
   const auto name = [](const gl::Texture* texture) { return texture ? texture->name() : 0; };
-  if (!r.picture.radiance) return 0;
+  if (!r.radiance) return 0;
   switch (buffer) {
   case Buffer::Beauty:
-    return name(r.picture.radiance);
+    return name(r.radiance);
   case Buffer::Irradiance:
     return name(r.indirect.irradiance);
   case Buffer::Albedo:
@@ -109,13 +109,11 @@ uint32_t Viewer::texture(Buffer buffer) const {
   case Buffer::Indirect: {
     const gl::StateGuard guard;
     const bool direct = buffer == Buffer::Direct;
-    return name(passes_->part
-                    .run({.surfaces = r.surfaces,
-                          .direct = direct ? r.direct : SurfaceLighting{},
-                          .indirect = direct ? SurfaceLighting{} : r.indirect,
-                          .sky = direct ? r.sky : Sky{},
-                          .emission = direct})
-                    .radiance);
+    return name(&passes_->part.run({.surfaces = r.surfaces,
+                                    .direct = direct ? r.direct : SurfaceLighting{},
+                                    .indirect = direct ? SurfaceLighting{} : r.indirect,
+                                    .sky = direct ? r.sky : Sky{},
+                                    .emission = direct}));
   }
   default:
     return 0;
@@ -124,7 +122,7 @@ uint32_t Viewer::texture(Buffer buffer) const {
 
 /// Draws the buffer as a display shows it.
 bool Viewer::show(Buffer buffer) const {
-  if (!passes_->results.picture.radiance) return false;
+  if (!passes_->results.radiance) return false;
   if (buffer == Buffer::Vpls) gi_.vpls(); // an update takes the set away
   passes_->display.run(buffer, passes_->results, look());
   return true;
@@ -147,7 +145,7 @@ void Viewer::takeTruth(const Image& truth) {
 
 void Viewer::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
-  if (!passes_->results.picture.radiance) return;
+  if (!passes_->results.radiance) return;
   const gl::Texture& truth = passes_->truth.run(buffer, passes_->results, look());
   show(buffer);
   passes_->display.present(framebuffer, width, height, &truth, divider);
@@ -155,7 +153,7 @@ void Viewer::presentBesideTruth(Buffer buffer, float divider, uint32_t framebuff
 
 void Viewer::presentError(Buffer buffer, float full, uint32_t framebuffer, int width, int height) const {
   const gl::StateGuard guard;
-  if (!passes_->results.picture.radiance) return;
+  if (!passes_->results.radiance) return;
   passes_->display.run(buffer, passes_->results, look(), {&passes_->truth.linear(), full});
   passes_->display.present(framebuffer, width, height);
 }

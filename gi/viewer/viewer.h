@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-struct Look; // gi/viewer/picture.h
+struct Look; // gi/viewer/viewer_stages.h
 
 /// What may be shown or read back. The first seven are meant for users; the others are debug views.
 enum class Buffer : int {

@@ -57,7 +57,7 @@ class AntiAliasTest : public GlTest {
     frame_.surfaces.width = width;
     frame_.surfaces.height = height;
     frame_.indirect = {&radiance_};
-    frame_.picture = {&radiance_};
+    frame_.radiance = &radiance_;
     return frame_;
   }
   Image8 shown(const Image& picture, AntiAliasing mode = AntiAliasing::Edges, Buffer buffer = Buffer::Beauty) {

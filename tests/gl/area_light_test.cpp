@@ -301,7 +301,7 @@ TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
 TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
-  scene.picture(384, 256);
+  scene.size(384, 256);
   const Image traced = tracedOf(scene, 16), image = irradianceOf(scene);
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;

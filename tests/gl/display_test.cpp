@@ -12,7 +12,7 @@ class DisplayTest : public GatherTest {
     frame.surfaces = surfaces(room.scene);
     texture = textureOf(radiance);
     frame.indirect = {&texture};
-    frame.picture = {frame.indirect.irradiance};
+    frame.radiance = frame.indirect.irradiance;
     frame.farDistance = 3.5f;
     return frame;
   }
@@ -96,8 +96,8 @@ TEST_F(DisplayTest, ExposureBringsTheLogAverageToMidGrey) {
   const int bright = 24, dim = 23;
   const double logAverage = (bright * std::log(8.0) + dim * std::log(2.0)) / (bright + dim);
   // The upload has no alpha of its own: 1, a surface.
-  EXPECT_NEAR(measureExposure(frameWith(image).picture), 0.18 / std::exp(logAverage), 1e-4);
-  EXPECT_EQ(measureExposure(frameWith(Image(64, 48)).picture), 1) << "no light at all";
+  EXPECT_NEAR(measureExposure(*frameWith(image).radiance), 0.18 / std::exp(logAverage), 1e-4);
+  EXPECT_EQ(measureExposure(*frameWith(Image(64, 48)).radiance), 1) << "no light at all";
 }
 
 TEST_F(DisplayTest, EveryViewDraws) {

@@ -53,7 +53,7 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
   settings.smc.vpls = settings.smc.points = 64;
   settings.smc.warmup = 2;
   settings.shadow.resolution = 32;
-  scene.picture(48, 36);
+  scene.size(48, 36);
   settings.image.exposure = 0;
   for (const VplSource source : {VplSource::Smc, VplSource::Rsm, VplSource::Hisr})
     for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {

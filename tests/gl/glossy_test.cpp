@@ -52,10 +52,10 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
     const SurfaceLighting raw = gathered(gbuffer, lights, with(GatherMode::Full));
     const SurfaceLighting indirect = filterPass.run({gbuffer, raw, {}});
     const Image image = indirectRadiance(gbuffer, indirect);
-    const Picture picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
+    const gl::Texture& picture = compositePass.run({gbuffer, {}, indirect, vec3(0)});
     FrameResults results;
     results.surfaces = gbuffer;
-    results.picture = picture;
+    results.radiance = &picture;
     const Image beauty = readBuffer(Buffer::Beauty, results);
     for (const auto [x, y] : Pixels(image)) {
       const vec3 d = position - floor.at(x, y), towardsLight = glm::normalize(d);
@@ -177,7 +177,7 @@ TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
       means.push_back(meanLuminance(indirectRadiance(gbuffer, filterPass.run({gbuffer, raw, {}}))));
     }
     const ReferenceInputs in{traced.rays, traced.lights, scene.camera, 1, settings.clamp, 1, &traced.view};
-    const ReferencePicture picture = trace(in, 2000, ReferenceBuffer::Indirect);
+    const ReferenceImage picture = trace(in, 2000, ReferenceBuffer::Indirect);
     const Mean truth{meanLuminance(picture.mean), meanLuminance(picture.mean) * picture.relativeErrorOfMean};
     // 5e-4: the G-buffer's normals and albedos are half floats.
     EXPECT_TRUE(agrees(meanOf(means), truth, 0.01 * truth.mean, 5e-4 * truth.mean)) << "roughness " << f.roughness;

@@ -10,7 +10,7 @@ constexpr double kTarget = 20;
 
 TEST_F(GovernorFrames, FollowLoadStepsWithoutChangingBrightness) {
   Room room;
-  room.scene.picture(96, 64);
+  room.scene.size(96, 64);
   LightView lamp = room.scene.lamp({0.5f, 0.7f, 0.4f}, vec3(2));
   Settings settings;
   settings.smc.vpls = 512;

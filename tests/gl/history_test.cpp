@@ -10,7 +10,7 @@ class HistoryTest : public StillRoomTest {
     settings.gather.checks = false;
     settings.shadow.resolution = 64;
     settings.history.frames = 16;
-    room.scene.picture(96, 72);
+    room.scene.size(96, 72);
   }
 
   static Settings with(Settings s, GatherMode mode, int frames) {
@@ -113,7 +113,7 @@ TEST_F(HistoryTest, TakesPicturesOfAnotherSizeAlong) {
   Viewer gi(settings);
   stand(gi, 16);
   for (const int width : {64, 48, 96}) {
-    room.scene.picture(width, width * 3 / 4);
+    room.scene.size(width, width * 3 / 4);
     const Image all = allLights(), one = firstFrame(settings, room.scene.view());
     for (int i = 0; i < 3; ++i) { // the first of this size, and two that look up one of it
       const Image along = nextFrame(gi, view({false, i == 0, false, false, false}));

@@ -51,7 +51,7 @@ TEST_F(IndirectTest, AVplOnTheShadedPointIsNoDivisionByZero) {
 /// 40 VPLs that make every class of 16 different, over several sizes that 4 does not divide.
 TEST_F(IndirectTest, EachSubsetReadsItsOwnLights) {
   Floor floor;
-  floor.scene.picture(37, 27);
+  floor.scene.size(37, 27);
   const GBuffer gbuffer = surfaces(floor.scene);
   std::vector<VirtualLight> vpls;
   for (int i = 0; i < 40; ++i)
@@ -111,7 +111,7 @@ TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
 
 TEST_F(IndirectTest, FilterKeepsConstants) {
   Room room;
-  room.scene.picture(61, 43); // tiles with a ragged edge
+  room.scene.size(61, 43); // tiles with a ragged edge
   const GBuffer gbuffer = surfaces(room.scene);
   const gl::Texture constant = textureOf(Image(64, 44, vec3(0.3f, 1.7f, 4000)));
   const SurfaceLighting raw{&constant, nullptr, true};
@@ -191,7 +191,7 @@ TEST_F(IndirectTest, CompositeAddsUp) {
   results.direct = direct;
   results.indirect = indirect;
   results.sky = vec3(0.1f, 0.2f, 0.3f);
-  results.picture = composite.run({gbuffer, direct, indirect, results.sky});
+  results.radiance = &composite.run({gbuffer, direct, indirect, results.sky});
   const Image beauty = readBuffer(Buffer::Beauty, results),
               parts[2] = {readBuffer(Buffer::Direct, results), readBuffer(Buffer::Indirect, results)};
   EXPECT_LT(glm::length(beauty.at(0, 10) - vec3(0.1f, 0.2f, 0.3f)), 1e-6f);

@@ -8,7 +8,7 @@ class MapChecksTest : public StillRoomTest, public ::testing::WithParamInterface
   MapChecksTest() {
     settings.shadow.resolution = 16; // in whose texels the block's shadow is coarse
     room.scene.lights[0].intensity = {1, 0.8f, 0.5f};
-    room.scene.picture(81, 54); // no whole number of blocks
+    room.scene.size(81, 54); // no whole number of blocks
   }
 
   /// Irradiance after 64 pictures of a still view.

@@ -422,7 +422,7 @@ TEST(MapSchedule, TheSameForAnyNumberOfThreads) {
 TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   Room room;
   room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
-  room.scene.picture(32, 24);
+  room.scene.size(32, 24);
   Settings settings;
   settings.smc = {.vpls = 256, .moves = 0, .warmup = 4};
   settings.shadow = {.resolution = 32, .maker = ShadowMaker::Rays, .refresh = 4};

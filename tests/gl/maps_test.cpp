@@ -103,7 +103,7 @@ TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
 
 /// A VPL on the floor lights the room through its map exactly where a ray from it is free.
 TEST_F(MapsTest, ShadowsFallWhereRaysAreBlocked) {
-  room.scene.picture(96, 72);
+  room.scene.size(96, 72);
   const VirtualLight vpl = lightAt({0.6f, -1, 0}, {0, 1, 0}, vec3(1), 0.01f);
   poses = {vpl.pose(1e-4f)};
   for (const ShadowMaker maker : {ShadowMaker::Rays, ShadowMaker::Raster}) {

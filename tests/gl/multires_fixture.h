@@ -43,7 +43,7 @@ class MultiresTest : public GatherTest {
  protected:
   Room room;
   GBuffer roomSurfaces(int width = 64, int height = 48, bool glossy = false) {
-    room.scene.picture(width, height);
+    room.scene.size(width, height);
     return surfaces(room.scene, glossy);
   }
   /// As when surfaces reflect half of the light in lobes.

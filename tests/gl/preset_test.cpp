@@ -16,7 +16,7 @@ std::set<std::string> differing(const Settings& a, const Settings& b) {
 
 TEST_F(PresetTest, EveryPresetDrawsARoomAndSetsOnlyWhatItIsAbout) {
   Room room;
-  room.scene.picture(48, 32);
+  room.scene.size(48, 32);
   room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
   const std::set<std::string> about{"smc.vpls", "smc.points", "smc.paths", "shadow.resolution", "gather.mode"};
   Settings odd; // no preset's values

@@ -29,7 +29,7 @@ class Clerk final : public Runner {
     stats_.wallMs = 100 - view.time;
     return stats_;
   }
-  Image picture(Buffer) const override { return Image(1, 1, vec3(float(stats_.wallMs))); }
+  Image image(Buffer) const override { return Image(1, 1, vec3(float(stats_.wallMs))); }
   float exposure() const override { return 2; }
   std::vector<TrackedValue> at(std::span<const vec2> points) const override {
     std::vector<TrackedValue> out;
@@ -115,12 +115,12 @@ TEST_F(RunsTest, PointsAreReadInEveryFrameAndThePictureAfterTheLast) {
   const std::vector<vec2> points{{1, 0}, {0.5f, 0}};
   p.skip = 1;
   p.points = points;
-  p.picture = Buffer::Indirect;
+  p.buffer = Buffer::Indirect;
   const Measured m = measure(variants("ab"), p)[1];
   ASSERT_EQ(m.series.size(), 3u);
   EXPECT_EQ(m.series[0][0].radiance.x, 100);
   EXPECT_EQ(m.series[2][1].radiance.x, 49);
-  EXPECT_EQ(m.picture.at(0, 0).x, 98);
+  EXPECT_EQ(m.image.at(0, 0).x, 98);
   EXPECT_EQ(m.exposure, 2);
 }
 

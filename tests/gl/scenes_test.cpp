@@ -9,7 +9,7 @@ struct LitRoom : Room {
     scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     if (!more) return;
     scene.box(vec3(0.3f, -1, 0), vec3(0.6f, -0.2f, 0.3f), scene.material({0.1f, 0.2f, 0.8f}), false);
-    scene.picture(40, 56);
+    scene.size(40, 56);
   }
 };
 

@@ -32,7 +32,7 @@ struct FullRoom : Room {
     const uint32_t waving = scene.add(sheet(4, scene.material(vec3(0.5f))),
                                       glm::scale(glm::translate(mat4(1), vec3(0.5f, -0.2f, -0.9f)), vec3(0.3f)));
     scene.reshape(waving, waves(scene.assets.meshes.back(), 0.2f, 0));
-    scene.picture(48, 32);
+    scene.size(48, 32);
   }
 };
 

@@ -38,7 +38,7 @@ class StrictFetchTest : public GlTest {
     const PassContext context{strict, profiler};
     std::vector<std::vector<vec4>> images;
     for (const glm::ivec2 size : {glm::ivec2(64, 32), glm::ivec2(67, 39)}) { // patches fit, or reach beyond the picture
-      room.scene.picture(size.x, size.y);
+      room.scene.size(size.x, size.y);
       PlacedScene placed(strict, room.scene);
       const World world = placed.world();
       SurfacePass surfacePass{context};

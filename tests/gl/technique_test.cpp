@@ -3,7 +3,7 @@
 #include "ambient.h"
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "gl_fixture.h"
 #include "progressive.h"
 #include "tests/support/images.h"
@@ -116,9 +116,9 @@ TEST_F(TechniqueTest, AProgressivePathTracerIsAFileAndARow) {
     return readReference(sums, in, ReferenceBuffer::Irradiance).mean;
   };
   const Image truth = truthOf(7), half = truthOf(8), converged = gi.read(Buffer::Irradiance);
-  const double noise = pictureError(half, truth).rmse;
-  EXPECT_LT(pictureError(converged, truth).rmse, 1.1 * noise);
-  EXPECT_GT(pictureError(first, truth).rmse, 1.5 * noise) << "the first frame has a sixteenth of the paths";
+  const double noise = imageError(half, truth).rmse;
+  EXPECT_LT(imageError(converged, truth).rmse, 1.1 * noise);
+  EXPECT_GT(imageError(first, truth).rmse, 1.5 * noise) << "the first frame has a sixteenth of the paths";
 
   SceneView dimmed = room.scene.view();
   for (LightView& light : room.scene.lights) light.intensity *= 0.5f;

@@ -25,7 +25,7 @@ class TruthTest : public GatherTest {
   void fill() {
     texture_ = textureOf(waves(1));
     frame_.indirect = frame_.direct = {&texture_};
-    frame_.picture = {&texture_};
+    frame_.radiance = &texture_;
   }
 
   /// What `draw(framebuffer)` leaves, row 0 at the top.
@@ -52,7 +52,7 @@ class TruthTest : public GatherTest {
 
 TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
   const gl::Texture picture = textureOf(waves(0));
-  frame_.picture = {&picture};
+  frame_.radiance = &picture;
   const Look look{1.5f, ToneMapper::Filmic, true, AntiAliasing::Edges};
   truth_.take(waves(2), frame_);
   const gl::Texture& right = truth_.run(Buffer::Beauty, frame_, look);
@@ -61,7 +61,7 @@ TEST_F(TruthTest, LeftOfTheDividerIsThePictureRightOfItTheTruth) {
   const gl::Texture other = textureOf(waves(2)); // the truth as a frame's own picture
   FrameResults exact;
   exact.surfaces = frame_.surfaces;
-  exact.picture = {&other};
+  exact.radiance = &other;
   DisplayPass separate(passes);
   separate.run(Buffer::Beauty, exact, look);
   const Image8 truth = separate.read();

@@ -19,7 +19,7 @@ struct LitBox {
     scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
     scene.camera.worldFromView[3].z = 0.9f;
     scene.camera.fovY = 1.4f;
-    scene.picture(40, 30);
+    scene.size(40, 30);
   }
 };
 

@@ -42,7 +42,7 @@ class HandScene {
   void reshape(uint32_t index, std::vector<vec3> positions);
 
   LightView& lamp(const vec3& position, const vec3& intensity = vec3(1));
-  void picture(int width, int height) { camera.width = width, camera.height = height; }
+  void size(int width, int height) { camera.width = width, camera.height = height; }
 
   SceneView view(const SceneChanges& changes = {}) const;
 

@@ -6,7 +6,7 @@
 
 namespace lambent::test {
 
-inline ReferencePicture trace(const ReferenceInputs& in, uint32_t samples, ReferenceBuffer buffer) {
+inline ReferenceImage trace(const ReferenceInputs& in, uint32_t samples, ReferenceBuffer buffer) {
   ReferenceSums sums(in.camera.width, in.camera.height);
   RayCounts counts;
   addSamples(sums, in, samples, counts);

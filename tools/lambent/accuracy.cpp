@@ -22,7 +22,7 @@ const Assignments kPlain{{"gather.disk", "0"}, {"gather.near", "0"}, {"history.f
 
 /// But the brightest hundredth of the pixels.
 Value biasOfMost(const Outcome& o) {
-  return pictureError(o.run.picture, o.study.truth, allButBrightest(o.study.truth, 0.01)).bias;
+  return imageError(o.run.image, o.study.truth, allButBrightest(o.study.truth, 0.01)).bias;
 }
 constexpr TableColumn kBiasOfMost{"bias_most", "but the brightest 1 %", "%+.1f %%", 100};
 
@@ -61,7 +61,7 @@ void accuracyConvergence(const AccuracyOptions& options) {
   Assignments set = kPlain;
   set.emplace_back("vpl.visibility", "rays");
   Study study(options, options.launch.scene, {.size = "64x36", .set = set});
-  const double ofTruth = study.trace(4096, ReferenceBuffer::Irradiance, true).picture.relativeError;
+  const double ofTruth = study.trace(4096, ReferenceBuffer::Irradiance, true).image.relativeError;
   const std::vector<double> counts = options.quick ? std::vector<double>{64, 256} : std::vector{512.0, 2048.0, 8192.0};
   const size_t seeds = size_t(options.seeds.value_or(options.quick ? 1 : 3));
   std::vector<Variant> variants;
@@ -76,7 +76,7 @@ void accuracyConvergence(const AccuracyOptions& options) {
     Value& row = rows.add(Value::of("density", variants[i].name, "vpls", variants[i].settings.smc.vpls));
     double square = 0;
     for (const Measured& m : std::span(runs).subspan(i * seeds, seeds)) {
-      const PictureError e = study.outcome(m).error;
+      const ImageError e = study.outcome(m).error;
       square += e.rmseShare() * e.rmseShare() / double(seeds);
       row["bias"].add(e.bias);
     }
@@ -107,7 +107,7 @@ void accuracyGathers(const AccuracyOptions& options) {
   RunPlan plan = stillPlan(*study.opened, Buffer::Irradiance, options.quick ? 3 : 8, options.quick ? 1 : 2);
   plan.inTurn = true;
   const std::vector<Measured> runs = run(variants, plan, "drawing", options.output.quiet);
-  study.compareWith(runs[0].picture);
+  study.compareWith(runs[0].image);
   const std::vector<Column> columns{{{"gather", "gather"}, variantName},
                                     {{"ms", "ms", "%.0f"},
                                      [](const Outcome& o) -> Value {
@@ -143,7 +143,7 @@ void accuracyLight(const AccuracyOptions& options) {
       kBias,
       {kBiasOfMost, biasOfMost},
       {{"blocks", "blocks within 6 %", "%.0f %%", 100},
-       [](const Outcome& o) -> Value { return blocksWithin(o.run.picture, o.study.truth, 10, 0.06); }},
+       [](const Outcome& o) -> Value { return blocksWithin(o.run.image, o.study.truth, 10, 0.06); }},
       kRelMse,
       {{"ms", "ms a frame", "%.0f"}, [](const Outcome& o) -> Value { return steadyMs(o.run.frames); }},
       {{"paths_ms", "ms of path tracing to that error", "%.0f"},
@@ -255,7 +255,7 @@ void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
   std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
   const float exposure = study.traced ? study.traced->exposure : runs[0].exposure;
   if (truths.empty()) {
-    truths.emplace_back(runs[0].variant.name, runs[0].picture);
+    truths.emplace_back(runs[0].variant.name, runs[0].image);
     runs.erase(runs.begin());
   }
 
@@ -268,15 +268,15 @@ void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
   Value rows;
   for (const auto& [picture, truth] : truths) write(picture, truth);
   for (const Measured& m : runs) {
-    write(m.variant.name, m.picture);
+    write(m.variant.name, m.image);
     for (const auto& [against, truth] : truths) {
       study.compareWith(truth);
       rows.add(study.row(columns, m))["against"] = against;
       const std::string file = (folder / (m.variant.name + "-minus-" + against + ".png")).string();
       if (figure.twiceShown)
-        writeShown(file, absoluteDifference(shownImage(m.picture, exposure), shownImage(truth, exposure), 2));
+        writeShown(file, absoluteDifference(shownImage(m.image, exposure), shownImage(truth, exposure), 2));
       else
-        writePicture(file, absoluteDifference(m.picture, truth), midGreyAt(study.outcome(m).error.meanTruth));
+        writePicture(file, absoluteDifference(m.image, truth), midGreyAt(study.outcome(m).error.meanTruth));
     }
   }
   writeText(folder / "figure.csv", csvText(rows));

@@ -24,10 +24,10 @@ constexpr TableColumn kMeans[] = {{"rel_mse", "relMSE", "%.4f"},
                                   {"times_all_pictures", "times all pictures", "%.2f"}};
 
 /// What one preset reached over the seeds, in one kind of view.
-Value presetRow(std::span<const Measured> seeds, const TracedPicture& truth) {
+Value presetRow(std::span<const Measured> seeds, const TracedImage& truth) {
   std::map<std::string, std::vector<double>> values; // by column
   for (const Measured& m : seeds) {
-    const double error = pictureError(m.picture, truth.picture.mean).relMse;
+    const double error = imageError(m.image, truth.image.mean).relMse;
     const double ms = steadyMs(m.frames).value_or(m.frames.back().wallMs);
     double allMs = 0;
     for (const FrameStats& s : m.frames) allMs += s.wallMs;
@@ -41,7 +41,7 @@ Value presetRow(std::span<const Measured> seeds, const TracedPicture& truth) {
   }
   const bool known = values["paths_ms"].size() == seeds.size();
   Value row = Value::of("preset", seeds[0].variant.name, "seeds", seeds.size(), "pictures", seeds[0].frames.size(),
-                        "truth_rel_mse", expectedRelMse(truth.picture.mean, truth.picture.error), "holds",
+                        "truth_rel_mse", expectedRelMse(truth.image.mean, truth.image.error), "holds",
                         known ? holdsBar(meanOver(values["times"])) : "truth too noisy");
   for (const auto& [key, own] : values) {
     if (own.size() < seeds.size()) continue;

@@ -17,7 +17,7 @@ namespace {
 constexpr TableColumn kLessNoise{"rel_mse", "relMSE less the truth's noise", "%.1e"};
 /// What the truth does not know is no error of the picture.
 Value relMseLessNoise(const Outcome& o) {
-  const ReferencePicture& truth = o.study.traced->picture;
+  const ReferenceImage& truth = o.study.traced->image;
   return std::max(o.error.relMse - expectedRelMse(truth.mean, truth.error), 0.0);
 }
 
@@ -174,7 +174,7 @@ void addCubeRows(const BenchOptions& options, const std::string& file, Value& ro
     view.changes = {false, false, false, false, false};
     // Light that is averaged over pictures has its time; a cube's is there.
     for (int f = 1; own && f < settle; ++f) runner->run(view);
-    cube.picture = runner->picture(Buffer::Irradiance);
+    cube.image = runner->image(Buffer::Irradiance);
     if (own) other = std::move(runner);
     const float step = 0.002f * view.boundsWorld.diameter();
     for (int f = 0; f < frames; ++f) {

@@ -183,7 +183,7 @@ Value columnOf(const BenchOptions& options, const std::string& file) {
   RunPlan plan = benchPlan(options, *study.opened);
   std::vector<LightView> lights;
   plan.view = [&, steady = plan.view](int frame) { return unsteady(steady(frame), frame, lights); };
-  plan.picture = Buffer::Indirect;
+  plan.buffer = Buffer::Indirect;
   const std::vector<Measured> halves =
       run({study.variant(kTechniques[0], {}, kTechniques[0]), study.variant(kTechniques[1], {}, kTechniques[1])}, plan,
           nameOf(file), options.output.quiet);
@@ -191,7 +191,7 @@ Value columnOf(const BenchOptions& options, const std::string& file) {
   const FrameStats& gathered = halves[0].frames.back();
   Value column = Value::of("scene", file, "size", std::vector{camera.width, camera.height}, "frames",
                            halves[0].frames.size(), "vpls", gathered.vplsAlive, "patches", gathered.patches,
-                           "rmse_share", pictureError(halves[1].picture, halves[0].picture).rmseShare());
+                           "rmse_share", imageError(halves[1].image, halves[0].image).rmseShare());
   for (const Measured& half : halves) {
     Value& ms = column["median_ms"][half.variant.name];
     for (const Step& step : kMultires)

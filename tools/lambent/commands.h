@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gi/measure/runs/runs.h"
-#include "gi/reference/traced_picture.h"
+#include "gi/reference/traced_image.h"
 #include "tools/lambent/command_line.h"
 #include "tools/lambent/report.h"
 

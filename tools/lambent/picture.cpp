@@ -31,7 +31,7 @@ void paste(std::vector<T>& onto, int ontoWidth, const std::vector<T>& picture, i
     std::copy_n(&picture[at], row, &onto[size_t(channels) * (size_t(y) * size_t(ontoWidth) + size_t(x))]);
 }
 
-Image8 blackPicture(int width, int height) { return {width, height, std::vector<uint8_t>(3 * size_t(width) * height)}; }
+Image8 blackImage(int width, int height) { return {width, height, std::vector<uint8_t>(3 * size_t(width) * height)}; }
 
 constexpr int kLetterHeight = 9, kLetterMargin = 2; // of stb_easy_font, in its units; g and p reach down
 
@@ -130,7 +130,7 @@ Image beside(const Image& left, const Image& right) {
 
 Image8 beside(const Image8& left, const Image8& right) {
   CHECK_EQ(left.height, right.height);
-  Image8 out = blackPicture(left.width + right.width, left.height);
+  Image8 out = blackImage(left.width + right.width, left.height);
   paste(out.rgb, out.width, left.rgb, left.width, 3, 0, 0);
   paste(out.rgb, out.width, right.rgb, right.width, 3, left.width, 0);
   return out;
@@ -167,7 +167,7 @@ Image8 ContactSheet::sheet() const {
   if (count == 0) return {};
   // About 4:3.
   const int columns = std::clamp(int(std::lround(std::sqrt(count * 4.0 * height_ / (3.0 * width_)))), 1, count);
-  Image8 out = blackPicture(columns * width_, (count + columns - 1) / columns * height_);
+  Image8 out = blackImage(columns * width_, (count + columns - 1) / columns * height_);
   for (int i = 0; i < count; ++i)
     paste(out.rgb, out.width, pictures_[size_t(i)].rgb, width_, 3, i % columns * width_, i / columns * height_);
   return out;

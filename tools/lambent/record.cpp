@@ -133,7 +133,7 @@ std::string choicesOf(const RecordOptions& options, const std::vector<Settings>&
 }
 
 /// Of both sides as they are shown, each of this size.
-Image8 shownPicture(const std::vector<Side>& sides, Buffer buffer, int frame, int width, int height, bool captions) {
+Image8 shownImage(const std::vector<Side>& sides, Buffer buffer, int frame, int width, int height, bool captions) {
   Image8 all;
   for (const Side& side : sides) {
     Image8 picture = side.gi->readDisplay(buffer);
@@ -149,7 +149,7 @@ void writeFrame(const fs::path& file, const std::vector<Side>& sides, const Reco
                 const CameraView& whole) {
   const Buffer buffer = bufferByName(options.buffer);
   if (options.format == "png")
-    return writePng(file, shownPicture(sides, buffer, frame, whole.width, whole.height, options.captions));
+    return writePng(file, shownImage(sides, buffer, frame, whole.width, whole.height, options.captions));
   const Image left = sides[0].gi->read(buffer);
   writeExr(file, sides.size() > 1 ? beside(left, sides[1].gi->read(buffer)) : left);
 }
@@ -235,7 +235,7 @@ void record(const RecordOptions& options) {
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
       for (Side& side : sides) side.log.add(t, *side.stats, writing.count(), governor ? &*governor : nullptr);
       if (sheet.wants(done))
-        sheet.add(shownPicture(sides, bufferByName(options.buffer), done, small, smallHeight, options.captions));
+        sheet.add(shownImage(sides, bufferByName(options.buffer), done, small, smallHeight, options.captions));
       if (governor && sides[0].stats->plan.on(EffectId::Redraw)) {
         governor = governed(std::move(*governor), sides[0].stats->costMs(), *options.targetMs);
         gi.settings() = governor->settings;

@@ -152,20 +152,20 @@ Baseline baselineOf(const Study& study, bool texels, const fs::path& file) {
   Variant every = study.variant("truth", {{"gather.mode", "full"}}, "rsm");
   if (texels) lightByEveryTexel(every.settings);
   const Measured m = study.draw({every}, Buffer::Indirect)[0];
-  if (!(pictureError(m.picture, m.picture).meanTruth > 0))
+  if (!(imageError(m.image, m.image).meanTruth > 0))
     throw InputError(study.launch.scene,
                      "no light of reflective shadow maps reaches this view (another view or --point)");
-  const Image shown = shownImage(m.picture, m.exposure);
+  const Image shown = shownImage(m.image, m.exposure);
   writeShown(file, shown);
-  return {m.picture, shown, m.exposure};
+  return {m.image, shown, m.exposure};
 }
 
 /// Errors of the picture as radiance and as it is shown, which is given back.
 Image addErrors(Value& row, const Image& picture, const Baseline& baseline) {
-  const PictureError error = pictureError(picture, baseline.picture);
+  const ImageError error = imageError(picture, baseline.picture);
   Image shown = shownImage(picture, baseline.exposure);
   row["rmse_share"] = error.rmseShare(); // of the truth's mean indirect radiance
-  row["rms_shown"] = pictureError(shown, baseline.shown).rmse;
+  row["rms_shown"] = imageError(shown, baseline.shown).rmse;
   row["bias"] = error.bias;
   return shown;
 }
@@ -324,7 +324,7 @@ void reflectiveFigure(const AccuracyOptions& options) {
     }
     own.update(study.row(timeColumns(), runs[i]));
     if (baseline) {
-      const Image shown = addErrors(own, runs[i].picture, *baseline);
+      const Image shown = addErrors(own, runs[i].image, *baseline);
       // Splatted or gathered, it is the same picture.
       if (!row.picture.empty()) writeShownBesideTruth(folder, row.picture, shown, baseline->shown);
     }
@@ -382,7 +382,7 @@ void accuracyCurve(const AccuracyOptions& options) {
           Value::of("technique", sweep.technique, "setting", sweep.setting, "value", sweep.values[i], "in_use", used));
       point["gather_ms"] = runs[i].ms(StageId::Gather).median;
       point["vpls"] = runs[i].frames.back().vplsAlive; // 0: each fragment has clusters of its own
-      const Image shown = addErrors(point, runs[i].picture, baseline);
+      const Image shown = addErrors(point, runs[i].image, baseline);
       rmse.y.push_back(100 * point["rmse_share"].number());
       shownRms.y.push_back(100 * point["rms_shown"].number());
       all.add(point);

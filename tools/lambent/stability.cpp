@@ -57,7 +57,7 @@ struct ShotRun {
   std::vector<size_t> steps; // frames in which the scene changes by a step
   bool still = false;        // also measured standing still
   double truthError = 0;     // standard error of a value of the truth, RMS, tone-mapped luminance
-  Image picture; // values of the display: the first frame, with the marked pixels numbered; empty: none are marked
+  Image image; // values of the display: the first frame, with the marked pixels numbered; empty: none are marked
   std::vector<TechniqueRun> techniques;
 };
 
@@ -124,11 +124,11 @@ Image markedPicture(LaunchContext& opened, std::span<const vec2> marked, int sam
   SceneView view = opened.at(0);
   view.camera.height = std::max(1, view.camera.height * kWidth / view.camera.width);
   view.camera.width = kWidth;
-  const TracedPicture traced =
+  const TracedImage traced =
       trace(view, opened.settings,
             {.buffer = ReferenceBuffer::Beauty, .samples = uint32_t(samples), .seed = opened.seed}, "", true);
   if (interrupted) throw RunError("interrupted before there was a result");
-  Image shown = shownImage(traced.picture.mean, traced.exposure);
+  Image shown = shownImage(traced.image.mean, traced.exposure);
   drawMarks(shown, marked);
   return shown;
 }
@@ -212,7 +212,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     }
   }
   if (shot.marked > 0 && !stillAt)
-    shot.picture =
+    shot.image =
         markedPicture(*opened, std::span(tracked.points).first(shot.marked), std::min(options.samples, kPicturePaths));
   return shot;
 }
@@ -375,7 +375,7 @@ void writeStabilityReport(const OutputOptions& output, const fs::path& folder, c
   for (const ShotRun& s : shots) {
     writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
     if (s.marked == 0) continue;
-    writeShown(folder / ("marked-" + s.name + ".png"), s.picture);
+    writeShown(folder / ("marked-" + s.name + ".png"), s.image);
     page += "\n![" + s.name + ", first frame, marked pixels](marked-" + s.name + ".png)\n";
     writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
     page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";

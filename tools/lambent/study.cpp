@@ -52,7 +52,7 @@ RunPlan stillPlan(LaunchContext& opened, Buffer buffer, int frames, int skip) {
           .frames = frames,
           .skip = skip,
           .inTurn = false,
-          .picture = buffer};
+          .buffer = buffer};
 }
 
 std::function<SceneView(int)> watchedBy(WatchedScene& watched, std::function<SceneView(int)> view) {
@@ -70,12 +70,12 @@ std::vector<Measured> run(const std::vector<Variant>& variants, RunPlan plan, co
   return measure(variants, plan);
 }
 
-TracedPicture trace(const SceneView& view, const Settings& settings, TracePlan plan, const std::string& doing,
-                    bool quiet) {
+TracedImage trace(const SceneView& view, const Settings& settings, TracePlan plan, const std::string& doing,
+                  bool quiet) {
   Progress progress(doing, quiet);
   plan.cancelled = [] { return interrupted.load(); };
   plan.progress = [&](int done, int total) { progress.update(done, total); };
-  return tracePicture(view, settings, plan);
+  return traceImage(view, settings, plan);
 }
 
 double msOf(const FrameStats& stats, std::span<const StageId> stages) {
@@ -127,18 +127,18 @@ std::vector<Measured> Study::draw(const std::vector<Variant>& variants, Buffer b
 
 std::vector<Measured> Study::drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) const {
   RunPlan plan = planOf(*opened, frame + 1);
-  plan.inTurn = false, plan.picture = buffer;
+  plan.inTurn = false, plan.buffer = buffer;
   if (plan.frames <= frame) throw InputError("--frame", "the shot has only " + std::to_string(plan.frames));
   return run(variants, plan, "drawing", options_.output.quiet);
 }
 
-const TracedPicture& Study::trace(int samples, ReferenceBuffer buffer, bool clamped, const std::filesystem::path& state,
-                                  int frame) {
+const TracedImage& Study::trace(int samples, ReferenceBuffer buffer, bool clamped, const std::filesystem::path& state,
+                                int frame) {
   return traceView(planOf(*opened, 0).view(frame), samples, buffer, clamped, state);
 }
 
-const TracedPicture& Study::traceView(const SceneView& view, int samples, ReferenceBuffer buffer, bool clamped,
-                                      const std::filesystem::path& state) {
+const TracedImage& Study::traceView(const SceneView& view, int samples, ReferenceBuffer buffer, bool clamped,
+                                    const std::filesystem::path& state) {
   traced = lambent::trace(view, opened->settings,
                           {.buffer = buffer,
                            .samples = uint32_t(options_.samples.value_or(options_.quick ? 64 : samples)),
@@ -148,17 +148,17 @@ const TracedPicture& Study::traceView(const SceneView& view, int samples, Refere
                           "tracing paths", options_.output.quiet);
   if (interrupted)
     throw RunError(state.empty() ? "interrupted before there was a result" : "interrupted: the same command goes on");
-  truth = traced->picture.mean;
+  truth = traced->image.mean;
   return *traced;
 }
 
 Outcome Study::outcome(const Measured& run) const {
-  return {*this, run, truth.pixels.empty() ? PictureError{} : pictureError(run.picture, truth)};
+  return {*this, run, truth.pixels.empty() ? ImageError{} : imageError(run.image, truth)};
 }
 
 Value Study::row(const std::vector<Column>& columns, const Measured& run) const {
   const Outcome from = outcome(run);
-  const PictureError& e = from.error;
+  const ImageError& e = from.error;
   Value row = Value::of();
   if (!truth.pixels.empty())
     row = Value::of("rmse", e.rmse, "rmse_share", e.rmseShare(), "rel_mse", e.relMse, "bias", e.bias);
@@ -180,18 +180,18 @@ void Study::report(const std::vector<Column>& columns, const Value& rows, Value 
   figures["rows"] = rows;
   if (traced)
     figures["truth"] =
-        Value::of("spp", traced->samples, "clamp", traced->clamp, "relative_error", traced->picture.relativeError,
-                  "relative_error_of_mean", traced->picture.relativeErrorOfMean);
+        Value::of("spp", traced->samples, "clamp", traced->clamp, "relative_error", traced->image.relativeError,
+                  "relative_error_of_mean", traced->image.relativeErrorOfMean);
   writeJson(options_.output.json, figures);
   if (options_.output.quiet) return;
   if (traced)
     std::printf("truth: %u paths per pixel, standard error %.2f %% per pixel (RMS), %.2f %% of the mean\n",
-                traced->samples, 100 * traced->picture.relativeError, 100 * traced->picture.relativeErrorOfMean);
+                traced->samples, 100 * traced->image.relativeError, 100 * traced->image.relativeErrorOfMean);
   std::printf("%s", tableText(columns, rows).c_str());
 }
 
-std::optional<double> pathsMs(const TracedPicture& truth, double relMse) {
-  return pathTracingMs(relMse, expectedRelMse(truth.picture.mean, truth.picture.error),
+std::optional<double> pathsMs(const TracedImage& truth, double relMse) {
+  return pathTracingMs(relMse, expectedRelMse(truth.image.mean, truth.image.error),
                        1000 * truth.sampleSeconds * truth.samples);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/platform/gl_context.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "gi/measure/statistics.h"
 #include "gi/plan/presets.h"
 #include "tools/lambent/commands.h"
@@ -45,9 +45,9 @@ std::function<SceneView(int)> watchedBy(WatchedScene& watched, std::function<Sce
 
 /// measure() with its progress, until Ctrl-C.
 std::vector<Measured> run(const std::vector<Variant>& variants, RunPlan plan, const std::string& doing, bool quiet);
-/// tracePicture() with its progress, until Ctrl-C.
-TracedPicture trace(const SceneView& view, const Settings& settings, TracePlan plan, const std::string& doing,
-                    bool quiet);
+/// traceImage() with its progress, until Ctrl-C.
+TracedImage trace(const SceneView& view, const Settings& settings, TracePlan plan, const std::string& doing,
+                  bool quiet);
 
 /// Median milliseconds of these stages together.
 double msOf(const Measured& run, std::initializer_list<StageId> stages);
@@ -60,7 +60,7 @@ class Study;
 struct Outcome {
   const Study& study;
   const Measured& run;
-  PictureError error; // against the study's truth, where it has one
+  ImageError error; // against the study's truth, where it has one
 };
 /// A value of each row.
 struct Column {
@@ -94,10 +94,10 @@ class Study {
   std::vector<Measured> drawUpTo(int frame, const std::vector<Variant>& variants, Buffer buffer) const;
 
   /// The truth from now on. `state` keeps the sums; empty: nothing does. Throws RunError when interrupted.
-  const TracedPicture& trace(int samples, ReferenceBuffer buffer, bool clamped = false,
-                             const std::filesystem::path& state = {}, int frame = 0);
-  const TracedPicture& traceView(const SceneView& view, int samples, ReferenceBuffer buffer, bool clamped = false,
-                                 const std::filesystem::path& state = {});
+  const TracedImage& trace(int samples, ReferenceBuffer buffer, bool clamped = false,
+                           const std::filesystem::path& state = {}, int frame = 0);
+  const TracedImage& traceView(const SceneView& view, int samples, ReferenceBuffer buffer, bool clamped = false,
+                               const std::filesystem::path& state = {});
   /// The truth from now on.
   void compareWith(const Image& picture) { truth = picture; }
 
@@ -111,7 +111,7 @@ class Study {
   LaunchOptions launch;
   const std::unique_ptr<LaunchContext> opened;
   const GlContext context = GlContext::headless();
-  std::optional<TracedPicture> traced; // the last one
+  std::optional<TracedImage> traced; // the last one
   Image truth;
 
  private:
@@ -119,7 +119,7 @@ class Study {
 };
 
 /// pathTracingMs by the truth's own variance and pace. May be less than a sample of every pixel takes.
-std::optional<double> pathsMs(const TracedPicture& truth, double relMse);
+std::optional<double> pathsMs(const TracedImage& truth, double relMse);
 /// Whether path tracing takes kPathTracingTimes a frame or more: "yes", "no", "within noise", "one seed".
 const char* holdsBar(const UncertainValue& times);
 /// Median over the second half: warm-up and what a first frame makes are past. Not of one frame.

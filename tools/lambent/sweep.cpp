@@ -128,14 +128,14 @@ class SceneSweep {
       const std::string name = indirect ? "indirect" : "direct",
                         file = "truth-" + name_ + "-" + name + "-" + conditions_;
       const fs::path pace = folder_ / (file + ".ms");
-      const TracedPicture traced = trace(viewAt(frames_.moving - 1), opened_.settings,
-                                         {.buffer = indirect ? ReferenceBuffer::Irradiance : ReferenceBuffer::Direct,
-                                          .samples = uint32_t(indirect ? samples_ : std::max(samples_ / 8, 2)),
-                                          .seed = opened_.seed,
-                                          .state = folder_ / (file + ".state")},
-                                         name_ + ": truth of " + name + " light", options_.output.quiet);
+      const TracedImage traced = trace(viewAt(frames_.moving - 1), opened_.settings,
+                                       {.buffer = indirect ? ReferenceBuffer::Irradiance : ReferenceBuffer::Direct,
+                                        .samples = uint32_t(indirect ? samples_ : std::max(samples_ / 8, 2)),
+                                        .seed = opened_.seed,
+                                        .state = folder_ / (file + ".state")},
+                                       name_ + ": truth of " + name + " light", options_.output.quiet);
       if (interrupted) throw RunError(kGoesOn);
-      const ReferencePicture& p = traced.picture;
+      const ReferenceImage& p = traced.image;
       out_.truths[int(light)] = p.mean;
       truthRelMse_[int(light)] = expectedRelMse(p.mean, p.error);
       double sampleMs = 0; // of the pass that took samples; later ones find them all there
@@ -167,7 +167,7 @@ class SceneSweep {
   }
 
   Value errorsOf(const Image& picture, KnobLight light) const {
-    const PictureError e = pictureError(picture, out_.truths[int(light)]);
+    const ImageError e = imageError(picture, out_.truths[int(light)]);
     // What the truth does not know is no error of the picture, down to a tenth of it.
     const double relMse = std::max(e.relMse - truthRelMse_[int(light)], 0.1 * truthRelMse_[int(light)]);
     return Value::of("rel_mse", relMse, "rmse_share", e.rmseShare(), "bias", e.bias);
@@ -186,7 +186,7 @@ class SceneSweep {
     RunPlan plan{.view = [&](int frame) { return viewAt(skipped + frame); },
                  .frames = moving + still,
                  .inTurn = false,
-                 .picture = direct ? Buffer::Direct : Buffer::Irradiance};
+                 .buffer = direct ? Buffer::Direct : Buffer::Irradiance};
     if (still > 0) plan.also = {moving - 1};
     if (!direct) plan.points = tracked_.points;
     Measured m = [&] {
@@ -204,12 +204,12 @@ class SceneSweep {
       return spreadOf(std::move(ms)).median;
     };
     Value run = Value::of("point", point.name, "seed", seed, "gpu_mib", double(m.gpuBytes) / (1 << 20));
-    run["moving"] = errorsOf(still > 0 ? m.before[0] : m.picture, point.light);
+    run["moving"] = errorsOf(still > 0 ? m.before[0] : m.image, point.light);
     run["moving"]["ms"] = medianMs(std::min(2, moving - 1), moving); // shaders and maps of the first are past
     if (still > 0) {
-      run["still"] = errorsOf(m.picture, point.light);
+      run["still"] = errorsOf(m.image, point.light);
       run["still"]["ms"] = medianMs(moving + still / 2, moving + still);
-      writeExr(out_.pictures / (key + ".exr"), m.picture);
+      writeExr(out_.pictures / (key + ".exr"), m.image);
       run["picture"] = key + ".exr";
     }
     if (!direct) {

@@ -2,7 +2,7 @@
 // bias and largest difference of two linear pictures.
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/study.h"
@@ -91,7 +91,7 @@ void reference(const ReferenceOptions& options) {
   const Settings& settings = opened->settings;
   checkClamp(options, settings);
   const auto begin = std::chrono::steady_clock::now();
-  const TracedPicture traced =
+  const TracedImage traced =
       trace(opened->at(options.time), settings,
             {.buffer = buffer,
              .samples = uint32_t(options.samples.value_or(options.error > 0 ? kLargestSamples : kDefaultSamples)),
@@ -103,7 +103,7 @@ void reference(const ReferenceOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   if (traced.samples > 0) {
-    const ReferencePicture& picture = traced.picture;
+    const ReferenceImage& picture = traced.image;
     const float factor = buffer == ReferenceBuffer::Irradiance ? traced.exposure / kPi : traced.exposure;
     writePicture(out, picture.mean, factor, settings.image.toneMapper);
     if (!options.errors.empty()) writePicture(options.errors, picture.error, factor);
@@ -145,7 +145,7 @@ void compare(const CompareOptions& options) {
     mask = readLinear(options.mask);
     checkSize(options.mask, mask, options.a, x);
   }
-  const PictureError e = pictureError(x, y, mask);
+  const ImageError e = imageError(x, y, mask);
   if (e.pixels == 0 && e.notFinite == 0) throw InputError(options.mask, "leaves no pixel (those above 0 count)");
   if (!options.difference.empty()) {
     Image difference = absoluteDifference(x, y);

@@ -13,9 +13,9 @@ void runFrame(Runner& runner, const SceneView& view, int frame, const RunPlan& p
   const FrameStats& stats = runner.run(view);
   if (frame >= plan.skip) out.frames.push_back(stats);
   if (!plan.points.empty()) out.series.push_back(runner.at(plan.points));
-  if (plan.picture && std::ranges::count(plan.also, frame)) out.before.push_back(runner.picture(*plan.picture));
+  if (plan.buffer && std::ranges::count(plan.also, frame)) out.before.push_back(runner.image(*plan.buffer));
   if (frame + 1 < plan.frames) return;
-  if (plan.picture) out.picture = runner.picture(*plan.picture);
+  if (plan.buffer) out.image = runner.image(*plan.buffer);
   for (const auto& [owner, bytes] : gl::memoryByOwner()) out.gpuBytes += bytes;
   out.exposure = runner.exposure();
 }

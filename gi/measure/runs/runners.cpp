@@ -13,7 +13,7 @@ class WholeFrames final : public Runner {
       : gi_(v.settings, v.seed), watched_(watchesDirect(v.settings) ? Buffer::Direct : Buffer::Indirect) {}
 
   const FrameStats& run(const SceneView& view) override { return gi_.run(view); }
-  Image picture(Buffer buffer) const override { return gi_.read(buffer); }
+  Image image(Buffer buffer) const override { return gi_.read(buffer); }
   float exposure() const override { return gi_.exposure(); }
 
   std::vector<TrackedValue> at(std::span<const vec2> points) const override {

@@ -24,7 +24,7 @@ class Runner {
   virtual ~Runner() = default;
   virtual const FrameStats& run(const SceneView& view) = 0;
   /// The last frame. Runners that draw no pictures give none.
-  virtual Image picture(Buffer) const { return {}; }
+  virtual Image image(Buffer) const { return {}; }
   virtual float exposure() const { return 1; }
   /// Radiance at points (u, v) of the last frame: of indirect light, or of direct (watchesDirect).
   virtual std::vector<TrackedValue> at(std::span<const vec2> points) const = 0;
@@ -56,9 +56,9 @@ struct RunPlan {
   int frames = 1;
   int skip = 0;       // frames at the start that do not count
   bool inTurn = true; // false: one variant after the other, so that one alone takes memory: for still views
-  std::optional<Buffer> picture = {}; // to be read after the last frame
-  std::vector<int> also = {};         // ascending: frames before the last after which it is read too
-  std::span<const vec2> points = {};  // to be read after every frame, also those that do not count
+  std::optional<Buffer> buffer = {}; // to be read after the last frame
+  std::vector<int> also = {};        // ascending: frames before the last after which it is read too
+  std::span<const vec2> points = {}; // to be read after every frame, also those that do not count
   std::function<bool()> cancelled = {};
   std::function<void(int, int)> progress = {}; // frames done, frames of all variants
 };
@@ -66,7 +66,7 @@ struct RunPlan {
 struct Measured {
   Variant variant;
   std::vector<FrameStats> frames = {}; // those that count
-  Image picture = {};
+  Image image = {};
   std::vector<Image> before = {}; // those of RunPlan::also
   uint64_t gpuBytes = 0;          // that GL objects held after the last frame; of all variants where they run in turn
   float exposure = 1;

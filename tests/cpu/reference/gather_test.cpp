@@ -31,7 +31,7 @@ struct Room : LitBox, TracedScene {
 
   /// Mean irradiance of the picture by the reference, and its standard error.
   Mean truth(float clamp, uint32_t samples) {
-    const ReferencePicture picture =
+    const ReferenceImage picture =
         trace({rays, lights, view.camera, kBounces, clamp, 1}, samples, ReferenceBuffer::Irradiance);
     const double mean = meanOfPixels(picture.mean.pixels);
     return {mean, mean * picture.relativeErrorOfMean};
@@ -78,8 +78,8 @@ TEST(ReferenceAgainstVpls, NearLightGivesBackWhatBoundsTake) {
                                              .bounces = kBounces,
                                              .subsets = subsets,
                                              .seed = set + 1,
-                                             .picture = set / 2,
-                                             .pictures = set % 2 == 0 ? 1 : 64},
+                                             .frame = set / 2,
+                                             .frames = set % 2 == 0 ? 1 : 64},
                                             room.counts);
       means.push_back(bounded.back() + Room::meanOfPixels(near.irradiance));
     }

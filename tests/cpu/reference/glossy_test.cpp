@@ -102,7 +102,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
       }
       means.push_back(sum / double(seen.size()));
     }
-    const ReferencePicture picture =
+    const ReferenceImage picture =
         trace({s.rays, s.lights, view.camera, 2, kClamp, 1, &view}, kSanitized ? 2 : 1500, ReferenceBuffer::Indirect);
     if (kSanitized) continue; // too few to tell
     const double truth = meanOf(picture.mean, {0, 1, 0}).mean;
@@ -119,8 +119,8 @@ TEST(GlossyReference, LambertMaterialsAreUntouchedAndKeysTellFinishes) {
       glossy{s.rays, s.lights, view.camera, 1, 0, 1, &view};
   const uint64_t lambertKey = referenceKey(view, lambert), glossyKey = referenceKey(view, glossy);
   EXPECT_NE(lambertKey, glossyKey);
-  const ReferencePicture p = trace(lambert, 256, ReferenceBuffer::Beauty),
-                         q = trace(glossy, 256, ReferenceBuffer::Beauty);
+  const ReferenceImage p = trace(lambert, 256, ReferenceBuffer::Beauty),
+                       q = trace(glossy, 256, ReferenceBuffer::Beauty);
   double deviate = 0;
   for (size_t i = 0; i < p.mean.pixels.size(); ++i) {
     const double error = std::hypot(double(p.error.pixels[i].y), double(q.error.pixels[i].y));

@@ -1,6 +1,6 @@
 // The truth that is traced beside a window is the truth, of the present view, and says when it starts anew.
 #include "engine/trace/embree_query.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "gi/reference/live_reference.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/images.h"
@@ -15,7 +15,7 @@ class LiveReferenceTest : public ::testing::Test {
     block_ = scene_.quad({-0.5f, -0.5f, -0.8f}, {1, 0, 0}, {0, 0.4f, 0}, scene_.material(vec3(0.5f)));
     scene_.lamp({0.2f, 0.8f, -0.1f});
     scene_.camera.worldFromView[3].z = 0.9f;
-    scene_.picture(24, 16);
+    scene_.size(24, 16);
     settings_.smc.bounces = 2;
   }
 
@@ -38,16 +38,16 @@ class LiveReferenceTest : public ::testing::Test {
     }
   }
 
-  TracedPicture traced(ReferenceBuffer buffer, uint32_t samples) const {
-    return tracePicture(scene_.view(), settings_, {.buffer = buffer, .samples = samples, .seed = kSeed});
+  TracedImage traced(ReferenceBuffer buffer, uint32_t samples) const {
+    return traceImage(scene_.view(), settings_, {.buffer = buffer, .samples = samples, .seed = kSeed});
   }
 
   void expectTruth(const LiveTruth& live, ReferenceBuffer buffer) const {
     EXPECT_EQ(live.buffer, buffer);
-    const TracedPicture once = traced(buffer, live.samples);
-    EXPECT_TRUE(sameBits(live.picture.mean, once.picture.mean));
-    EXPECT_TRUE(sameBits(live.picture.error, once.picture.error));
-    EXPECT_EQ(live.picture.relativeError, once.picture.relativeError);
+    const TracedImage once = traced(buffer, live.samples);
+    EXPECT_TRUE(sameBits(live.image.mean, once.image.mean));
+    EXPECT_TRUE(sameBits(live.image.error, once.image.error));
+    EXPECT_EQ(live.image.relativeError, once.image.relativeError);
     EXPECT_EQ(live.bounces, once.bounces);
     EXPECT_GT(live.ms, 0);
   }
@@ -148,7 +148,7 @@ TEST_F(LiveReferenceTest, ViewsInBetweenAreNotMissed) {
 }
 
 TEST_F(LiveReferenceTest, EndsInTheMiddleOfAPass) {
-  scene_.picture(640, 480);
+  scene_.size(640, 480);
   settings_.smc.bounces = 8;
   const auto start = std::chrono::steady_clock::now();
   double pass = 0;
@@ -172,27 +172,27 @@ TEST_F(LiveReferenceTest, ErrorsAreThoseOfThePicturesAndKnowTheTruthsOwn) {
   LiveReference live(kSeed);
   begin(live, buffer);
   const auto truth = after(live, 64);
-  const TracedPicture exact = tracePicture(scene_.view(), settings_, {.buffer = buffer, .samples = 4096, .seed = 77});
-  Image darker = exact.picture.mean;
+  const TracedImage exact = traceImage(scene_.view(), settings_, {.buffer = buffer, .samples = 4096, .seed = 77});
+  Image darker = exact.image.mean;
   for (vec3& p : darker.pixels) p *= 0.5f;
-  const AgainstTruth far = againstTruth(darker, truth->picture);
-  const PictureError plain = pictureError(darker, traced(buffer, truth->samples).picture.mean);
+  const AgainstTruth far = againstTruth(darker, truth->image);
+  const ImageError plain = imageError(darker, traced(buffer, truth->samples).image.mean);
   EXPECT_EQ(far.error.rmse, plain.rmse);
   EXPECT_EQ(far.error.relMse, plain.relMse);
   EXPECT_EQ(far.error.bias, plain.bias);
   EXPECT_NEAR(far.error.bias, -0.5, 0.02);
   ASSERT_TRUE(far.known());
-  const double alone = pictureError(darker, exact.picture.mean).rmse;
-  EXPECT_NEAR(*far.pictureRmse(), alone, 0.05 * alone) << "without the noise of the truth";
+  const double alone = imageError(darker, exact.image.mean).rmse;
+  EXPECT_NEAR(*far.imageRmse(), alone, 0.05 * alone) << "without the noise of the truth";
   EXPECT_GT(std::abs(far.error.rmse - alone), 0) << "or the test shows nothing";
   EXPECT_LT(*pathTracingMs(far.error.relMse, far.truthRelMse, 1000), 1000) << "the truth is nearer than that already";
 
-  const AgainstTruth near = againstTruth(exact.picture.mean, truth->picture);
+  const AgainstTruth near = againstTruth(exact.image.mean, truth->image);
   EXPECT_FALSE(near.known()) << "all that is left is the truth's own noise";
-  EXPECT_FALSE(near.pictureRmse() || pathTracingMs(near.error.relMse, near.truthRelMse, 1000));
+  EXPECT_FALSE(near.imageRmse() || pathTracingMs(near.error.relMse, near.truthRelMse, 1000));
   EXPECT_NEAR(near.truthRmse, near.error.rmse, 0.25 * near.error.rmse) << "which it expects";
   EXPECT_NEAR(near.truthRelMse, near.error.relMse, 0.5 * near.error.relMse);
-  EXPECT_FALSE(againstTruth(darker, traced(buffer, 1).picture).known()) << "one sample does not know its error";
+  EXPECT_FALSE(againstTruth(darker, traced(buffer, 1).image).known()) << "one sample does not know its error";
 }
 
 } // namespace lambent::test::live_reference_test

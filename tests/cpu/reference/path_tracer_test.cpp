@@ -29,7 +29,7 @@ TEST(Reference, WhiteFurnaceOfASphere) {
   lights.sky = vec3(1e-30f); // never met; says that cosine rays are wanted at the last vertex
   const CameraView camera = looking({0.3f, 0.2f, 0.1f}, {1, 0, 0}, 16, 16);
   for (int bounces = 0; bounces < 4; ++bounces) {
-    const ReferencePicture p = trace({sphere, lights, camera, bounces}, 4, ReferenceBuffer::Beauty);
+    const ReferenceImage p = trace({sphere, lights, camera, bounces}, 4, ReferenceBuffer::Beauty);
     for (const vec3& pixel : p.mean.pixels) EXPECT_NEAR(pixel.y, kFurnace[bounces], 1e-5);
   }
 }
@@ -172,7 +172,7 @@ TEST(Reference, PixelCentresAndBackground) {
   const TracedScene s(scene);
   CameraView camera = cameraAt({0, 0, 0}, {0, 0, -1}, 1, 8, 4);
   const ReferenceInputs in{s.rays, s.lights, camera, 1};
-  const ReferencePicture p = trace(in, 2, ReferenceBuffer::Beauty);
+  const ReferenceImage p = trace(in, 2, ReferenceBuffer::Beauty);
   for (const auto [x, y] : Pixels(8, 4)) {
     EXPECT_EQ(p.surface[y * 8 + x], x < 4);
     EXPECT_NEAR(p.mean.at(x, y).x, x < 4 ? 2 + 0.5 * 0.25 : 0.25, 1e-5);

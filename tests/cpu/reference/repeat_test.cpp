@@ -130,8 +130,8 @@ TEST_F(Room, DamagedStateIsRefused) {
 }
 
 TEST_F(Room, SeedsAgreeWithinTheirErrors) {
-  const ReferencePicture a = readReference(sumsOf({400}, 1), inputs(1), ReferenceBuffer::Beauty);
-  const ReferencePicture b = readReference(sumsOf({400}, 2), inputs(2), ReferenceBuffer::Beauty);
+  const ReferenceImage a = readReference(sumsOf({400}, 1), inputs(1), ReferenceBuffer::Beauty);
+  const ReferenceImage b = readReference(sumsOf({400}, 2), inputs(2), ReferenceBuffer::Beauty);
   double chi2 = 0, sum = 0;
   size_t n = 0, far = 0;
   for (size_t i = 0; i < a.mean.pixels.size(); ++i) {
@@ -152,10 +152,10 @@ TEST_F(Room, SeedsAgreeWithinTheirErrors) {
 }
 
 TEST_F(Room, StatedErrorIsTheScatterOfRuns) {
-  const ReferencePicture truth = readReference(sumsOf({4000}, 99), inputs(99), ReferenceBuffer::Indirect);
+  const ReferenceImage truth = readReference(sumsOf({4000}, 99), inputs(99), ReferenceBuffer::Indirect);
   std::vector<double> ratios;
   for (uint32_t seed = 1; seed <= 10; ++seed) {
-    const ReferencePicture p = readReference(sumsOf({64}, seed), inputs(seed), ReferenceBuffer::Indirect);
+    const ReferenceImage p = readReference(sumsOf({64}, seed), inputs(seed), ReferenceBuffer::Indirect);
     double squares = 0, total = 0;
     for (size_t i = 0; i < p.mean.pixels.size(); ++i) {
       const vec3 d = p.mean.pixels[i] - truth.mean.pixels[i];
@@ -170,7 +170,7 @@ TEST_F(Room, StatedErrorIsTheScatterOfRuns) {
 }
 
 TEST_F(Room, SingleSampleHasNoError) {
-  const ReferencePicture p = readReference(sumsOf({1}), inputs(), ReferenceBuffer::Beauty);
+  const ReferenceImage p = readReference(sumsOf({1}), inputs(), ReferenceBuffer::Beauty);
   EXPECT_TRUE(std::isinf(p.relativeError));
   for (const vec3& pixel : p.mean.pixels) EXPECT_TRUE(isFinite(pixel));
 }

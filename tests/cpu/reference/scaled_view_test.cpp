@@ -1,7 +1,7 @@
 // Views with more of one thing: as much more as was asked for, and the same light.
 #include "engine/core/parallel.h"
 #include "gi/measure/scaled_view.h"
-#include "gi/reference/traced_picture.h"
+#include "gi/reference/traced_image.h"
 #include "tests/support/hand_scene.h"
 #include "tests/support/images.h"
 
@@ -24,17 +24,17 @@ class ScaledViewTest : public ::testing::Test {
     scene.lamp(vec3(0.4f, 1.3f, 1.1f), vec3(3, 2, 1));
     scene.camera.worldFromView[3] = vec4(0, 0, 1.9f, 1);
     scene.camera.fovY = 1.5f;
-    scene.picture(16, 12);
+    scene.size(16, 12);
   }
 
   static Image picture(const SceneView& view) {
     Settings settings;
     settings.image.exposure = 1;
-    return tracePicture(view, settings, {.buffer = ReferenceBuffer::Beauty, .samples = 16}).picture.mean;
+    return traceImage(view, settings, {.buffer = ReferenceBuffer::Beauty, .samples = 16}).image.mean;
   }
 
   /// The same random numbers, so the same paths wherever surfaces are the same: but where a ray meets an edge.
-  static void expectSamePicture(const SceneView& a, const SceneView& b) {
+  static void expectSameImage(const SceneView& a, const SceneView& b) {
     EXPECT_LT(relativeDifference(picture(b), picture(a)), 0.01);
   }
 
@@ -73,7 +73,7 @@ TEST_F(ScaledViewTest, TrianglesAreCutInSquareNumbersOnTheSameSurface) {
     }
     EXPECT_EQ(next, cut.triangles.size());
   }
-  expectSamePicture(scene.view(), view);
+  expectSameImage(scene.view(), view);
 }
 
 TEST_F(ScaledViewTest, CutEdgesMeetWithoutGaps) {
@@ -120,7 +120,7 @@ TEST_F(ScaledViewTest, PiecesHaveTheTrianglesOfTheWhole) {
   EXPECT_EQ(ids.size(), view.instances.size());
   EXPECT_NEAR(area, whole, 1e-4);
   EXPECT_EQ(all.lo, scene.view().boundsWorld.lo);
-  expectSamePicture(scene.view(), view);
+  expectSameImage(scene.view(), view);
 }
 
 TEST_F(ScaledViewTest, PiecesOfAMovedInstanceSayWhereTheyWere) {
@@ -149,10 +149,10 @@ TEST_F(ScaledViewTest, LightsShareTheirIntensity) {
 }
 
 TEST_F(ScaledViewTest, APictureOfAnotherSizeHasItsShape) {
-  const SceneView view = resizedPicture(1.5f)(scene.view());
+  const SceneView view = resizedImage(1.5f)(scene.view());
   EXPECT_EQ(view.camera.width, 24);
   EXPECT_EQ(view.camera.height, 18);
-  EXPECT_EQ(resizedPicture(0.01f)(scene.view()).camera.height, 1);
+  EXPECT_EQ(resizedImage(0.01f)(scene.view()).camera.height, 1);
 }
 
 } // namespace lambent::test::scaled_view_test

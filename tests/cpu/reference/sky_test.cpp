@@ -67,11 +67,11 @@ TEST(SkyReference, BackgroundAndKey) {
   HandScene scene;
   scene.quad({-1, -1, -100}, {2, 0, 0}, {0, 2, 0}, scene.material(vec3(0.5f)));
   scene.sky = Sky::daylight(directionAt(30, 170), 3);
-  scene.picture(24, 16);
+  scene.size(24, 16);
   TracedScene s(scene);
   SceneView& view = s.view;
   const ReferenceInputs in{s.rays, s.lights, view.camera, 1};
-  const ReferencePicture p = trace(in, 1, ReferenceBuffer::Beauty);
+  const ReferenceImage p = trace(in, 1, ReferenceBuffer::Beauty);
   for (const auto& [x, y] : {std::pair(0, 0), std::pair(23, 3), std::pair(5, 15)}) {
     const vec3 d = pixelRay(view.camera, x, y).direction;
     EXPECT_EQ(p.mean.at(x, y), scene.sky.radiance(d));

@@ -135,7 +135,7 @@ TEST(Jumped, ALiftThatSteps) {
 
 TEST(TrackedPixels, AgreeWithThePictureAtPixelCentres) {
   ReferenceBox box;
-  box.scene.picture(16, 8);
+  box.scene.size(16, 8);
   const TracedScene traced(box.scene);
   const auto& [view, rays, lights] = traced;
   constexpr uint32_t kSamples = 400;

@@ -1,4 +1,4 @@
-#include "gi/reference/traced_picture.h"
+#include "gi/reference/traced_image.h"
 
 #include "engine/trace/embree_query.h"
 #include "gi/reference/state_file.h"
@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 constexpr uint32_t kSamplesToJudge = 16;
 
 /// Samples until enough are taken, the error is reached or it is cancelled; saves the state as it goes.
-ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t key, TracedPicture& out) {
+ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t key, TracedImage& out) {
   ReferenceSums sums(in.camera.width, in.camera.height);
   if (!plan.state.empty() && std::filesystem::exists(plan.state)) sums = loadReference(plan.state, in, key);
   uint32_t saved = sums.samples;
@@ -73,7 +73,7 @@ bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer) {
          buffer != ReferenceBuffer::Irradiance;
 }
 
-TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan) {
+TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
   rays.update(view);
   const LightSet lights = collectLights(view);
@@ -84,13 +84,13 @@ TracedPicture tracePicture(const SceneView& view, const Settings& settings, cons
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
                            .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr};
-  TracedPicture out{.bounces = in.bounces, .clamp = in.clamp};
+  TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);
   if (out.samples == 0) return out;
-  out.picture = readReference(sums, in, plan.buffer);
+  out.image = readReference(sums, in, plan.buffer);
   out.exposure = settings.image.exposure;
   if (out.exposure <= 0) {
-    const ReferencePicture beauty = readReference(sums, in, ReferenceBuffer::Beauty);
+    const ReferenceImage beauty = readReference(sums, in, ReferenceBuffer::Beauty);
     std::vector<vec3> seen;
     for (size_t i = 0; i < beauty.surface.size(); ++i)
       if (beauty.surface[i]) seen.push_back(beauty.mean.pixels[i]);

@@ -16,11 +16,6 @@ void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& su
 
 enum class Buffer : int; // gi/viewer/viewer.h
 
-/// Radiance towards the camera, W/(m² sr).
-struct Picture {
-  const gl::Texture* radiance = nullptr; // RGBA32F; a = 1 on surfaces, 0 on background
-};
-
 struct CompositeInputs {
   const GBuffer& surfaces;
   SurfaceLighting direct, indirect;
@@ -32,7 +27,8 @@ class CompositePass {
  public:
   explicit CompositePass(PassContext context) : context_(context) {}
   /// Adds up emission + albedo/π · (E_direct + E_indirect) + glossy light; the sky where nothing is seen.
-  Picture run(const CompositeInputs& in);
+  /// Radiance towards the camera, W/(m² sr), RGBA32F; a = 1 on surfaces, 0 on background.
+  const gl::Texture& run(const CompositeInputs& in);
 
  private:
   PassContext context_;
@@ -42,13 +38,13 @@ class CompositePass {
 
 /// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 1
 /// when there is no light. Reads the image back, so it is meant to run once.
-float measureExposure(const Picture& picture);
+float measureExposure(const gl::Texture& radiance);
 
 // Looking at it ----------------------------------------------------------------------------------------------------
 
 /// Everything a frame made, for read-back and views.
 struct FrameResults : FrameOutputs {
-  Picture picture;
+  const gl::Texture* radiance = nullptr; // CompositePass
 };
 
 struct Look {

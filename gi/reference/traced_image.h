@@ -13,7 +13,7 @@ namespace lambent {
 struct TracePlan {
   ReferenceBuffer buffer = ReferenceBuffer::Indirect;
   uint32_t samples = 64;                       // of each pixel
-  double error = 0;                            // stop sooner at this ReferencePicture::relativeError
+  double error = 0;                            // stop sooner at this ReferenceImage::relativeError
   bool clamped = false;                        // bound the geometry term as gather.clamp bounds virtual lights
   uint32_t seed = 1;                           // of all random numbers
   std::filesystem::path state = {};            // keep the sums in this file, and go on from it when it is there
@@ -21,8 +21,8 @@ struct TracePlan {
   std::function<void(int, int)> progress = {}; // samples taken, samples expected
 };
 
-struct TracedPicture {
-  ReferencePicture picture = {};
+struct TracedImage {
+  ReferenceImage image = {};
   uint32_t samples = 0; // 0: cancelled before the first
   int bounces = 0;
   float clamp = 0;    // 1/m²; 0 = none
@@ -37,7 +37,7 @@ struct TracedPicture {
 bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
 
 /// Traces a view. Throws InputError for a state file of another image.
-TracedPicture tracePicture(const SceneView& view, const Settings& settings, const TracePlan& plan);
+TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
 /// Returns the exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
 /// measures an image; 1 without light.

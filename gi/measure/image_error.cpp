@@ -1,4 +1,4 @@
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 
 #include "engine/core/error.h"
 
@@ -16,10 +16,10 @@ double relative(double square, double truth) { return square / (truth * truth + 
 
 } // namespace
 
-PictureError pictureError(const Image& picture, const Image& truth, const Image& mask) {
+ImageError imageError(const Image& picture, const Image& truth, const Image& mask) {
   CHECK_EQ(picture.width, truth.width);
   CHECK_EQ(picture.height, truth.height);
-  PictureError out;
+  ImageError out;
   double squares = 0, relativeSquares = 0, difference = 0, sum = 0;
   for (size_t i = 0; i < truth.pixels.size(); ++i) {
     if (!mask.pixels.empty() && !(maxComponent(mask.pixels[i]) > 0)) continue;
@@ -86,7 +86,7 @@ double blocksWithin(const Image& picture, const Image& truth, int size, double t
   return blocks ? double(within) / double(blocks) : 1;
 }
 
-std::optional<double> AgainstTruth::pictureRmse() const {
+std::optional<double> AgainstTruth::imageRmse() const {
   if (!known()) return {};
   return std::sqrt(error.rmse * error.rmse - truthRmse * truthRmse);
 }
@@ -96,8 +96,8 @@ std::optional<double> pathTracingMs(double relMse, double ofTruth, double truthM
   return truthMs * ofTruth / (relMse - ofTruth);
 }
 
-AgainstTruth againstTruth(const Image& picture, const ReferencePicture& truth) {
-  AgainstTruth out{.error = pictureError(picture, truth.mean)};
+AgainstTruth againstTruth(const Image& picture, const ReferenceImage& truth) {
+  AgainstTruth out{.error = imageError(picture, truth.mean)};
   out.truthRmse = truth.relativeError * out.error.meanTruth;
   out.truthRelMse = expectedRelMse(truth.mean, truth.error);
   out.truthBias = truth.relativeErrorOfMean;

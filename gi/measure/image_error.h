@@ -9,7 +9,7 @@
 namespace lambent {
 
 /// Over all channels of the pixels that count; those with NaN or infinity in either picture are left out and counted.
-struct PictureError {
+struct ImageError {
   double rmse = 0;
   double relMse = 0;    // mean of (a − b)²/(b² + 0.01)
   double bias = 0;      // mean of a − b over the mean of b; 0 where that is black
@@ -21,9 +21,9 @@ struct PictureError {
   double rmseShare() const { return rmse > 0 ? rmse / meanTruth : 0; }
 };
 /// Of pictures of the same size, where `mask` (none: everywhere) is above 0.
-PictureError pictureError(const Image& picture, const Image& truth, const Image& mask = {});
+ImageError imageError(const Image& picture, const Image& truth, const Image& mask = {});
 
-/// PictureError::relMse to expect of an unbiased picture with this mean and these standard errors of its values,
+/// ImageError::relMse to expect of an unbiased picture with this mean and these standard errors of its values,
 /// against the exact one. Pixels that are not finite in either are left out.
 double expectedRelMse(const Image& mean, const Image& standardError);
 
@@ -42,7 +42,7 @@ std::optional<double> pathTracingMs(double relMse, double ofTruth, double truthM
 constexpr double kPathTracingTimes = 20;
 
 struct AgainstTruth {
-  PictureError error;     // of the picture, what the truth does not know included
+  ImageError error;       // of the picture, what the truth does not know included
   double truthRmse = 0;   // expected of the truth, by its own standard error; infinite for a single sample
   double truthRelMse = 0; // likewise
   double truthBias = 0;   // standard error of the truth's mean over that mean
@@ -50,8 +50,8 @@ struct AgainstTruth {
   /// Less than half of the squared error is the truth's own.
   bool known() const { return 2 * truthRmse * truthRmse < error.rmse * error.rmse; }
   /// RMSE without what the truth does not know; none where that is too much of it.
-  std::optional<double> pictureRmse() const;
+  std::optional<double> imageRmse() const;
 };
-AgainstTruth againstTruth(const Image& picture, const ReferencePicture& truth);
+AgainstTruth againstTruth(const Image& picture, const ReferenceImage& truth);
 
 } // namespace lambent

@@ -1,48 +1,48 @@
 #include "engine/core/rng.h"
-#include "gi/measure/picture_error.h"
+#include "gi/measure/image_error.h"
 #include "gi/measure/statistics.h"
 
 #include "tests/support/test.h"
 
-namespace lambent::test::picture_error_test {
+namespace lambent::test::image_error_test {
 
-TEST(PictureErrorTest, ADifferenceInOneChannelOfOnePixelCountsByItsShareOfAllValues) {
+TEST(ImageErrorTest, ADifferenceInOneChannelOfOnePixelCountsByItsShareOfAllValues) {
   Image truth(2, 2, vec3(2)), picture = truth;
-  EXPECT_EQ(pictureError(picture, truth).rmse, 0);
-  EXPECT_EQ(pictureError(picture, truth).rmseShare(), 0);
+  EXPECT_EQ(imageError(picture, truth).rmse, 0);
+  EXPECT_EQ(imageError(picture, truth).rmseShare(), 0);
   picture.at(1, 0).y += 6;
-  const PictureError e = pictureError(picture, truth);
+  const ImageError e = imageError(picture, truth);
   EXPECT_DOUBLE_EQ(e.rmse, std::sqrt(36.0 / 12));
   EXPECT_DOUBLE_EQ(e.rmseShare(), std::sqrt(3.0) / 2);
   EXPECT_DOUBLE_EQ(e.relMse, 36 / 4.01 / 12);
   EXPECT_DOUBLE_EQ(e.bias, 0.25); // too bright is above 0
-  EXPECT_DOUBLE_EQ(pictureError(truth, picture).bias, -0.2);
+  EXPECT_DOUBLE_EQ(imageError(truth, picture).bias, -0.2);
   EXPECT_EQ(e.largest, 6);
   EXPECT_EQ(e.meanTruth, 2);
   EXPECT_EQ(e.pixels, 4u);
 }
 
-TEST(PictureErrorTest, BlackAgainstBlackIsNoErrorAndLightAgainstBlackIsInfinite) {
+TEST(ImageErrorTest, BlackAgainstBlackIsNoErrorAndLightAgainstBlackIsInfinite) {
   const Image black(3, 1), grey(3, 1, vec3(0.5f));
-  EXPECT_EQ(pictureError(black, black).rmseShare(), 0);
-  EXPECT_EQ(pictureError(grey, black).rmseShare(), std::numeric_limits<double>::infinity());
-  EXPECT_DOUBLE_EQ(pictureError(black, grey).rmseShare(), 1);
-  EXPECT_DOUBLE_EQ(pictureError(black, grey).bias, -1);
+  EXPECT_EQ(imageError(black, black).rmseShare(), 0);
+  EXPECT_EQ(imageError(grey, black).rmseShare(), std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(imageError(black, grey).rmseShare(), 1);
+  EXPECT_DOUBLE_EQ(imageError(black, grey).bias, -1);
 }
 
-TEST(PictureErrorTest, PixelsOutsideTheMaskAndThoseNotFiniteAreLeftOut) {
+TEST(ImageErrorTest, PixelsOutsideTheMaskAndThoseNotFiniteAreLeftOut) {
   Image truth(3, 1, vec3(1)), picture(3, 1, vec3(1.5f)), mask(3, 1, vec3(1));
   picture.at(0, 0) = vec3(std::nanf(""));
   picture.at(1, 0) = vec3(9);
   mask.at(1, 0) = vec3(0);
-  const PictureError e = pictureError(picture, truth, mask);
+  const ImageError e = imageError(picture, truth, mask);
   EXPECT_EQ(e.pixels, 1u);
   EXPECT_EQ(e.notFinite, 1u);
   EXPECT_DOUBLE_EQ(e.rmse, 0.5);
   EXPECT_DOUBLE_EQ(e.bias, 0.5);
 }
 
-TEST(PictureErrorTest, StandardErrorsTellTheRelMseThatIsMet) {
+TEST(ImageErrorTest, StandardErrorsTellTheRelMseThatIsMet) {
   Rng rng(3, Stream::NearLight, 0);
   Image truth(200, 100), error(200, 100), noisy(200, 100);
   for (size_t i = 0; i < truth.pixels.size(); ++i)
@@ -52,7 +52,7 @@ TEST(PictureErrorTest, StandardErrorsTellTheRelMseThatIsMet) {
       noisy.pixels[i][c] = truth.pixels[i][c] + error.pixels[i][c] * std::sqrt(3.0f) * (2 * rng.next() - 1);
     }
   const double expected = expectedRelMse(truth, error);
-  EXPECT_NEAR(pictureError(noisy, truth).relMse, expected, 0.03 * expected);
+  EXPECT_NEAR(imageError(noisy, truth).relMse, expected, 0.03 * expected);
   error.pixels[0] = vec3(INFINITY); // of a single sample
   EXPECT_NEAR(expectedRelMse(truth, error), expected, 0.01 * expected);
   EXPECT_EQ(expectedRelMse({}, {}), 0);
@@ -75,17 +75,17 @@ TEST(Statistics, ExponentOfAPower) {
   EXPECT_NEAR(exponentOf(x, y), -0.5, 1e-12);
 }
 
-TEST(PictureError, BrightestPixelsAreLeftOut) {
+TEST(ImageError, BrightestPixelsAreLeftOut) {
   Image truth(10, 10, vec3(1)), picture(10, 10, vec3(0.9f));
   truth.at(3, 4) = vec3(50);
   picture.at(3, 4) = vec3(10);
   const Image most = allButBrightest(truth, 0.01);
-  EXPECT_LT(pictureError(picture, truth).bias, -0.3);
-  EXPECT_NEAR(pictureError(picture, truth, most).bias, -0.1, 1e-6);
-  EXPECT_EQ(pictureError(picture, truth, most).pixels, 99u);
+  EXPECT_LT(imageError(picture, truth).bias, -0.3);
+  EXPECT_NEAR(imageError(picture, truth, most).bias, -0.1, 1e-6);
+  EXPECT_EQ(imageError(picture, truth, most).pixels, 99u);
 }
 
-TEST(PictureError, BlocksAreHeldToTheirOwnMean) {
+TEST(ImageError, BlocksAreHeldToTheirOwnMean) {
   Image truth(25, 10, vec3(1)), picture = truth; // two whole blocks
   picture.at(0, 0) = vec3(5);                    // +4 % of its block
   EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 1);
@@ -96,4 +96,4 @@ TEST(PictureError, BlocksAreHeldToTheirOwnMean) {
   EXPECT_EQ(blocksWithin(picture, truth, 10, 0.05), 0.5);
 }
 
-} // namespace lambent::test::picture_error_test
+} // namespace lambent::test::image_error_test
