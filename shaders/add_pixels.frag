@@ -1,5 +1,5 @@
 #version 450
-// Adds light that was traced on the CPU to what was gathered, texel by texel. Variant: GLOSSY.
+// Adds light that was found elsewhere, on the CPU for one, texel by texel. Variant: GLOSSY.
 #include "lib/light_outputs.glsl"
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY

@@ -12,6 +12,7 @@ layout(binding = 2) uniform sampler2D irradiance; // of this frame
 layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames in the mean (0: nothing)
 uniform float mostFrames; // of those before that count at most; 0: there are none
+uniform float worth;     // frames that this one counts as
 uniform bool stands;    // the camera is where it was
 layout(location = 0) out vec4 outIrradiance; // a: frames in the mean
 #ifdef CHANGES
@@ -88,14 +89,14 @@ void main() {
   bool known = !any(isnan(now)) && !any(isinf(now));
   outChange = vec4(known ? now - kept.rgb : vec3(0.0), 1.0);
 #else
-  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
-  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
+  outIrradiance = vec4(mix(kept.rgb, now, worth / (kept.a + worth)), kept.a + worth);
+  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + worth);
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
-  outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
+  outGlossy = vec4(mix(keptLobe.rgb, lobe, worth / (keptLobe.a + worth)), keptLobe.a + worth);
 #endif
 #endif
 }

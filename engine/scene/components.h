@@ -70,6 +70,7 @@ struct PunctualLight {
   vec3 intensity{1};
   float range = kInfinity; // metres, not scaled by the node
   float innerConeCos = 1, outerConeCos = 0.70710678f;
+  float angularRadius = 0; // radians; as LightView
 };
 
 /// Looks along the entity's -Z with +Y up.

@@ -12,7 +12,8 @@ namespace {
 
 bool sameLight(const LightView& a, const LightView& b) {
   return a.type == b.type && a.position == b.position && a.direction == b.direction && a.intensity == b.intensity &&
-         a.range == b.range && a.innerConeCos == b.innerConeCos && a.outerConeCos == b.outerConeCos;
+         a.range == b.range && a.innerConeCos == b.innerConeCos && a.outerConeCos == b.outerConeCos &&
+         a.angularRadius == b.angularRadius;
 }
 
 template <class View> std::unordered_map<uint32_t, const View*> byId(const std::vector<View>& views) {
@@ -111,6 +112,7 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
     v.range = l.range;
     v.innerConeCos = l.innerConeCos;
     v.outerConeCos = l.outerConeCos;
+    v.angularRadius = l.angularRadius;
     const auto before = lightsBefore.find(v.id);
     v.changed = before == lightsBefore.end() || !sameLight(v, *before->second);
     changes.lights |= v.changed;

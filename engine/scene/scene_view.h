@@ -46,6 +46,7 @@ struct LightView {
   vec3 intensity{1};
   float range = kInfinity; // metres; glTF's smooth window, infinite when absent
   float innerConeCos = 1, outerConeCos = 0.70710678f;
+  float angularRadius = 0; // of a directional light's disk, radians; 0: sharp shadows
   bool changed = false; // anything of it differs from the previous extraction
 };
 

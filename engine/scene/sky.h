@@ -67,4 +67,7 @@ class Sky {
 /// of the same paper's appendix, at one wavelength for each channel). Zero below the horizon.
 vec3 daylightSun(const vec3& towardsSun, float turbidity);
 
+/// Radius of the sun's disk as seen from the ground, radians (0.53° across).
+inline constexpr float kSunRadius = 0.5f * 0.53f / 180 * kPi;
+
 } // namespace lambent

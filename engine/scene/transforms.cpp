@@ -46,7 +46,8 @@ Entity addLight(Scene& scene, const LightView& light, const std::string& name) {
   registry.emplace<Name>(e, name);
   registry.emplace<Transform>(e, t);
   registry.emplace<WorldTransform>(e, t.local());
-  registry.emplace<PunctualLight>(e, light.type, light.intensity, light.range, light.innerConeCos, light.outerConeCos);
+  registry.emplace<PunctualLight>(e, light.type, light.intensity, light.range, light.innerConeCos, light.outerConeCos,
+                                  light.angularRadius);
   return e;
 }
 

@@ -44,6 +44,7 @@ void Day::apply() {
   sun.type = LightType::Directional;
   sun.direction = -up;
   sun.intensity = daylightSun(up, kTurbidity);
+  sun.angularRadius = kSunRadius;
   if (!sun_) sun_ = addLight(scene_, sun, "sun of the day");
   Transform& place = registry.get<Transform>(*sun_);
   place.rotation = rotationTowards(sun.direction);

@@ -30,8 +30,8 @@ gl::Texture lobeTexture() {
 
 } // namespace
 
-void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
-                        const LightTarget& target, FrameStats& stats) {
+void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceReader& reader, Patches& patches,
+                        const Settings& settings, const LightTarget& target, FrameStats& stats) {
   const SceneChanges& changes = world.view.changes;
   if (changes.first || changes.lights || changes.geometry || changes.instances || lights_.lights.empty()) {
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
@@ -42,8 +42,8 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, Patches& pa
   GBuffer plain = surfaces; // shares have no lobes
   plain.roughnessMetalness = nullptr;
   atlas_.fit(plain, pyramid, false);
-  readSurfaces(surfaces, pyramid);
-  const FrameSurfaces seen{surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+  const FrameSurfaces seen = reader.read(surfaces);
+  readLevels(seen, pyramid);
   const RayQuery& rays = tracerFor(world, seen, settings.area);
   stats.areaTracer = tracer_.report();
   std::vector<AreaLights> groups;
@@ -112,12 +112,7 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
 }
 
 /// What the CPU has to know of the image. Waits for the GPU.
-void AreaLightPass::readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid) {
-  const size_t pixels = size_t(surfaces.width) * size_t(surfaces.height);
-  depth_.resize(pixels);
-  normal_.resize(pixels);
-  surfaces.depth->read(std::span(depth_), GL_DEPTH_COMPONENT, GL_FLOAT);
-  surfaces.normal->read(std::span(normal_), GL_RGBA, GL_FLOAT);
+void AreaLightPass::readLevels(const FrameSurfaces& seen, const PatchPyramid& pyramid) {
   levels_.resize(size_t(pyramid.levels) + 1);
   std::vector<float> split, plane;
   for (int level = 0; level <= pyramid.levels; ++level) {
@@ -125,10 +120,9 @@ void AreaLightPass::readSurfaces(const GBuffer& surfaces, const PatchPyramid& py
     at.size = pyramid.padded / (1 << level);
     at.smooth.assign(size_t(at.size.x) * size_t(at.size.y), 0);
     if (level == 0) {
-      for (int y = 0; y < surfaces.height; ++y)
-        for (int x = 0; x < surfaces.width; ++x)
-          at.smooth[size_t(y) * size_t(at.size.x) + size_t(x)] =
-              depth_[size_t(y) * size_t(surfaces.width) + size_t(x)] > 0;
+      for (int y = 0; y < seen.height; ++y)
+        for (int x = 0; x < seen.width; ++x)
+          at.smooth[size_t(y) * size_t(at.size.x) + size_t(x)] = seen.seen({x, y});
       continue;
     }
     split.resize(at.smooth.size());

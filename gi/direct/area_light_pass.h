@@ -22,8 +22,8 @@ class AreaLightPass {
   explicit AreaLightPass(PassContext context) : context_(context) {}
 
   /// Adds the light to the target, which is as large as the image.
-  void add(const World& world, const GBuffer& surfaces, Patches& patches, const Settings& settings,
-           const LightTarget& target, FrameStats& stats);
+  void add(const World& world, const GBuffer& surfaces, SurfaceReader& reader, Patches& patches,
+           const Settings& settings, const LightTarget& target, FrameStats& stats);
   /// Drops the collected lights. Call it when the pass is not run for a while: changes of lights are then not reported.
   void forget() {
     lights_ = {};
@@ -32,7 +32,7 @@ class AreaLightPass {
 
  private:
   const RayQuery& tracerFor(const World& world, const FrameSurfaces& surfaces, const AreaSettings& settings);
-  void readSurfaces(const GBuffer& surfaces, const PatchPyramid& pyramid);
+  void readLevels(const FrameSurfaces& seen, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void collect(const World& world);
   void shade(const GBuffer& surfaces, std::vector<AreaPiece> pieces, const gl::Texture& share,
@@ -44,8 +44,6 @@ class AreaLightPass {
   std::vector<EmitterTriangle> triangles_; // that they are of
   std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
   FasterOf tracer_{"cpu", "gpu"};
-  std::vector<float> depth_;
-  std::vector<vec4> normal_;
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};
   gl::Texture share_, stencil_, lobes_;

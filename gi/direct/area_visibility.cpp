@@ -15,17 +15,6 @@ constexpr int kMostAll = 4 * kMostAreaRays;
 
 } // namespace
 
-std::vector<glm::ivec2> FrameSurfaces::some(size_t count) const {
-  std::vector<glm::ivec2> pixels;
-  for (uint32_t i = 0; i < count; ++i) {
-    const vec3 at = additiveRecurrence3(i, vec3(0.5f));
-    const glm::ivec2 pixel(std::min(int(at.x * float(width)), width - 1),
-                           std::min(int(at.y * float(height)), height - 1));
-    if (seen(pixel)) pixels.push_back(pixel);
-  }
-  return pixels;
-}
-
 /// The rays of a fragment: where they go, and what is known of them.
 struct AreaVisibility::Question {
   Unshadowed from;
@@ -41,9 +30,7 @@ struct AreaVisibility::Question {
 };
 
 AreaVisibility::Place AreaVisibility::placeAt(const glm::ivec2& pixel) const {
-  const FrameSurfaces& s = surfaces_;
-  const vec3 view = positionViewFromDepth(s.camera, vec2(pixel) + 0.5f, s.depth[s.at(pixel)]);
-  return {vec3(s.camera.worldFromView * vec4(view, 1)), glm::normalize(vec3(s.normal[s.at(pixel)]))};
+  return {surfaces_.positionAt(pixel), surfaces_.normalAt(pixel)};
 }
 
 std::array<AreaVisibility::Place, 4> AreaVisibility::partsOf(const glm::ivec2& texel, int level) const {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/trace/ray_query.h"
+#include "gi/direct/frame_surfaces.h"
 #include "gi/lighting/area_lights.h"
-#include "shaders/shared/camera_block.h"
 
 #include <algorithm>
 #include <array>
@@ -15,19 +15,6 @@
 namespace lambent {
 
 inline constexpr int kMostAreaRays = 64; // from a quarter: bits of a word
-
-/// An image's surfaces on the CPU, rows from the bottom.
-struct FrameSurfaces {
-  int width = 0, height = 0;
-  std::span<const float> depth; // as GBuffer
-  std::span<const vec4> normal;
-  CameraBlock camera;
-
-  bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
-  /// Up to `count` pixels that show a surface, spread over the image.
-  std::vector<glm::ivec2> some(size_t count) const;
-  size_t at(const glm::ivec2& pixel) const { return size_t(pixel.y) * size_t(width) + size_t(pixel.x); }
-};
 
 /// What a fragment saw.
 struct AreaSeen {

@@ -1,5 +1,6 @@
 #include "gi/direct/direct_light.h"
 
+#include "gi/gather/add_pixels.h"
 #include "gi/gather/draw_gather.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/vpl/smc.h"
@@ -68,30 +69,82 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 } // namespace
 
 DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
-    : context_(context), shadows_(context), emitters_(context), areas_(context),
+    : context_(context), shadows_(context), emitters_(context), areas_(context), soft_(context), lamps_(context),
       doubts_(std::min(mostDoubts, gl::mostBufferTexels())), depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
 SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
-  if (!in.plan.seenChanges() && !stale_ && !unfinished_) return target_.light();
+  const bool changed = in.plan.seenChanges() || stale_ || unfinished_;
+  if (!changed && !pending()) return light_;
   const bool first = std::exchange(unfinished_, true);
   stale_ |= first;
-  lightByMaps(in, stats);
-  if (byPatches(in)) {
-    areas_.add(in.world, in.surfaces, in.patches, in.settings, target_, stats);
-    stats.of(EffectId::Emissive) += stats.areaFragments;
-    stats.of(EffectId::SoftShadows) = stats.areaFragments;
+  if (changed) lightByMaps(in, stats);
+  light_ = mapped_.light();
+  const Emitters emitters = emittersBy(in);
+  if (emitters == Emitters::Patches && changed) addPatches(in, mapped_, stats);
+  if (emitters != Emitters::Patches && emitters != Emitters::PatchesThenRays) areas_.forget();
+  const bool lamps = emitters == Emitters::PatchesThenRays;
+  if (!lamps) lamps_.forget(), lampsWait_ = false;
+  if (softByRays(in) && (lamps || emitters == Emitters::Rays || hasSkyOrSuns(in))) {
+    target_.fit(in.surfaces);
+    target_.clear();
+    add(mapped_.light());
+    soft_.add(in, reader_, emitters == Emitters::Rays ? SoftParts::All : SoftParts::SkyAndSuns, target_, stats);
+    if (lamps) addLamps(in, changed, stats);
+    light_ = target_.light();
   } else {
-    areas_.forget();
+    soft_.forget();
   }
   stale_ = unfinished_ = false;
-  return target_.light();
+  return light_;
 }
 
-/// Whether emissive surfaces light patches. As one sample they are as good as points.
-bool DirectLight::byPatches(const Frame& in) {
-  return in.settings.shadow.emitters == EmitterShadows::Patches && in.plan.on(EffectId::Emissive) &&
-         in.plan.on(EffectId::SoftShadows);
+/// Who brings the light of emissive surfaces. As one sample they are as good as points.
+DirectLight::Emitters DirectLight::emittersBy(const Frame& in) {
+  if (!in.plan.on(EffectId::Emissive)) return Emitters::None;
+  if (!in.plan.on(EffectId::SoftShadows)) return Emitters::Maps;
+  if (in.settings.shadow.emitters == EmitterShadows::Patches) return Emitters::Patches;
+  if (in.settings.direct.soft == SoftLightBy::Maps) return Emitters::Maps;
+  // Patches ask every lamp at every pixel: of fifty lamps they take twice the time of rays (docs/decisions.md).
+  constexpr size_t kFewLamps = 8, kFewTriangles = 512;
+  const LightSet& lights = in.world.lights;
+  return lights.emitters.size() <= kFewLamps && lights.triangles.size() <= kFewTriangles ? Emitters::PatchesThenRays
+                                                                                          : Emitters::Rays;
+}
+
+bool DirectLight::softByRays(const Frame& in) { return in.settings.direct.soft == SoftLightBy::Rays; }
+
+bool DirectLight::hasSkyOrSuns(const Frame& in) {
+  return !in.world.lights.sky.black() || std::ranges::any_of(in.world.lights.punctual, isSoft);
+}
+
+bool DirectLight::skyByMaps(const Frame& in) { return in.plan.on(EffectId::Sky) && !softByRays(in); }
+
+void DirectLight::addPatches(const Frame& in, const LightTarget& target, FrameStats& stats) {
+  areas_.add(in.world, in.surfaces, reader_, in.patches, in.settings, target, stats);
+  stats.of(EffectId::Emissive) += stats.areaFragments;
+  stats.of(EffectId::SoftShadows) += stats.areaFragments;
+}
+
+/// Few lamps: by patches while anything changes; a still view then begins a mean with their light.
+void DirectLight::addLamps(const Frame& in, bool changed, FrameStats& stats) {
+  const bool averages = in.settings.direct.frames > 1;
+  if (changed || !averages) {
+    patched_.fit(in.surfaces);
+    patched_.clear();
+    addPatches(in, patched_, stats);
+    add(patched_.light());
+    lamps_.forget();
+    lampsWait_ = averages;
+    return;
+  }
+  if (std::exchange(lampsWait_, false)) lamps_.begin(in, patched_.light());
+  lamps_.add(in, reader_, SoftParts::Emitters, target_, stats);
+}
+
+void DirectLight::add(const SurfaceLighting& light) {
+  const gl::PassScope scope = context_.scope(StageId::SoftLight);
+  addLight(context_, light, target_);
 }
 
 void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
@@ -99,11 +152,11 @@ void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
   const std::vector<LightBlock> blocks = shadowed(in, allowed, stats);
   const bool rays = allowed && !blocks.empty();
   const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};
-  target_.fit(in.surfaces);
+  mapped_.fit(in.surfaces);
   {
     const gl::PassScope scope = context_.scope(StageId::Direct);
     if (rays) doubts_.begin();
-    target_.clear();
+    mapped_.clear();
     for (const LightBlock& block : blocks) drawBlock(in.surfaces, block, whole, rays ? Noting::AlsoLight : Noting::Off);
   }
   if (!rays || answer(in, blocks, stats)) return;
@@ -117,7 +170,7 @@ void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
       {
         const gl::PassScope scope = context_.scope(StageId::Direct);
         doubts_.begin();
-        target_.bind();
+        mapped_.bind();
         drawBlock(in.surfaces, block, area, Noting::Only);
       }
       if (!answer(in, blocks, stats))
@@ -162,15 +215,18 @@ bool DirectLight::answer(const Frame& in, std::span<const LightBlock> blocks, Fr
 std::vector<LightBlock> DirectLight::shadowed(const Frame& in, bool rays, FrameStats& stats) {
   const World& world = in.world;
   const ShadowSettings shadow = resolved(in.settings.shadow, world.view.camera.width);
+  sharp_.clear();
+  for (const LightView& light : world.view.lights)
+    if (!softByRays(in) || !isSoft(light)) sharp_.push_back(light);
   fitReceivers(in, stats);
   if (stale_) emitters_.forget();
   std::vector<LightBlock> blocks =
-      shadows_.run({world.gpu, world.view.lights, in.plan.on(EffectId::Sky), world.lights.sky, receivers_,
+      shadows_.run({world.gpu, sharp_, skyByMaps(in), world.lights.sky, receivers_,
                     rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first || stale_,
                     world.moved.boxes(), shadow});
   stats.lightMapsDrawn = shadows_.mapsDrawn();
   stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
-  if (in.plan.on(EffectId::Emissive) && !byPatches(in)) {
+  if (emittersBy(in) == Emitters::Maps) {
     const bool soft = in.plan.on(EffectId::SoftShadows);
     const uint32_t before = stats.mapsDrawn;
     for (const LightBlock& block : emitters_.run(world, shadow, soft ? shadow.emitterSamples : 1, stats))
@@ -224,6 +280,7 @@ void DirectLight::drawBlock(const GBuffer& surfaces, const LightBlock& block, co
 void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> blocks) {
   if (doubts_.lit().empty()) return;
   const gl::PassScope scope = context_.scope(StageId::Direct);
+  mapped_.bind();
   gl::PipelineState{.add = true, .width = surfaces.width, .height = surfaces.height}.apply();
   doubts_.bindLit(3);
   size_t pair = 0;
@@ -243,9 +300,8 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
 /// Nothing needs the boxes where no map is fitted to them.
 void DirectLight::fitReceivers(const Frame& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
-  const bool fitted =
-      in.plan.on(EffectId::Sky) || std::any_of(view.lights.begin(), view.lights.end(),
-                                               [](const auto& l) { return l.type == LightType::Directional; });
+  const bool fitted = skyByMaps(in) || std::ranges::any_of(
+                                           sharp_, [](const LightView& l) { return l.type == LightType::Directional; });
   if (!fitted) {
     receivers_ = mostReceivers_ = {};
     return;

@@ -76,7 +76,11 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const Needs needs = needsOf(settings);
   const EffectPlan plan = k.world.plan(
       settings,
-      {.first = !k.outputs.surfaces.depth, .host = host != nullptr, .needs = needs, .status = indirect.status()});
+      {.first = !k.outputs.surfaces.depth,
+                                         .host = host != nullptr,
+                                         .needs = needs,
+                                         .status = indirect.status(),
+                                         .directPending = settings.direct.on && k.direct.pending()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   const FrameWorld now{.world = world,
@@ -91,7 +95,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
 
   if (plan.on(EffectId::Redraw)) {
     const gl::DrawCount draws;
-    k.outputs = {}; // what something is thrown out of counts as no frame
+    const FrameOutputs before = std::exchange(k.outputs, {}); // what something is thrown out of counts as no frame
     FrameOutputs out;
     out.sky = world.view.sky;
     out.farDistance = world.farDistance;
@@ -109,12 +113,14 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       out.direct = k.direct.run(frame, stats);
     else
       k.direct.forget();
-    if (plan.on(EffectId::Indirect)) {
+    if (plan.onlyDirect()) {
+      out.indirect = before.indirect;
+    } else if (plan.on(EffectId::Indirect)) {
       const gl::DrawCount ofIndirect;
       out.indirect = indirect.run(frame, stats);
       stats.of(EffectId::Indirect) += ofIndirect();
     }
-    out.patches = patches.made();
+    out.patches = plan.onlyDirect() ? before.patches : patches.made();
     k.outputs = out;
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();

@@ -61,7 +61,8 @@ EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
                          .settingsChanged = settingsChanged_,
                          .drawingChanged = drawingChanged,
                          .needs = in.needs,
-                         .status = in.status};
+                         .status = in.status,
+                         .directPending = in.directPending};
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
   const auto everything = [&] {

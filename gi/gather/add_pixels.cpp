@@ -4,23 +4,27 @@
 
 namespace lambent {
 
+void addLight(PassContext context, const SurfaceLighting& light, const LightTarget& target) {
+  std::vector<std::string> defines;
+  light.irradiance->bind(2);
+  if (light.glossy) {
+    light.glossy->bind(3);
+    defines.push_back("GLOSSY");
+  }
+  context.programs.get({.fragment = "add_pixels.frag", .defines = std::move(defines)}).use();
+  target.bind();
+  gl::PipelineState{.add = true, .width = target.size().x, .height = target.size().y}.apply();
+  gl::drawFullscreen();
+}
+
 void PixelAdder::add(std::span<const vec3> irradiance, std::span<const vec3> glossy, const GBuffer& surfaces,
                      const LightTarget& target, int grid) {
   const gl::PassScope scope = context_.scope(stage_);
   pixels_.fit(surfaces, target.size());
   const SurfaceLighting light = pixels_.light();
   uploadPixels(*light.irradiance, irradiance, surfaces, grid);
-  light.irradiance->bind(2);
-  std::vector<std::string> defines;
-  if (light.glossy) {
-    glossy.empty() ? light.glossy->clear() : uploadPixels(*light.glossy, glossy, surfaces, grid);
-    light.glossy->bind(3);
-    defines.push_back("GLOSSY");
-  }
-  context_.programs.get({.fragment = "add_pixels.frag", .defines = std::move(defines)}).use();
-  target.bind();
-  gl::PipelineState{.add = true, .width = target.size().x, .height = target.size().y}.apply();
-  gl::drawFullscreen();
+  if (light.glossy) glossy.empty() ? light.glossy->clear() : uploadPixels(*light.glossy, glossy, surfaces, grid);
+  addLight(context_, light, target);
 }
 
 void uploadPixels(const gl::Texture& texture, std::span<const vec3> pixels, const GBuffer& surfaces, int grid) {

@@ -1,4 +1,4 @@
-// Light that the CPU found at pixels, added to what was gathered.
+// Light that was found elsewhere, on the CPU for one, added to what was gathered.
 #pragma once
 
 #include "gi/contract/pass_context.h"
@@ -7,6 +7,9 @@
 #include <span>
 
 namespace lambent {
+
+/// Adds light that lies as the target's does, texel by texel, without its glossy part where it has none.
+void addLight(PassContext context, const SurfaceLighting& light, const LightTarget& target);
 
 class PixelAdder {
  public:

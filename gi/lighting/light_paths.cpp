@@ -16,8 +16,8 @@ float powerHeuristic(float own, float other) {
 }
 
 LightConnection connectToPunctual(const LightView& light, float probability, const PathVertex& vertex,
-                                  const vec3& weight, float rayEpsilon) {
-  const PunctualSample p = punctualIrradiance(light, vertex.position, vertex.normal);
+                                  const vec3& weight, vec2 u, float rayEpsilon) {
+  const PunctualSample p = punctualIrradiance(pointOfDisk(light, u), vertex.position, vertex.normal);
   if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, vertex.geometricNormal) <= 0) return {};
   const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon);
   return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards},
@@ -50,7 +50,7 @@ LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex,
   const auto [light, probability] = LightChoice(lights, vertex.position, vertex.normal).sample(uLight);
   if (light == kNone) return {};
   if (light < lights.punctual.size())
-    return connectToPunctual(lights.punctual[light], probability, vertex, weight, rayEpsilon);
+    return connectToPunctual(lights.punctual[light], probability, vertex, weight, {uPoint.y, uPoint.z}, rayEpsilon);
   return connectToEmitter(lights, lights.emitters[light - lights.punctual.size()], probability, vertex, weight, uPoint,
                           rayEpsilon);
 }

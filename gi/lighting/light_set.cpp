@@ -1,5 +1,7 @@
 #include "gi/lighting/light_set.h"
 
+#include "shaders/shared/paraboloid.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -107,6 +109,16 @@ uint32_t LightSet::emitterOf(const SurfaceHit& hit) const {
   const auto it = std::lower_bound(emitters.begin(), emitters.end(), wanted,
                                    [&](const Emitter& e, uint64_t w) { return key(e) < w; });
   return it != emitters.end() && key(*it) == wanted ? uint32_t(it - emitters.begin()) : kNone;
+}
+
+LightView pointOfDisk(const LightView& light, vec2 u) {
+  LightView point = light;
+  if (!(light.angularRadius > 0) || light.type != LightType::Directional) return point;
+  vec3 tangent, bitangent;
+  basisAround(light.direction, tangent, bitangent);
+  const float r = std::tan(light.angularRadius) * std::sqrt(u.x), phi = 2 * kPi * u.y;
+  point.direction = glm::normalize(light.direction + (tangent * std::cos(phi) + bitangent * std::sin(phi)) * r);
+  return point;
 }
 
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n) {

@@ -61,6 +61,8 @@ struct PunctualSample {
   float distance = 0; // metres; kInfinity for a directional light
 };
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n);
+/// The light as a point of its disk brings it; numbers in [0, 1). Lights without a size are returned as they are.
+LightView pointOfDisk(const LightView& light, vec2 u);
 
 /// A point on an emitter with its density.
 struct EmitterPoint {

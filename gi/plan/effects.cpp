@@ -145,7 +145,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                   : Answer{false, "no base-colour texture"});
   decide(EffectId::SoftShadows,
          !emissive || scene.emissive == 0 ? Answer{false, "no emissive surface"}
-         : settings.shadow.emitterSamples > 1 || settings.shadow.emitters == EmitterShadows::Patches
+         : settings.shadow.emitterSamples > 1 || settings.shadow.emitters == EmitterShadows::Patches ||
+                 settings.direct.soft == SoftLightBy::Rays
              ? Answer{true, count(scene.emissive, "lamp")}
              : Answer{false, "shadow.emitterSamples is 1"});
   decide(EffectId::Filter, !lights               ? none
@@ -221,7 +222,10 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : waiting              ? Answer{true, "shadow maps are waiting"}
                            : indirect && !status.pending.empty() ? Answer{true, status.pending}
                            : status.averaged < historyFrames     ? Answer{true, "light is averaged over frames"}
-                                                                 : Answer{false, "nothing changed"});
+                           : facts.directPending ? Answer{true, "direct light is averaged over frames"}
+                                                 : Answer{false, "nothing changed"});
+  plan.onlyDirect_ = facts.directPending && !facts.first && !plan.changed_ && status.averaged >= historyFrames &&
+                     !(indirect && !status.pending.empty());
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no frame yet";

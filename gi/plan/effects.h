@@ -35,6 +35,7 @@ struct FrameFacts {
   bool drawingChanged = true;  // other settings, or the shaders
   Needs needs;                 // of the technique that runs
   ProviderStatus status;       // of its provider, after the last frame
+  bool directPending = false;  // direct light of the last frame would go on getting better
 };
 
 class EffectPlan {
@@ -50,13 +51,15 @@ class EffectPlan {
   bool seenChanges() const { return seenChanges_; }
   /// Says whether light in the scene may differ from the last frame's, not only what the camera sees of it.
   bool lightChanges() const { return lightChanges_; }
+  /// Says whether the frame is drawn again for direct light alone: indirect light stays as it is.
+  bool onlyDirect() const { return onlyDirect_; }
   /// Names of the effects that are on, separated by '+'; "none".
   std::string oneLine() const;
 
  private:
   friend EffectPlan planEffects(const SceneView&, const Settings&, const FrameFacts&);
   std::array<Effect, kEffects> effects_;
-  bool changed_ = true, seenChanges_ = true, lightChanges_ = true;
+  bool changed_ = true, seenChanges_ = true, lightChanges_ = true, onlyDirect_ = false;
 };
 
 /// Plans a frame. `view.changes` decides: what did not change needs no work.

@@ -88,6 +88,13 @@ class Table {
         "from patches of the image, split where the answers differ (paper 4)");
     flag(SETTING(direct, on), Nothing,
          "direct light; off: indirect light alone, for a host that lights its surfaces itself");
+    choice(SETTING(direct, soft), {"rays", "maps"}, Maps,
+           "emissive surfaces, sky and suns' disks in direct light: rays from every pixel, averaged over frames (few "
+           "lamps by patches while anything moves), or shadow maps of points that stand for them");
+    number(SETTING(direct, samples), {1, 256, "samples", PowersOfTwo}, Nothing,
+           "direct.soft rays: of every pixel in each frame, each a ray to a light, one to the sky and one anywhere");
+    number(SETTING(direct, frames), {0, 1024, "frames", PowersOfTwo}, Nothing,
+           "direct.soft rays: frames that are averaged, each with other samples; 0 = each frame by itself");
     choice(SETTING(area, refinement), {"counts", "sub-fragments", "neighbours"}, Nothing,
            "what splits these patches: how many rays their quarters and those next to them find open, which rays their "
            "quarters do (paper 4), or which rays the eight patches around do (Nichols et al. 2010)");

@@ -30,6 +30,9 @@ enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
 enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
+// Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
+// averaged over frames, and patches where lamps are few and something moves | shadow maps of points that stand for it.
+enum class SoftLightBy : int { Rays, Maps };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -110,6 +113,9 @@ struct ShadowSettings {
 /// Light that comes straight from lamps, suns, emissive surfaces and the sky.
 struct DirectSettings {
   bool on = true;
+  SoftLightBy soft = SoftLightBy::Rays;
+  int samples = 2; // rays: of a pixel in each frame
+  int frames = 64; // rays: that are averaged
   bool operator==(const DirectSettings&) const = default;
 };
 

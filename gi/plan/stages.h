@@ -35,6 +35,7 @@ namespace lambent {
   STAGE(Direct, "direct")                                                                                              \
   STAGE(ShadowRays, "shadow rays") /* where maps are in doubt */                                                       \
   STAGE(AreaRays, "area rays")     /* between emissive surfaces and patches */                                         \
+  STAGE(SoftLight, "soft light")   /* rays from pixels to what has a size */                                            \
   STAGE(AreaLight, "area light")                                                                                       \
   /* who sees whom */                                                                                                  \
   STAGE(VplMaps, "vpl maps")                                                                                           \

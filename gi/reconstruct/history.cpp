@@ -34,7 +34,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   if (changes) follow(in, now);
   before_ = in.surfaces.block;
   ++frames_;
-  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.deinterleaved};
+  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.subsets};
 }
 
 void HistoryPass::fit(const GBuffer& surfaces) {
@@ -74,6 +74,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
   program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
+  program.set("worth", in.worth);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
@@ -90,7 +91,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
 }
 
 void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
-  const SurfaceLighting change{&change_, nullptr, false, in.gathered.deinterleaved};
+  const SurfaceLighting change{&change_, nullptr, false, in.gathered.subsets};
   const SurfaceLighting filtered = filter_.run({in.surfaces, change, in.filter});
   context_.programs.get({.fragment = "history_tiles.frag"}).use();
   found_.bind(2);

@@ -37,6 +37,7 @@ struct HistoryInputs {
   bool lightChanges; // what is kept then follows this frame
   const HistorySettings& settings;
   const FilterSettings& filter;
+  float worth = 1; // frames that this one counts as: light without noise begins a mean
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.

@@ -30,6 +30,7 @@ void add(Hash& hash, const LightView& light) {
   hash.value(light.range);
   hash.value(light.innerConeCos);
   hash.value(light.outerConeCos);
+  hash.value(light.angularRadius);
 }
 
 uint64_t checksumOf(const ReferenceSums& sums) {

@@ -125,10 +125,14 @@ void accuracyGathers(const AccuracyOptions& options) {
   study.report(columns, rows);
 }
 
+void needShot(const AccuracyOptions& options, const Study& study) {
+  if (options.frame > 0 && !study.opened->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
+}
+
 /// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
 void accuracyLight(const AccuracyOptions& options) {
   Study study(options, options.launch.scene, {.size = "160x90"});
-  if (options.frame > 0 && !study.opened->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
+  needShot(options, study);
   study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame);
   const int averaged = std::max(1, study.opened->settings.history.frames),
             seeds = options.seeds.value_or(options.quick ? 1 : 3);
@@ -161,21 +165,33 @@ void accuracyLight(const AccuracyOptions& options) {
   study.report(columns, rows);
 }
 
-/// Bias and error of direct light against path tracing, as set, and by other means.
+/// Bias and error of direct light against path tracing, as set, and by other means: still, after as many frames as are
+/// averaged, or in a frame of a shot.
 void accuracyDirect(const AccuracyOptions& options) {
   Study study(options, options.launch.scene, {.size = "320x180", .set = {{"effects.indirect", "off"}}});
   if (!study.opened->settings.direct.on) throw InputError("settings", "direct light is off (--direct needs direct.on)");
-  study.trace(256, ReferenceBuffer::Direct);
-  std::vector<Variant> variants{study.variant("as set"), study.variant("maps alone", {{"shadow.rays", "off"}}),
-                                study.variant("64 emissive samples", {{"shadow.emitterSamples", "64"}})};
+  needShot(options, study);
+  study.trace(256, ReferenceBuffer::Direct, false, {}, options.frame);
+  std::vector<Variant> variants{study.variant("as set"), study.variant("maps", {{"direct.soft", "maps"}}),
+                                study.variant("maps, lamps by patches",
+                                              {{"direct.soft", "maps"}, {"shadow.emitters", "patches"}})};
   if (options.alone) variants.resize(1);
   const std::vector<Column> columns{
       {{"shadows", "shadows"}, variantName},
-      {{"rays", "rays", "%.0f"}, [](const Outcome& o) -> Value { return o.run.frames.back().raysShadows.occlusion; }},
+      {{"rays", "rays a frame", "%.0f"},
+       [](const Outcome& o) -> Value {
+         const FrameStats& last = o.run.frames.back();
+         return last.raysShadows.occlusion + last.raysArea.occlusion + last.raysSoft.occlusion + last.raysSoft.closest;
+       }},
       kBias,
       {kBiasOfMost, biasOfMost},
-      kRelMse};
-  study.report(columns, study.rows(columns, study.draw(variants, Buffer::Direct)));
+      kRmseShare,
+      kRelMse,
+      {{"ms", "ms a frame", "%.0f"}, [](const Outcome& o) -> Value { return steadyMs(o.run.frames); }}};
+  const int averaged = std::max(1, study.opened->settings.direct.frames);
+  study.report(columns, study.rows(columns, options.frame > 0
+                                                ? study.drawUpTo(options.frame, variants, Buffer::Direct)
+                                                : study.draw(variants, Buffer::Direct, averaged)));
 }
 
 /// Light propagation volumes by what their settings take, next to lights that every pixel gathers.
@@ -332,8 +348,8 @@ void declareAccuracy(CLI::App& app) {
        "are right, frame time and path tracing's to the same error; beside it one picture, and every light at every "
        "pixel by rays");
   form("--direct", accuracyDirect,
-       "direct light as set against path tracing: bias and error; beside it maps without rays, and more "
-       "samples of what is emissive");
+       "direct light as set, averaged over frames, against path tracing: bias, error and frame time; beside it by shadow "
+       "maps, and with lamps by patches");
   form("--volume", accuracyVolume,
        "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");
   form("--report", accuracyReport,
@@ -354,7 +370,7 @@ void declareAccuracy(CLI::App& app) {
   command.number("--clamp", &o->clamp, 0, 0,
                  "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
   command.number("--seeds", &o->seeds, 1, 1000, "--convergence, --light: so many (3); --report (1)");
-  command.number("--frame", &o->frame, 1, 1000000, "--light: of a shot, with all that moves before it");
+  command.number("--frame", &o->frame, 1, 1000000, "--light, --direct: of a shot, with all that moves before it");
   command.flag("--joint", o->joint, "--report: only what presets are chosen among");
   command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
   command.flag("--quick", o->quick, "small and rough, to try whether it runs");

@@ -55,7 +55,15 @@ vec3 lightValue(const std::string& option, const std::string& text, const vec3& 
   return v;
 }
 
-LightView sunLight(const std::string& text) {
+/// Radius of a sun's disk: --sun-size, or what is usual for it.
+float sunRadius(const LaunchOptions& options, float usual) {
+  if (!options.sunSize) return usual;
+  if (!(*options.sunSize >= 0 && *options.sunSize <= 90))
+    throw InputError("--sun-size", "is out of range (0 to 90 degrees across; the sun's is 0.53)");
+  return glm::radians(0.5f * *options.sunSize);
+}
+
+LightView sunLight(const std::string& text, const LaunchOptions& options) {
   const std::vector<double> n = numbers("--sun", text, 6, 6);
   const dvec3 direction(n[0], n[1], n[2]);
   if (!(glm::length(direction) > 0)) throw InputError("--sun " + text, "the direction has no length");
@@ -63,6 +71,7 @@ LightView sunLight(const std::string& text) {
   light.type = LightType::Directional;
   light.direction = vec3(glm::normalize(direction));
   light.intensity = lightValue("--sun", text, {n[3], n[4], n[5]});
+  light.angularRadius = sunRadius(options, 0);
   return light;
 }
 
@@ -85,18 +94,19 @@ struct Daylight {
   }
 };
 
-void addSun(Scene& scene, const Daylight& daylight) {
+void addSun(Scene& scene, const Daylight& daylight, float radius) {
   LightView sun;
   sun.type = LightType::Directional;
   sun.direction = -daylight.towardsSun();
   sun.intensity = daylightSun(daylight.towardsSun(), float(daylight.turbidity));
+  sun.angularRadius = radius;
   if (maxComponent(sun.intensity) > 0) addLight(scene, sun, "sun");
 }
 
 /// A sky, and while it is up a sun that goes with it.
-void addSkyAndSun(Scene& scene, const Daylight& daylight) {
+void addSkyAndSun(Scene& scene, const Daylight& daylight, float sunRadius) {
   scene.sky = Sky::daylight(daylight.towardsSun(), float(daylight.turbidity));
-  addSun(scene, daylight);
+  addSun(scene, daylight, sunRadius);
 }
 
 /// In place of the scene's own.
@@ -124,7 +134,7 @@ void replaceDaylight(LaunchContext& stage, const LaunchOptions& options) {
   });
   if (suns > 0)
     stage.notes.push_back("the scene's own sun, and what the shot does with it, gives way to that of --daylight");
-  addSkyAndSun(stage.scene, daylight);
+  addSkyAndSun(stage.scene, daylight, sunRadius(options, kSunRadius));
 }
 
 /// Of a frame with all that the defaults ask for, and of what reads it back; measured: 346 (1920x1080 less 640x360,
@@ -288,6 +298,8 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
       "clear sky and its sun, in place of the scene's own sky and suns: ELEVATION[,AZIMUTH[,TURBIDITY]]; "
       "degrees, -90 to 90 (below 0: dusk) and from +Z towards +X (default 50); turbidity 2 (very clear) "
       "to 10 (default 3)");
+  command.add_option("--sun-size", options.sunSize,
+                     "how wide those suns are, degrees across: the sun's 0.53 with --daylight, else 0 (sharp shadows)");
   command.add_option("--seed", options.seed, "of all random numbers");
   command.add_option("--threads", options.threads, "worker threads, 0 = all cores")->check(CLI::Range(0, 1024));
   command.option_defaults()->group(own);
@@ -348,7 +360,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
   stage->scene = loadScene(file, options.sceneName, step);
-  for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text), "sun");
+  for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())
     stage->scene.sky = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
@@ -364,7 +376,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage->scene);
   if (!lit && !view.instances.empty() && isOpenOrHasLamp(*stage, view, "light")) {
-    addSkyAndSun(stage->scene, {});
+    addSkyAndSun(stage->scene, {}, sunRadius(options, kSunRadius));
     stage->notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60)");
   }
   tellWhatIsLeftOut(*stage, stage->settings);
@@ -393,7 +405,7 @@ void needPunctualLight(LaunchContext& stage) {
   const bool lit = std::any_of(view.lights.begin(), view.lights.end(),
                                [](const LightView& light) { return maxComponent(light.intensity) > 0; });
   if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "punctual light")) {
-    addSun(stage.scene, {});
+    addSun(stage.scene, {}, kSunRadius);
     stage.notes.push_back("the scene has no punctual light: added a sun (--sun)");
   }
 }

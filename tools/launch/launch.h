@@ -23,7 +23,7 @@ struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
   std::string sceneName; // of several in the file
   std::string camera, eye, target, size, sky, daylight, technique, preset;
-  std::optional<float> fovDegrees;
+  std::optional<float> fovDegrees, sunSize; // sunSize: degrees across
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;
   std::string cube; // file

@@ -1,0 +1,71 @@
+#include "gi/direct/soft_light.h"
+
+#include "gi/gather/add_pixels.h"
+
+namespace lambent {
+
+void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts parts, const LightTarget& target,
+                        FrameStats& stats) {
+  const LightSet lights = softLightsOf(frame.world.lights, parts);
+  if (lights.empty()) return forget();
+  const bool glossy = frame.surfaces.roughnessMetalness != nullptr;
+  SoftLight found;
+  {
+    const CpuScope scope(stats.stages, key(StageId::SoftLight));
+    RayCounts counts;
+    const FrameSurfaces surfaces = reader.read(frame.surfaces);
+    const int samples = frame.settings.direct.samples;
+    found = sampleSoftLight({.rays = frame.world.rays,
+                             .lights = lights,
+                             .view = frame.world.view,
+                             .surfaces = surfaces,
+                             .samples = samples,
+                             .sample = history_.sample() * uint32_t(samples),
+                             .glossy = glossy,
+                             .seed = frame.seed},
+                            counts);
+    stats.raysSoft += counts;
+    const uint64_t rays = counts.closest + counts.occlusion;
+    if (!lights.emitters.empty()) stats.of(EffectId::Emissive) += rays, stats.of(EffectId::SoftShadows) += rays;
+    if (!lights.sky.black()) stats.of(EffectId::Sky) += rays;
+  }
+  SurfaceLighting sampled;
+  {
+    const gl::PassScope scope = context_.scope(StageId::SoftLight);
+    samples_.fit(frame.surfaces);
+    sampled = samples_.light();
+    uploadPixels(*sampled.irradiance, found.irradiance, frame.surfaces, 1);
+    if (glossy) uploadPixels(*sampled.glossy, found.glossy, frame.surfaces, 1);
+  }
+  sampled.subsets = true; // pixels side by side took other strata
+  const SurfaceLighting mean = average(frame, sampled, 1);
+  averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
+  const SurfaceLighting light = filter_.run({frame.surfaces, mean, frame.settings.filter, frames_ < 2});
+  const gl::PassScope scope = context_.scope(StageId::SoftLight);
+  addLight(context_, light, target);
+}
+
+void SoftLightPass::begin(const Frame& frame, const SurfaceLighting& found) {
+  constexpr float kWorth = 16; // frames of samples: with fewer a first still frame is noisier than the moving ones
+  forget();
+  SurfaceLighting begun = found;
+  begun.subsets = true;
+  average(frame, begun, kWorth);
+}
+
+SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting& light, float worth) {
+  frames_ = frame.settings.direct.frames;
+  if (frames_ < 2) history_.forget();
+  const SceneChanges& changes = frame.world.view.changes;
+  if (changes.first) history_.forget();
+  history_.fit(frame.surfaces);
+  return history_.run({.surfaces = frame.surfaces,
+                       .gathered = light,
+                       .cameraMoved = changes.camera,
+                       .lightChanges = changes.lights || changes.geometry || changes.instances || frame.settingsChanged,
+                       .settings = {.frames = frames_},
+                       .filter = frame.settings.filter,
+                       .worth = worth});
+}
+
+} // namespace lambent

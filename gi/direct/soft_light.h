@@ -1,0 +1,36 @@
+// Direct light by few rays from every pixel (soft_sampler.h), averaged over frames.
+#pragma once
+
+#include "gi/contract/figures.h"
+#include "gi/contract/light_provider.h"
+#include "gi/direct/soft_sampler.h"
+#include "gi/reconstruct/reconstruct.h"
+
+namespace lambent {
+
+class SoftLightPass {
+ public:
+  explicit SoftLightPass(PassContext context) : context_(context) {}
+
+  /// Takes direct.samples more of every pixel and adds the mean to the target, which is as large as the image.
+  void add(const Frame& frame, SurfaceReader& reader, SoftParts parts, const LightTarget& target, FrameStats& stats);
+  /// Begins a mean with the light of a still view that other means have found; the samples that follow mend it.
+  void begin(const Frame& frame, const SurfaceLighting& found);
+  void forget() {
+    history_.forget();
+    averaged_ = 0;
+  }
+  /// Says whether the next frame of a still view would have more samples in its mean.
+  bool pending() const { return averaged_ > 0 && averaged_ < frames_; }
+
+ private:
+  SurfaceLighting average(const Frame& frame, const SurfaceLighting& light, float worth);
+
+  PassContext context_;
+  LightTarget samples_{"soft light"};
+  HistoryPass history_{context_};
+  FilterPass filter_{context_};
+  int averaged_ = 0, frames_ = 0; // frames since anything changed; of those that count
+};
+
+} // namespace lambent

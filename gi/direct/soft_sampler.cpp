@@ -1,0 +1,212 @@
+#include "gi/direct/soft_sampler.h"
+
+#include "engine/core/parallel.h"
+#include "engine/core/rng.h"
+#include "gi/lighting/light_paths.h"
+#include "gi/lighting/receivers.h"
+#include "gi/vpl/smc.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lambent {
+
+namespace {
+
+/// What a pair of numbers is for. Pairs of one sample are independent of each other.
+enum class Pair : uint32_t { Choice, Place, Sky, Cosine };
+
+/// First two dimensions of the Sobol' sequence, as fractions of 2^32.
+glm::uvec2 sobol(uint32_t i) {
+  glm::uvec2 point(0);
+  for (uint32_t first = 1u << 31, second = 1u << 31; i; i >>= 1, first >>= 1, second ^= second >> 1)
+    if (i & 1) point ^= glm::uvec2(first, second);
+  return point;
+}
+
+uint32_t reversed(uint32_t x) {
+  x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+  x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+  x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+  return __builtin_bswap32(x);
+}
+
+/// Flips each binary digit by a hash of the more significant ones: Owen's scrambling, as Laine and Karras hash it
+/// ("Stratified sampling for stochastic transparency", 2011).
+uint32_t scrambled(uint32_t x, uint32_t seed) {
+  x = reversed(x) + seed;
+  for (const uint32_t factor : {0x6c50b47cu, 0xb82f1e52u, 0xc7afe638u, 0x8d22f6e6u}) x ^= x * factor;
+  return reversed(x);
+}
+
+/// Which of the pixels of 4×4 comes first, second and so on: ordered dither.
+uint32_t turnOf(const glm::ivec2& pixel) {
+  const uint32_t v = uint32_t(pixel.y), d = uint32_t(pixel.x) ^ v;
+  return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
+}
+
+/// The numbers of a pixel.
+class PixelNumbers {
+ public:
+  PixelNumbers(const glm::ivec2& pixel, uint32_t seed)
+      : turn_(turnOf(pixel)), pixel_(keyOf(pixel, seed)), block_(keyOf(pixel >> 2, ~seed)) {}
+
+  /// Numbers in [0, 1).
+  vec2 operator()(uint32_t sample, Pair pair) const {
+    constexpr uint32_t kStrata = 0xf0000000u; // sixteen along each axis
+    const glm::uvec2 point = sobol(sample ^ turn_);
+    vec2 u;
+    for (uint32_t axis = 0; axis < 2; ++axis) {
+      const uint32_t stream = 2 * uint32_t(pair) + axis;
+      const uint32_t coarse = scrambled(point[int(axis)], uint32_t(mix64(block_ + stream))),
+                     fine = scrambled(point[int(axis)], uint32_t(mix64(pixel_ + stream)));
+      u[int(axis)] = float(((coarse & kStrata) | (fine & ~kStrata)) >> 8) * 0x1p-24f;
+    }
+    return u;
+  }
+
+ private:
+  static uint64_t keyOf(const glm::ivec2& at, uint32_t seed) {
+    return mix64(mix64(uint64_t(uint32_t(at.y)) << 32 | uint32_t(at.x)) + seed);
+  }
+  uint32_t turn_;
+  uint64_t pixel_, block_;
+};
+
+/// What a pixel shows, for rays.
+struct Place {
+  uint32_t pixel; // row by row from the top
+  PathVertex vertex;
+  Receiver receiver; // where lobes are asked for
+  bool lobe = false;
+  PixelNumbers numbers;
+};
+
+/// Rays meet the scene at its triangles, the image at its depths. Where both show the same surface, the ray's place is
+/// the exact one; elsewhere, as at the rims of leaves, the image's counts.
+PathVertex vertexOf(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, float pixelSize) {
+  const vec3 position = surfaces.positionAt(pixel), normal = surfaces.normalAt(pixel);
+  const vec3 way = hit.position - position;
+  constexpr float kSameNormal = 0.98f;
+  if (!hit.valid() || !(glm::dot(way, way) <= pixelSize * pixelSize) || glm::dot(hit.geometricNormal, normal) < 0.5f)
+    return {position, normal, normal};
+  return {hit.position, glm::dot(hit.normal, normal) > kSameNormal ? hit.normal : normal, hit.geometricNormal};
+}
+
+/// Light that a ray would bring.
+struct Pending {
+  uint32_t place;
+  vec3 value; // irradiance: of a connection whole, of a cosine-distributed ray per radiance
+};
+
+} // namespace
+
+LightSet softLightsOf(const LightSet& lights, SoftParts parts) {
+  LightSet soft;
+  soft.view = lights.view;
+  soft.emission = lights.emission && parts != SoftParts::SkyAndSuns;
+  if (soft.emission) {
+    soft.emitters = lights.emitters;
+    soft.triangles = lights.triangles;
+  }
+  if (parts != SoftParts::Emitters) {
+    soft.sky = lights.sky;
+    for (const LightView& light : lights.punctual)
+      if (isSoft(light)) soft.punctual.push_back(light);
+  }
+  soft.tree = LightTree(soft);
+  return soft;
+}
+
+SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
+  const CameraView& camera = in.view.camera;
+  const FrameSurfaces& surfaces = in.surfaces;
+  const LightSet& lights = in.lights;
+  const float epsilon = in.rays.rayEpsilon(), weight = kPi / float(in.samples);
+  const bool connects = lights.lightCount() > 0, sky = !lights.sky.black();
+  const bool casts = sky || !lights.emitters.empty();
+  SoftLight out;
+  out.irradiance.assign(size_t(camera.width) * camera.height, vec3(0));
+  if (in.glossy) out.glossy.assign(out.irradiance.size(), vec3(0));
+  constexpr size_t kGrain = 256;
+  parallelCount(out.irradiance.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
+    std::vector<uint32_t> seen;
+    std::vector<vec2> centres;
+    for (size_t i = begin; i < end; ++i) {
+      const glm::ivec2 at(int(i % size_t(camera.width)), int(i / size_t(camera.width)));
+      if (!surfaces.seen({at.x, camera.height - 1 - at.y})) continue;
+      seen.push_back(uint32_t(i));
+      centres.push_back((vec2(at) + 0.5f) / vec2(camera.width, camera.height));
+    }
+    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres);
+    count.closest += centres.size();
+    std::vector<Place> places;
+    for (size_t k = 0; k < seen.size(); ++k) {
+      const glm::ivec2 pixel(int(seen[k] % uint32_t(camera.width)),
+                             camera.height - 1 - int(seen[k] / uint32_t(camera.width)));
+      const float distance = viewDistanceFromDepth(surfaces.camera, surfaces.depth[surfaces.at(pixel)]);
+      const vec4& lens = surfaces.camera.lens;
+      const float pixelSize = 2 * lens.y * surfaces.camera.size.w * (lens.w > 0 ? 1 : distance);
+      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], pixelSize), {}, false, PixelNumbers(pixel, in.seed)};
+      if (in.glossy && hits[k].valid()) {
+        place.receiver = receiverOf(in.view, hits[k]);
+        place.lobe = true;
+      }
+      places.push_back(place);
+    }
+
+    std::vector<Ray> segments, rays;
+    std::vector<Pending> connected, cast;
+    const auto connect = [&](uint32_t place, const LightConnection& c) {
+      if (maxComponent(c.value) <= 0) return;
+      segments.push_back(c.segment);
+      connected.push_back({place, c.value});
+    };
+    for (uint32_t p = 0; p < places.size(); ++p) {
+      const PathVertex& vertex = places[p].vertex;
+      for (uint32_t s = in.sample; s < in.sample + uint32_t(in.samples); ++s) {
+        const PixelNumbers& numbers = places[p].numbers;
+        if (connects) {
+          const vec2 choice = numbers(s, Pair::Choice);
+          connect(p, connectToLight(lights, vertex, vec3(weight), choice.x, vec3(choice.y, numbers(s, Pair::Place)),
+                                    epsilon));
+        }
+        if (sky && !lights.sky.constant())
+          connect(p, connectToSky(lights, vertex, vec3(weight), numbers(s, Pair::Sky), epsilon));
+        if (!casts) continue;
+        const vec3 direction = sampleCosineHemisphere(vertex.normal, numbers(s, Pair::Cosine));
+        if (glm::dot(direction, vertex.geometricNormal) <= 0) continue;
+        rays.push_back({offsetPoint(vertex.position, vertex.geometricNormal, epsilon), direction});
+        cast.push_back({p, vec3(weight)});
+      }
+    }
+
+    const auto bring = [&](const Place& place, const vec3& light, const vec3& way) {
+      out.irradiance[place.pixel] += light;
+      if (place.lobe)
+        out.glossy[place.pixel] +=
+            light * glossyReflectance(place.receiver, glm::normalize(way), 0) / glossyTint(place.receiver);
+    };
+    std::vector<uint8_t> blocked(segments.size());
+    in.rays.occluded(segments, blocked);
+    count.occlusion += segments.size();
+    for (size_t k = 0; k < segments.size(); ++k)
+      if (!blocked[k]) bring(places[connected[k].place], connected[k].value, segments[k].direction);
+    std::vector<SurfaceHit> met(rays.size());
+    in.rays.closest(rays, met);
+    count.closest += rays.size();
+    for (size_t k = 0; k < rays.size(); ++k) {
+      const Place& place = places[cast[k].place];
+      const vec3& direction = rays[k].direction;
+      vec3 radiance(0);
+      if (!met[k].valid())
+        radiance = sky ? skyByRay(lights, place.vertex, direction) : vec3(0);
+      else if (lights.emission && maxComponent(met[k].emission) > 0)
+        radiance = met[k].emission * emitterShare(lights, place.vertex, direction, met[k]);
+      if (maxComponent(radiance) > 0) bring(place, radiance * cast[k].value, direction);
+    }
+  });
+  return out;
+}
+
+} // namespace lambent
