@@ -54,7 +54,9 @@ class PixelNumbers {
   /// Numbers in [0, 1).
   vec2 operator()(uint32_t sample, Pair pair) const {
     constexpr uint32_t kStrata = 0xf0000000u; // sixteen along each axis
-    const glm::uvec2 point = sobol(sample ^ turn_);
+    // Points in another order for each pair (Burley, "Practical hash-based Owen scrambling", 2020): else the same half
+    // of one pair would always meet the same half of another.
+    const glm::uvec2 point = sobol(scrambled(sample ^ turn_, uint32_t(mix64(block_ - 1 - uint32_t(pair)))));
     vec2 u;
     for (uint32_t axis = 0; axis < 2; ++axis) {
       const uint32_t stream = 2 * uint32_t(pair) + axis;
