@@ -9,6 +9,7 @@ class DirectTest : public GlTest {
   Image irradianceOf(const HandScene& scene, const LightSet& emitters = {}) {
     Settings all;
     all.shadow = settings;
+    all.direct.soft = SoftLightBy::Maps;
     all.effects[EffectId::Emissive] = emitters.emitters.empty() ? EffectMode::Off : EffectMode::On;
     all.effects[EffectId::SoftShadows] = EffectMode::On;
     LightSet lights = emitters;
