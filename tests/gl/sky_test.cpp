@@ -16,7 +16,9 @@ class SkyTest : public GlTest {
     LightSet lights;
     lights.sky = scene.sky = sky;
     FrameStats stats;
-    return directOf(passes, scene, lights, {}, stats).at(32, 24);
+    Settings settings;
+    settings.direct.soft = SoftLightBy::Maps;
+    return directOf(passes, scene, lights, settings, stats).at(32, 24);
   }
 };
 
@@ -93,6 +95,7 @@ TEST_F(SkyTest, AChangeIsNoticed) {
   Floor floor;
   floor.scene.sky = Sky::daylight(directionAt(60, 0), 3);
   Settings settings;
+  settings.direct.soft = SoftLightBy::Maps; // exact in the first frame
   Viewer gi(settings);
   const Image before = nextFrame(gi, floor.scene.view(), Buffer::Beauty);
   floor.scene.sky = Sky::daylight(directionAt(10, 0), 3);

@@ -453,6 +453,7 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
     if (row.name.starts_with("rsm."))
       applyTechnique(s, row.name == "rsm.vpls" ? "rsm" : row.name == "rsm.tau" ? "hisr" : "isr");
     if (row.name.starts_with("multires.")) applyTechnique(s, "multires-gather");
+    if (row.name.starts_with("shadow.emitter") || row.name.starts_with("shadow.sky")) s.direct.soft = SoftLightBy::Maps;
     Viewer gi(s);
     gi.run(room.scene.view());
     const double now = row.get(gi.settings());

@@ -187,6 +187,10 @@ void accuracyDirect(const AccuracyOptions& options) {
       {kBiasOfMost, biasOfMost},
       kRmseShare,
       kRelMse,
+      {{"truth_rel_mse", "of it the truth's", "%.4f"},
+       [](const Outcome& o) -> Value {
+         return expectedRelMse(o.study.traced->image.mean, o.study.traced->image.error);
+       }},
       {{"ms", "ms a frame", "%.0f"}, [](const Outcome& o) -> Value { return steadyMs(o.run.frames); }}};
   const int averaged = std::max(1, study.opened->settings.direct.frames);
   study.report(columns, study.rows(columns, options.frame > 0

@@ -45,6 +45,7 @@ const std::vector<Knob>& knobTable() {
   using enum KnobLight;
   static const Assignments patches{{"gather.mode", "multires-interleaved"}};
   static const Assignments byPatches{{"shadow.emitters", "patches"}};
+  static const Assignments byMaps{{"direct.soft", "maps"}};
   static const Assignments clamped{{"gather.disk", "0"}, {"gather.near", "0"}};
   static const std::vector<Knob> knobs{
       // The set of lights.
@@ -86,9 +87,12 @@ const std::vector<Knob>& knobTable() {
       {"multires.edges", {"off", "on"}, Indirect, patches},
       // Direct light.
       {"shadow.rays", {"off", "on"}, Direct},
-      {"shadow.emitterSamples", {"4", "16", "64"}, Direct},
-      {"shadow.emitterResolution", {"64", "256", "512"}, Direct},
-      {"shadow.emitters", {"samples", "patches"}, Direct},
+      {"direct.soft", {"maps", "rays"}, Direct},
+      {"direct.samples", {"1", "2", "8"}, Direct},
+      {"direct.frames", {"0", "16", "64"}, Direct},
+      {"shadow.emitterSamples", {"4", "16", "64"}, Direct, byMaps},
+      {"shadow.emitterResolution", {"64", "256", "512"}, Direct, byMaps},
+      {"shadow.emitters", {"samples", "patches"}, Direct, byMaps},
       {"area.refinement", {"counts", "sub-fragments", "neighbours"}, Direct, byPatches},
       {"area.rays", {"4", "8", "16", "64"}, Direct, byPatches},
       {"area.threshold", {"6", "4", "3", "2"}, Direct, byPatches},
@@ -97,8 +101,8 @@ const std::vector<Knob>& knobTable() {
       {"area.upsample", {"bilinear", "bilateral", "rbf"}, Direct, byPatches},
       {"shadow.sunResolution", {"256", "512", "2048"}, Direct},
       {"shadow.pointResolution", {"64", "128", "512"}, Direct},
-      {"shadow.skyMaps", {"8", "32", "128"}, Direct},
-      {"shadow.skyResolution", {"64", "256", "512"}, Direct},
+      {"shadow.skyMaps", {"8", "32", "128"}, Direct, byMaps},
+      {"shadow.skyResolution", {"64", "256", "512"}, Direct, byMaps},
   };
   return knobs;
 }
@@ -148,7 +152,7 @@ std::vector<SweepPoint> sweepPoints(SweepPart part) {
   for (const Knob& knob : knobTable()) {
     if (part == SweepPart::Joint) break;
     const std::string name = knob.setting;
-    if (quick && name != "smc.vpls" && name != "shadow.emitterSamples") continue;
+    if (quick && name != "smc.vpls" && name != "direct.samples") continue;
     for (const char* value : knob.values) {
       if (quick && value != knob.values.front() && value != knob.values.back()) continue;
       Assignments set = knob.with;
