@@ -18,9 +18,10 @@ uniform float distanceSigma;   // share of the view distance
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
 uniform bool fresh; // light of one frame, whatever its a
+uniform float full; // frames in a mean that needs no neighbours
 
-/// What a neighbour counts for, by the frames in this pixel's mean: one that holds every class needs none.
-float shareOf(float frames) { return fresh ? 1.0 : clamp((16.0 - frames) / 15.0, 0.0, 1.0); }
+/// What a neighbour counts for, by the frames in this pixel's mean.
+float shareOf(float frames) { return fresh ? 1.0 : clamp((full - frames) / (full - 1.0), 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

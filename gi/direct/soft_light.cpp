@@ -4,6 +4,17 @@
 
 namespace lambent {
 
+namespace {
+
+// A frame's samples are noisier than gathered light, so that means hold more frames and follow a change less at once
+// (docs/decisions.md).
+constexpr int kFew = 16;        // frames of a mean while light changes
+constexpr float kFollow = 0.1f; // of a coarse change, in its first frame
+constexpr int kGlossy = 8;      // frames of glossy light while the camera moves
+constexpr float kFull = 32;     // frames of a mean that is shown as it is
+
+} // namespace
+
 void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts parts, const LightTarget& target,
                         FrameStats& stats) {
   const LightSet lights = softLightsOf(frame.world.lights, parts);
@@ -40,7 +51,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   sampled.subsets = true; // pixels side by side took other strata
   const SurfaceLighting mean = average(frame, sampled, 1);
   averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
-  const SurfaceLighting light = filter_.run({frame.surfaces, mean, frame.settings.filter, frames_ < 2});
+  const SurfaceLighting light = filter_.run({frame.surfaces, mean, frame.settings.filter, frames_ < 2, kFull});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);
   addLight(context_, light, target);
 }
@@ -65,6 +76,9 @@ SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting
                        .lightChanges = changes.lights || changes.geometry || changes.instances || frame.settingsChanged,
                        .settings = {.frames = frames_},
                        .filter = frame.settings.filter,
+                       .follow = kFollow,
+                       .few = kFew,
+                       .movingGlossy = kGlossy,
                        .worth = worth});
 }
 

@@ -14,7 +14,7 @@ namespace lambent {
 namespace {
 
 /// What a pair of numbers is for. Pairs of one sample are independent of each other.
-enum class Pair : uint32_t { Choice, Place, Sky, Cosine };
+enum class Pair : uint32_t { Choice, Place, Sky, Ray, Lobe };
 
 /// First two dimensions of the Sobol' sequence, as fractions of 2^32.
 glm::uvec2 sobol(uint32_t i) {
@@ -98,7 +98,7 @@ PathVertex vertexOf(const FrameSurfaces& surfaces, const glm::ivec2& pixel, cons
 /// Light that a ray would bring.
 struct Pending {
   uint32_t place;
-  vec3 value; // irradiance: of a connection whole, of a cosine-distributed ray per radiance
+  vec3 value; // irradiance: of a connection whole, of a ray of the place per radiance
 };
 
 } // namespace
@@ -164,6 +164,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       segments.push_back(c.segment);
       connected.push_back({place, c.value});
     };
+    for (Place& place : places) place.vertex.receiver = place.lobe ? &place.receiver : nullptr;
     for (uint32_t p = 0; p < places.size(); ++p) {
       const PathVertex& vertex = places[p].vertex;
       for (uint32_t s = in.sample; s < in.sample + uint32_t(in.samples); ++s) {
@@ -176,10 +177,13 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
         if (sky && !lights.sky.constant())
           connect(p, connectToSky(lights, vertex, vec3(weight), numbers(s, Pair::Sky), epsilon));
         if (!casts) continue;
-        const vec3 direction = sampleCosineHemisphere(vertex.normal, numbers(s, Pair::Cosine));
-        if (glm::dot(direction, vertex.geometricNormal) <= 0) continue;
+        const vec2 u = numbers(s, Pair::Ray);
+        const vec3 direction = vertex.receiver ? sampleReflection(*vertex.receiver, numbers(s, Pair::Lobe).x, u)
+                                               : sampleCosineHemisphere(vertex.normal, u);
+        const float cosine = glm::dot(direction, vertex.normal);
+        if (!(cosine > 0) || glm::dot(direction, vertex.geometricNormal) <= 0) continue;
         rays.push_back({offsetPoint(vertex.position, vertex.geometricNormal, epsilon), direction});
-        cast.push_back({p, vec3(weight)});
+        cast.push_back({p, vec3(cosine / (pdfOfRay(vertex, direction) * float(in.samples)))});
       }
     }
 

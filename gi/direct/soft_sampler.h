@@ -1,6 +1,7 @@
 // Direct light of what has a size, by few rays from every pixel: emissive surfaces, the sky, suns' disks. Each sample
-// takes one light and a place on it, a direction of the sky by what it brings, and a cosine-distributed ray, weighed by
-// multiple importance sampling as in gi/lighting/light_paths.h: the expectation is that of the reference.
+// takes one light and a place on it, a direction of the sky by what it brings, and a ray by the cosine, or half of the
+// time by the lobe of a glossy surface, weighed by multiple importance sampling as in gi/lighting/light_paths.h: the
+// expectation is that of the reference.
 //
 // The pixels of 4×4 take the strata of one pattern in turn, and each pixel goes through all of them from sample to
 // sample: Sobol' points (first two dimensions), scrambled after Owen ("Randomly permuted (t,m,s)-nets", 1995) per block

@@ -36,7 +36,7 @@ LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter,
   if (emitter.doubleSided) cosEmitter = std::abs(cosEmitter);
   if (cosReceiver <= 0 || cosEmitter <= 0 || glm::dot(towards, vertex.geometricNormal) <= 0) return {};
   const float pdfLight = probability * e.pdfArea * r2 / cosEmitter; // per steradian
-  const float mis = powerHeuristic(pdfLight, pdfCosineHemisphere(cosReceiver));
+  const float mis = powerHeuristic(pdfLight, pdfOfRay(vertex, towards));
   const vec3 emitterSide = -glm::dot(towards, e.normal) > 0 ? e.normal : -e.normal;
   return {segment(offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon),
                   offsetPoint(e.position, emitterSide, rayEpsilon)),
@@ -44,6 +44,11 @@ LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter,
 }
 
 } // namespace
+
+float pdfOfRay(const PathVertex& vertex, const vec3& direction) {
+  return vertex.receiver ? pdfReflection(*vertex.receiver, direction)
+                         : pdfCosineHemisphere(glm::dot(direction, vertex.normal));
+}
 
 LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex, const vec3& weight, float uLight,
                                const vec3& uPoint, float rayEpsilon) {
@@ -61,7 +66,7 @@ LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, c
   const float cosine = glm::dot(s.direction, vertex.normal);
   // Rounded into the next cell of the table, a direction may have no density there.
   if (cosine <= 0 || glm::dot(s.direction, vertex.geometricNormal) <= 0 || !(s.pdf > 0)) return {};
-  const float mis = powerHeuristic(s.pdf, pdfCosineHemisphere(cosine));
+  const float mis = powerHeuristic(s.pdf, pdfOfRay(vertex, s.direction));
   return {{offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon), s.direction},
           weight * s.radiance * (cosine * mis / (kPi * s.pdf))};
 }
@@ -69,8 +74,7 @@ LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, c
 vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction) {
   const vec3 radiance = lights.sky.radiance(direction);
   if (lights.sky.constant()) return radiance;
-  const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, vertex.normal));
-  return radiance * powerHeuristic(pdfCosine, lights.sky.pdfFacing(vertex.normal, direction));
+  return radiance * powerHeuristic(pdfOfRay(vertex, direction), lights.sky.pdfFacing(vertex.normal, direction));
 }
 
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit) {
@@ -78,11 +82,10 @@ float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3&
   if (e == kNone) return 1;
   const LightChoice choice(lights, vertex.position, vertex.normal);
   const float cosEmitter = std::abs(glm::dot(direction, hit.geometricNormal));
-  const float pdfCosine = pdfCosineHemisphere(glm::dot(direction, vertex.normal));
   const float pdfLight = choice.probability(uint32_t(lights.punctual.size()) + e) *
                          pdfEmitterArea(lights, lights.emitters[e], hit.triangle) * hit.t * hit.t /
                          std::max(cosEmitter, 1e-6f);
-  return powerHeuristic(pdfCosine, pdfLight);
+  return powerHeuristic(pdfOfRay(vertex, direction), pdfLight);
 }
 
 } // namespace lambent

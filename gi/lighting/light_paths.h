@@ -1,16 +1,20 @@
 // What a light path does at a vertex, shared by the VPLs' radiosity and the reference: one connection to a chosen
-// light, one to the sky where it is not constant, and the share of an emitter or of the sky that a cosine-distributed
-// ray met. The two split their light between them by multiple importance sampling (power heuristic, Veach 1997).
+// light, one to the sky where it is not constant, and the share of an emitter or of the sky that a ray of the vertex
+// met, which is cosine-distributed, or drawn by what a glossy receiver reflects (sampleReflection). The two split their light between them by multiple importance sampling (power heuristic, Veach 1997).
 #pragma once
 
 #include "gi/lighting/light_set.h"
+#include "gi/lighting/receivers.h"
 
 namespace lambent {
 
 /// A place on a surface where light is collected.
 struct PathVertex {
   vec3 position, normal, geometricNormal; // unit normals, on the side that is lit
+  const Receiver* receiver = nullptr;     // whose rays are drawn by sampleReflection; null: cosine-distributed
 };
+/// Density of the vertex's own rays, per steradian.
+float pdfOfRay(const PathVertex& vertex, const vec3& direction);
 
 /// Light that reaches a vertex if the segment is clear. `value` is zero where there is nothing to test.
 struct LightConnection {
@@ -27,11 +31,11 @@ LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex,
 LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u,
                              float rayEpsilon);
 
-/// Radiance that a cosine-distributed ray from `vertex` brings when it meets the sky: all where the sky is constant,
+/// Radiance that a ray from `vertex` brings when it meets the sky: all where the sky is constant,
 /// else its share; connections bring the rest.
 vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction);
 
-/// Share of the emission at `hit` that belongs to a cosine-distributed ray from `vertex`; connections bring the rest.
+/// Share of the emission at `hit` that belongs to a ray from `vertex`; connections bring the rest.
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit);
 
 } // namespace lambent

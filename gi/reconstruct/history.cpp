@@ -16,9 +16,7 @@ namespace lambent {
 
 namespace {
 
-constexpr float kFollow = 0.5f;
-constexpr int kFollowOn = 4;  // frames after the last change that still follow
-constexpr int kFewFrames = 8; // that means hold at most while light changes
+constexpr int kFollowOn = 4; // frames after the last change that still follow
 
 } // namespace
 
@@ -73,7 +71,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
-  program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
+  program.set("mostFrames", float(changes ? std::min(most, in.few) : most));
   program.set("worth", in.worth);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
@@ -83,7 +81,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   if (in.gathered.glossy && !changes) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    program.set("mostGlossyFrames", in.cameraMoved ? 0.0f : float(most));
+    program.set("mostGlossyFrames", float(in.cameraMoved ? std::min(most, in.movingGlossy) : most));
   }
   to.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
@@ -108,7 +106,7 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
     program.set("tileSize", tileSize(in.surfaces));
     in.gathered.glossy->bind(5);
   }
-  program.set("follow", kFollow);
+  program.set("follow", in.follow);
   filtered.irradiance->bind(4);
   tiles_.bind(6);
   now.framebuffer.bind();

@@ -15,7 +15,8 @@ struct FilterInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
   const FilterSettings& filter;
-  bool fresh = true; // of one frame; else a texel's alpha says how many sixteenths of the lights it holds evenly
+  bool fresh = true; // of one frame; else a texel's alpha says how many frames its mean holds evenly
+  float full = 16;   // so many need no neighbours: of subsets these hold every light
 };
 
 /// Filters with a cross-bilateral 7×7 kernel; with the filter off only puts the pixels back in their places. Light of
@@ -33,11 +34,14 @@ class FilterPass {
 struct HistoryInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
-  bool cameraMoved;  // glossy light is then this frame's own
+  bool cameraMoved;  // glossy light is then of few frames
   bool lightChanges; // what is kept then follows this frame
   const HistorySettings& settings;
   const FilterSettings& filter;
-  float worth = 1; // frames that this one counts as: light without noise begins a mean
+  float follow = 0.5f;  // share of a coarse change that its first frame shows
+  int few = 8;          // frames that means hold at most while light changes
+  int movingGlossy = 0; // frames before that glossy light counts of while the camera moves
+  float worth = 1;      // frames that this one counts as: light without noise begins a mean
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.
