@@ -1,10 +1,14 @@
 #version 450
 // Puts the 4×4 subsets back in their places (SUBSETS) and filters (FILTER): a cross-bilateral tent of 7×7, weights
 // (1,2,3,4,3,2,1)², whole or along one axis at a time. Every subset gets the same total weight, so that a flat area shows
-// the mean over all 16 subsets exactly; the more frames a pixel holds, the less its neighbours count. GLOSSY: glossy light too, with weights by roughness and metalness as well.
+// the mean over all 16 subsets exactly; the more frames a pixel holds, the less its neighbours count. GLOSSY: glossy
+// light too, with weights by roughness and metalness as well.
 #include "lib/gbuffer.glsl"
 #include "lib/light_outputs.glsl"
 #include "lib/subsets.glsl"
+#ifdef FILTER
+#include "lib/surface_weight.glsl"
+#endif
 
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY
@@ -12,16 +16,13 @@ layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 #endif
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
-uniform float normalPower;
-uniform float distanceSigma;   // share of the view distance
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
 uniform bool fresh; // light of one frame, whatever its a
-uniform float full; // frames in a mean that needs no neighbours
 
-/// What a neighbour counts for, by the frames in this pixel's mean.
-float shareOf(float frames) { return fresh ? 1.0 : clamp((full - frames) / (full - 1.0), 0.0, 1.0); }
+/// What a neighbour counts for, by the frames in this pixel's mean: one that holds every class needs none.
+float shareOf(float frames) { return fresh ? 1.0 : clamp((16.0 - frames) / 15.0, 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -29,17 +30,7 @@ void main() {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
 #ifdef FILTER
-  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
-  vec3 normalView = normal * mat3(camera.worldFromView); // transpose times: world to view
-  // Height of a neighbour above this pixel's plane without rebuilding its position: the plane's equation is linear in
-  // the pixel, times the neighbour's view distance for a perspective camera.
-  bool orthographic = camera.lens.w > 0.0;
-  vec2 ray = ((vec2(pixel) + 0.5) * camera.size.zw * 2.0 - 1.0) * camera.lens.xy;
-  vec2 slope = 2.0 * camera.size.zw * camera.lens.xy * normalView.xy;
-  float viewDistance = viewDistanceFromDepth(camera, depth);
-  float base = dot(normalView.xy, ray) - (orthographic ? 0.0 : normalView.z);
-  float plane = orthographic ? base - normalView.z * viewDistance : base * viewDistance;
-  float inverseSigma = 1.0 / (distanceSigma * viewDistance);
+  PixelPlane plane = planeAt(pixel, depth);
   vec4 own = irradianceAt(pixel);
   float share = shareOf(own.a);
 #ifdef GLOSSY
@@ -63,21 +54,15 @@ void main() {
       ivec2 neighbour = pixel + ivec2(dx, dy);
       float neighbourDepth = texelFetch(gbufferDepth, neighbour, 0).r;
       if (neighbourDepth == 0.0) continue;
-      float distance = viewDistanceFromDepth(camera, neighbourDepth);
-      float line = base + dot(slope, vec2(dx, dy));
-      float height = ((orthographic ? line - normalView.z * distance : line * distance) - plane) * inverseSigma;
-      float alignment = max(dot(normal, texelFetch(gbufferNormal, neighbour, 0).xyz), 1e-4);
-      // alignment^power · exp(-h²/2), with one exponential
-      float weight = float((4 - abs(dx)) * (4 - abs(dy))) *
-                     exp2(normalPower * log2(alignment) - 0.7213475 * height * height);
+      float tent = float((4 - abs(dx)) * (4 - abs(dy)));
+      float weight = tent * surfaceWeight(plane, ivec2(dx, dy), neighbour, neighbourDepth);
       bool other = dx != 0 || dy != 0;
       float counts = weight * (other ? share : 1.0);
       sum += counts * irradianceAt(neighbour).rgb;
       weights += counts;
 #ifdef GLOSSY
-      // Lobes of other shape hold other light: exp(-Δ²/2σ²), σ = 0.1 of roughness or metalness.
-      vec2 difference = texelFetch(gbufferRoughnessMetalness, neighbour, 0).rg - roughnessMetalness;
-      counts = weight * (other ? glossyShare : 1.0) * exp2(-72.13475 * dot(difference, difference));
+      vec2 finish = texelFetch(gbufferRoughnessMetalness, neighbour, 0).rg;
+      counts = weight * (other ? glossyShare : 1.0) * finishWeight(roughnessMetalness, finish);
       glossySum += counts * texelFetch(glossy, placeOf(neighbour), 0).rgb;
       glossyWeights += counts;
 #endif

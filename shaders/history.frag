@@ -2,9 +2,10 @@
 // Mean of the light that fell on the place of a pixel, in this frame and those before it. The place is looked up where
 // the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
 // frame's light is de-interleaved), CHANGES (what is kept, and this frame's difference to it, for
-// history_follow.frag), GLOSSY.
+// history_follow.frag), GLOSSY, SPREAD (variance of a frame's luminance about the mean; Welford 1962).
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
+#include "lib/spread.glsl"
 #include "shared/octahedral.h"
 
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
@@ -12,19 +13,22 @@ layout(binding = 2) uniform sampler2D irradiance; // of this frame
 layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames in the mean (0: nothing)
 uniform float mostFrames; // of those before that count at most; 0: there are none
-uniform float worth;     // frames that this one counts as
 uniform bool stands;    // the camera is where it was
 layout(location = 0) out vec4 outIrradiance; // a: frames in the mean
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
 #else
 layout(location = 1) out vec4 outSeen;
+#endif
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy;
 layout(binding = 8) uniform sampler2D keptGlossy; // a: frames in its mean
 uniform float mostGlossyFrames; // as `mostFrames`
 layout(location = 2) out vec4 outGlossy;
 #endif
+#ifdef SPREAD
+layout(binding = 9) uniform sampler2D keptSpread;
+layout(location = 3) out vec2 outSpread; // of irradiance (CHANGES: as it was kept), of glossy light
 #endif
 
 const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
@@ -45,9 +49,12 @@ void main() {
   outChange = vec4(0.0);
 #else
   outSeen = vec4(0.0);
+#endif
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
+#ifdef SPREAD
+  outSpread = vec2(0.0);
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
@@ -55,8 +62,11 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec4 kept = vec4(0.0);
   float weights = 0.0;
-#if defined(GLOSSY) && !defined(CHANGES)
+#ifdef GLOSSY
   vec4 keptLobe = vec4(0.0);
+#endif
+#ifdef SPREAD
+  vec2 spread = vec2(0.0);
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
@@ -73,8 +83,11 @@ void main() {
       if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
       kept += weight * vec4(texelFetch(keptIrradiance, tap, 0).rgb, seen.a);
       weights += weight;
-#if defined(GLOSSY) && !defined(CHANGES)
+#ifdef GLOSSY
       keptLobe += weight * texelFetch(keptGlossy, tap, 0);
+#endif
+#ifdef SPREAD
+      spread += weight * texelFetch(keptSpread, tap, 0).rg;
 #endif
     }
   }
@@ -84,19 +97,30 @@ void main() {
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
+#ifdef SPREAD
+  if (weights > 0.0) spread /= weights;
+  if (any(isnan(spread)) || any(isinf(spread))) spread = vec2(0.0);
+  outSpread = spread;
+#endif
 #ifdef CHANGES
   outIrradiance = kept;
   bool known = !any(isnan(now)) && !any(isinf(now));
   outChange = vec4(known ? now - kept.rgb : vec3(0.0), 1.0);
 #else
-  outIrradiance = vec4(mix(kept.rgb, now, worth / (kept.a + worth)), kept.a + worth);
-  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + worth);
+  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
+  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
+#ifdef SPREAD
+  outSpread.r = spreadWith(spread.r, now - kept.rgb, kept.a);
+#endif
+#endif
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
-  outGlossy = vec4(mix(keptLobe.rgb, lobe, worth / (keptLobe.a + worth)), keptLobe.a + worth);
+  outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
+#ifdef SPREAD
+  outSpread.g = spreadWith(spread.g, lobe - keptLobe.rgb, keptLobe.a);
 #endif
 #endif
 }

@@ -96,6 +96,7 @@ int texelBytes(GLenum format) {
   case GL_DEPTH_COMPONENT32F:
     return 4;
   case GL_RGBA16F:
+  case GL_RG32F:
     return 8;
   case GL_RGBA32F:
   case GL_RGBA32UI:
@@ -238,8 +239,8 @@ Framebuffer::Framebuffer(const std::string& label, std::initializer_list<const T
     : Framebuffer(label) {
   std::vector<GLenum> targets;
   for (const Texture* color : colors) {
-    targets.push_back(GLenum(GL_COLOR_ATTACHMENT0 + targets.size()));
-    glNamedFramebufferTexture(name(), targets.back(), color->name(), level);
+    targets.push_back(color ? GLenum(GL_COLOR_ATTACHMENT0 + targets.size()) : GL_NONE);
+    if (color) glNamedFramebufferTexture(name(), targets.back(), color->name(), level);
   }
   if (depth) {
     const bool stencil = depth->desc().format == GL_DEPTH24_STENCIL8;

@@ -144,8 +144,8 @@ class Framebuffer : public detail::Object {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const std::string& label);
-  /// Whole textures, or one mip level of each, as attachments. A depth format with stencil is attached as both. Aborts
-  /// when incomplete: formats are ours, so that is a bug.
+  /// Whole textures, or one mip level of each, as attachments; null: none at that location. A depth format with stencil
+  /// is attached as both. Aborts when incomplete: formats are ours, so that is a bug.
   Framebuffer(const std::string& label, std::initializer_list<const Texture*> colors, const Texture* depth = nullptr,
               int level = 0);
 

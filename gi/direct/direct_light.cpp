@@ -69,7 +69,7 @@ gl::Sampler samplerOf(const std::string& label, GLenum filter, GLenum compareMod
 } // namespace
 
 DirectLight::DirectLight(PassContext context, uint32_t mostDoubts)
-    : context_(context), shadows_(context), emitters_(context), areas_(context), soft_(context), lamps_(context),
+    : context_(context), shadows_(context), emitters_(context), areas_(context), soft_(context),
       doubts_(std::min(mostDoubts, gl::mostBufferTexels())), depths_(samplerOf("direct/depths", GL_NEAREST, GL_NONE)),
       smoothDistances_(samplerOf("direct/smooth distances", GL_LINEAR, GL_COMPARE_REF_TO_TEXTURE)) {}
 
@@ -81,16 +81,20 @@ SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
   if (changed) lightByMaps(in, stats);
   light_ = mapped_.light();
   const Emitters emitters = emittersBy(in);
-  if (emitters == Emitters::Patches && changed) addPatches(in, mapped_, stats);
-  if (emitters != Emitters::Patches && emitters != Emitters::PatchesThenRays) areas_.forget();
-  const bool lamps = emitters == Emitters::PatchesThenRays;
-  if (!lamps) lamps_.forget(), lampsWait_ = false;
-  if (softByRays(in) && (lamps || emitters == Emitters::Rays || hasSkyOrSuns(in))) {
+  if (emitters == Emitters::Patches && changed) {
+    areas_.add(in.world, in.surfaces, reader_, in.patches, in.settings, mapped_, stats);
+    stats.of(EffectId::Emissive) += stats.areaFragments;
+    stats.of(EffectId::SoftShadows) += stats.areaFragments;
+  }
+  if (emitters != Emitters::Patches) areas_.forget();
+  if (softByRays(in) && (emitters == Emitters::Rays || hasSkyOrSuns(in))) {
     target_.fit(in.surfaces);
     target_.clear();
-    add(mapped_.light());
+    {
+      const gl::PassScope scope = context_.scope(StageId::SoftLight);
+      addLight(context_, mapped_.light(), target_);
+    }
     soft_.add(in, reader_, emitters == Emitters::Rays ? SoftParts::All : SoftParts::SkyAndSuns, target_, stats);
-    if (lamps) addLamps(in, changed, stats);
     light_ = target_.light();
   } else {
     soft_.forget();
@@ -104,12 +108,7 @@ DirectLight::Emitters DirectLight::emittersBy(const Frame& in) {
   if (!in.plan.on(EffectId::Emissive)) return Emitters::None;
   if (!in.plan.on(EffectId::SoftShadows)) return Emitters::Maps;
   if (in.settings.shadow.emitters == EmitterShadows::Patches) return Emitters::Patches;
-  if (in.settings.direct.soft == SoftLightBy::Maps) return Emitters::Maps;
-  // Patches ask every lamp at every pixel: of fifty lamps they take twice the time of rays (docs/decisions.md).
-  constexpr size_t kFewLamps = 8, kFewTriangles = 512;
-  const LightSet& lights = in.world.lights;
-  return lights.emitters.size() <= kFewLamps && lights.triangles.size() <= kFewTriangles ? Emitters::PatchesThenRays
-                                                                                          : Emitters::Rays;
+  return softByRays(in) ? Emitters::Rays : Emitters::Maps;
 }
 
 bool DirectLight::softByRays(const Frame& in) { return in.settings.direct.soft == SoftLightBy::Rays; }
@@ -119,33 +118,6 @@ bool DirectLight::hasSkyOrSuns(const Frame& in) {
 }
 
 bool DirectLight::skyByMaps(const Frame& in) { return in.plan.on(EffectId::Sky) && !softByRays(in); }
-
-void DirectLight::addPatches(const Frame& in, const LightTarget& target, FrameStats& stats) {
-  areas_.add(in.world, in.surfaces, reader_, in.patches, in.settings, target, stats);
-  stats.of(EffectId::Emissive) += stats.areaFragments;
-  stats.of(EffectId::SoftShadows) += stats.areaFragments;
-}
-
-/// Few lamps: by patches while anything changes; a still view then begins a mean with their light.
-void DirectLight::addLamps(const Frame& in, bool changed, FrameStats& stats) {
-  const bool averages = in.settings.direct.frames > 1;
-  if (changed || !averages) {
-    patched_.fit(in.surfaces);
-    patched_.clear();
-    addPatches(in, patched_, stats);
-    add(patched_.light());
-    lamps_.forget();
-    lampsWait_ = averages;
-    return;
-  }
-  if (std::exchange(lampsWait_, false)) lamps_.begin(in, patched_.light());
-  lamps_.add(in, reader_, SoftParts::Emitters, target_, stats);
-}
-
-void DirectLight::add(const SurfaceLighting& light) {
-  const gl::PassScope scope = context_.scope(StageId::SoftLight);
-  addLight(context_, light, target_);
-}
 
 void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
   const bool allowed = in.settings.shadow.rays && in.surfaces.depth->holdsSinglePrecision();

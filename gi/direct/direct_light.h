@@ -1,7 +1,7 @@
 // Direct light. Points, spots and suns without a size have shadow maps; where a map is in doubt, which is along the
 // edges of shadows, a ray decides (ShadowSettings::rays). What has a size is sampled by few rays from every pixel,
-// averaged over frames (DirectSettings::soft); few lamps by patches of the image while anything moves, for these are
-// without noise. Or all have maps: the sky and emissive surfaces of points that stand for them.
+// averaged over frames (DirectSettings::soft). Or all have maps: the sky and emissive surfaces of points that stand for
+// them.
 #pragma once
 
 #include "gi/contract/figures.h"
@@ -23,11 +23,9 @@ class DirectLight : public LightProvider {
   void forget() override {
     stale_ = true;
     soft_.forget();
-    lamps_.forget();
-    lampsWait_ = false;
   }
   /// Says whether the light of a still view goes on getting better.
-  bool pending() const { return soft_.pending() || lamps_.pending() || lampsWait_; }
+  bool pending() const { return soft_.pending(); }
 
   struct Area {
     int x = 0, y = 0, width = 0, height = 0; // pixels, from the lower left
@@ -38,15 +36,12 @@ class DirectLight : public LightProvider {
   enum class Noting { Off, AlsoLight, Only };
 
   /// Who brings the light of what has a size.
-  enum class Emitters { None, Maps, Patches, PatchesThenRays, Rays };
+  enum class Emitters { None, Maps, Patches, Rays };
   static Emitters emittersBy(const Frame& in);
   static bool softByRays(const Frame& in);
   static bool skyByMaps(const Frame& in);
   static bool hasSkyOrSuns(const Frame& in); // that have a size
   void lightByMaps(const Frame& in, FrameStats& stats);
-  void addPatches(const Frame& in, const LightTarget& target, FrameStats& stats);
-  void add(const SurfaceLighting& light);
-  void addLamps(const Frame& in, bool changed, FrameStats& stats);
   void fitReceivers(const Frame& in, FrameStats& stats);
   std::vector<LightBlock> shadowed(const Frame& in, bool rays, FrameStats& stats);
   const gl::Program& programFor(const GBuffer& surfaces, const LightBlock& block, const char* vertex,
@@ -60,17 +55,15 @@ class DirectLight : public LightProvider {
   EmitterShadowPass emitters_;
   AreaLightPass areas_;
   SurfaceReader reader_;
-  SoftLightPass soft_, lamps_; // lamps_: few lamps, which patches light while anything moves
+  SoftLightPass soft_;
   ShadowRayPass doubts_;
   Aabb receivers_;                       // everything the camera sees: what maps of the sky must cover
   Aabb mostReceivers_;                   // without the few that lie far off: what suns' must, where rays see the rest
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
   bool stale_ = true;                    // nothing of the last run may be used
-  bool lampsWait_ = false;               // for a still frame, to begin their mean
   bool unfinished_ = false;              // something was thrown out of it
   std::vector<LightView> sharp_;             // lights without a size
   LightTarget mapped_{"direct/maps"};        // light of maps alone, kept while soft light goes on
-  LightTarget patched_{"direct/patches"};    // of few lamps, by patches
   LightTarget target_{"direct"};
   SurfaceLighting light_;                    // of the last run
 };

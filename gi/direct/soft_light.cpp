@@ -8,10 +8,9 @@ namespace {
 
 // A frame's samples are noisier than gathered light, so that means hold more frames and follow a change less at once
 // (docs/decisions.md).
-constexpr int kFew = 16;        // frames of a mean while light changes
-constexpr float kFollow = 0.1f; // of a coarse change, in its first frame
-constexpr int kGlossy = 8;      // frames of glossy light while the camera moves
-constexpr float kFull = 32;     // frames of a mean that is shown as it is
+constexpr int kFew = 8;                // frames of a mean while light changes
+constexpr float kFollow = 0.2f; // of a coarse change, in its first frame
+constexpr int kGlossy = 8;     // frames of glossy light while the camera moves
 
 } // namespace
 
@@ -49,22 +48,14 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
     if (glossy) uploadPixels(*sampled.glossy, found.glossy, frame.surfaces, 1);
   }
   sampled.subsets = true; // pixels side by side took other strata
-  const SurfaceLighting mean = average(frame, sampled, 1);
+  const SurfaceLighting mean = average(frame, sampled);
   averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
-  const SurfaceLighting light = filter_.run({frame.surfaces, mean, frame.settings.filter, frames_ < 2, kFull});
+  const SurfaceLighting light = denoise_.run({frame.surfaces, mean, history_.spread(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);
   addLight(context_, light, target);
 }
 
-void SoftLightPass::begin(const Frame& frame, const SurfaceLighting& found) {
-  constexpr float kWorth = 16; // frames of samples: with fewer a first still frame is noisier than the moving ones
-  forget();
-  SurfaceLighting begun = found;
-  begun.subsets = true;
-  average(frame, begun, kWorth);
-}
-
-SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting& light, float worth) {
+SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting& light) {
   frames_ = frame.settings.direct.frames;
   if (frames_ < 2) history_.forget();
   const SceneChanges& changes = frame.world.view.changes;
@@ -78,8 +69,7 @@ SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting
                        .filter = frame.settings.filter,
                        .follow = kFollow,
                        .few = kFew,
-                       .movingGlossy = kGlossy,
-                       .worth = worth});
+                       .movingGlossy = kGlossy});
 }
 
 } // namespace lambent

@@ -14,8 +14,6 @@ class SoftLightPass {
 
   /// Takes direct.samples more of every pixel and adds the mean to the target, which is as large as the image.
   void add(const Frame& frame, SurfaceReader& reader, SoftParts parts, const LightTarget& target, FrameStats& stats);
-  /// Begins a mean with the light of a still view that other means have found; the samples that follow mend it.
-  void begin(const Frame& frame, const SurfaceLighting& found);
   void forget() {
     history_.forget();
     averaged_ = 0;
@@ -24,12 +22,12 @@ class SoftLightPass {
   bool pending() const { return averaged_ > 0 && averaged_ < frames_; }
 
  private:
-  SurfaceLighting average(const Frame& frame, const SurfaceLighting& light, float worth);
+  SurfaceLighting average(const Frame& frame, const SurfaceLighting& light);
 
   PassContext context_;
   LightTarget samples_{"soft light"};
-  HistoryPass history_{context_};
-  FilterPass filter_{context_};
+  HistoryPass history_{context_, true};
+  DenoisePass denoise_{context_};
   int averaged_ = 0, frames_ = 0; // frames since anything changed; of those that count
 };
 

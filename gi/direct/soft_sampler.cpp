@@ -45,7 +45,8 @@ uint32_t turnOf(const glm::ivec2& pixel) {
   return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
 }
 
-/// The numbers of a pixel.
+/// The numbers of a pixel. One of each pair of Choice, Sky and Ray takes the strata of its block in turn, so that a block
+/// has all of them in one frame; the rest are the pixel's own, so that blocks do not err as one.
 class PixelNumbers {
  public:
   PixelNumbers(const glm::ivec2& pixel, uint32_t seed)
@@ -53,16 +54,19 @@ class PixelNumbers {
 
   /// Numbers in [0, 1).
   vec2 operator()(uint32_t sample, Pair pair) const {
-    constexpr uint32_t kStrata = 0xf0000000u; // sixteen along each axis
+    constexpr uint32_t kStrata = 0xf0000000u; // sixteen
     // Points in another order for each pair (Burley, "Practical hash-based Owen scrambling", 2020): else the same half
     // of one pair would always meet the same half of another.
-    const glm::uvec2 point = sobol(scrambled(sample ^ turn_, uint32_t(mix64(block_ - 1 - uint32_t(pair)))));
+    const bool shared = pair == Pair::Choice || pair == Pair::Sky || pair == Pair::Ray;
+    const uint64_t order = (shared ? block_ : pixel_) - 1 - uint32_t(pair);
+    const glm::uvec2 point = sobol(scrambled(sample ^ turn_, uint32_t(mix64(order))));
     vec2 u;
     for (uint32_t axis = 0; axis < 2; ++axis) {
+      const uint32_t strata = shared && axis == 0 ? kStrata : 0;
       const uint32_t stream = 2 * uint32_t(pair) + axis;
       const uint32_t coarse = scrambled(point[int(axis)], uint32_t(mix64(block_ + stream))),
                      fine = scrambled(point[int(axis)], uint32_t(mix64(pixel_ + stream)));
-      u[int(axis)] = float(((coarse & kStrata) | (fine & ~kStrata)) >> 8) * 0x1p-24f;
+      u[int(axis)] = float(((coarse & strata) | (fine & ~strata)) >> 8) * 0x1p-24f;
     }
     return u;
   }
@@ -111,11 +115,9 @@ LightSet softLightsOf(const LightSet& lights, SoftParts parts) {
     soft.emitters = lights.emitters;
     soft.triangles = lights.triangles;
   }
-  if (parts != SoftParts::Emitters) {
-    soft.sky = lights.sky;
-    for (const LightView& light : lights.punctual)
-      if (isSoft(light)) soft.punctual.push_back(light);
-  }
+  soft.sky = lights.sky;
+  for (const LightView& light : lights.punctual)
+    if (isSoft(light)) soft.punctual.push_back(light);
   soft.tree = LightTree(soft);
   return soft;
 }

@@ -16,7 +16,7 @@ namespace lambent {
 /// Says whether a punctual light has a size, and so no sharp shadows.
 inline bool isSoft(const LightView& light) { return light.type == LightType::Directional && light.angularRadius > 0; }
 
-enum class SoftParts { All, Emitters, SkyAndSuns };
+enum class SoftParts { All, SkyAndSuns };
 /// Returns those of the lights that have a size.
 LightSet softLightsOf(const LightSet& lights, SoftParts parts);
 

@@ -26,7 +26,6 @@ SurfaceLighting FilterPass::run(const FilterInputs& in) {
     program.set("tileSize", tileSize(in.surfaces));
     program.set("reach", reach);
     program.set("fresh", in.fresh);
-    program.set("full", in.full);
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
     from.irradiance->bind(2);

@@ -18,6 +18,8 @@ namespace {
 
 constexpr int kFollowOn = 4; // frames after the last change that still follow
 
+const gl::Texture* orNull(const gl::Texture& texture) { return texture ? &texture : nullptr; }
+
 } // namespace
 
 SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
@@ -32,7 +34,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   if (changes) follow(in, now);
   before_ = in.surfaces.block;
   ++frames_;
-  return {&now.irradiance, now.glossy ? &now.glossy : nullptr, false, in.gathered.subsets};
+  return {&now.irradiance, orNull(now.glossy), false, in.gathered.subsets};
 }
 
 void HistoryPass::fit(const GBuffer& surfaces) {
@@ -40,48 +42,52 @@ void HistoryPass::fit(const GBuffer& surfaces) {
   const auto fits = [&](const gl::Texture& texture) {
     return texture && texture.width() == surfaces.width && texture.height() == surfaces.height;
   };
-  const auto make = [&](const char* label) {
-    return gl::Texture(label, {.format = GL_RGBA32F, .width = surfaces.width, .height = surfaces.height});
+  const auto make = [&](const char* label, bool wanted = true, GLenum format = GL_RGBA32F) {
+    return wanted ? gl::Texture(label, {.format = format, .width = surfaces.width, .height = surfaces.height})
+                  : gl::Texture();
   };
   if (bool(kept_[now_].glossy) != glossy) forget();
   Kept& next = kept_[1 - now_]; // the other is looked up, at the size that it has
   if (!fits(next.irradiance) || bool(next.glossy) != glossy) {
     next.irradiance = make("history/irradiance");
     next.seen = make("history/seen");
-    next.glossy = glossy ? make("history/glossy") : gl::Texture();
-    next.framebuffer = glossy ? gl::Framebuffer("history", {&next.irradiance, &next.seen, &next.glossy})
-                              : gl::Framebuffer("history", {&next.irradiance, &next.seen});
+    next.glossy = make("history/glossy", glossy);
+    next.spread = make("history/spread", spread_, GL_RG32F);
+    next.framebuffer =
+        gl::Framebuffer("history", {&next.irradiance, &next.seen, orNull(next.glossy), orNull(next.spread)});
   }
-  if (fits(found_)) return;
+  if (fits(found_) && bool(foundGlossy_) == glossy) return;
   found_ = make("history/found");
   change_ = make("history/change");
+  foundGlossy_ = make("history/found glossy", glossy);
+  foundSpread_ = make("history/found spread", spread_, GL_RG32F);
   tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,
                                          .width = (surfaces.width + 15) / 16,
                                          .height = (surfaces.height + 15) / 16,
                                          .linear = true});
   tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
-  changing_ = gl::Framebuffer("history/changing", {&found_, &change_});
+  changing_ = gl::Framebuffer("history/changing", {&found_, &change_, orNull(foundGlossy_), orNull(foundSpread_)});
 }
 
 void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes) {
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
   if (changes) defines.push_back("CHANGES");
+  if (spread_) defines.push_back("SPREAD"), before.spread.bind(9);
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
   program.set("mostFrames", float(changes ? std::min(most, in.few) : most));
-  program.set("worth", in.worth);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
   before.seen.bind(4);
-  if (in.gathered.glossy && !changes) {
+  if (in.gathered.glossy) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    program.set("mostGlossyFrames", float(in.cameraMoved ? std::min(most, in.movingGlossy) : most));
+    program.set("mostGlossyFrames", float(changes || in.cameraMoved ? std::min(most, in.movingGlossy) : most));
   }
   to.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
@@ -98,14 +104,12 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   gl::PipelineState{.width = tiles_.width(), .height = tiles_.height()}.apply();
   gl::drawFullscreen();
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
-  if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
+  if (spread_) defines.push_back("SPREAD"), foundSpread_.bind(8);
   const gl::Program& program =
       context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
   program.use();
-  if (in.gathered.glossy) {
-    program.set("tileSize", tileSize(in.surfaces));
-    in.gathered.glossy->bind(5);
-  }
+  if (foundGlossy_) foundGlossy_.bind(5);
+  program.set("pixels", in.filter.on ? 34.0f : 1.0f); // (Σw)²/Σw² of the tent of 7×7
   program.set("follow", in.follow);
   filtered.irradiance->bind(4);
   tiles_.bind(6);

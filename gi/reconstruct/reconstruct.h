@@ -1,6 +1,7 @@
 // How gathered light becomes the frame's. Contents of this folder in data-flow order:
 //   history  what pixels gathered, averaged over frames
 //   filter   the subsets mixed
+//   denoise  the noise of samples, as far as neighbours are alike within it
 // From patches to pixels: gi/gather/patch_atlas.h.
 #pragma once
 
@@ -15,8 +16,7 @@ struct FilterInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
   const FilterSettings& filter;
-  bool fresh = true; // of one frame; else a texel's alpha says how many frames its mean holds evenly
-  float full = 16;   // so many need no neighbours: of subsets these hold every light
+  bool fresh = true; // of one frame; else a texel's alpha says how many sixteenths of the lights it holds evenly
 };
 
 /// Filters with a cross-bilateral 7×7 kernel; with the filter off only puts the pixels back in their places. Light of
@@ -35,19 +35,19 @@ struct HistoryInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
   bool cameraMoved;  // glossy light is then of few frames
-  bool lightChanges; // what is kept then follows this frame
+  bool lightChanges; // what is kept then follows this frame; glossy light is of few
   const HistorySettings& settings;
   const FilterSettings& filter;
   float follow = 0.5f;  // share of a coarse change that its first frame shows
   int few = 8;          // frames that means hold at most while light changes
-  int movingGlossy = 0; // frames before that glossy light counts of while the camera moves
-  float worth = 1;      // frames that this one counts as: light without noise begins a mean
+  int movingGlossy = 0; // frames before that glossy light counts of while camera or light moves
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.
 class HistoryPass {
  public:
-  explicit HistoryPass(PassContext context) : context_(context) {}
+  /// `spread`: also keeps how far frames lie from their mean.
+  explicit HistoryPass(PassContext context, bool spread = false) : context_(context), spread_(spread) {}
   /// Makes room; call it before the gather. Frames of another size are looked up like any others; those of another kind
   /// are forgotten.
   void fit(const GBuffer& surfaces);
@@ -57,11 +57,13 @@ class HistoryPass {
   bool follows() const { return following_ > 0; }
   /// Number of frames in the mean, which is the number of the next sample.
   uint32_t sample() const { return frames_; }
+  /// Variance of the luminance of a pixel's frames about their mean: of irradiance, of glossy light.
+  const gl::Texture& spread() const { return kept_[now_].spread; }
 
  private:
   /// A frame's light, and the surfaces that it fell on.
   struct Kept {
-    gl::Texture irradiance, seen, glossy;
+    gl::Texture irradiance, seen, glossy, spread;
     gl::Framebuffer framebuffer;
   };
   void find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes);
@@ -69,8 +71,10 @@ class HistoryPass {
 
   PassContext context_;
   FilterPass filter_{context_};
+  bool spread_;
   Kept kept_[2];
-  gl::Texture found_, change_; // where light changes: what is kept, and this frame's difference to it
+  // Where light changes: what is kept, and this frame's difference to it; the mean of glossy light.
+  gl::Texture found_, change_, foundGlossy_, foundSpread_;
   gl::Texture tiles_;          // by how much it changes
   gl::Framebuffer changing_, tilesFramebuffer_;
   int now_ = 0;
@@ -78,6 +82,25 @@ class HistoryPass {
   int following_ = 0;   // frames that are still to be followed
   CameraBlock before_;  // the last frame's
   gl::Ring cameras_{"history/camera"};
+};
+
+struct DenoiseInputs {
+  const GBuffer& surfaces;
+  const SurfaceLighting& mean; // of HistoryPass, alpha: frames in it
+  const gl::Texture& spread;   // HistoryPass::spread
+  const FilterSettings& filter;
+};
+
+/// Averages each pixel with neighbours that are alike within the noise of both: wavelets with holes, guided by variance
+/// (Schied et al., "Spatiotemporal variance-guided filtering", 2017). What is known without noise stays as it is.
+class DenoisePass {
+ public:
+  explicit DenoisePass(PassContext context) : context_(context) {}
+  SurfaceLighting run(const DenoiseInputs& in);
+
+ private:
+  PassContext context_;
+  LightTarget targets_[2]{LightTarget("denoise/even"), LightTarget("denoise/odd")};
 };
 
 } // namespace lambent

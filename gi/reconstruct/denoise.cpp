@@ -1,0 +1,32 @@
+#include "gi/gather/draw_gather.h"
+#include "gi/reconstruct/reconstruct.h"
+
+namespace lambent {
+
+SurfaceLighting DenoisePass::run(const DenoiseInputs& in) {
+  if (!in.filter.on) return in.mean;
+  constexpr int kSteps = 4; // of 1, 2, 4 and 8 pixels
+  const gl::PassScope scope = context_.scope(StageId::Filter);
+  SurfaceLighting light = in.mean;
+  for (int i = 0; i <= kSteps; ++i) {
+    std::vector<std::string> defines = bindSurfaces(in.surfaces);
+    if (i == 0) defines.push_back("BEGIN");
+    const gl::Program& program = context_.programs.get({.fragment = "denoise.frag", .defines = std::move(defines)});
+    program.use();
+    program.set("normalPower", in.filter.normalPower);
+    program.set("distanceSigma", in.filter.distance);
+    program.set("stride", i == 0 ? 1 : 1 << (i - 1));
+    light.irradiance->bind(2);
+    if (light.glossy) light.glossy->bind(3);
+    if (i == 0) in.spread.bind(4);
+    const LightTarget& to = targets_[i % 2];
+    targets_[i % 2].fit(in.surfaces);
+    to.bind();
+    gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
+    gl::drawFullscreen();
+    light = to.light();
+  }
+  return light;
+}
+
+} // namespace lambent
