@@ -32,6 +32,7 @@ Sum begin(vec4 own) { return Sum(own, vec3(0.0), 0.0, 0.0, 0.0); }
 
 void add(inout Sum sum, vec4 tap, float variance, float weight) {
   float brightness = dot(kLuminance, tap.rgb);
+  if (isnan(brightness) || isinf(brightness)) return;
 #ifdef BEGIN
   sum.light += weight * vec3(variance, brightness, brightness * brightness);
   sum.weights += weight;
@@ -72,7 +73,7 @@ void main() {
 #ifdef GLOSSY
   noise += lobe.own.a;
 #endif
-  if (noise == 0.0) { // no neighbour counts
+  if (noise == 0.0) { // no neighbour would count
     outIrradiance = diffuse.own;
 #ifdef GLOSSY
     outGlossy = lobe.own;

@@ -215,29 +215,23 @@ class SoftLightTest : public GlTest {
 
 TEST_F(SoftLightTest, AStillViewConvergesAndRests) {
   const Image truth = truthOf(room.scene);
-  for (const bool few : {true, false}) {
-    if (!few) // lamps that light little, but are many
-      for (int i = 0; i < 8; ++i)
-        room.scene.quad({-0.9f + 0.2f * float(i), -0.99f, 0.9f}, {0.01f, 0, 0}, {0, 0, -0.01f},
-                        room.scene.material(vec3(0), vec3(1e-3f)));
-    Viewer gi(settings);
-    const double first = relativeRmse(stand(gi, 1), truth);
-    for (int i = 1; i < 64; ++i) {
-      const FrameStats& stats = gi.run(room.scene.view(kStill));
-      ASSERT_TRUE(stats.plan.on(EffectId::Redraw)) << i;
-      ASSERT_TRUE(stats.plan.onlyDirect()) << i;
-    }
-    gi.run(room.scene.view(kStill));
-    const Image last = gi.read(Buffer::Direct);
-    std::printf("few lamps %d: error of the first frame %.4f, of the last %.4f\n", few, first,
-                relativeRmse(last, truth));
-    EXPECT_LT(relativeRmse(last, truth), few ? 0.02 : 0.03);
-    EXPECT_NEAR(meanLuminance(last), meanLuminance(truth), 2e-3 * meanLuminance(truth));
-    const FrameStats& asleep = gi.run(room.scene.view(kStill));
-    EXPECT_FALSE(asleep.plan.on(EffectId::Redraw)) << asleep.plan[EffectId::Redraw].reason;
-    EXPECT_EQ(asleep.raysSoft.closest, 0u);
-    EXPECT_TRUE(sameBits(gi.read(Buffer::Direct), last));
+  Viewer gi(settings);
+  const double first = relativeRmse(stand(gi, 1), truth);
+  for (int i = 1; i < 64; ++i) {
+    const FrameStats& stats = gi.run(room.scene.view(kStill));
+    ASSERT_TRUE(stats.plan.on(EffectId::Redraw)) << i;
+    ASSERT_TRUE(stats.plan.onlyDirect()) << i;
   }
+  gi.run(room.scene.view(kStill));
+  const Image last = gi.read(Buffer::Direct);
+  std::printf("error of the first frame %.4f, of the last %.4f\n", first, relativeRmse(last, truth));
+  EXPECT_LT(first, 0.05);
+  EXPECT_LT(relativeRmse(last, truth), 0.006);
+  EXPECT_NEAR(meanLuminance(last), meanLuminance(truth), 2e-3 * meanLuminance(truth));
+  const FrameStats& asleep = gi.run(room.scene.view(kStill));
+  EXPECT_FALSE(asleep.plan.on(EffectId::Redraw)) << asleep.plan[EffectId::Redraw].reason;
+  EXPECT_EQ(asleep.raysSoft.closest, 0u);
+  EXPECT_TRUE(sameBits(gi.read(Buffer::Direct), last));
 }
 
 TEST_F(SoftLightTest, SkyAndSunConverge) {
@@ -260,16 +254,17 @@ TEST_F(SoftLightTest, SkyAndSunConverge) {
   EXPECT_NEAR(meanLuminance(light), meanLuminance(truth), 2e-3 * meanLuminance(truth));
 }
 
-TEST_F(SoftLightTest, FewLampsInMotionAreLitByPatches) {
-  Settings patches = settings;
-  patches.direct.soft = SoftLightBy::Maps;
-  patches.shadow.emitters = EmitterShadows::Patches;
-  const Image first = firstFrame(settings, room.scene.view(), Buffer::Direct);
-  EXPECT_TRUE(sameBits(first, firstFrame(patches, room.scene.view(), Buffer::Direct)));
-  settings.direct.frames = 0;
-  Viewer gi(settings);
-  EXPECT_TRUE(sameBits(stand(gi, 2), first)) << "nothing is averaged";
-  EXPECT_FALSE(gi.run(room.scene.view(kStill)).plan.on(EffectId::Redraw));
+TEST_F(SoftLightTest, MovingViewsHaveLittleNoise) {
+  for (const SceneChanges& changes : {kCameraChanged, kLightsChanged}) {
+    Viewer gi(settings);
+    for (int i = 0; i < 16; ++i) {
+      room.scene.camera.worldFromView[3].x += 0.01f;
+      gi.run(room.scene.view(changes));
+    }
+    const double error = relativeRmse(gi.read(Buffer::Direct), truthOf(room.scene));
+    std::printf("error in motion %.4f\n", error);
+    EXPECT_LT(error, 0.02);
+  }
 }
 
 TEST_F(SoftLightTest, LightThatGoesIsGoneSoon) {
