@@ -1,20 +1,20 @@
 #version 450
 // Noise of means over frames, averaged over neighbours whose surface is alike and whose light is, within its noise
 // (Schied et al., "Spatiotemporal variance-guided filtering", 2017). BEGIN: the variance of the means, from how far a
-// pixel's frames lie apart; of few frames, from how far its neighbours do. Else one step of a wavelet transform with
-// holes, 3×3 taps. GLOSSY: glossy light too, with weights by its own noise, by roughness and by metalness.
+// pixel's frames lie apart; of few frames, from how far its neighbours do. Else one step of an à-trous wavelet
+// filter, 3×3 taps. GLOSSY: glossy light too, with weights by its own noise, by roughness and by metalness.
 #include "lib/gbuffer.glsl"
 #include "lib/light_outputs.glsl" // alpha: variance of the luminance
-#include "lib/spread.glsl"
+#include "lib/variance.glsl"
 #include "lib/surface_weight.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance; // alpha: BEGIN frames in the mean, else variance
 #ifdef GLOSSY
-layout(binding = 3) uniform sampler2D glossy; // alike
+layout(binding = 3) uniform sampler2D glossy; // as irradiance
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 #endif
 #ifdef BEGIN
-layout(binding = 4) uniform sampler2D spread;
+layout(binding = 4) uniform sampler2D frameVariance; // HistoryPass::variance
 #endif
 const int kReach = 1; // taps
 uniform int stride; // pixels between taps
@@ -91,7 +91,7 @@ void main() {
       float weight = float((kReach + 1 - abs(dx)) * (kReach + 1 - abs(dy)));
       if (offset != ivec2(0)) weight *= surfaceWeight(plane, offset, tap, tapDepth);
 #ifdef BEGIN
-      vec2 variance = texelFetch(spread, tap, 0).rg;
+      vec2 variance = texelFetch(frameVariance, tap, 0).rg;
 #else
       vec2 variance = vec2(0.0);
 #endif

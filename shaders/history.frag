@@ -2,10 +2,10 @@
 // Mean of the light that fell on the place of a pixel, in this frame and those before it. The place is looked up where
 // the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
 // frame's light is de-interleaved), CHANGES (what is kept, and this frame's difference to it, for
-// history_follow.frag), GLOSSY, SPREAD (variance of a frame's luminance about the mean; Welford 1962).
+// history_follow.frag), GLOSSY, VARIANCE (variance of a frame's luminance about the mean; Welford 1962).
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
-#include "lib/spread.glsl"
+#include "lib/variance.glsl"
 #include "shared/octahedral.h"
 
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
@@ -26,9 +26,9 @@ layout(binding = 8) uniform sampler2D keptGlossy; // a: frames in its mean
 uniform float mostGlossyFrames; // as `mostFrames`
 layout(location = 2) out vec4 outGlossy;
 #endif
-#ifdef SPREAD
-layout(binding = 9) uniform sampler2D keptSpread;
-layout(location = 3) out vec2 outSpread; // of irradiance (CHANGES: as it was kept), of glossy light
+#ifdef VARIANCE
+layout(binding = 9) uniform sampler2D keptVariance;
+layout(location = 3) out vec2 outVariance; // of irradiance (CHANGES: as it was kept), of glossy light
 #endif
 
 const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
@@ -53,8 +53,8 @@ void main() {
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
-#ifdef SPREAD
-  outSpread = vec2(0.0);
+#ifdef VARIANCE
+  outVariance = vec2(0.0);
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
@@ -65,8 +65,8 @@ void main() {
 #ifdef GLOSSY
   vec4 keptLobe = vec4(0.0);
 #endif
-#ifdef SPREAD
-  vec2 spread = vec2(0.0);
+#ifdef VARIANCE
+  vec2 variance = vec2(0.0);
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
@@ -86,8 +86,8 @@ void main() {
 #ifdef GLOSSY
       keptLobe += weight * texelFetch(keptGlossy, tap, 0);
 #endif
-#ifdef SPREAD
-      spread += weight * texelFetch(keptSpread, tap, 0).rg;
+#ifdef VARIANCE
+      variance += weight * texelFetch(keptVariance, tap, 0).rg;
 #endif
     }
   }
@@ -97,10 +97,10 @@ void main() {
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
-#ifdef SPREAD
-  if (weights > 0.0) spread /= weights;
-  if (any(isnan(spread)) || any(isinf(spread))) spread = vec2(0.0);
-  outSpread = spread;
+#ifdef VARIANCE
+  if (weights > 0.0) variance /= weights;
+  if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
+  outVariance = variance;
 #endif
 #ifdef CHANGES
   outIrradiance = kept;
@@ -109,8 +109,8 @@ void main() {
 #else
   outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
   outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
-#ifdef SPREAD
-  outSpread.r = spreadWith(spread.r, now - kept.rgb, kept.a);
+#ifdef VARIANCE
+  outVariance.r = varianceWith(variance.r, now - kept.rgb, kept.a);
 #endif
 #endif
 #ifdef GLOSSY
@@ -119,8 +119,8 @@ void main() {
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
-#ifdef SPREAD
-  outSpread.g = spreadWith(spread.g, lobe - keptLobe.rgb, keptLobe.a);
+#ifdef VARIANCE
+  outVariance.g = varianceWith(variance.g, lobe - keptLobe.rgb, keptLobe.a);
 #endif
 #endif
 }

@@ -1,14 +1,15 @@
 #version 450
-// What history.frag found where light changes: its coarse part follows the filtered difference to this frame by `follow`,
-// its fine part is averaged on. Variants: GLOSSY, SPREAD (variance of a frame's luminance about the mean).
+// What history.frag found where light changes: its coarse part follows the filtered difference to this frame by
+// `follow`, its fine part is averaged on. Variants: GLOSSY, VARIANCE (of a frame's luminance about the mean; what exceeds
+// the noise is followed wholly).
 #include "lib/gbuffer.glsl"
-#include "lib/spread.glsl"
+#include "lib/variance.glsl"
 #include "shared/octahedral.h"
 
 layout(binding = 2) uniform sampler2D kept;     // a: frames in the mean
 layout(binding = 3) uniform sampler2D change;   // this frame - kept
 layout(binding = 4) uniform sampler2D filtered; // of change
-layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag
+layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag: share, its noise, mean square
 uniform float follow; // share of a coarse change
 layout(location = 0) out vec4 outIrradiance;
 layout(location = 1) out vec4 outSeen;
@@ -16,15 +17,13 @@ layout(location = 1) out vec4 outSeen;
 layout(binding = 5) uniform sampler2D glossy; // the mean with this frame's
 layout(location = 2) out vec4 outGlossy;
 #endif
-#ifdef SPREAD
-layout(binding = 8) uniform sampler2D keptSpread; // of glossy light: with this frame's
-uniform float pixels; // that a filtered difference is worth
-layout(location = 3) out vec2 outSpread;
+#ifdef VARIANCE
+layout(binding = 8) uniform sampler2D keptVariance; // of glossy light: with this frame's
+uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights
+layout(location = 3) out vec2 outVariance;
 #endif
 
-#ifdef SPREAD
-const float kCalm = 4.0; // variances: up to here a coarse change is as likely noise
-#endif
+const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
 
 void main() {
@@ -33,23 +32,23 @@ void main() {
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
-#ifdef SPREAD
-  outSpread = vec2(0.0);
+#ifdef VARIANCE
+  outVariance = vec2(0.0);
 #endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec4 before = texelFetch(kept, pixel, 0), difference = texelFetch(change, pixel, 0);
   vec3 tile = texture(shares, gl_FragCoord.xy / (16.0 * vec2(textureSize(shares, 0)))).rgb;
   float share = tile.r;
-#ifdef SPREAD
+#ifdef VARIANCE
   share = max(share - tile.g, 0.0);
 #endif
   float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays;
   vec3 coarse = texelFetch(filtered, pixel, 0).rgb;
   float gain = follow;
-#ifdef SPREAD
-  outSpread = texelFetch(keptSpread, pixel, 0).rg;
-  float brightness = dot(kLuminance, coarse), noise = max(tile.b, outSpread.r) / pixels;
+#ifdef VARIANCE
+  outVariance = texelFetch(keptVariance, pixel, 0).rg;
+  float brightness = dot(kLuminance, coarse), noise = max(tile.b, outVariance.r) / effectiveSamples;
   if (brightness != 0.0) gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
 #endif
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
@@ -59,7 +58,7 @@ void main() {
 #ifdef GLOSSY
   outGlossy = texelFetch(glossy, pixel, 0);
 #endif
-#ifdef SPREAD
-  outSpread.r = spreadWith(outSpread.r, difference.rgb, count);
+#ifdef VARIANCE
+  outVariance.r = varianceWith(outVariance.r, difference.rgb, count);
 #endif
 }

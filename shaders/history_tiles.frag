@@ -1,7 +1,8 @@
 #version 450
-// By how much light changes in each tile of 16×16 pixels: the sum of the differences between this frame and what was kept,
-// in which their noise cancels out, over the sum of the larger of the two; luminance.
-#include "lib/spread.glsl"
+// By how much light changes in each tile of 16×16 pixels, in luminance. r: the sum of the differences between this
+// frame and what was kept, in which their noise cancels out, over the sum of the larger of the two. g: what noise makes
+// of it. b: mean square of the differences.
+#include "lib/variance.glsl"
 
 layout(binding = 2) uniform sampler2D kept;
 layout(binding = 3) uniform sampler2D change; // this frame - kept

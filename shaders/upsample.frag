@@ -1,7 +1,7 @@
 #version 450
 // One level of the multiresolution buffer made whole, from coarse to fine (paper 2, section 3.5): where a patch was gathered
 // at this level it stays; where it belongs to a coarser one, that level is interpolated; where it is split it stays empty.
-// What is interpolated holds light and lies on the same surface: weights as in filter.frag. A neighbour that was split
+// What is interpolated holds light and lies on the same surface: weights as in lib/surface_weight.glsl. A neighbour that was split
 // counts with its parts. Weights are divided by their sum, so a constant stays one. FINAL: to the pixels themselves. GLOSSY:
 // glossy light too, with weights by roughness and metalness as well. BILINEAR: without weights for surfaces, and between
 // whole patches only, as the paper.
@@ -26,7 +26,7 @@ layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 
 vec2 roughnessMetalness;
 
-/// Lobes of other shape hold other light: as in filter.frag.
+/// Lobes of other shape hold other light: as in lib/surface_weight.glsl.
 float likeLobe(ivec2 pixel) {
 #ifdef BILINEAR
   return 1.0;

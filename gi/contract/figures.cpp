@@ -18,7 +18,7 @@ constexpr FigureRow kRows[] = {
     {"rays.cells", "that found the surface around VPLs", [](const S& s) -> Figure { return s.raysCells; }},
     {"rays.map_tests", "from VPLs to objects that moved", [](const S& s) -> Figure { return s.raysMapTests; }},
     {"rays.shadows", "where maps of direct light are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
-    {"rays.soft", "from pixels to what has a size, and cosine-distributed ones, for direct light",
+    {"rays.soft", "of soft direct light: from the camera, to lights and the sky, and by what surfaces reflect",
      [](const S& s) -> Figure { return s.raysSoft; }},
     {"rays.volume", "between cells of a light propagation volume, and from lights to them",
      [](const S& s) -> Figure { return s.raysVolume; }},

@@ -114,7 +114,7 @@ DirectLight::Emitters DirectLight::emittersBy(const Frame& in) {
 bool DirectLight::softByRays(const Frame& in) { return in.settings.direct.soft == SoftLightBy::Rays; }
 
 bool DirectLight::hasSkyOrSuns(const Frame& in) {
-  return !in.world.lights.sky.black() || std::ranges::any_of(in.world.lights.punctual, isSoft);
+  return !in.world.lights.sky.black() || std::ranges::any_of(in.world.lights.punctual, hasDisk);
 }
 
 bool DirectLight::skyByMaps(const Frame& in) { return in.plan.on(EffectId::Sky) && !softByRays(in); }
@@ -189,13 +189,12 @@ std::vector<LightBlock> DirectLight::shadowed(const Frame& in, bool rays, FrameS
   const ShadowSettings shadow = resolved(in.settings.shadow, world.view.camera.width);
   sharp_.clear();
   for (const LightView& light : world.view.lights)
-    if (!softByRays(in) || !isSoft(light)) sharp_.push_back(light);
+    if (!softByRays(in) || !hasDisk(light)) sharp_.push_back(light);
   fitReceivers(in, stats);
   if (stale_) emitters_.forget();
   std::vector<LightBlock> blocks =
-      shadows_.run({world.gpu, sharp_, skyByMaps(in), world.lights.sky, receivers_,
-                    rays ? mostReceivers_ : receivers_, world.view.boundsWorld, world.view.changes.first || stale_,
-                    world.moved.boxes(), shadow});
+      shadows_.run({world.gpu, sharp_, skyByMaps(in), world.lights.sky, receivers_, rays ? mostReceivers_ : receivers_,
+                    world.view.boundsWorld, world.view.changes.first || stale_, world.moved.boxes(), shadow});
   stats.lightMapsDrawn = shadows_.mapsDrawn();
   stats.of(EffectId::Sky) += shadows_.skyMapsDrawn();
   if (emittersBy(in) == Emitters::Maps) {
@@ -272,8 +271,8 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
 /// Nothing needs the boxes where no map is fitted to them.
 void DirectLight::fitReceivers(const Frame& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
-  const bool fitted = skyByMaps(in) || std::ranges::any_of(
-                                           sharp_, [](const LightView& l) { return l.type == LightType::Directional; });
+  const bool fitted =
+      skyByMaps(in) || std::ranges::any_of(sharp_, [](const LightView& l) { return l.type == LightType::Directional; });
   if (!fitted) {
     receivers_ = mostReceivers_ = {};
     return;

@@ -35,7 +35,7 @@ class DirectLight : public LightProvider {
   /// Says whether doubts are noted and whether light is drawn.
   enum class Noting { Off, AlsoLight, Only };
 
-  /// Who brings the light of what has a size.
+  /// Who brings the light of emissive surfaces.
   enum class Emitters { None, Maps, Patches, Rays };
   static Emitters emittersBy(const Frame& in);
   static bool softByRays(const Frame& in);
@@ -62,10 +62,10 @@ class DirectLight : public LightProvider {
   gl::Sampler depths_, smoothDistances_; // of maps: what they hold; bilinear comparison of emitters'
   bool stale_ = true;                    // nothing of the last run may be used
   bool unfinished_ = false;              // something was thrown out of it
-  std::vector<LightView> sharp_;             // lights without a size
-  LightTarget mapped_{"direct/maps"};        // light of maps alone, kept while soft light goes on
+  std::vector<LightView> sharp_;         // lights without a size
+  LightTarget mapped_{"direct/maps"};    // light of maps alone, kept while soft light goes on
   LightTarget target_{"direct"};
-  SurfaceLighting light_;                    // of the last run
+  SurfaceLighting light_; // of the last run
 };
 
 } // namespace lambent

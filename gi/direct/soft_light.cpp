@@ -6,11 +6,10 @@ namespace lambent {
 
 namespace {
 
-// A frame's samples are noisier than gathered light, so that means hold more frames and follow a change less at once
-// (docs/decisions.md).
-constexpr int kFew = 8;                // frames of a mean while light changes
+// A frame's samples are noisier than gathered light, so means follow a change less at once; what exceeds their noise is
+// followed wholly (shaders/history_follow.frag).
 constexpr float kFollow = 0.2f; // of a coarse change, in its first frame
-constexpr int kGlossy = 8;     // frames of glossy light while the camera moves
+constexpr int kGlossy = 8;      // earlier frames of glossy light while camera or light moves
 
 } // namespace
 
@@ -21,7 +20,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   const bool glossy = frame.surfaces.roughnessMetalness != nullptr;
   SoftLight found;
   {
-    const CpuScope scope(stats.stages, key(StageId::SoftLight));
+    const CpuScope scope(stats.stages, key(StageId::SoftRays));
     RayCounts counts;
     const FrameSurfaces surfaces = reader.read(frame.surfaces);
     const int samples = frame.settings.direct.samples;
@@ -50,7 +49,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   sampled.subsets = true; // pixels side by side took other strata
   const SurfaceLighting mean = average(frame, sampled);
   averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
-  const SurfaceLighting light = denoise_.run({frame.surfaces, mean, history_.spread(), frame.settings.filter});
+  const SurfaceLighting light = denoise_.run({frame.surfaces, mean, history_.variance(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);
   addLight(context_, light, target);
 }
@@ -68,8 +67,7 @@ SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting
                        .settings = {.frames = frames_},
                        .filter = frame.settings.filter,
                        .follow = kFollow,
-                       .few = kFew,
-                       .movingGlossy = kGlossy});
+                       .glossyFrames = kGlossy});
 }
 
 } // namespace lambent

@@ -1,4 +1,4 @@
-// Direct light by few rays from every pixel (soft_sampler.h), averaged over frames.
+// Direct light by few rays from every pixel (soft_sampler.h), averaged over frames and denoised.
 #pragma once
 
 #include "gi/contract/figures.h"
@@ -26,7 +26,7 @@ class SoftLightPass {
 
   PassContext context_;
   LightTarget samples_{"soft light"};
-  HistoryPass history_{context_, true};
+  HistoryPass history_{context_, StageId::SoftLight, true};
   DenoisePass denoise_{context_};
   int averaged_ = 0, frames_ = 0; // frames since anything changed; of those that count
 };

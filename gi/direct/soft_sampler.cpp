@@ -45,8 +45,8 @@ uint32_t turnOf(const glm::ivec2& pixel) {
   return (d & 1) << 3 | (v & 1) << 2 | (d & 2) | (v & 2) >> 1;
 }
 
-/// The numbers of a pixel. One of each pair of Choice, Sky and Ray takes the strata of its block in turn, so that a block
-/// has all of them in one frame; the rest are the pixel's own, so that blocks do not err as one.
+/// The numbers of a pixel. One of each pair of Choice, Sky and Ray takes the strata of its block in turn, so that a
+/// block has all of them in one frame; the rest are the pixel's own, so that blocks do not err as one.
 class PixelNumbers {
  public:
   PixelNumbers(const glm::ivec2& pixel, uint32_t seed)
@@ -117,7 +117,7 @@ LightSet softLightsOf(const LightSet& lights, SoftParts parts) {
   }
   soft.sky = lights.sky;
   for (const LightView& light : lights.punctual)
-    if (isSoft(light)) soft.punctual.push_back(light);
+    if (hasDisk(light)) soft.punctual.push_back(light);
   soft.tree = LightTree(soft);
   return soft;
 }

@@ -74,13 +74,11 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   indirect.begin(k.world.view(), settings);
   k.outputs.inside = indirect.inside(); // parts of another technique are gone
   const Needs needs = needsOf(settings);
-  const EffectPlan plan = k.world.plan(
-      settings,
-      {.first = !k.outputs.surfaces.depth,
-                                         .host = host != nullptr,
-                                         .needs = needs,
-                                         .status = indirect.status(),
-                                         .directPending = settings.direct.on && k.direct.pending()});
+  const EffectPlan plan = k.world.plan(settings, {.first = !k.outputs.surfaces.depth,
+                                                  .host = host != nullptr,
+                                                  .needs = needs,
+                                                  .status = indirect.status(),
+                                                  .directPending = settings.direct.on && k.direct.pending()});
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   const FrameWorld now{.world = world,
@@ -95,7 +93,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
 
   if (plan.on(EffectId::Redraw)) {
     const gl::DrawCount draws;
-    const FrameOutputs before = std::exchange(k.outputs, {}); // what something is thrown out of counts as no frame
+    const FrameOutputs last = std::exchange(k.outputs, {}); // what something is thrown out of counts as no frame
     FrameOutputs out;
     out.sky = world.view.sky;
     out.farDistance = world.farDistance;
@@ -114,13 +112,13 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     else
       k.direct.forget();
     if (plan.onlyDirect()) {
-      out.indirect = before.indirect;
+      out.indirect = last.indirect;
     } else if (plan.on(EffectId::Indirect)) {
       const gl::DrawCount ofIndirect;
       out.indirect = indirect.run(frame, stats);
       stats.of(EffectId::Indirect) += ofIndirect();
     }
-    out.patches = plan.onlyDirect() ? before.patches : patches.made();
+    out.patches = plan.onlyDirect() ? last.patches : patches.made();
     k.outputs = out;
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();

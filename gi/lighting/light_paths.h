@@ -1,6 +1,8 @@
-// What a light path does at a vertex, shared by the VPLs' radiosity and the reference: one connection to a chosen
-// light, one to the sky where it is not constant, and the share of an emitter or of the sky that a ray of the vertex
-// met, which is cosine-distributed, or drawn by what a glossy receiver reflects (sampleReflection). The two split their light between them by multiple importance sampling (power heuristic, Veach 1997).
+// What a light path does at a vertex, shared by the VPLs' radiosity, soft direct light and the reference: one
+// connection to a chosen light, one to the sky where it is not constant, and the share of an emitter or of the sky that
+// a ray of the vertex met. Such rays are cosine-distributed, or drawn by what a glossy receiver reflects
+// (sampleReflection). Connections and rays split their light by multiple importance sampling (power heuristic, Veach
+// 1997).
 #pragma once
 
 #include "gi/lighting/light_set.h"

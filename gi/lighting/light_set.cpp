@@ -113,7 +113,7 @@ uint32_t LightSet::emitterOf(const SurfaceHit& hit) const {
 
 LightView pointOfDisk(const LightView& light, vec2 u) {
   LightView point = light;
-  if (!(light.angularRadius > 0) || light.type != LightType::Directional) return point;
+  if (!hasDisk(light)) return point;
   vec3 tangent, bitangent;
   basisAround(light.direction, tangent, bitangent);
   const float r = std::tan(light.angularRadius) * std::sqrt(u.x), phi = 2 * kPi * u.y;

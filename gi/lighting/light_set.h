@@ -61,6 +61,9 @@ struct PunctualSample {
   float distance = 0; // metres; kInfinity for a directional light
 };
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n);
+/// Says whether a punctual light has a size, and so no sharp shadows.
+inline bool hasDisk(const LightView& light) { return light.type == LightType::Directional && light.angularRadius > 0; }
+
 /// The light as a point of its disk brings it; numbers in [0, 1). Lights without a size are returned as they are.
 LightView pointOfDisk(const LightView& light, vec2 u);
 

@@ -256,7 +256,7 @@ float LightChoice::weightOf(uint32_t light) const {
 
 float LightChoice::weightOf(const LightView& light) const {
   float weight = luminance(punctualIrradiance(light, x_, n_).irradiance);
-  if (light.angularRadius > 0) // the upper rim of its disk may be above the horizon
+  if (hasDisk(light)) // the upper rim of its disk may be above the horizon
     weight += luminance(light.intensity) * std::sin(light.angularRadius) *
               float(glm::dot(n_, -light.direction) > -std::sin(light.angularRadius));
   return std::min(weight, kLargestWeight);

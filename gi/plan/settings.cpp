@@ -79,18 +79,18 @@ class Table {
         "a ray for each pixel and light (lamps, suns, spots, emissive samples; the sky where none of it is seen) whose "
         "map is in doubt; off, or a host's depth of less than 32 bits: maps are filtered");
     number(SETTING(shadow, emitterSamples), {1, 1024, "samples", PowersOfTwo}, Maps,
-           "shadowed samples for all emissive surfaces in direct light");
+           "direct.soft maps: shadowed samples for all emissive surfaces");
     number(SETTING(shadow, emitterResolution), {16, 2048, "texels", PowersOfTwo}, Maps,
            "texels per side of their maps");
-    choice(
-        SETTING(shadow, emitters), {"samples", "patches"}, Nothing,
-        "who says what of emissive surfaces is seen in direct light: so many samples with a shadow map each, or rays "
-        "from patches of the image, split where the answers differ (paper 4)");
+    choice(SETTING(shadow, emitters), {"samples", "patches"}, Nothing,
+           "who says what of emissive surfaces is seen in direct light: as direct.soft says (maps: "
+           "shadow.emitterSamples), "
+           "or rays from patches of the image, split where the answers differ (paper 4)");
     flag(SETTING(direct, on), Nothing,
          "direct light; off: indirect light alone, for a host that lights its surfaces itself");
     choice(SETTING(direct, soft), {"rays", "maps"}, Maps,
-           "emissive surfaces, sky and suns' disks in direct light: rays from every pixel, averaged over frames (few "
-           "lamps by patches while anything moves), or shadow maps of points that stand for them");
+           "emissive surfaces, sky and suns' disks in direct light: rays from every pixel, averaged over frames and "
+           "denoised, or shadow maps of points that stand for them");
     number(SETTING(direct, samples), {1, 256, "samples", PowersOfTwo}, Nothing,
            "direct.soft rays: of every pixel in each frame, each a ray to a light, one to the sky and one anywhere");
     number(SETTING(direct, frames), {0, 1024, "frames", PowersOfTwo}, Nothing,
@@ -111,7 +111,7 @@ class Table {
            "multires.upsample");
     choice(SETTING(area, tracer), {"auto", "cpu", "gpu"}, Nothing,
            "who traces these rays; auto measures both once and takes the GPU where it is twice as fast");
-    number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "directions of the sky in direct light");
+    number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");
     number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
     choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
            "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the image; "
@@ -196,7 +196,7 @@ class Table {
     number(SETTING(history, frames), {0, 256, "frames", PowersOfTwo}, Nothing,
            "frames that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
            "the VPLs; 0 = each frame by itself");
-    flag(SETTING(filter, on), Nothing, "cross-bilateral filter over the 4x4 subsets");
+    flag(SETTING(filter, on), Nothing, "cross-bilateral filter over the 4x4 subsets; denoiser of soft direct light");
     choice(SETTING(filter, kernel), {"separable", "whole"}, Nothing,
            "7x7 filter along rows then columns, or all 49 taps at once");
     number(SETTING(filter, normalPower), {0, 1024}, Nothing, "weight max(0, n.n')^power");

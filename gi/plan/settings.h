@@ -31,7 +31,7 @@ enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 enum class CubeVisibility : int { Rays, Hemicubes };
 enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
-// averaged over frames, and patches where lamps are few and something moves | shadow maps of points that stand for it.
+// averaged over frames and denoised | shadow maps of points that stand for it.
 enum class SoftLightBy : int { Rays, Maps };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h

@@ -35,7 +35,8 @@ namespace lambent {
   STAGE(Direct, "direct")                                                                                              \
   STAGE(ShadowRays, "shadow rays") /* where maps are in doubt */                                                       \
   STAGE(AreaRays, "area rays")     /* between emissive surfaces and patches */                                         \
-  STAGE(SoftLight, "soft light")   /* rays from pixels to what has a size */                                            \
+  STAGE(SoftRays, "soft rays")     /* from pixels to what has a size */                                                \
+  STAGE(SoftLight, "soft light")   /* their light, averaged over frames and denoised */                                \
   STAGE(AreaLight, "area light")                                                                                       \
   /* who sees whom */                                                                                                  \
   STAGE(VplMaps, "vpl maps")                                                                                           \

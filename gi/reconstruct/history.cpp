@@ -3,7 +3,7 @@
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //
 // Where light changes, means over many frames lag. There, means hold few frames, and what is kept follows this frame:
-// half of the filtered difference between the two, which has all sixteen subsets in it and little noise, is added, so
+// a share (half for indirect light) of the filtered difference between the two, which has little noise, is added, so
 // that half of a coarse change is shown in its first frame and nine tenths within three. Tiles of the frame whose
 // light changes by much more than its noise start again (history_follow.frag). Numbers: docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
@@ -16,14 +16,15 @@ namespace lambent {
 
 namespace {
 
-constexpr int kFollowOn = 4; // frames after the last change that still follow
+constexpr int kFollowOn = 4;  // frames after the last change that still follow
+constexpr int kFewFrames = 8; // that means hold at most while light changes
 
 const gl::Texture* orNull(const gl::Texture& texture) { return texture ? &texture : nullptr; }
 
 } // namespace
 
 SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
-  const gl::PassScope scope = context_.scope(StageId::History);
+  const gl::PassScope scope = context_.scope(stage_);
   if (in.lightChanges && frames_ > 0) following_ = kFollowOn + 1;
   const bool changes = frames_ > 0 && following_ > 0;
   following_ = std::max(0, following_ - 1);
@@ -52,33 +53,33 @@ void HistoryPass::fit(const GBuffer& surfaces) {
     next.irradiance = make("history/irradiance");
     next.seen = make("history/seen");
     next.glossy = make("history/glossy", glossy);
-    next.spread = make("history/spread", spread_, GL_RG32F);
+    next.variance = make("history/variance", keepsVariance_, GL_RG32F);
     next.framebuffer =
-        gl::Framebuffer("history", {&next.irradiance, &next.seen, orNull(next.glossy), orNull(next.spread)});
+        gl::Framebuffer("history", {&next.irradiance, &next.seen, orNull(next.glossy), orNull(next.variance)});
   }
   if (fits(found_) && bool(foundGlossy_) == glossy) return;
   found_ = make("history/found");
   change_ = make("history/change");
   foundGlossy_ = make("history/found glossy", glossy);
-  foundSpread_ = make("history/found spread", spread_, GL_RG32F);
+  foundVariance_ = make("history/found variance", keepsVariance_, GL_RG32F);
   tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,
                                          .width = (surfaces.width + 15) / 16,
                                          .height = (surfaces.height + 15) / 16,
                                          .linear = true});
   tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
-  changing_ = gl::Framebuffer("history/changing", {&found_, &change_, orNull(foundGlossy_), orNull(foundSpread_)});
+  changing_ = gl::Framebuffer("history/changing", {&found_, &change_, orNull(foundGlossy_), orNull(foundVariance_)});
 }
 
 void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes) {
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
   if (changes) defines.push_back("CHANGES");
-  if (spread_) defines.push_back("SPREAD"), before.spread.bind(9);
+  if (keepsVariance_) defines.push_back("VARIANCE"), before.variance.bind(9);
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
-  program.set("mostFrames", float(changes ? std::min(most, in.few) : most));
+  program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
@@ -87,7 +88,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   if (in.gathered.glossy) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    program.set("mostGlossyFrames", float(changes || in.cameraMoved ? std::min(most, in.movingGlossy) : most));
+    program.set("mostGlossyFrames", float(changes || in.cameraMoved ? std::min(most, in.glossyFrames) : most));
   }
   to.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
@@ -104,12 +105,12 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   gl::PipelineState{.width = tiles_.width(), .height = tiles_.height()}.apply();
   gl::drawFullscreen();
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
-  if (spread_) defines.push_back("SPREAD"), foundSpread_.bind(8);
+  if (keepsVariance_) defines.push_back("VARIANCE"), foundVariance_.bind(8);
   const gl::Program& program =
       context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
   program.use();
   if (foundGlossy_) foundGlossy_.bind(5);
-  program.set("pixels", in.filter.on ? 34.0f : 1.0f); // (Σw)²/Σw² of the tent of 7×7
+  program.set("effectiveSamples", in.filter.on ? 34.0f : 1.0f); // (Σw)²/Σw² of the tent of 7×7
   program.set("follow", in.follow);
   filtered.irradiance->bind(4);
   tiles_.bind(6);

@@ -39,15 +39,15 @@ struct HistoryInputs {
   const HistorySettings& settings;
   const FilterSettings& filter;
   float follow = 0.5f;  // share of a coarse change that its first frame shows
-  int few = 8;          // frames that means hold at most while light changes
-  int movingGlossy = 0; // frames before that glossy light counts of while camera or light moves
+  int glossyFrames = 0; // earlier frames that a mean of glossy light holds at most while camera or light moves
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.
 class HistoryPass {
  public:
-  /// `spread`: also keeps how far frames lie from their mean.
-  explicit HistoryPass(PassContext context, bool spread = false) : context_(context), spread_(spread) {}
+  /// `variance`: also keeps that of a pixel's frames, and tells change from noise by it.
+  explicit HistoryPass(PassContext context, StageId stage = StageId::History, bool variance = false)
+      : context_(context), stage_(stage), keepsVariance_(variance) {}
   /// Makes room; call it before the gather. Frames of another size are looked up like any others; those of another kind
   /// are forgotten.
   void fit(const GBuffer& surfaces);
@@ -57,13 +57,13 @@ class HistoryPass {
   bool follows() const { return following_ > 0; }
   /// Number of frames in the mean, which is the number of the next sample.
   uint32_t sample() const { return frames_; }
-  /// Variance of the luminance of a pixel's frames about their mean: of irradiance, of glossy light.
-  const gl::Texture& spread() const { return kept_[now_].spread; }
+  /// Of the luminance of a pixel's frames about their mean: of irradiance, of glossy light. RG32F.
+  const gl::Texture& variance() const { return kept_[now_].variance; }
 
  private:
   /// A frame's light, and the surfaces that it fell on.
   struct Kept {
-    gl::Texture irradiance, seen, glossy, spread;
+    gl::Texture irradiance, seen, glossy, variance;
     gl::Framebuffer framebuffer;
   };
   void find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes);
@@ -71,11 +71,12 @@ class HistoryPass {
 
   PassContext context_;
   FilterPass filter_{context_};
-  bool spread_;
+  StageId stage_;
+  bool keepsVariance_;
   Kept kept_[2];
   // Where light changes: what is kept, and this frame's difference to it; the mean of glossy light.
-  gl::Texture found_, change_, foundGlossy_, foundSpread_;
-  gl::Texture tiles_;          // by how much it changes
+  gl::Texture found_, change_, foundGlossy_, foundVariance_;
+  gl::Texture tiles_; // by how much it changes
   gl::Framebuffer changing_, tilesFramebuffer_;
   int now_ = 0;
   uint32_t frames_ = 0; // since it was forgotten
@@ -87,12 +88,12 @@ class HistoryPass {
 struct DenoiseInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& mean; // of HistoryPass, alpha: frames in it
-  const gl::Texture& spread;   // HistoryPass::spread
+  const gl::Texture& variance; // HistoryPass::variance
   const FilterSettings& filter;
 };
 
-/// Averages each pixel with neighbours that are alike within the noise of both: wavelets with holes, guided by variance
-/// (Schied et al., "Spatiotemporal variance-guided filtering", 2017). What is known without noise stays as it is.
+/// Averages each pixel with neighbours that are alike within its noise: à-trous wavelets guided by variance (Schied et
+/// al., "Spatiotemporal variance-guided filtering", 2017). Light without noise stays as it is.
 class DenoisePass {
  public:
   explicit DenoisePass(PassContext context) : context_(context) {}

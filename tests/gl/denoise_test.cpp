@@ -13,7 +13,7 @@ class DenoiseTest : public GatherTest {
   static float truthAt(int x) { return x < 37 ? 1.0f : 3.0f; }
   /// The mean of frames, row by row from the bottom, after and before the filter.
   std::pair<Image, Image> denoised(int frames, float noise, int odd = -1) {
-    HistoryPass history(passes, true);
+    HistoryPass history(passes, StageId::History, true);
     DenoisePass denoise(passes);
     Rng rng(7, Stream::Test, 0);
     SurfaceLighting mean;
@@ -28,7 +28,7 @@ class DenoiseTest : public GatherTest {
       const SurfaceLighting raw{&given, nullptr, false};
       mean = history.run({gbuffer, raw, false, false, {.frames = 64}, {}});
     }
-    return {read(Buffer::Irradiance, gbuffer, mean, denoise.run({gbuffer, mean, history.spread(), {}})),
+    return {read(Buffer::Irradiance, gbuffer, mean, denoise.run({gbuffer, mean, history.variance(), {}})),
             read(Buffer::Irradiance, gbuffer, mean, mean)};
   }
   /// RMS of the error over the truth, and its mean.

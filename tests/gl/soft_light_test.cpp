@@ -82,7 +82,8 @@ TEST(SoftSampler, TriangleAndPlaceOnItAreIndependent) { // or a shadow falls on 
   double squares = 0, mean = 0, n = 0;
   for (const auto [x, y] : Pixels(light)) {
     const CameraRay ray = pixelRay(floor.scene.camera, x, y);
-    if (seen.traced.rays.closest(Ray{ray.origin, ray.direction}).position.y > 0.1f) continue; // the screen, which is black
+    if (seen.traced.rays.closest(Ray{ray.origin, ray.direction}).position.y > 0.1f)
+      continue; // the screen, which is black
     const double wanted = double(truth.at(x, y).x) * double(kPi) / 0.5;
     squares += std::pow(double(light.at(x, y).x) - wanted, 2), mean += wanted, ++n;
   }
@@ -98,8 +99,8 @@ TEST(SoftSampler, SamplesOfAPixelAndOfABlockAreSpread) {
     const Image light = seen.sampled(samples, first);
     double squares = 0;
     for (const auto [x, y] : Pixels(light))
-      squares += std::pow(double(light.at(x, y).x) / 3 / double(areaFormFactor(floor.lamp, floor.at(x, y), {0, 1, 0})) - 1,
-                          2);
+      squares +=
+          std::pow(double(light.at(x, y).x) / 3 / double(areaFormFactor(floor.lamp, floor.at(x, y), {0, 1, 0})) - 1, 2);
     return std::sqrt(squares / double(light.pixels.size()));
   };
   const double one = rmse(1, 0), many = rmse(64, 0), late = rmse(64, 64 * 5);
