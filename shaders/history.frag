@@ -118,7 +118,8 @@ void main() {
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
-  outGlossy = vec4(mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)), keptLobe.a + 1.0);
+  vec3 mean = keptLobe.a > 0.0 ? mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)) : lobe;
+  outGlossy = vec4(mean, keptLobe.a + 1.0);
 #ifdef VARIANCE
   outVariance.g = varianceWith(variance.g, lobe - keptLobe.rgb, keptLobe.a);
 #endif

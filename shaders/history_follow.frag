@@ -19,7 +19,7 @@ layout(location = 2) out vec4 outGlossy;
 #endif
 #ifdef VARIANCE
 layout(binding = 8) uniform sampler2D keptVariance; // of glossy light: with this frame's
-uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights
+uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights; 1: unfiltered, which is not told from noise
 layout(location = 3) out vec2 outVariance;
 #endif
 
@@ -49,7 +49,7 @@ void main() {
 #ifdef VARIANCE
   outVariance = texelFetch(keptVariance, pixel, 0).rg;
   float brightness = dot(kLuminance, coarse), noise = max(tile.b, outVariance.r) / effectiveSamples;
-  if (brightness != 0.0) gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
+  if (brightness != 0.0 && effectiveSamples > 1.0) gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
 #endif
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
   outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), count + 1.0);

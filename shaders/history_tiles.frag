@@ -11,18 +11,18 @@ layout(location = 0) out vec4 outShare;
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * 16, end = min(first + 16, textureSize(kept, 0));
   vec3 before = vec3(0.0), difference = vec3(0.0);
-  float squares = 0.0;
+  float squares = 0.0, seen = 0.0;
   for (int y = first.y; y < end.y; ++y)
     for (int x = first.x; x < end.x; ++x) {
       before += texelFetch(kept, ivec2(x, y), 0).rgb;
-      vec3 here = texelFetch(change, ivec2(x, y), 0).rgb;
-      difference += here;
-      float brightness = dot(kLuminance, here);
+      vec4 here = texelFetch(change, ivec2(x, y), 0); // a: whether anything is seen
+      difference += here.rgb;
+      seen += here.a;
+      float brightness = dot(kLuminance, here.rgb);
       squares += brightness * brightness;
     }
   float largest = dot(kLuminance, max(before, before + difference));
-  ivec2 size = end - first;
   float share = 0.0, noise = 0.0;
   if (largest > 0.0) share = dot(kLuminance, abs(difference)) / largest, noise = sqrt(squares) / largest;
-  outShare = vec4(share, noise, squares / float(size.x * size.y), 0.0);
+  outShare = vec4(share, noise, squares / max(seen, 1.0), 0.0);
 }

@@ -166,6 +166,12 @@ bool Texture::holdsSinglePrecision() const {
   return depth == 32 || red == 32;
 }
 
+bool Texture::isDepth() const {
+  GLint depth = 0;
+  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_DEPTH_SIZE, &depth);
+  return depth > 0;
+}
+
 uint32_t mostBufferTexels() {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);

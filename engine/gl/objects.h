@@ -81,6 +81,7 @@ class Texture : public detail::Object {
   bool readsAsFlat() const;
   /// Says whether its depths, or its red, are numbers of 32 bits.
   bool holdsSinglePrecision() const;
+  bool isDepth() const; // else depths are in its red channel
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);
 

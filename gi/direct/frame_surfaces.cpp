@@ -26,9 +26,9 @@ FrameSurfaces SurfaceReader::read(const GBuffer& surfaces) {
   const size_t pixels = size_t(surfaces.width) * size_t(surfaces.height);
   depth_.resize(pixels);
   normal_.resize(pixels);
-  surfaces.depth->read(std::span(depth_), GL_DEPTH_COMPONENT, GL_FLOAT);
+  surfaces.depth->read(std::span(depth_), surfaces.depth->isDepth() ? GL_DEPTH_COMPONENT : GL_RED, GL_FLOAT);
   surfaces.normal->read(std::span(normal_), GL_RGBA, GL_FLOAT);
-  return {surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
+  return {surfaces.width, surfaces.height, depth_, normal_, surfaces.block, surfaces.depth->holdsSinglePrecision()};
 }
 
 } // namespace lambent

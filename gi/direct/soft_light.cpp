@@ -2,6 +2,8 @@
 
 #include "gi/gather/add_pixels.h"
 
+#include <utility>
+
 namespace lambent {
 
 namespace {
@@ -17,6 +19,11 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
                         FrameStats& stats) {
   const LightSet lights = softLightsOf(frame.world.lights, parts);
   if (lights.empty()) return forget();
+  const SceneChanges& changes = frame.world.view.changes;
+  const int frames = frame.settings.direct.frames;
+  const bool others = std::exchange(parts_, parts) != parts;
+  if (frames < 2 || changes.first || others) history_.forget();
+  history_.fit(frame.surfaces);
   const bool glossy = frame.surfaces.roughnessMetalness != nullptr;
   SoftLight found;
   {
@@ -47,27 +54,24 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
     if (glossy) uploadPixels(*sampled.glossy, found.glossy, frame.surfaces, 1);
   }
   sampled.subsets = true; // pixels side by side took other strata
-  const SurfaceLighting mean = average(frame, sampled);
+  // What frames in motion have brought is a little blurred: a view that stands after them rests when it is forgotten.
+  if (history_.sample() == 0)
+    rests_ = frames;
+  else if (frame.plan.seenChanges())
+    rests_ = 3 * frames;
   averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
+  const SurfaceLighting mean =
+      history_.run({.surfaces = frame.surfaces,
+                    .gathered = sampled,
+                    .cameraMoved = changes.camera,
+                    .lightChanges = changes.lights || changes.geometry || changes.instances || frame.settingsChanged,
+                    .settings = {.frames = frames},
+                    .filter = frame.settings.filter,
+                    .follow = kFollow,
+                    .glossyFrames = kGlossy});
   const SurfaceLighting light = denoise_.run({frame.surfaces, mean, history_.variance(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);
   addLight(context_, light, target);
-}
-
-SurfaceLighting SoftLightPass::average(const Frame& frame, const SurfaceLighting& light) {
-  frames_ = frame.settings.direct.frames;
-  if (frames_ < 2) history_.forget();
-  const SceneChanges& changes = frame.world.view.changes;
-  if (changes.first) history_.forget();
-  history_.fit(frame.surfaces);
-  return history_.run({.surfaces = frame.surfaces,
-                       .gathered = light,
-                       .cameraMoved = changes.camera,
-                       .lightChanges = changes.lights || changes.geometry || changes.instances || frame.settingsChanged,
-                       .settings = {.frames = frames_},
-                       .filter = frame.settings.filter,
-                       .follow = kFollow,
-                       .glossyFrames = kGlossy});
 }
 
 } // namespace lambent

@@ -19,16 +19,15 @@ class SoftLightPass {
     averaged_ = 0;
   }
   /// Says whether the next frame of a still view would have more samples in its mean.
-  bool pending() const { return averaged_ > 0 && averaged_ < frames_; }
+  bool pending() const { return averaged_ > 0 && averaged_ < rests_; }
 
  private:
-  SurfaceLighting average(const Frame& frame, const SurfaceLighting& light);
-
   PassContext context_;
   LightTarget samples_{"soft light"};
   HistoryPass history_{context_, StageId::SoftLight, true};
   DenoisePass denoise_{context_};
-  int averaged_ = 0, frames_ = 0; // frames since anything changed; of those that count
+  SoftParts parts_ = SoftParts::All;
+  int averaged_ = 0, rests_ = 0; // frames since anything changed; after which a still view rests
 };
 
 } // namespace lambent

@@ -90,12 +90,16 @@ struct Place {
 
 /// Rays meet the scene at its triangles, the image at its depths. Where both show the same surface, the ray's place is
 /// the exact one; elsewhere, as at the rims of leaves, the image's counts.
-PathVertex vertexOf(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, float pixelSize) {
-  const vec3 position = surfaces.positionAt(pixel), normal = surfaces.normalAt(pixel);
-  const vec3 way = hit.position - position;
+bool isSame(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, float pixelSize) {
+  if (!hit.valid() || glm::dot(hit.geometricNormal, surfaces.normalAt(pixel)) < 0.5f) return false;
+  const vec3 way = hit.position - surfaces.positionAt(pixel);
+  return !surfaces.exact || glm::dot(way, way) <= pixelSize * pixelSize;
+}
+
+PathVertex vertexOf(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, bool same) {
+  const vec3 normal = surfaces.normalAt(pixel);
   constexpr float kSameNormal = 0.98f;
-  if (!hit.valid() || !(glm::dot(way, way) <= pixelSize * pixelSize) || glm::dot(hit.geometricNormal, normal) < 0.5f)
-    return {position, normal, normal};
+  if (!same) return {surfaces.positionAt(pixel), normal, normal};
   return {hit.position, glm::dot(hit.normal, normal) > kSameNormal ? hit.normal : normal, hit.geometricNormal};
 }
 
@@ -151,8 +155,9 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       const float distance = viewDistanceFromDepth(surfaces.camera, surfaces.depth[surfaces.at(pixel)]);
       const vec4& lens = surfaces.camera.lens;
       const float pixelSize = 2 * lens.y * surfaces.camera.size.w * (lens.w > 0 ? 1 : distance);
-      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], pixelSize), {}, false, PixelNumbers(pixel, in.seed)};
-      if (in.glossy && hits[k].valid()) {
+      const bool same = isSame(surfaces, pixel, hits[k], pixelSize);
+      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], same), {}, false, PixelNumbers(pixel, in.seed)};
+      if (in.glossy && same) { // the lobes of another surface would be of another light
         place.receiver = receiverOf(in.view, hits[k]);
         place.lobe = true;
       }

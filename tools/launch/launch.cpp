@@ -405,7 +405,7 @@ void needPunctualLight(LaunchContext& stage) {
   const bool lit = std::any_of(view.lights.begin(), view.lights.end(),
                                [](const LightView& light) { return maxComponent(light.intensity) > 0; });
   if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "punctual light")) {
-    addSun(stage.scene, {}, kSunRadius);
+    addSun(stage.scene, {}, 0);
     stage.notes.push_back("the scene has no punctual light: added a sun (--sun)");
   }
 }
