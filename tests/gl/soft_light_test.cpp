@@ -305,17 +305,15 @@ TEST_F(SoftLightTest, LobesConvergeAndFollow) {
   Floor floor(vec3(0.4f), 0.35f, 0.5f);
   floor.scene.quad({-0.6f, 1.5f, -0.4f}, {1.2f, 0, 0}, {0, 0, 0.8f}, floor.scene.material(vec3(0), vec3(3)));
   floor.scene.camera = cameraAt(vec3(0, 0.8f, 2), vec3(0, 0, 0.3f), 0.4f);
-  const auto truthOfLobes = [&] {
-    const TracedScene traced(floor.scene);
-    return trace({.rays = traced.rays,
-                  .lights = traced.lights,
-                  .camera = floor.scene.camera,
-                  .bounces = 0,
-                  .glossy = &traced.view},
-                 512, ReferenceBuffer::Direct)
-        .mean;
-  };
-  const Image truth = truthOfLobes();
+  const TracedScene traced(floor.scene);
+  const Image truth = trace({.rays = traced.rays,
+                             .lights = traced.lights,
+                             .camera = floor.scene.camera,
+                             .bounces = 0,
+                             .glossy = &traced.view},
+                            512, ReferenceBuffer::Direct)
+                          .mean;
+  settings.gather.glossy = true;
   Viewer gi(settings);
   gi.run(floor.scene.view());
   for (int i = 1; i < 64; ++i) gi.run(floor.scene.view(kStill));
