@@ -28,7 +28,7 @@ layout(location = 2) out vec4 outGlossy;
 #endif
 #ifdef VARIANCE
 layout(binding = 9) uniform sampler2D keptVariance;
-layout(location = 3) out vec2 outVariance; // of irradiance (CHANGES: as it was kept), of glossy light
+layout(location = 3) out vec2 outVariance; // of irradiance, of glossy light
 #endif
 
 const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
@@ -67,6 +67,7 @@ void main() {
 #endif
 #ifdef VARIANCE
   vec2 variance = vec2(0.0);
+  vec2 span = vec2(1e38, 0.0), lobeSpan = span; // of means that were looked up, luminance
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
@@ -81,13 +82,19 @@ void main() {
       vec4 seen = texelFetch(keptSeen, tap, 0);
       if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
       if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
-      kept += weight * vec4(texelFetch(keptIrradiance, tap, 0).rgb, seen.a);
+      vec3 light = texelFetch(keptIrradiance, tap, 0).rgb;
+      kept += weight * vec4(light, seen.a);
       weights += weight;
 #ifdef GLOSSY
-      keptLobe += weight * texelFetch(keptGlossy, tap, 0);
+      vec4 lobe = texelFetch(keptGlossy, tap, 0);
+      keptLobe += weight * lobe;
 #endif
 #ifdef VARIANCE
       variance += weight * texelFetch(keptVariance, tap, 0).rg;
+      span = spanWith(span, light);
+#ifdef GLOSSY
+      lobeSpan = spanWith(lobeSpan, lobe.rgb);
+#endif
 #endif
     }
   }
@@ -100,28 +107,30 @@ void main() {
 #ifdef VARIANCE
   if (weights > 0.0) variance /= weights;
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
-  outVariance = variance;
+  outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, kept.a);
+  float counts = min(kept.a, stands ? kept.a : framesWorth(outVariance.r, span));
+#else
+  float counts = kept.a;
 #endif
 #ifdef CHANGES
-  outIrradiance = kept;
+  outIrradiance = vec4(kept.rgb, counts);
   bool known = !any(isnan(now)) && !any(isinf(now));
-  outChange = vec4(known ? now - kept.rgb : vec3(0.0), 1.0);
+  outChange = vec4(known ? now - kept.rgb : vec3(0.0), kept.a + 1.0);
 #else
-  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (kept.a + 1.0)), kept.a + 1.0);
+  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (counts + 1.0)), kept.a + 1.0);
   outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
-#ifdef VARIANCE
-  outVariance.r = varianceWith(variance.r, now - kept.rgb, kept.a);
-#endif
 #endif
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
-  vec3 mean = keptLobe.a > 0.0 ? mix(keptLobe.rgb, lobe, 1.0 / (keptLobe.a + 1.0)) : lobe;
-  outGlossy = vec4(mean, keptLobe.a + 1.0);
+  float lobeCounts = keptLobe.a;
 #ifdef VARIANCE
-  outVariance.g = varianceWith(variance.g, lobe - keptLobe.rgb, keptLobe.a);
+  outVariance.g = varianceWith(variance.g, dot(kLuminance, lobe), lobeSpan, keptLobe.a);
+  if (!stands) lobeCounts = min(lobeCounts, framesWorth(outVariance.g, lobeSpan));
 #endif
+  vec3 mean = lobeCounts > 0.0 ? mix(keptLobe.rgb, lobe, 1.0 / (lobeCounts + 1.0)) : lobe;
+  outGlossy = vec4(mean, keptLobe.a + 1.0);
 #endif
 }

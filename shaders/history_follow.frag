@@ -6,8 +6,8 @@
 #include "lib/variance.glsl"
 #include "shared/octahedral.h"
 
-layout(binding = 2) uniform sampler2D kept;     // a: frames in the mean
-layout(binding = 3) uniform sampler2D change;   // this frame - kept
+layout(binding = 2) uniform sampler2D kept;     // a: frames that its mean counts as
+layout(binding = 3) uniform sampler2D change;   // this frame - kept; a: frames, with this one
 layout(binding = 4) uniform sampler2D filtered; // of change
 layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag: share, its noise, mean square
 uniform float follow; // share of a coarse change
@@ -18,7 +18,7 @@ layout(binding = 5) uniform sampler2D glossy; // the mean with this frame's
 layout(location = 2) out vec4 outGlossy;
 #endif
 #ifdef VARIANCE
-layout(binding = 8) uniform sampler2D keptVariance; // of glossy light: with this frame's
+layout(binding = 8) uniform sampler2D foundVariance; // with this frame's
 uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights; 1: unfiltered, which is not told from noise
 layout(location = 3) out vec2 outVariance;
 #endif
@@ -43,22 +43,20 @@ void main() {
 #ifdef VARIANCE
   share = max(share - tile.g, 0.0);
 #endif
-  float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays;
+  float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays,
+        frames = 1.0 + (difference.a - 1.0) * stays;
   vec3 coarse = texelFetch(filtered, pixel, 0).rgb;
   float gain = follow;
 #ifdef VARIANCE
-  outVariance = texelFetch(keptVariance, pixel, 0).rg;
+  outVariance = texelFetch(foundVariance, pixel, 0).rg;
   float brightness = dot(kLuminance, coarse), noise = max(tile.b, outVariance.r) / effectiveSamples;
   if (brightness != 0.0 && effectiveSamples > 1.0) gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
 #endif
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
-  outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), count + 1.0);
+  outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), frames);
   outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
-                 count + 1.0);
+                 frames);
 #ifdef GLOSSY
   outGlossy = texelFetch(glossy, pixel, 0);
-#endif
-#ifdef VARIANCE
-  outVariance.r = varianceWith(outVariance.r, difference.rgb, count);
 #endif
 }

@@ -15,9 +15,9 @@ void main() {
   for (int y = first.y; y < end.y; ++y)
     for (int x = first.x; x < end.x; ++x) {
       before += texelFetch(kept, ivec2(x, y), 0).rgb;
-      vec4 here = texelFetch(change, ivec2(x, y), 0); // a: whether anything is seen
+      vec4 here = texelFetch(change, ivec2(x, y), 0);
       difference += here.rgb;
-      seen += here.a;
+      seen += float(here.a > 0.0);
       float brightness = dot(kLuminance, here.rgb);
       squares += brightness * brightness;
     }
