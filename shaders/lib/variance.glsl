@@ -7,16 +7,16 @@ vec2 spanWith(vec2 span, vec3 light) {
   return vec2(min(span.x, brightness), max(span.y, brightness));
 }
 
-/// With one frame more, whose luminance is `now`, after `frames` whose means span `before` at the places that were looked
-/// up (Welford 1962; of a mean that forgets, its exponential form). What lies between these is an edge of light, not noise.
+/// With one frame more, whose luminance is `now`, after `frames` whose means span `before` at the places that were
+/// looked up (Welford 1962; of a mean that forgets, its exponential form). What lies between is an edge, not noise.
 float varianceWith(float variance, float now, vec2 before, float frames) {
   float distance = now - clamp(now, before.x, before.y), share = 1.0 / (frames + 1.0);
   float sum = frames > 0.0 ? (1.0 - share) * (variance + share * distance * distance) : 0.0;
   return isnan(sum) || isinf(sum) ? 0.0 : sum;
 }
 
-/// Frames that a mean is worth where looking it up blurs an edge of light: as many as make its noise as small as that blur,
-/// and all where the span of the means is noise.
+/// Frames that a mean is worth where looking it up blurs an edge of light: as many as make its noise as small as that
+/// blur, and all where the span of the means is noise.
 float framesWorth(float variance, vec2 span) {
   const float kNoiseOfSpan = 8.0; // the variance above is of what exceeds the span (docs/decisions.md)
   float edge = span.y - span.x;
