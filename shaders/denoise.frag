@@ -24,11 +24,11 @@ const float kAlike = 2.0; // standard deviations by which light may differ
 /// One kind of light on its way through the taps.
 struct Sum {
   vec4 own;
-  vec3 light;
-  float weights, first, second; // BEGIN: of variance, of luminance and its square
+  vec3 light; // BEGIN: variance of frames, luminance, its square
+  float weights, squares; // of variance, weights squared
 };
 
-Sum begin(vec4 own) { return Sum(own, vec3(0.0), 0.0, 0.0, 0.0); }
+Sum begin(vec4 own) { return Sum(own, vec3(0.0), 0.0, 0.0); }
 
 void add(inout Sum sum, vec4 tap, float variance, float weight) {
   float brightness = dot(kLuminance, tap.rgb);
@@ -41,19 +41,19 @@ void add(inout Sum sum, vec4 tap, float variance, float weight) {
   weight *= exp(-abs(apart) / (kAlike * sqrt(sum.own.a) + 1e-6 * abs(brightness) + 1e-30));
   sum.light += weight * tap.rgb;
   sum.weights += weight;
-  sum.second += weight * weight * tap.a;
+  sum.squares += weight * weight * tap.a;
 #endif
 }
 
 vec4 meanOf(Sum sum) {
   if (!(sum.weights > 0.0)) return vec4(sum.own.rgb, 0.0);
 #ifdef BEGIN
-  vec3 mean = sum.light / sum.weights; // variance, luminance, its square
+  vec3 mean = sum.light / sum.weights;
   float frames = sum.own.a;
   float ofFrames = mean.x / max(frames - 1.0, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
   return vec4(sum.own.rgb, mix(ofNeighbours, ofFrames, clamp((frames - 1.0) / 4.0, 0.0, 1.0)));
 #else
-  return vec4(sum.light / sum.weights, sum.second / (sum.weights * sum.weights));
+  return vec4(sum.light / sum.weights, sum.squares / (sum.weights * sum.weights));
 #endif
 }
 

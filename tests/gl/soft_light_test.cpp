@@ -289,6 +289,14 @@ TEST_F(SoftLightTest, AViewThatComesToRestForgetsTheBlurOfItsMotion) {
   EXPECT_LT(still, 0.0035);
 }
 
+TEST_F(SoftLightTest, FramesByThemselvesRestAtOnce) {
+  const Image first = firstFrame(settings, room.scene.view(), Buffer::Direct);
+  settings.direct.frames = 0;
+  Viewer gi(settings);
+  EXPECT_TRUE(sameBits(stand(gi, 2), first)) << "nothing is averaged";
+  EXPECT_FALSE(gi.run(room.scene.view(kStill)).plan.on(EffectId::Redraw));
+}
+
 TEST_F(SoftLightTest, OtherWaysOfALampTakeItsLightAlong) {
   room.scene.sky = Sky(vec3(0.2f)); // goes on being sampled
   Viewer gi(settings);
