@@ -8,13 +8,14 @@
 #include "lib/variance.glsl"
 #include "lib/surface_weight.glsl"
 
-layout(binding = 2) uniform sampler2D irradiance; // alpha: BEGIN frames in the mean, else variance
+layout(binding = 2) uniform sampler2D irradiance; // alpha: BEGIN frames in the variance, else variance
 #ifdef GLOSSY
-layout(binding = 3) uniform sampler2D glossy; // as irradiance
+layout(binding = 3) uniform sampler2D glossy; // alpha: BEGIN frames in the mean, else variance
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 #endif
 #ifdef BEGIN
 layout(binding = 4) uniform sampler2D frameVariance; // HistoryPass::variance
+layout(binding = 5) uniform sampler2D worthOfMean; // HistoryPass::worth
 #endif
 const int kReach = 1; // taps
 uniform int stride; // pixels between taps
@@ -24,7 +25,7 @@ const float kAlike = 2.0; // standard deviations by which light may differ
 /// One kind of light on its way through the taps.
 struct Sum {
   vec4 own;
-  vec3 light; // BEGIN: variance of frames, luminance, its square
+  vec3 light; // BEGIN: variance of a frame, luminance, its square
   float weights, squares; // of variance, weights squared
 };
 
@@ -38,19 +39,20 @@ void add(inout Sum sum, vec4 tap, float variance, float weight) {
   sum.weights += weight;
 #else
   float apart = brightness - dot(kLuminance, sum.own.rgb);
-  weight *= exp(-abs(apart) / (kAlike * sqrt(sum.own.a) + 1e-6 * abs(brightness) + 1e-30));
+  // Of both, so that what a pixel gives away its neighbour takes: by its own variance alone, outliers lose light.
+  float deviation = sqrt(sqrt(sum.own.a) * sqrt(tap.a));
+  weight *= exp(-abs(apart) / (kAlike * deviation + 1e-6 * abs(brightness) + 1e-30));
   sum.light += weight * tap.rgb;
   sum.weights += weight;
   sum.squares += weight * weight * tap.a;
 #endif
 }
 
-vec4 meanOf(Sum sum) {
+vec4 meanOf(Sum sum, float frames, float worth) {
   if (!(sum.weights > 0.0)) return vec4(sum.own.rgb, 0.0);
 #ifdef BEGIN
   vec3 mean = sum.light / sum.weights;
-  float frames = sum.own.a;
-  float ofFrames = mean.x / max(frames - 1.0, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
+  float ofFrames = mean.x / max(worth - 1.0, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
   return vec4(sum.own.rgb, mix(ofNeighbours, ofFrames, clamp((frames - 1.0) / 4.0, 0.0, 1.0)));
 #else
   return vec4(sum.light / sum.weights, sum.squares / (sum.weights * sum.weights));
@@ -81,6 +83,14 @@ void main() {
     return;
   }
 #endif
+  vec2 worth = vec2(1.0); // frames in the means
+  float known = diffuse.own.a; // in the variance
+#ifdef BEGIN
+  worth.r = texelFetch(worthOfMean, pixel, 0).a;
+#ifdef GLOSSY
+  worth.g = lobe.own.a;
+#endif
+#endif
   ivec2 size = ivec2(camera.size.xy);
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
@@ -102,8 +112,8 @@ void main() {
 #endif
     }
   }
-  outIrradiance = meanOf(diffuse);
+  outIrradiance = meanOf(diffuse, known, worth.r);
 #ifdef GLOSSY
-  outGlossy = meanOf(lobe);
+  outGlossy = meanOf(lobe, known, worth.g);
 #endif
 }

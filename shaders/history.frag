@@ -11,10 +11,10 @@
 layout(std140, binding = 2) uniform Before { CameraBlock before; };
 layout(binding = 2) uniform sampler2D irradiance; // of this frame
 layout(binding = 3) uniform sampler2D keptIrradiance;
-layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames in the mean (0: nothing)
+layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames that the mean is worth, or 0
 uniform float mostFrames; // of those before that count at most; 0: there are none
 uniform bool stands;    // the camera is where it was
-layout(location = 0) out vec4 outIrradiance; // a: frames in the mean
+layout(location = 0) out vec4 outIrradiance; // a: frames in the mean, of VARIANCE in the variance
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
 #else
@@ -28,12 +28,21 @@ layout(location = 2) out vec4 outGlossy;
 #endif
 #ifdef VARIANCE
 layout(binding = 9) uniform sampler2D keptVariance;
+layout(binding = 10) uniform sampler2D smoothIrradiance; // what is kept, without most of its noise
+#ifdef GLOSSY
+layout(binding = 11) uniform sampler2D smoothGlossy;
+#endif
 layout(location = 3) out vec2 outVariance; // of irradiance, of glossy light
 #endif
 
 const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
-const float kAlike = 0.3;    // cosine between normals: mouldings mix, corners do not
+#ifdef VARIANCE
+const float kAlike = 0.7; // cosine between normals: a moulding's faces see other lamps
+#else
+const float kAlike = 0.3; // mouldings mix, corners do not
+#endif
 const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
+const float kKnown = 31.0;   // earlier frames in a variance
 
 /// Position that a pixel of the frame before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
@@ -66,7 +75,8 @@ void main() {
   vec4 keptLobe = vec4(0.0);
 #endif
 #ifdef VARIANCE
-  vec2 variance = vec2(0.0);
+  float known = 0.0; // frames in the variance
+  vec2 variance = vec2(0.0), least = vec2(1e38);
   vec2 span = vec2(1e38, 0.0), lobeSpan = span; // of means that were looked up, luminance
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
@@ -82,18 +92,21 @@ void main() {
       vec4 seen = texelFetch(keptSeen, tap, 0);
       if (seen.a == 0.0 || dot(normal, unitFromOctahedral(seen.xy)) < kAlike) continue;
       if (abs(dot(normal, positionBefore(tap, seen.z) - position)) > kOnPlane * metresPerPixel) continue;
-      vec3 light = texelFetch(keptIrradiance, tap, 0).rgb;
-      kept += weight * vec4(light, seen.a);
+      vec4 light = texelFetch(keptIrradiance, tap, 0);
+      kept += weight * vec4(light.rgb, seen.a);
       weights += weight;
 #ifdef GLOSSY
       vec4 lobe = texelFetch(keptGlossy, tap, 0);
       keptLobe += weight * lobe;
 #endif
 #ifdef VARIANCE
-      variance += weight * texelFetch(keptVariance, tap, 0).rg;
-      span = spanWith(span, light);
+      known += weight * light.a;
+      vec2 tapVariance = texelFetch(keptVariance, tap, 0).rg;
+      variance += weight * tapVariance;
+      least = min(least, tapVariance);
+      span = spanWith(span, texelFetch(smoothIrradiance, tap, 0).rgb);
 #ifdef GLOSSY
-      lobeSpan = spanWith(lobeSpan, lobe.rgb);
+      lobeSpan = spanWith(lobeSpan, texelFetch(smoothGlossy, tap, 0).rgb);
 #endif
 #endif
     }
@@ -105,20 +118,20 @@ void main() {
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
 #ifdef VARIANCE
-  if (weights > 0.0) variance /= weights;
+  if (weights > 0.0) variance /= weights, known = min(known / weights, kKnown);
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
-  outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, kept.a);
-  float counts = min(kept.a, stands ? kept.a : framesWorth(outVariance.r, span));
+  outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, known);
+  float counts = min(kept.a, stands ? kept.a : framesWorth(least.r, span));
 #else
-  float counts = kept.a;
+  float counts = kept.a, known = kept.a;
 #endif
 #ifdef CHANGES
   outIrradiance = vec4(kept.rgb, counts);
-  bool known = !any(isnan(now)) && !any(isinf(now));
-  outChange = vec4(known ? now - kept.rgb : vec3(0.0), kept.a + 1.0);
+  bool isNumber = !any(isnan(now)) && !any(isinf(now));
+  outChange = vec4(isNumber ? now - kept.rgb : vec3(0.0), known + 1.0);
 #else
-  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (counts + 1.0)), kept.a + 1.0);
-  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), kept.a + 1.0);
+  outIrradiance = vec4(mix(kept.rgb, now, 1.0 / (counts + 1.0)), known + 1.0);
+  outSeen = vec4(octahedralFromUnit(normal), viewDistanceFromDepth(camera, depth), counts + 1.0);
 #endif
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
@@ -127,10 +140,10 @@ void main() {
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   float lobeCounts = keptLobe.a;
 #ifdef VARIANCE
-  outVariance.g = varianceWith(variance.g, dot(kLuminance, lobe), lobeSpan, keptLobe.a);
-  if (!stands) lobeCounts = min(lobeCounts, framesWorth(outVariance.g, lobeSpan));
+  outVariance.g = varianceWith(variance.g, dot(kLuminance, lobe), lobeSpan, known);
+  if (!stands) lobeCounts = min(lobeCounts, framesWorth(least.g, lobeSpan));
 #endif
   vec3 mean = lobeCounts > 0.0 ? mix(keptLobe.rgb, lobe, 1.0 / (lobeCounts + 1.0)) : lobe;
-  outGlossy = vec4(mean, keptLobe.a + 1.0);
+  outGlossy = vec4(mean, lobeCounts + 1.0);
 #endif
 }

@@ -7,7 +7,7 @@
 #include "shared/octahedral.h"
 
 layout(binding = 2) uniform sampler2D kept;     // a: frames that its mean counts as
-layout(binding = 3) uniform sampler2D change;   // this frame - kept; a: frames, with this one
+layout(binding = 3) uniform sampler2D change;   // this frame - kept; a: frames in the variance
 layout(binding = 4) uniform sampler2D filtered; // of change
 layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag: share, its noise, mean square
 uniform float follow; // share of a coarse change
@@ -43,8 +43,7 @@ void main() {
 #ifdef VARIANCE
   share = max(share - tile.g, 0.0);
 #endif
-  float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays,
-        frames = 1.0 + (difference.a - 1.0) * stays;
+  float stays = 1.0 - smoothstep(kNoise, kCertain, share), count = before.a * stays, frames = count + 1.0;
   vec3 coarse = texelFetch(filtered, pixel, 0).rgb;
   float gain = follow;
 #ifdef VARIANCE
@@ -53,7 +52,11 @@ void main() {
   if (brightness != 0.0 && effectiveSamples > 1.0) gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
 #endif
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
-  outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / (count + 1.0)), frames);
+  outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / frames), frames);
+#ifdef VARIANCE
+  outIrradiance.a = difference.a;
+#endif
+
   outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
                  frames);
 #ifdef GLOSSY

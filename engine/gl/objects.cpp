@@ -86,6 +86,8 @@ PFNGLDELETETEXTURESPROC deletionOf(GLenum kind) {
 
 int texelBytes(GLenum format) {
   switch (format) {
+  case GL_R8:
+    return 1;
   case GL_DEPTH_COMPONENT16:
     return 2;
   case GL_RGBA8:

@@ -1,7 +1,9 @@
 #include "gi/direct/soft_light.h"
 
+#include "engine/core/parallel.h"
 #include "gi/gather/add_pixels.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lambent {
@@ -10,10 +12,55 @@ namespace {
 
 // A frame's samples are noisier than gathered light, so means follow a change less at once; what exceeds their noise is
 // followed wholly (shaders/history_follow.frag).
-constexpr float kFollow = 0.2f; // of a coarse change, in its first frame
+constexpr float kFollow = 0.3f; // of a coarse change, in its first frame
 constexpr int kGlossy = 8;      // earlier frames of glossy light while camera or light moves
 
 } // namespace
+
+std::span<const uint8_t> SoftLightPass::more(const Frame& frame, const FrameSurfaces& surfaces) {
+  if (!next_ || history_.sample() == 0 || !frame.plan.seenChanges()) return {};
+  const glm::ivec2 size(next_.width(), next_.height());
+  nextPixels_.resize(size_t(size.x) * size_t(size.y));
+  next_.read(std::span(nextPixels_), GL_RED, GL_UNSIGNED_BYTE);
+  more_.assign(size_t(surfaces.width) * size_t(surfaces.height), 0);
+  constexpr size_t kRows = 8;
+  parallelFor(size_t(surfaces.height), kRows, [&](size_t begin, size_t end) {
+    for (int y = int(begin); y < int(end); ++y) {
+      for (int x = 0; x < surfaces.width; ++x) {
+        if (!surfaces.seen({x, y})) continue;
+        const vec4 clip = before_.clipFromWorld * vec4(surfaces.positionAt({x, y}), 1);
+        const vec2 at = (vec2(clip) / clip.w * 0.5f + 0.5f) * vec2(size);
+        if (clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < float(size.x) && at.y < float(size.y))
+          more_[surfaces.at({x, y})] = nextPixels_[size_t(at.y) * size_t(size.x) + size_t(at.x)];
+      }
+    }
+  });
+  return more_;
+}
+
+void SoftLightPass::findNext(const Frame& frame) {
+  const DirectSettings& settings = frame.settings.direct;
+  if (settings.mostSamples <= settings.samples) {
+    next_ = {};
+    return;
+  }
+  const GBuffer& surfaces = frame.surfaces;
+  if (!next_ || next_.width() != surfaces.width || next_.height() != surfaces.height) {
+    next_ = gl::Texture("soft light/samples", {.format = GL_R8, .width = surfaces.width, .height = surfaces.height});
+    nextFramebuffer_ = gl::Framebuffer("soft light/samples", {&next_});
+  }
+  const gl::Program& program = context_.programs.get({.fragment = "soft_samples.frag"});
+  program.use();
+  program.set("samples", float(settings.samples));
+  program.set("mostSamples", float(settings.mostSamples));
+  denoised_.irradiance->bind(2);
+  history_.variance().bind(3);
+  history_.worth().bind(4);
+  nextFramebuffer_.bind();
+  gl::PipelineState{.width = surfaces.width, .height = surfaces.height}.apply();
+  gl::drawFullscreen();
+  before_ = surfaces.block;
+}
 
 void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts parts, const LightTarget& target,
                         FrameStats& stats) {
@@ -36,6 +83,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
                              .view = frame.world.view,
                              .surfaces = surfaces,
                              .samples = samples,
+                             .more = more(frame, surfaces),
                              .sample = history_.sample() * uint32_t(samples),
                              .glossy = glossy,
                              .seed = frame.seed},
@@ -68,10 +116,12 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
                     .settings = {.frames = frames},
                     .filter = frame.settings.filter,
                     .follow = kFollow,
+                    .smooth = history_.sample() > 0 ? denoised_ : SurfaceLighting{},
                     .glossyFrames = kGlossy});
-  const SurfaceLighting light = denoise_.run({frame.surfaces, mean, history_.variance(), frame.settings.filter});
+  denoised_ = denoise_.run({frame.surfaces, mean, history_.variance(), history_.worth(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);
-  addLight(context_, light, target);
+  addLight(context_, denoised_, target);
+  findNext(frame);
 }
 
 } // namespace lambent

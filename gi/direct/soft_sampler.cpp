@@ -79,12 +79,16 @@ class PixelNumbers {
   uint64_t pixel_, block_;
 };
 
+constexpr uint32_t kMore = 1u << 30; // numbers of samples from here on are of those beyond SoftSampling::samples
+constexpr uint32_t kMost = 256;
+
 /// What a pixel shows, for rays.
 struct Place {
   uint32_t pixel; // row by row from the top
   PathVertex vertex;
   Receiver receiver; // where lobes are asked for
   bool lobe = false;
+  int samples;
   PixelNumbers numbers;
 };
 
@@ -130,7 +134,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
   const CameraView& camera = in.view.camera;
   const FrameSurfaces& surfaces = in.surfaces;
   const LightSet& lights = in.lights;
-  const float epsilon = in.rays.rayEpsilon(), weight = kPi / float(in.samples);
+  const float epsilon = in.rays.rayEpsilon();
   const bool connects = lights.lightCount() > 0, sky = !lights.sky.black();
   const bool casts = sky || !lights.emitters.empty();
   SoftLight out;
@@ -156,7 +160,8 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       const vec4& lens = surfaces.camera.lens;
       const float pixelSize = 2 * lens.y * surfaces.camera.size.w * (lens.w > 0 ? 1 : distance);
       const bool same = isSame(surfaces, pixel, hits[k], pixelSize);
-      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], same), {}, false, PixelNumbers(pixel, in.seed)};
+      const int samples = in.samples + (in.more.empty() ? 0 : in.more[surfaces.at(pixel)]);
+      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], same), {}, false, samples, PixelNumbers(pixel, in.seed)};
       if (in.glossy && same) { // the lobes of another surface would be of another light
         place.receiver = receiverOf(in.view, hits[k]);
         place.lobe = true;
@@ -174,8 +179,11 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
     for (Place& place : places) place.vertex.receiver = place.lobe ? &place.receiver : nullptr;
     for (uint32_t p = 0; p < places.size(); ++p) {
       const PathVertex& vertex = places[p].vertex;
-      for (uint32_t s = in.sample; s < in.sample + uint32_t(in.samples); ++s) {
-        const PixelNumbers& numbers = places[p].numbers;
+      const PixelNumbers& numbers = places[p].numbers;
+      const int samples = places[p].samples;
+      const float weight = kPi / float(samples);
+      for (int k = 0; k < samples; ++k) {
+        const uint32_t s = k < in.samples ? in.sample + uint32_t(k) : kMore + in.sample * kMost + uint32_t(k);
         if (connects) {
           const vec2 choice = numbers(s, Pair::Choice);
           connect(p, connectToLight(lights, vertex, vec3(weight), choice.x, vec3(choice.y, numbers(s, Pair::Place)),
@@ -190,7 +198,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
         const float cosine = glm::dot(direction, vertex.normal);
         if (!(cosine > 0) || glm::dot(direction, vertex.geometricNormal) <= 0) continue;
         rays.push_back({offsetPoint(vertex.position, vertex.geometricNormal, epsilon), direction});
-        cast.push_back({p, vec3(cosine / (pdfOfRay(vertex, direction) * float(in.samples)))});
+        cast.push_back({p, vec3(cosine / (pdfOfRay(vertex, direction) * float(samples)))});
       }
     }
 

@@ -23,6 +23,7 @@ struct SoftSampling {
   const SceneView& view;
   const FrameSurfaces& surfaces; // of the view's camera
   int samples = 1;               // of each pixel
+  std::span<const uint8_t> more; // of each pixel, more of them, rows from the bottom; empty: none
   uint32_t sample = 0;           // number of the first one: those of a mean follow each other
   bool glossy = false;
   uint32_t seed = 1;

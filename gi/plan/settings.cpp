@@ -93,6 +93,8 @@ class Table {
            "denoised, or shadow maps of points that stand for them");
     number(SETTING(direct, samples), {1, 256, "samples", PowersOfTwo}, Nothing,
            "direct.soft rays: of every pixel in each frame, each a ray to a light, one to the sky and one anywhere");
+    number(SETTING(direct, mostSamples), {1, 256, "samples", PowersOfTwo}, Nothing,
+           "direct.soft rays: of a pixel whose mean over frames holds few of them, as along edges of light in motion");
     number(SETTING(direct, frames), {0, 1024, "frames", PowersOfTwo}, Nothing,
            "direct.soft rays: frames that are averaged, each with other samples; 0 = each frame by itself");
     choice(SETTING(area, refinement), {"counts", "sub-fragments", "neighbours"}, Nothing,

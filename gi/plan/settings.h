@@ -115,6 +115,7 @@ struct DirectSettings {
   bool on = true;
   SoftLightBy soft = SoftLightBy::Rays;
   int samples = 2; // rays: of a pixel in each frame
+  int mostSamples = 16; // rays: of a pixel whose mean over frames holds few of them
   int frames = 64; // rays: that are averaged
   bool operator==(const DirectSettings&) const = default;
 };

@@ -20,7 +20,7 @@ SurfaceLighting DenoisePass::run(const DenoiseInputs& in) {
     program.set("stride", i == 0 ? 1 : 1 << (i - 1));
     light.irradiance->bind(2);
     if (light.glossy) light.glossy->bind(3);
-    if (i == 0) in.variance.bind(4);
+    if (i == 0) in.variance.bind(4), in.worth.bind(5);
     LightTarget& to = targets_[i % 2];
     to.fit(in.surfaces);
     to.bind();

@@ -84,10 +84,12 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
+  if (keepsVariance_) (in.smooth.irradiance ? *in.smooth.irradiance : before.irradiance).bind(10);
   before.seen.bind(4);
   if (in.gathered.glossy) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
+    if (keepsVariance_) (in.smooth.glossy ? *in.smooth.glossy : before.glossy).bind(11);
     program.set("mostGlossyFrames", float(changes || in.cameraMoved ? std::min(most, in.glossyFrames) : most));
   }
   to.bind();

@@ -39,6 +39,7 @@ struct HistoryInputs {
   const HistorySettings& settings;
   const FilterSettings& filter;
   float follow = 0.5f;  // share of a coarse change that its first frame shows
+  SurfaceLighting smooth = {}; // the frame before, denoised: with a variance, edges of light are found in it
   int glossyFrames = 0; // earlier frames that a mean of glossy light holds at most while camera or light moves
 };
 
@@ -59,6 +60,8 @@ class HistoryPass {
   uint32_t sample() const { return frames_; }
   /// Of the luminance of a pixel's frames about their mean: of irradiance, of glossy light. RG32F.
   const gl::Texture& variance() const { return kept_[now_].variance; }
+  /// Alpha: frames that a mean is worth, few where looking it up blurs an edge of light; 0: no surface. RGBA32F.
+  const gl::Texture& worth() const { return kept_[now_].seen; }
 
  private:
   /// A frame's light, and the surfaces that it fell on.
@@ -87,8 +90,8 @@ class HistoryPass {
 
 struct DenoiseInputs {
   const GBuffer& surfaces;
-  const SurfaceLighting& mean; // of HistoryPass, alpha: frames in it
-  const gl::Texture& variance; // HistoryPass::variance
+  const SurfaceLighting& mean;        // of HistoryPass, with a variance
+  const gl::Texture &variance, &worth; // HistoryPass's
   const FilterSettings& filter;
 };
 

@@ -18,7 +18,7 @@ float varianceWith(float variance, float now, vec2 before, float frames) {
 /// Frames that a mean is worth where looking it up blurs an edge of light: as many as make its noise as small as that
 /// blur, and all where the span of the means is noise.
 float framesWorth(float variance, vec2 span) {
-  const float kNoiseOfSpan = 8.0; // the variance above is of what exceeds the span (docs/decisions.md)
+  const float kNoiseOfSpan = 1.0;
   float edge = span.y - span.x;
   return edge > 0.0 ? kNoiseOfSpan * variance / (edge * edge) : 1e6;
 }

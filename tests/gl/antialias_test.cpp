@@ -202,10 +202,11 @@ TEST_F(AntiAliasTest, MarksStayAndColourNothingElse) {
   EXPECT_EQ(byteAt(marked, 12, 40), vec3(0, 255, 255));
   for (const auto [x, y] : Pixels(64, 64)) {
     const vec3 c = byteAt(marked, x, y);
-    if (area(x, y) || (y == 32 && x >= 8 && x < 56 && x % 8 == 0))
+    if (area(x, y) || (y == 32 && x >= 8 && x < 56 && x % 8 == 0)) {
       EXPECT_EQ(c, vec3(255, 0, 255)) << x;
-    else if (x != 12 || y != 40)
+    } else if (x != 12 || y != 40) {
       EXPECT_LE(maxComponent(c) + maxComponent(-c), 1) << x << ", " << y << ": grey";
+    }
   }
   EXPECT_EQ(byteAt(marked, 4, 4), byteAt(unmarked, 4, 4));
 }

@@ -29,7 +29,8 @@ struct Seen {
   }
 
   /// Irradiance, or lobes' light; row 0 at the top.
-  Image sampled(int samples, uint32_t first = 0, bool glossy = false, uint32_t seed = 1) const {
+  Image sampled(int samples, uint32_t first = 0, bool glossy = false, uint32_t seed = 1,
+                std::span<const uint8_t> more = {}) const {
     RayCounts counts;
     const LightSet lights = softLightsOf(traced.lights, SoftParts::All);
     const SoftLight light = sampleSoftLight({.rays = traced.rays,
@@ -37,6 +38,7 @@ struct Seen {
                                              .view = traced.view,
                                              .surfaces = surfaces,
                                              .samples = samples,
+                                             .more = more,
                                              .sample = first,
                                              .glossy = glossy,
                                              .seed = seed},
@@ -121,6 +123,23 @@ TEST(SoftSampler, SamplesOfAPixelAndOfABlockAreSpread) {
     }
   std::printf("of blocks of one sample each: %.4f\n", std::sqrt(ofBlocks));
   EXPECT_LT(std::sqrt(ofBlocks), 0.7 * one / 4) << "of random ones a quarter";
+}
+
+TEST(SoftSampler, PixelsMayHaveMoreSamples) {
+  LampOverFloor floor;
+  std::vector<uint8_t> more(32 * 32, 0);
+  for (const auto [x, y] : Pixels(32, 32))
+    if (x >= 16) more[size_t(31 - y) * 32 + size_t(x)] = 30;
+  const Image light = Seen(floor.scene).sampled(2, 0, false, 1, more);
+  double squares[2] = {0, 0}, sum[2] = {0, 0};
+  for (const auto [x, y] : Pixels(light)) {
+    const double error =
+        double(light.at(x, y).x) / 3 / double(areaFormFactor(floor.lamp, floor.at(x, y), vec3(0, 1, 0))) - 1;
+    squares[x >= 16] += error * error / 512, sum[x >= 16] += error / 512;
+  }
+  std::printf("relative error of 2 and of 32 samples: %.4f, %.4f\n", std::sqrt(squares[0]), std::sqrt(squares[1]));
+  EXPECT_LT(std::sqrt(squares[1]), 0.3 * std::sqrt(squares[0]));
+  for (int i = 0; i < 2; ++i) EXPECT_LT(std::abs(sum[i]), 4 * std::sqrt(squares[i] / 512)) << i;
 }
 
 TEST(SoftSampler, OpenPlatesGetTheWholeSky) {
@@ -270,6 +289,70 @@ TEST_F(SoftLightTest, MovingViewsHaveLessNoiseThanAFrameAlone) {
     std::printf("error in motion %.4f, of one frame %.4f\n", error, alone);
     EXPECT_LT(error, 0.6 * alone);
   }
+}
+
+/// A floor with the sharp shadow of a board, by a small lamp, seen by a camera that walks along it.
+struct ShadowOnFloor : Floor {
+  explicit ShadowOnFloor(float lamp = 0.01f) : Floor(vec3(0.5f)) {
+    scene.quad({-0.8f, 1, 0}, {lamp, 0, 0}, {0, 0, lamp}, scene.material(vec3(0), vec3(5 / (lamp * lamp))));
+    scene.quad({-0.3f, 0, -1}, {0, 0, 2}, {0, 0.5f, 0}, scene.material(vec3(0))); // its shadow ends at x = 0.2
+    at(0);
+  }
+  void at(float x) { scene.camera = cameraAt(vec3(x, 1.2f, 0), vec3(x, 0, -0.01f), 0.9f); }
+  /// Light in the shadow, and RMS of the error within two pixels of its edges, over the light beside them.
+  std::pair<double, double> after(Viewer& gi, float step, int frames) {
+    at(-float(frames) * step);
+    gi.run(scene.view());
+    for (int i = frames - 1; i >= 0; --i) {
+      at(-float(i) * step);
+      gi.run(scene.view(kCameraChanged));
+    }
+    const TracedScene traced(scene);
+    const Image truth = trace({traced.rays, traced.lights, scene.camera, 0}, 256, ReferenceBuffer::Direct).mean;
+    const Image light = gi.read(Buffer::Direct);
+    double lit = 0, dark = 0, squares = 0;
+    int shadow = 0, edge = 0;
+    for (const auto [x, y] : Pixels({2, 2}, {truth.width - 2, truth.height - 2})) {
+      const double left = double(truth.at(x - 2, y).x), right = double(truth.at(x + 2, y).x);
+      if (truth.at(x, y).x == 0) dark += double(light.at(x, y).x), ++shadow;
+      if ((left > 0) == (right > 0)) continue;
+      squares += std::pow(double(light.at(x, y).x - truth.at(x, y).x), 2), lit += left + right, ++edge;
+    }
+    EXPECT_GT(shadow, 500);
+    EXPECT_GT(edge, 100);
+    return {dark / shadow / (lit / edge), std::sqrt(squares / edge) / (lit / edge)};
+  }
+};
+
+TEST_F(SoftLightTest, ShadowsStaySharpInMotion) {
+  ShadowOnFloor floor;
+  for (const float step : {0.005f, 0.02f}) { // 0.3 and 1.2 pixels
+    Viewer gi(settings);
+    const auto [leak, edge] = floor.after(gi, step, 24);
+    std::printf("%g m a frame: in the shadow %.5f of the light, error along its edge %.4f\n", double(step), leak, edge);
+    EXPECT_LT(leak, 5e-5);
+    EXPECT_LT(edge, 0.01);
+  }
+}
+
+TEST_F(SoftLightTest, EdgesInMotionGetMoreSamples) {
+  ShadowOnFloor floor(0.04f);
+  double error[2];
+  uint64_t rays[2], still[2];
+  for (int i = 0; i < 2; ++i) {
+    settings.direct.mostSamples = i == 0 ? settings.direct.samples : 16;
+    settings.filter.on = false;
+    Viewer gi(settings);
+    error[i] = floor.after(gi, 0.0623f, 12).second; // four pixels: samples must go where the edge is now
+    rays[i] = gi.stats().raysSoft.closest;
+    still[i] = gi.run(floor.scene.view(kStill)).raysSoft.closest;
+  }
+  std::printf("error along edges %.4f with %llu rays, %.4f with %llu\n", error[0], (unsigned long long)rays[0], error[1],
+              (unsigned long long)rays[1]);
+  EXPECT_LT(error[1], 0.8 * error[0]);
+  EXPECT_GT(rays[1], rays[0] + rays[0] / 100);
+  EXPECT_LT(rays[1], rays[0] + rays[0] / 2) << "elsewhere means hold many frames";
+  EXPECT_EQ(still[1], still[0]);
 }
 
 TEST_F(SoftLightTest, AViewThatComesToRestForgetsTheBlurOfItsMotion) {
