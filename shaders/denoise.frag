@@ -48,16 +48,20 @@ void add(inout Sum sum, vec4 tap, float variance, float weight) {
 #endif
 }
 
+#ifdef BEGIN
+/// The variance of a mean that is worth some frames, by that of a frame, which is known from `frames`.
 vec4 meanOf(Sum sum, float frames, float worth) {
   if (!(sum.weights > 0.0)) return vec4(sum.own.rgb, 0.0);
-#ifdef BEGIN
   vec3 mean = sum.light / sum.weights;
-  float ofFrames = mean.x / max(worth - 1.0, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
+  float ofFrames = mean.x / max(worth, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
   return vec4(sum.own.rgb, mix(ofNeighbours, ofFrames, clamp((frames - 1.0) / 4.0, 0.0, 1.0)));
-#else
-  return vec4(sum.light / sum.weights, sum.squares / (sum.weights * sum.weights));
-#endif
 }
+#else
+vec4 meanOf(Sum sum) {
+  if (!(sum.weights > 0.0)) return vec4(sum.own.rgb, 0.0);
+  return vec4(sum.light / sum.weights, sum.squares / (sum.weights * sum.weights));
+}
+#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -83,14 +87,6 @@ void main() {
     return;
   }
 #endif
-  vec2 worth = vec2(1.0); // frames in the means
-  float known = diffuse.own.a; // in the variance
-#ifdef BEGIN
-  worth.r = texelFetch(worthOfMean, pixel, 0).a;
-#ifdef GLOSSY
-  worth.g = lobe.own.a;
-#endif
-#endif
   ivec2 size = ivec2(camera.size.xy);
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
@@ -112,8 +108,17 @@ void main() {
 #endif
     }
   }
-  outIrradiance = meanOf(diffuse, known, worth.r);
+#ifdef BEGIN
+  float known = diffuse.own.a; // frames in the variance
+  outIrradiance = meanOf(diffuse, known, texelFetch(worthOfMean, pixel, 0).a);
+#else
+  outIrradiance = meanOf(diffuse);
+#endif
 #ifdef GLOSSY
-  outGlossy = meanOf(lobe, known, worth.g);
+#ifdef BEGIN
+  outGlossy = meanOf(lobe, known, lobe.own.a);
+#else
+  outGlossy = meanOf(lobe);
+#endif
 #endif
 }

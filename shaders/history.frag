@@ -2,7 +2,7 @@
 // Mean of the light that fell on the place of a pixel, in this frame and those before it. The place is looked up where
 // the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
 // frame's light is de-interleaved), CHANGES (what is kept, and this frame's difference to it, for
-// history_follow.frag), GLOSSY, VARIANCE (variance of a frame's luminance about the mean; Welford 1962).
+// history_follow.frag), GLOSSY, VARIANCE (of a frame's luminance about the denoised frame before).
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 #include "lib/variance.glsl"
@@ -42,7 +42,7 @@ const float kAlike = 0.7; // cosine between normals: a moulding's faces see othe
 const float kAlike = 0.3; // mouldings mix, corners do not
 #endif
 const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
-const float kKnown = 31.0;   // earlier frames in a variance
+const float kKnown = 16.0;   // earlier frames in a variance
 
 /// Position that a pixel of the frame before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
@@ -77,7 +77,7 @@ void main() {
 #ifdef VARIANCE
   float known = 0.0; // frames in the variance
   vec2 variance = vec2(0.0), least = vec2(1e38);
-  vec2 span = vec2(1e38, 0.0), lobeSpan = span; // of means that were looked up, luminance
+  vec2 span = vec2(1e38, 0.0), lobeSpan = span; // of what was looked up, luminance
 #endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
@@ -103,7 +103,7 @@ void main() {
       known += weight * light.a;
       vec2 tapVariance = texelFetch(keptVariance, tap, 0).rg;
       variance += weight * tapVariance;
-      least = min(least, tapVariance);
+      if (light.a > 1.5) least = min(least, tapVariance); // one frame has no variance yet
       span = spanWith(span, texelFetch(smoothIrradiance, tap, 0).rgb);
 #ifdef GLOSSY
       lobeSpan = spanWith(lobeSpan, texelFetch(smoothGlossy, tap, 0).rgb);

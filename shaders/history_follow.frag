@@ -24,6 +24,7 @@ layout(location = 3) out vec2 outVariance;
 #endif
 
 const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
+const float kGuess = 4.0; // frames that a guess of variance counts as
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
 
 void main() {
@@ -54,9 +55,11 @@ void main() {
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
   outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / frames), frames);
 #ifdef VARIANCE
-  outIrradiance.a = difference.a;
+  // Where the mean begins again its variance is a guess; of light that became darker, a smaller one.
+  float left = brightness < 0.0 ? 1.0 - tile.r : 1.0;
+  outVariance *= mix(left * left, 1.0, stays);
+  outIrradiance.a = mix(min(difference.a, kGuess), difference.a, stays);
 #endif
-
   outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
                  frames);
 #ifdef GLOSSY

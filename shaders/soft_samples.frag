@@ -1,6 +1,7 @@
 #version 450
 // How many samples more than the others a pixel takes in the next frame, over 255: as many as bring the noise of its
-// mean down to kNoise, where that mean is worth few frames.
+// mean down to kNoise, where that mean is worth few frames. Noise is that of frames which may have had more samples
+// before, so their number settles below. Glossy noise asks for none.
 #include "lib/variance.glsl"
 
 layout(binding = 2) uniform sampler2D irradiance; // denoised
@@ -10,7 +11,7 @@ uniform float samples, mostSamples; // of a pixel in a frame
 layout(location = 0) out float outMore;
 
 const float kEnough = 8.0; // frames
-const float kNoise = 0.02; // standard deviation over the mean
+const float kNoise = 0.03; // standard deviation over the mean
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

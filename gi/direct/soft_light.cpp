@@ -3,7 +3,6 @@
 #include "engine/core/parallel.h"
 #include "gi/gather/add_pixels.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace lambent {
@@ -41,7 +40,7 @@ std::span<const uint8_t> SoftLightPass::more(const Frame& frame, const FrameSurf
 void SoftLightPass::findNext(const Frame& frame) {
   const DirectSettings& settings = frame.settings.direct;
   if (settings.mostSamples <= settings.samples) {
-    next_ = {};
+    next_ = {}, nextFramebuffer_ = {};
     return;
   }
   const GBuffer& surfaces = frame.surfaces;

@@ -24,6 +24,7 @@ class SoftLightPass {
  private:
   /// How many samples beyond direct.samples each pixel gets: more where the mean of its place held few frames.
   std::span<const uint8_t> more(const Frame& frame, const FrameSurfaces& surfaces);
+  /// Finds these for the frame after this one.
   void findNext(const Frame& frame);
 
   PassContext context_;
@@ -31,12 +32,12 @@ class SoftLightPass {
   HistoryPass history_{context_, StageId::SoftLight, true};
   DenoisePass denoise_{context_};
   SoftParts parts_ = SoftParts::All;
-  SurfaceLighting denoised_;  // of the last frame
-  gl::Texture next_; // by the last frame: samples beyond direct.samples
+  SurfaceLighting denoised_; // of the last frame
+  gl::Texture next_;         // by the last frame: samples beyond direct.samples
   gl::Framebuffer nextFramebuffer_;
-  CameraBlock before_; // of the last frame
+  CameraBlock before_;                     // of the last frame
   std::vector<uint8_t> nextPixels_, more_; // of the last frame, of this one; rows from the bottom
-  int averaged_ = 0, rests_ = 0; // frames since anything changed; after which a still view rests
+  int averaged_ = 0, rests_ = 0;           // frames since anything changed; after which a still view rests
 };
 
 } // namespace lambent

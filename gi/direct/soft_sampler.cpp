@@ -80,7 +80,7 @@ class PixelNumbers {
 };
 
 constexpr uint32_t kMore = 1u << 30; // numbers of samples from here on are of those beyond SoftSampling::samples
-constexpr uint32_t kMost = 256;
+constexpr uint32_t kMost = 256;      // of a pixel in a frame
 
 /// What a pixel shows, for rays.
 struct Place {
@@ -197,8 +197,14 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
                                                : sampleCosineHemisphere(vertex.normal, u);
         const float cosine = glm::dot(direction, vertex.normal);
         if (!(cosine > 0) || glm::dot(direction, vertex.geometricNormal) <= 0) continue;
-        rays.push_back({offsetPoint(vertex.position, vertex.geometricNormal, epsilon), direction});
-        cast.push_back({p, vec3(cosine / (pdfOfRay(vertex, direction) * float(samples)))});
+        const Ray ray{offsetPoint(vertex.position, vertex.geometricNormal, epsilon), direction};
+        const vec3 perRadiance(cosine / (pdfOfRay(vertex, direction) * float(samples)));
+        if (lights.emission) {
+          rays.push_back(ray);
+          cast.push_back({p, perRadiance});
+        } else { // which surface it meets, if any, is all the same
+          connect(p, {ray, skyByRay(lights, vertex, direction) * perRadiance});
+        }
       }
     }
 

@@ -29,7 +29,7 @@ enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
-enum class CubeMaker : int { Auto, Raster, Rays };         // who makes hemicubes; auto measures both once
+enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes; auto measures both once
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
 enum class SoftLightBy : int { Rays, Maps };
@@ -114,9 +114,9 @@ struct ShadowSettings {
 struct DirectSettings {
   bool on = true;
   SoftLightBy soft = SoftLightBy::Rays;
-  int samples = 2; // rays: of a pixel in each frame
+  int samples = 2;      // rays: of a pixel in each frame
   int mostSamples = 16; // rays: of a pixel whose mean over frames holds few of them
-  int frames = 64; // rays: that are averaged
+  int frames = 64;      // rays: that are averaged
   bool operator==(const DirectSettings&) const = default;
 };
 

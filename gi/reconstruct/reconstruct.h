@@ -38,9 +38,9 @@ struct HistoryInputs {
   bool lightChanges; // what is kept then follows this frame; glossy light is of few
   const HistorySettings& settings;
   const FilterSettings& filter;
-  float follow = 0.5f;  // share of a coarse change that its first frame shows
-  SurfaceLighting smooth = {}; // the frame before, denoised: with a variance, edges of light are found in it
-  int glossyFrames = 0; // earlier frames that a mean of glossy light holds at most while camera or light moves
+  float follow = 0.5f;         // share of a coarse change that its first frame shows
+  SurfaceLighting smooth = {}; // the frame before, denoised, or null: what variance is about, and edges are found in
+  int glossyFrames = 0;        // earlier frames that a mean of glossy light holds at most while camera or light moves
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.
@@ -58,7 +58,7 @@ class HistoryPass {
   bool follows() const { return following_ > 0; }
   /// Number of frames in the mean, which is the number of the next sample.
   uint32_t sample() const { return frames_; }
-  /// Of the luminance of a pixel's frames about their mean: of irradiance, of glossy light. RG32F.
+  /// Of the luminance of a pixel's frames: of irradiance, of glossy light. RG32F.
   const gl::Texture& variance() const { return kept_[now_].variance; }
   /// Alpha: frames that a mean is worth, few where looking it up blurs an edge of light; 0: no surface. RGBA32F.
   const gl::Texture& worth() const { return kept_[now_].seen; }
@@ -90,7 +90,7 @@ class HistoryPass {
 
 struct DenoiseInputs {
   const GBuffer& surfaces;
-  const SurfaceLighting& mean;        // of HistoryPass, with a variance
+  const SurfaceLighting& mean;         // of HistoryPass, with a variance
   const gl::Texture &variance, &worth; // HistoryPass's
   const FilterSettings& filter;
 };

@@ -17,21 +17,22 @@ class DenoiseTest : public GatherTest {
     HistoryPass history(passes, StageId::History, true);
     DenoisePass denoise(passes);
     Rng rng(7, Stream::Test, 0);
-    SurfaceLighting mean;
+    SurfaceLighting mean, smooth;
     gl::Texture given;
     for (int i = 0; i < frames; ++i) {
       std::vector<vec4> light(size_t(kWidth) * kHeight);
-      for (const auto [x, y] : Pixels(kWidth, kHeight))
-        light[size_t(y) * kWidth + size_t(x)] = vec4(truthAt(x) * (1 + noise * (2 * rng.next() - 1)) *
-                                                          (rng.next() * float(rare) < 1 ? float(rare) : 0));
+      for (const auto [x, y] : Pixels(kWidth, kHeight)) {
+        const float brought = truthAt(x) * (1 + noise * (2 * rng.next() - 1));
+        light[size_t(y) * kWidth + size_t(x)] = vec4(rng.next() * float(rare) < 1 ? brought * float(rare) : 0);
+      }
       if (odd >= 0) light[size_t(odd)] = vec4(std::numeric_limits<float>::quiet_NaN());
       given = textureOf(kWidth, kHeight, light);
       history.fit(gbuffer);
       const SurfaceLighting raw{&given, nullptr, false};
-      mean = history.run({gbuffer, raw, false, false, {.frames = 64}, {}});
+      mean = history.run({gbuffer, raw, false, false, {.frames = 64}, {}, 0.5f, smooth});
+      smooth = denoise.run({gbuffer, mean, history.variance(), history.worth(), {}});
     }
-    return {read(Buffer::Irradiance, gbuffer, mean, denoise.run({gbuffer, mean, history.variance(), history.worth(), {}})),
-            read(Buffer::Irradiance, gbuffer, mean, mean)};
+    return {read(Buffer::Irradiance, gbuffer, mean, smooth), read(Buffer::Irradiance, gbuffer, mean, mean)};
   }
   /// RMS of the error over the truth, and its mean.
   static std::pair<double, double> errorOf(const Image& image) {

@@ -89,6 +89,7 @@ const std::vector<Knob>& knobTable() {
       {"shadow.rays", {"off", "on"}, Direct},
       {"direct.soft", {"maps", "rays"}, Direct},
       {"direct.samples", {"1", "2", "8"}, Direct},
+      {"direct.mostSamples", {"2", "16", "64"}, Direct},
       {"direct.frames", {"0", "16", "64"}, Direct},
       {"shadow.emitterSamples", {"4", "16", "64"}, Direct, byMaps},
       {"shadow.emitterResolution", {"64", "256", "512"}, Direct, byMaps},
