@@ -59,7 +59,9 @@ void render(const RenderOptions& options) {
     });
     sayWarning(*stats);
     if (stats->plan.on(EffectId::Redraw)) drawn = *stats;
-    if (!options.frames && stats->plan.on(EffectId::History)) frames = opened->settings.history.frames;
+    if (options.frames) continue;
+    if (stats->plan.on(EffectId::History)) frames = std::max(frames, opened->settings.history.frames);
+    if (stats->raysSoft.occlusion > 0) frames = std::max(frames, opened->settings.direct.frames);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   writeBuffer(out, gi, buffer);
@@ -219,8 +221,9 @@ void declareRender(CLI::App& app) {
   command.launch(options->launch);
   command.output(options->output, "picture, .png or linear .exr (default lambent.png)");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "draw"));
-  command.number("--frames", &options->frames, 1, 1000000,
-                 "frames up to the picture (default: as many as its light is averaged over, history.frames)");
+  command.number(
+      "--frames", &options->frames, 1, 1000000,
+      "frames up to the picture (default: as many as its light is averaged over: history.frames, direct.frames)");
   command.run([options] { render(*options); });
 }
 
