@@ -7,8 +7,8 @@ vec2 spanWith(vec2 span, vec3 light) {
   return vec2(min(span.x, brightness), max(span.y, brightness));
 }
 
-/// With one frame more, whose luminance is `now`, after `frames`; the frame before spans `before` at the places that were
-/// looked up. What lies between is an edge, not noise. 0 of a first frame, which has nothing to differ from.
+/// With one frame more, whose luminance is `now`, after `frames`. The frame before spans `before` where it was looked
+/// up; what lies between is an edge, not noise. 0 of a first frame, which has nothing to differ from.
 float varianceWith(float variance, float now, vec2 before, float frames) {
   float distance = now - clamp(now, before.x, before.y), share = 1.0 / max(frames, 1.0);
   float sum = frames > 0.0 ? mix(variance, distance * distance, share) : 0.0;
