@@ -1,6 +1,5 @@
 #include "gi/direct/soft_light.h"
 
-#include "engine/core/parallel.h"
 #include "gi/gather/add_pixels.h"
 
 #include <utility>
@@ -16,25 +15,11 @@ constexpr int kGlossy = 8;      // earlier frames of glossy light while camera o
 
 } // namespace
 
-std::span<const uint8_t> SoftLightPass::more(const Frame& frame, const FrameSurfaces& surfaces) {
+MoreSamples SoftLightPass::more(const Frame& frame) {
   if (!next_ || history_.sample() == 0 || !frame.plan.seenChanges()) return {};
-  const glm::ivec2 size(next_.width(), next_.height());
-  nextPixels_.resize(size_t(size.x) * size_t(size.y));
+  nextPixels_.resize(size_t(next_.width()) * size_t(next_.height()));
   next_.read(std::span(nextPixels_), GL_RED, GL_UNSIGNED_BYTE);
-  more_.assign(size_t(surfaces.width) * size_t(surfaces.height), 0);
-  constexpr size_t kRows = 8;
-  parallelFor(size_t(surfaces.height), kRows, [&](size_t begin, size_t end) {
-    for (int y = int(begin); y < int(end); ++y) {
-      for (int x = 0; x < surfaces.width; ++x) {
-        if (!surfaces.seen({x, y})) continue;
-        const vec4 clip = before_.clipFromWorld * vec4(surfaces.positionAt({x, y}), 1);
-        const vec2 at = (vec2(clip) / clip.w * 0.5f + 0.5f) * vec2(size);
-        if (clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < float(size.x) && at.y < float(size.y))
-          more_[surfaces.at({x, y})] = nextPixels_[size_t(at.y) * size_t(size.x) + size_t(at.x)];
-      }
-    }
-  });
-  return more_;
+  return {nextPixels_, next_.width(), next_.height(), before_.clipFromWorld};
 }
 
 void SoftLightPass::findNext(const Frame& frame) {
@@ -75,14 +60,15 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   {
     const CpuScope scope(stats.stages, key(StageId::SoftRays));
     RayCounts counts;
-    const FrameSurfaces surfaces = reader.read(frame.surfaces);
+    const bool byImage = frame.settings.direct.surfaces == SoftSurfaces::Image;
+    const FrameSurfaces surfaces = byImage ? reader.read(frame.surfaces) : FrameSurfaces{};
     const int samples = frame.settings.direct.samples;
     found = sampleSoftLight({.rays = frame.world.rays,
                              .lights = lights,
                              .view = frame.world.view,
-                             .surfaces = surfaces,
+                             .surfaces = byImage ? &surfaces : nullptr,
                              .samples = samples,
-                             .more = more(frame, surfaces),
+                             .more = more(frame),
                              .sample = history_.sample() * uint32_t(samples),
                              .glossy = glossy,
                              .seed = frame.seed},

@@ -23,7 +23,7 @@ class SoftLightPass {
 
  private:
   /// How many samples beyond direct.samples each pixel gets: more where the mean of its place held few frames.
-  std::span<const uint8_t> more(const Frame& frame, const FrameSurfaces& surfaces);
+  MoreSamples more(const Frame& frame);
   /// Finds these for the frame after this one.
   void findNext(const Frame& frame);
 
@@ -35,9 +35,9 @@ class SoftLightPass {
   SurfaceLighting denoised_; // of the last frame
   gl::Texture next_;         // by the last frame: samples beyond direct.samples
   gl::Framebuffer nextFramebuffer_;
-  CameraBlock before_;                     // of the last frame
-  std::vector<uint8_t> nextPixels_, more_; // of the last frame, of this one; rows from the bottom
-  int averaged_ = 0, rests_ = 0;           // frames since anything changed; after which a still view rests
+  CameraBlock before_;              // of the last frame
+  std::vector<uint8_t> nextPixels_; // of the last frame, rows from the bottom
+  int averaged_ = 0, rests_ = 0;    // frames since anything changed; after which a still view rests
 };
 
 } // namespace lambent

@@ -100,11 +100,22 @@ bool isSame(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const Surfac
   return !surfaces.exact || glm::dot(way, way) <= pixelSize * pixelSize;
 }
 
-PathVertex vertexOf(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, bool same) {
-  const vec3 normal = surfaces.normalAt(pixel);
+struct Start {
+  PathVertex vertex;
+  bool atHit;
+};
+
+/// Where a pixel's samples start.
+Start startOf(const FrameSurfaces* surfaces, const glm::ivec2& pixel, const SurfaceHit& hit) {
+  if (!surfaces) return {{hit.position, hit.normal, hit.geometricNormal}, true};
+  const float distance = viewDistanceFromDepth(surfaces->camera, surfaces->depth[surfaces->at(pixel)]);
+  const vec4& lens = surfaces->camera.lens;
+  const float pixelSize = 2 * lens.y * surfaces->camera.size.w * (lens.w > 0 ? 1 : distance);
+  const vec3 normal = surfaces->normalAt(pixel);
+  if (!isSame(*surfaces, pixel, hit, pixelSize)) return {{surfaces->positionAt(pixel), normal, normal}, false};
   constexpr float kSameNormal = 0.98f;
-  if (!same) return {surfaces.positionAt(pixel), normal, normal};
-  return {hit.position, glm::dot(hit.normal, normal) > kSameNormal ? hit.normal : normal, hit.geometricNormal};
+  const bool alike = glm::dot(hit.normal, normal) > kSameNormal;
+  return {{hit.position, alike ? hit.normal : normal, hit.geometricNormal}, true};
 }
 
 /// Light that a ray would bring.
@@ -114,6 +125,14 @@ struct Pending {
 };
 
 } // namespace
+
+int MoreSamples::at(const vec3& position) const {
+  if (pixels.empty()) return 0;
+  const vec4 clip = clipFromWorld * vec4(position, 1);
+  const vec2 at = (vec2(clip) / clip.w * 0.5f + 0.5f) * vec2(width, height);
+  if (!(clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < float(width) && at.y < float(height))) return 0;
+  return pixels[size_t(at.y) * size_t(width) + size_t(at.x)];
+}
 
 LightSet softLightsOf(const LightSet& lights, SoftParts parts) {
   LightSet soft;
@@ -132,7 +151,6 @@ LightSet softLightsOf(const LightSet& lights, SoftParts parts) {
 
 SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
   const CameraView& camera = in.view.camera;
-  const FrameSurfaces& surfaces = in.surfaces;
   const LightSet& lights = in.lights;
   const float epsilon = in.rays.rayEpsilon();
   const bool connects = lights.lightCount() > 0, sky = !lights.sky.black();
@@ -146,7 +164,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
     std::vector<vec2> centres;
     for (size_t i = begin; i < end; ++i) {
       const glm::ivec2 at(int(i % size_t(camera.width)), int(i / size_t(camera.width)));
-      if (!surfaces.seen({at.x, camera.height - 1 - at.y})) continue;
+      if (in.surfaces && !in.surfaces->seen({at.x, camera.height - 1 - at.y})) continue;
       seen.push_back(uint32_t(i));
       centres.push_back((vec2(at) + 0.5f) / vec2(camera.width, camera.height));
     }
@@ -154,15 +172,13 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
     count.closest += centres.size();
     std::vector<Place> places;
     for (size_t k = 0; k < seen.size(); ++k) {
+      if (!in.surfaces && !hits[k].valid()) continue;
       const glm::ivec2 pixel(int(seen[k] % uint32_t(camera.width)),
                              camera.height - 1 - int(seen[k] / uint32_t(camera.width)));
-      const float distance = viewDistanceFromDepth(surfaces.camera, surfaces.depth[surfaces.at(pixel)]);
-      const vec4& lens = surfaces.camera.lens;
-      const float pixelSize = 2 * lens.y * surfaces.camera.size.w * (lens.w > 0 ? 1 : distance);
-      const bool same = isSame(surfaces, pixel, hits[k], pixelSize);
-      const int samples = in.samples + (in.more.empty() ? 0 : in.more[surfaces.at(pixel)]);
-      Place place{seen[k], vertexOf(surfaces, pixel, hits[k], same), {}, false, samples, PixelNumbers(pixel, in.seed)};
-      if (in.glossy && same) { // the lobes of another surface would be of another light
+      const Start start = startOf(in.surfaces, pixel, hits[k]);
+      const int samples = in.samples + in.more.at(start.vertex.position);
+      Place place{seen[k], start.vertex, {}, false, samples, PixelNumbers(pixel, in.seed)};
+      if (in.glossy && start.atHit) { // the lobes of another surface would be of another light
         place.receiver = receiverOf(in.view, hits[k]);
         place.lobe = true;
       }

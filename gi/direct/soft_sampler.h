@@ -17,14 +17,23 @@ enum class SoftParts { All, SkyAndSuns };
 /// Returns those of the lights that have a size.
 LightSet softLightsOf(const LightSet& lights, SoftParts parts);
 
+/// How many samples beyond the others pixels of the frame before ask for, rows from the bottom.
+struct MoreSamples {
+  std::span<const uint8_t> pixels; // empty: none
+  int width = 0, height = 0;
+  mat4 clipFromWorld{1}; // of that frame
+  /// At the pixel that showed the world-space position; 0 beyond the image.
+  int at(const vec3& position) const;
+};
+
 struct SoftSampling {
   const RayQuery& rays;
   const LightSet& lights; // softLightsOf
   const SceneView& view;
-  const FrameSurfaces& surfaces; // of the view's camera
-  int samples = 1;               // of each pixel
-  std::span<const uint8_t> more; // of each pixel, more of them, rows from the bottom; empty: none
-  uint32_t sample = 0;           // number of the first one: those of a mean follow each other
+  const FrameSurfaces* surfaces = nullptr; // of the view's camera; null: what a ray through each pixel's centre meets
+  int samples = 1;                         // of each pixel
+  MoreSamples more;
+  uint32_t sample = 0; // number of the first one: those of a mean follow each other
   bool glossy = false;
   uint32_t seed = 1;
 };

@@ -91,6 +91,9 @@ class Table {
     choice(SETTING(direct, soft), {"rays", "maps"}, Maps,
            "emissive surfaces, sky and suns' disks in direct light: rays from every pixel, averaged over frames and "
            "denoised, or shadow maps of points that stand for them");
+    choice(SETTING(direct, surfaces), {"image", "rays"}, Nothing,
+           "direct.soft rays: where they start: at the image's surfaces, for which the CPU waits, or at what a ray "
+           "through each pixel meets");
     number(SETTING(direct, samples), {1, 256, "samples", PowersOfTwo}, Nothing,
            "direct.soft rays: of every pixel in each frame, each a ray to a light, one to the sky and one anywhere");
     number(SETTING(direct, mostSamples), {1, 256, "samples", PowersOfTwo}, Nothing,

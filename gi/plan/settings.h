@@ -33,6 +33,7 @@ enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes; auto 
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
 enum class SoftLightBy : int { Rays, Maps };
+enum class SoftSurfaces { Image, Rays };
 enum class FilterKernel : int { Separable, Whole };        // rows then columns | all 49 taps at once
 enum class ToneMapper : int { Reinhard, Neutral, Filmic }; // shaders/shared/tone_map.h
 enum class AntiAliasing : int { Off, Edges };              // shaders/antialias.frag
@@ -114,6 +115,7 @@ struct ShadowSettings {
 struct DirectSettings {
   bool on = true;
   SoftLightBy soft = SoftLightBy::Rays;
+  SoftSurfaces surfaces = SoftSurfaces::Rays; // rays: where samples start
   int samples = 2;      // rays: of a pixel in each frame
   int mostSamples = 16; // rays: of a pixel whose mean over frames holds few of them
   int frames = 64;      // rays: that are averaged

@@ -29,14 +29,14 @@ struct Seen {
   }
 
   /// Irradiance, or lobes' light; row 0 at the top.
-  Image sampled(int samples, uint32_t first = 0, bool glossy = false, uint32_t seed = 1,
-                std::span<const uint8_t> more = {}) const {
+  Image sampled(int samples, uint32_t first = 0, bool glossy = false, uint32_t seed = 1, const MoreSamples& more = {},
+                bool byImage = true) const {
     RayCounts counts;
     const LightSet lights = softLightsOf(traced.lights, SoftParts::All);
     const SoftLight light = sampleSoftLight({.rays = traced.rays,
                                              .lights = lights,
                                              .view = traced.view,
-                                             .surfaces = surfaces,
+                                             .surfaces = byImage ? &surfaces : nullptr,
                                              .samples = samples,
                                              .more = more,
                                              .sample = first,
@@ -130,7 +130,8 @@ TEST(SoftSampler, PixelsMayHaveMoreSamples) {
   std::vector<uint8_t> more(32 * 32, 0);
   for (const auto [x, y] : Pixels(32, 32))
     if (x >= 16) more[size_t(31 - y) * 32 + size_t(x)] = 30;
-  const Image light = Seen(floor.scene).sampled(2, 0, false, 1, more);
+  Seen seen(floor.scene);
+  const Image light = seen.sampled(2, 0, false, 1, {more, 32, 32, cameraBlock(floor.scene.camera, 1000).clipFromWorld});
   double squares[2] = {0, 0}, sum[2] = {0, 0};
   for (const auto [x, y] : Pixels(light)) {
     const double error =
@@ -140,6 +141,17 @@ TEST(SoftSampler, PixelsMayHaveMoreSamples) {
   std::printf("relative error of 2 and of 32 samples: %.4f, %.4f\n", std::sqrt(squares[0]), std::sqrt(squares[1]));
   EXPECT_LT(std::sqrt(squares[1]), 0.3 * std::sqrt(squares[0]));
   for (int i = 0; i < 2; ++i) EXPECT_LT(std::abs(sum[i]), 4 * std::sqrt(squares[i] / 512)) << i;
+}
+
+TEST(SoftSampler, RaysAloneFindThePlacesThatTheImageShows) {
+  LampOverFloor floor;
+  floor.scene.quad({-0.9f, 0, -0.9f}, {0.5f, 0.3f, 0}, {0, 0, 0.5f}, floor.scene.material(vec3(0.5f)));
+  const Seen seen(floor.scene);
+  const Image byImage = seen.sampled(4), byRays = seen.sampled(4, 0, false, 1, {}, false);
+  for (const auto [x, y] : Pixels(byImage))
+    ASSERT_LT(maxComponent(glm::abs(byImage.at(x, y) - byRays.at(x, y))),
+              1e-4f * maxComponent(byImage.at(x, y)) + 1e-5f)
+        << x << ' ' << y;
 }
 
 TEST(SoftSampler, OpenPlatesGetTheWholeSky) {

@@ -88,6 +88,7 @@ const std::vector<Knob>& knobTable() {
       // Direct light.
       {"shadow.rays", {"off", "on"}, Direct},
       {"direct.soft", {"maps", "rays"}, Direct},
+      {"direct.surfaces", {"image", "rays"}, Direct},
       {"direct.samples", {"1", "2", "8"}, Direct},
       {"direct.mostSamples", {"2", "16", "64"}, Direct},
       {"direct.frames", {"0", "16", "64"}, Direct},
