@@ -19,10 +19,11 @@ uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along 
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
-uniform bool fresh; // light of one frame, whatever its a
+uniform bool fresh;   // light of one frame, whatever its a
+uniform float enough; // frames in a mean that needs no neighbours
 
-/// What a neighbour counts for, by the frames in this pixel's mean: one that holds every class needs none.
-float shareOf(float frames) { return fresh ? 1.0 : clamp((16.0 - frames) / 15.0, 0.0, 1.0); }
+/// What a neighbour counts for, by the frames in this pixel's mean.
+float shareOf(float frames) { return fresh ? 1.0 : clamp((enough - frames) / (enough - 1.0), 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

@@ -1,6 +1,6 @@
 #version 450
 // Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + a/π)·V.
-// Variants of lib/gathered_pixel.glsl and lib/vpl_shading.glsl.
+// Variants of lib/gathered_pixel.glsl and lib/vpl_shading.glsl; LISTS: the lights that the pixel's tile has chosen.
 #include "lib/gbuffer.glsl"
 #include "lib/vpl_shading.glsl"
 #include "lib/gathered_pixel.glsl"
@@ -13,7 +13,14 @@ uniform int firstClass;     // in the block
 uniform int classCount;
 uniform int blockClass;     // class that the block starts with
 uniform int perClass;       // lights in each class
-uniform float scale;        // 16 for one class of 16, 1 for all
+uniform float scale;        // 16 for one class of 16, 1 for all, and for lists
+#ifdef LISTS
+layout(binding = 4) uniform usampler2D lists; // LightLists::texture
+uniform int listTile;    // pixels
+uniform int tilesAcross;
+uniform int firstTexel;  // of this draw's class
+uniform int chunk, chunks;
+#endif
 #ifdef CHECKED
 uniform int turn; // another one for each frame of those that are averaged, and each 2048 lights
 #ifdef GLOSSY
@@ -43,9 +50,22 @@ void main() {
 #ifdef CHECKED
   sum.number = numberOf(uvec2(pixel));
 #endif
+#ifdef LISTS
+  ivec2 tile = pixel / listTile;
+  int row = tile.y * tilesAcross + tile.x;
+  int begin = chunk == 0 ? 0 : int(texelFetch(lists, ivec2(firstTexel + chunk - 1, row), 0).r);
+  int end = int(texelFetch(lists, ivec2(firstTexel + chunk, row), 0).r);
+  for (int i = begin; i < end; ++i) {
+    uint entry = texelFetch(lists, ivec2(firstTexel + chunks + i, row), 0).r;
+    int slot = int(entry & 0xffffu);
+    int at = chunk * kLightClasses * kLightsPerClass + (slot % kLightClasses) * kLightsPerClass + slot / kLightClasses;
+    receive(sum, surface, lightAt(at), slot, unpackHalf2x16(entry >> 16).x);
+  }
+#else
   for (int c = firstClass; c < firstClass + classCount; ++c)
     for (int i = 0; i < perClass; ++i)
-      receive(sum, surface, lights[c * kLightsPerClass + i], i * kLightClasses + blockClass + c);
+      receive(sum, surface, lights[c * kLightsPerClass + i], i * kLightClasses + blockClass + c, 1.0);
+#endif
   outIrradiance = vec4(sum.irradiance * scale, 1.0);
 #ifdef CHECKED
   float gain = sum.drawn > 0.0 ? scale * sum.term * sum.unseen / sum.drawn : 0.0;

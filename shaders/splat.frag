@@ -13,7 +13,7 @@ void main() {
   Surface surface = surfaceAt(pixel, texelFetch(gbufferDepth, pixel, 0).r);
   Received sum = receivedNothing();
   int layer = light % kLightsPerClass * kLightClasses + blockClass + light / kLightsPerClass;
-  receive(sum, surface, lights[light], layer);
+  receive(sum, surface, lights[light], layer, 1.0);
   outIrradiance = vec4(sum.irradiance, 1.0);
 #ifdef GLOSSY
   outGlossy = vec4(sum.glossy / glossyTint(surface.receiver), 1.0);

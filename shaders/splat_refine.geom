@@ -40,7 +40,7 @@ bool differs(ivec2 texel, int at) {
     if (depth == 0.0) continue;
     Surface surface = surfaceAt(pixel, depth);
     Received received = receivedNothing();
-    receive(received, surface, vpl, layer);
+    receive(received, surface, vpl, layer, 1.0);
     vec3 fromLight = surface.position - vpl.positionArea.xyz;
     vec3 facing = vpl.powerNormalX.rgb / (dot(fromLight, fromLight) + vpl.positionArea.w * diskFactor);
     vec3 seen = received.irradiance;

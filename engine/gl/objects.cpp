@@ -94,6 +94,7 @@ int texelBytes(GLenum format) {
   case GL_RG16:
   case GL_SRGB8_ALPHA8:
   case GL_R32F:
+  case GL_R32UI:
   case GL_DEPTH24_STENCIL8:
   case GL_DEPTH_COMPONENT32F:
     return 4;

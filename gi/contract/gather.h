@@ -1,18 +1,24 @@
 // What gives light of virtual lights on surfaces: the part of a composed technique between lights and reconstruction.
 #pragma once
 
+#include "gi/contract/light_lists.h"
 #include "gi/contract/light_provider.h"
+
+#include <functional>
 
 namespace lambent {
 
 struct GatherInputs {
   const Frame& frame;
   ShadowedLights lights;
+  const LightLists* lists = nullptr; // which lights a pixel gathers; null: all, or those of its class
   uint32_t sample = 0;   // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such samples
   bool changes = false;  // light does; means are short then
   bool stands = false;   // neither light nor camera changes, and means follow no change before
-  bool stores = true;    // what outlives frames follows the lights; else it stays as it is
+  /// Mixes near light with its neighbours', where nobody mixes what was gathered; empty: not.
+  std::function<SurfaceLighting(const SurfaceLighting&)> mixNear = {};
+  bool stores = true; // what outlives frames follows the lights; else it stays as it is
 };
 
 class Gather {

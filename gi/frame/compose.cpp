@@ -35,6 +35,7 @@ bool sameSource(const Axes& a, const Axes& b) {
 std::unique_ptr<Gather> makeGather(const Axes& axes, PassContext context) {
   if (byRays(axes)) return makeRayGather(context);
   switch (axes.gather) {
+  case GatherMode::Lists:
   case GatherMode::Interleaved:
     return makePixelGather(context, true);
   case GatherMode::Full:

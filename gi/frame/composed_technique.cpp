@@ -10,6 +10,9 @@ namespace {
 /// Light is averaged over frames. (Forced, it has nothing to do.)
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
+constexpr int kNearFrames = 16; // of near light in a mean that needs no neighbours
+constexpr int kListFrames = 4;  // of light by lists
+
 } // namespace
 
 void ComposedTechnique::wait() {
@@ -67,16 +70,42 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
   const ShadowedLights lights = maps_.update({frame, lights_, needs_.maps}, stats);
   if (averaging) history_.fit(frame.surfaces);
+  const uint32_t sample = averaging ? history_.sample() : 0;
+  const LightLists* lists = needs_.lists ? &chooseLists(frame, sample, stats) : nullptr;
+  const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
+  // Lists leave gathered light with little noise, and mixing it would only blur; near light has much, until a still
+  // view has averaged it.
+  std::function<SurfaceLighting(const SurfaceLighting&)> mixNear;
+  if (lists && plan.on(EffectId::Filter) && !(stands && sample >= uint32_t(kNearFrames)))
+    mixNear = [&](const SurfaceLighting& near) {
+      SurfaceLighting noisy = near;
+      noisy.subsets = true;
+      return nearFilter_.run({frame.surfaces, noisy, frame.settings.filter});
+    };
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,
-                            .sample = averaging ? history_.sample() : 0,
+                            .lists = lists,
+                            .sample = sample,
                             .averaged = averaging,
                             .changes = changes,
-                            .stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows(),
+                            .stands = stands,
+                            .mixNear = mixNear,
                             .stores = plan.on(EffectId::Gather)},
                            stats);
+  if (lists) gathered_.enough = kListFrames;
   if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = draws();
   return reconstruct(frame, stats);
+}
+
+const LightLists& ComposedTechnique::chooseLists(const Frame& frame, uint32_t sample, FrameStats& stats) {
+  const CpuScope scope(stats.stages, key(StageId::Lists));
+  return lists_.run({.view = frame.world.view,
+                     .rays = frame.world.rays,
+                     .lights = lights_.slots,
+                     .gather = frame.settings.gather,
+                     .sample = sample,
+                     .seed = frame.seed},
+                    stats.raysLists.closest);
 }
 
 SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, FrameStats& stats) {

@@ -5,6 +5,7 @@
 #include "gi/contract/gather.h"
 #include "gi/contract/light_source.h"
 #include "gi/contract/pass_context.h"
+#include "gi/gather/list_pass.h"
 #include "gi/reconstruct/reconstruct.h"
 #include "gi/visibility/shadow_map_cache.h"
 
@@ -33,6 +34,7 @@ class ComposedTechnique : public LightProvider {
   ProviderInside inside() const override;
 
  private:
+  const LightLists& chooseLists(const Frame& frame, uint32_t sample, FrameStats& stats);
   SurfaceLighting reconstruct(const Frame& frame, FrameStats& stats);
 
   PassContext context_;
@@ -40,9 +42,10 @@ class ComposedTechnique : public LightProvider {
   Needs needs_;
   std::unique_ptr<LightSource> source_;
   ShadowMapCache maps_{context_};
+  ListPass lists_;
   std::unique_ptr<Gather> gather_, shown_; // shown_: whose light the last frame still shows, until the next is there
   HistoryPass history_{context_};
-  FilterPass filter_{context_};
+  FilterPass filter_{context_}, nearFilter_{context_};
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
   int averaged_ = 0;         // samples in the history since anything changed

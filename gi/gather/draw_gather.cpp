@@ -87,13 +87,23 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   if (in.patches) desc.defines.push_back("PATCHES");
   if (maps) desc.defines.push_back("SHADOWS");
   if (!in.checks.empty()) desc.defines.push_back("CHECKED");
+  if (in.lists) desc.defines.push_back("LISTS");
   const gl::Program& program = programs.get(desc);
   program.use();
   setShading(program, in);
   const bool subsets = in.grid > 1;
   program.set("stride", in.grid);
   program.set("classCount", subsets ? 1 : kClassesPerLightBlock);
-  program.set("scale", subsets ? float(kLightClasses) : 1.0f);
+  program.set("scale", subsets && !in.lists ? float(kLightClasses) : 1.0f);
+  gl::Texture lights;
+  if (in.lists) {
+    lights = gl::Texture::ofBuffer("gather/lights", GL_RGBA32F, *packed.buffer);
+    lights.bind(3);
+    in.lists->texture->bind(4);
+    program.set("listTile", in.lists->tile);
+    program.set("tilesAcross", in.lists->tiles.x);
+    program.set("chunks", int(std::max(1u, (packed.count + kLightsPerChunk - 1) / kLightsPerChunk)));
+  }
   target.bind();
 
   constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
@@ -108,6 +118,14 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
     if (!in.checks.empty()) {
       in.checks[chunk].bind();
       program.set("turn", int(in.sample * chunks + chunk));
+    }
+    if (in.lists) {
+      program.set("chunk", int(chunk));
+      for (const GatherArea& area : in.areas) {
+        program.set("firstTexel", area.lightClass * in.lists->texture->width() / kLightClasses);
+        drawArea(program, area, in.patches, in.addToTarget || chunk > 0);
+      }
+      continue;
     }
     for (int block = 0; block < kLightClasses / kClassesPerLightBlock; ++block) {
       packed.buffer->bindUniform(1, (uint64_t(chunk) * 2 + block) * kBlockBytes, kBlockBytes);

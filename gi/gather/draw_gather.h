@@ -1,6 +1,7 @@
 // The draw that all gathers of virtual lights share.
 #pragma once
 
+#include "gi/contract/light_lists.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/surface_lighting.h"
 #include "gi/contract/virtual_lights.h"
@@ -20,10 +21,11 @@ struct GatherDraw {
   const GBuffer& surfaces;
   ShadowedLights lights;
   std::span<const GatherArea> areas = {};
-  int grid = 1;             // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
-  bool patches = false;     // fragments are patches; only those that the stencil marks are drawn
-  int finestPatch = 0;      // AtlasShape::finest
-  bool addToTarget = false; // instead of overwriting it
+  int grid = 1;                      // sub-images per axis: 4 (each sees a sixteenth of the lights), or 1
+  const LightLists* lists = nullptr; // which lights; null: all of an area's class
+  bool patches = false;              // fragments are patches; only those that the stencil marks are drawn
+  int finestPatch = 0;               // AtlasShape::finest
+  bool addToTarget = false;          // instead of overwriting it
   float biasTexels = 1;
   std::span<const gl::Framebuffer> checks = {}; // MapChecks::begin
   uint32_t sample = 0;                          // of those that are averaged, for checks

@@ -26,7 +26,16 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                            stats.raysNear);
     stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }
-  traced_.add(light.irradiance, light.glossy, in.frame.surfaces, target, grid);
+  if (!in.mixNear || grid == 1) {
+    traced_.add(light.irradiance, light.glossy, in.frame.surfaces, target, grid);
+    return;
+  }
+  const gl::PassScope scope = context_.scope(StageId::NearLight);
+  pixels_.fit(in.frame.surfaces);
+  const SurfaceLighting near = pixels_.light();
+  uploadPixels(*near.irradiance, light.irradiance, in.frame.surfaces, 1);
+  if (near.glossy) uploadPixels(*near.glossy, light.glossy, in.frame.surfaces, 1);
+  addToSubsets(context_, in.mixNear(near), in.frame.surfaces, target);
 }
 
 } // namespace lambent

@@ -9,12 +9,14 @@ namespace lambent {
 
 class NearLightPass {
  public:
-  explicit NearLightPass(PassContext context) : traced_(context, StageId::NearLight) {}
+  explicit NearLightPass(PassContext context) : context_(context), traced_(context, StageId::NearLight) {}
   /// Traces near light and adds it. `grid`: sub-images per axis of the target, 4 or 1.
   void add(const GatherInputs& in, const LightTarget& target, int grid, FrameStats& stats);
 
  private:
+  PassContext context_;
   PixelAdder traced_;
+  LightTarget pixels_{"near light"}; // in their places, to be mixed
 };
 
 } // namespace lambent

@@ -30,6 +30,7 @@ class PixelGather : public Gather {
                 .lights = in.lights,
                 .areas = gatherAreas(in.frame.surfaces, grid_, in.sample),
                 .grid = grid_,
+                .lists = in.lists,
                 .biasTexels = in.frame.settings.shadow.bias,
                 .checks = checks,
                 .sample = in.sample,

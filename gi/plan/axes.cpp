@@ -21,6 +21,7 @@ Needs needsOf(const Axes& axes) {
   needs.lightsOnGpu = !rays;
   needs.lightsOnCpu = needs.sampled() || axes.visibility != VplVisibility::None || gather.volume;
   needs.subsets = gather.subsets && !rays;
+  needs.lists = gather.lists && !rays;
   needs.nearRays = needs.sampled() && !gather.volume && !gather.stored;
   needs.stored = gather.stored;
   needs.freeGather = needs.sampled() && source.lights != LightSupply::Fixed && !gather.stored;
@@ -55,6 +56,8 @@ std::string whyNot(const Axes& axes) {
   if (source.tree && gather.splats)
     return mode + ": " + name +
            "'s clusters are chosen by who gathers (multires, multires-interleaved, interleaved or full)";
+  if (gather.lists && source.lights == LightSupply::Reflective)
+    return mode + ": " + name + "'s lights are on the GPU alone (interleaved or full)";
   const auto is = [&](Reconstruction r) { return axes.reconstruction == r; };
   if (gather.patches != (is(Reconstruction::Upsample) || is(Reconstruction::UpsampleFilter)))
     return mode + (gather.patches ? ": light at patches is upsampled" : ": there are no patches to upsample");

@@ -12,7 +12,18 @@ enum class VplSource : int { Smc, Ir, Mir, Tcas, Poisson, Rsm, Isr, Hisr, None }
 /// Who says which pixel a virtual light reaches.
 enum class VplVisibility : int { Maps, Rays, None };
 /// Where light is gathered. With rays, at every pixel from every light, whatever this says.
-enum class GatherMode : int { Interleaved, Full, Multires, MultiresInterleaved, Splat, SplatPerVpl, Volume, Cube, Own };
+enum class GatherMode : int {
+  Interleaved,
+  Lists,
+  Full,
+  Multires,
+  MultiresInterleaved,
+  Splat,
+  SplatPerVpl,
+  Volume,
+  Cube,
+  Own
+};
 /// How the frame's light is put together from what was gathered.
 enum class Reconstruction : int { None, Filter, Upsample, UpsampleFilter };
 
@@ -55,10 +66,14 @@ inline constexpr VisibilityRow kVisibilities[] = {
 struct GatherRow {
   const char* name;
   const char* help;
-  bool subsets = false, patches = false, splats = false, volume = false, stored = false;
+  bool subsets = false, lists = false, patches = false, splats = false, volume = false, stored = false;
 };
 inline constexpr GatherRow kGathers[] = {
     {.name = "interleaved", .help = "pixels, each of 4x4 from a sixteenth of the lights", .subsets = true},
+    {.name = "lists",
+     .help = "pixels, from lights chosen for each tile by what they bring",
+     .subsets = true,
+     .lists = true},
     {.name = "full", .help = "every pixel from every light"},
     {.name = "multires", .help = "every patch from every light", .patches = true},
     {.name = "multires-interleaved", .help = "patches of each of the 16 subsets", .subsets = true, .patches = true},

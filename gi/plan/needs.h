@@ -27,6 +27,7 @@ struct Needs {
 
   // How pixels get their light.
   bool subsets = false;    // neighbouring pixels gather different lights, which history and filter mix
+  bool lists = false;      // they are chosen for each tile (gi/lists)
   bool nearRays = false;   // pixels cast random rays for what bounds take from near lights (gather.near)
   bool stored = false;     // light is kept in a store over the scene that outlives frames
   bool freeGather = false; // visibility and gather are anybody's choice: presets, the governor, a person

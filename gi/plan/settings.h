@@ -116,9 +116,9 @@ struct DirectSettings {
   bool on = true;
   SoftLightBy soft = SoftLightBy::Rays;
   SoftSurfaces surfaces = SoftSurfaces::Rays; // rays: where samples start
-  int samples = 2;      // rays: of a pixel in each frame
-  int mostSamples = 16; // rays: of a pixel whose mean over frames holds few of them
-  int frames = 64;      // rays: that are averaged
+  int samples = 2;                            // rays: of a pixel in each frame
+  int mostSamples = 16;                       // rays: of a pixel whose mean over frames holds few of them
+  int frames = 64;                            // rays: that are averaged
   bool operator==(const DirectSettings&) const = default;
 };
 
@@ -136,6 +136,8 @@ struct AreaSettings {
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
+  int lights = 64; // lists: of each pixel
+  int tile = 8;    // lists: pixels along a side of a tile
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
   int near = 8; // rays per 4×4 pixels of subsets (else per pixel) for what disk and clamp take from near VPLs; 0: lost

@@ -42,6 +42,7 @@ namespace lambent {
   STAGE(VplMaps, "vpl maps")                                                                                           \
   STAGE(MapComparison, "map comparison")                                                                               \
   /* indirect light */                                                                                                 \
+  STAGE(Lists, "light lists")                                                                                          \
   STAGE(Gather, "gather")                                                                                              \
   STAGE(MapChecks, "map checks")                                                                                       \
   STAGE(NearLight, "near light")                                                                                       \

@@ -26,6 +26,7 @@ SurfaceLighting FilterPass::run(const FilterInputs& in) {
     program.set("tileSize", tileSize(in.surfaces));
     program.set("reach", reach);
     program.set("fresh", in.fresh);
+    program.set("enough", float(in.gathered.enough));
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
     from.irradiance->bind(2);

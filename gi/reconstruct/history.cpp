@@ -35,7 +35,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   if (changes) follow(in, now);
   before_ = in.surfaces.block;
   ++frames_;
-  return {&now.irradiance, orNull(now.glossy), false, in.gathered.subsets};
+  return {&now.irradiance, orNull(now.glossy), false, in.gathered.subsets, in.gathered.enough};
 }
 
 void HistoryPass::fit(const GBuffer& surfaces) {

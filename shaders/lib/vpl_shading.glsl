@@ -8,7 +8,16 @@
 #include "shared/vpl_light.h"
 
 // Half of the classes of a chunk of 2048 lights: see PackedLights in gi/contract/virtual_lights.h
+#ifdef LISTS
+layout(binding = 3) uniform samplerBuffer lightTexels;
+VplLight lightAt(int i) {
+  i *= 4;
+  return VplLight(texelFetch(lightTexels, i), texelFetch(lightTexels, i + 1), texelFetch(lightTexels, i + 2),
+                  texelFetch(lightTexels, i + 3));
+}
+#else
 layout(std140, binding = 1) uniform Lights { VplLight lights[kClassesPerLightBlock * kLightsPerClass]; };
+#endif
 layout(binding = 2) uniform sampler2DArray maps;
 uniform float diskFactor;    // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;      // 1/m²
@@ -98,8 +107,8 @@ vec3 inFrame(VplLight light, vec3 lightNormal, vec3 v) {
 }
 
 /// E = L·a·cosx·cosy/(r² + a/π)·V. No branches: pixels of a group disagree nearly always, and software Mesa pays for every
-/// mask. An empty slot has no power. `layer` is its map's.
-void receive(inout Received sum, Surface s, VplLight light, int layer) {
+/// mask. An empty slot has no power. `layer` is its map's. It counts `times`.
+void receive(inout Received sum, Surface s, VplLight light, int layer, float times) {
   vec3 fromLight = s.position - light.positionArea.xyz;
   float distance2 = squaredLength(fromLight);
   float inverseDistance = inversesqrt(distance2);
@@ -108,7 +117,7 @@ void receive(inout Received sum, Surface s, VplLight light, int layer) {
   vec3 lightNormal = vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w);
   vec3 d = inFrame(light, lightNormal, direction);
   float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
-  g = min(g, largestG);
+  g = min(g, largestG) * times;
 #ifdef SHADOWS
   float lit = visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosineReceiver);
 #ifdef CHECKED

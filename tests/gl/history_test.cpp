@@ -41,6 +41,38 @@ TEST_F(HistoryTest, AStillViewComesToHoldEveryLightAndSleeps) {
   EXPECT_LT(relativeRmse(gi.read(Buffer::Irradiance), all), 1e-4);
 }
 
+TEST_F(HistoryTest, ListsOfFewLightsAreEveryLight) {
+  settings.smc.vpls = settings.gather.lights = 512;
+  settings.filter.on = false;
+  settings.gather.near = 0;
+  for (const bool maps : {false, true}) {
+    settings.vpl.visibility = maps ? VplVisibility::Maps : VplVisibility::None;
+    const Image all = allLights(), lists = firstFrame(with(settings, GatherMode::Lists, 0), room.scene.view());
+    EXPECT_LT(relativeRmse(lists, all), 1e-5) << maps;
+  }
+}
+
+TEST_F(HistoryTest, ListsHaveLessNoiseThanSubsets) {
+  settings.filter.on = false;
+  settings.gather.near = 0;
+  const Image all = allLights();
+  double errors[2];
+  for (const GatherMode mode : {GatherMode::Lists, GatherMode::Interleaved}) {
+    const Image one = firstFrame(with(settings, mode, 0), room.scene.view());
+    errors[mode == GatherMode::Interleaved] = relativeRmse(one, all);
+    EXPECT_NEAR(meanLuminance(one), meanLuminance(all), 0.01 * meanLuminance(all));
+  }
+  std::printf("one frame, 64 lights by lists: %.4f, 128 of a class: %.4f\n", errors[0], errors[1]);
+  EXPECT_LT(errors[0], 0.6 * errors[1]);
+  Viewer gi(with(settings, GatherMode::Lists, 64));
+  gi.run(room.scene.view());
+  while (gi.run(still()).plan.on(EffectId::Redraw)) {
+  }
+  const double rests = relativeRmse(gi.read(Buffer::Irradiance), all);
+  std::printf("after 64 frames: %.4f\n", rests);
+  EXPECT_LT(rests, 0.15 * errors[0]);
+}
+
 TEST_F(HistoryTest, NearLightIsAveragedToo) {
   settings.gather.near = 8;
   settings.gather.nearLimit = 0;

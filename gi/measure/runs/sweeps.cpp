@@ -44,6 +44,7 @@ std::vector<Assignments> jointDesign(bool quick) {
 const std::vector<Knob>& knobTable() {
   using enum KnobLight;
   static const Assignments patches{{"gather.mode", "multires-interleaved"}};
+  static const Assignments byLists{{"gather.mode", "lists"}};
   static const Assignments byPatches{{"shadow.emitters", "patches"}};
   static const Assignments byMaps{{"direct.soft", "maps"}};
   static const Assignments clamped{{"gather.disk", "0"}, {"gather.near", "0"}};
@@ -72,7 +73,9 @@ const std::vector<Knob>& knobTable() {
       {"gather.nearLimit", {"2", "8", "0"}},
       {"gather.clamp", {"1", "10", "0"}, Indirect, clamped},
       // Where light is gathered, and how it is put together.
-      {"gather.mode", {"interleaved", "multires-interleaved", "multires", "full"}},
+      {"gather.mode", {"interleaved", "lists", "multires-interleaved", "multires", "full"}},
+      {"gather.lights", {"32", "64", "128"}, Indirect, byLists},
+      {"gather.tile", {"16", "8", "4"}, Indirect, byLists},
       {"filter.on", {"off", "on"}},
       {"filter.kernel", {"separable", "whole"}},
       {"filter.distance", {"0.0025", "0.01", "0.04"}},

@@ -1,0 +1,20 @@
+// Lists of lights on the GPU, for gathers.
+#pragma once
+
+#include "engine/gl/objects.h"
+#include "gi/contract/light_lists.h"
+#include "gi/lists/choose_lights.h"
+
+namespace lambent {
+
+class ListPass {
+ public:
+  /// Valid until the next run. Adds its rays to the count.
+  const LightLists& run(const ListInputs& in, uint64_t& rays);
+
+ private:
+  gl::Texture texture_;
+  LightLists lists_;
+};
+
+} // namespace lambent

@@ -1,0 +1,132 @@
+// Lights chosen for tiles: chances, and the expectation of lists.
+#include "gi/lists/choose_lights.h"
+#include "tests/support/hand_scene.h"
+
+#include <glm/gtc/packing.hpp>
+#include <gtest/gtest.h>
+
+namespace lambent::test::choose_lights_test {
+
+TEST(ChancesOf, SumToWhatIsWantedAndAreAtMostOne) {
+  const std::vector<float> weights{100, 0, 1, 2, 3, 50, 0.001f, 4};
+  std::vector<float> chances(weights.size());
+  for (const float wanted : {1.0f, 2.5f, 4.0f, 6.0f}) {
+    chancesOf(weights, wanted, chances);
+    double sum = 0;
+    for (size_t i = 0; i < weights.size(); ++i) {
+      EXPECT_LE(chances[i], 1) << wanted;
+      EXPECT_EQ(chances[i] > 0, weights[i] > 0) << wanted;
+      sum += double(chances[i]);
+    }
+    EXPECT_NEAR(sum, wanted, 1e-5);
+    EXPECT_NEAR(chances[3], std::min(1.0f, 2 * chances[2]), 1e-6f) << "in proportion";
+  }
+  chancesOf(weights, 7, chances);
+  for (size_t i = 0; i < weights.size(); ++i) EXPECT_EQ(chances[i], weights[i] > 0 ? 1 : 0);
+  chancesOf(std::vector<float>(8, 0.0f), 3, chances);
+  for (const float c : chances) EXPECT_EQ(c, 0);
+}
+
+/// A floor under a grid of lights that look down, brighter ones among them.
+struct LitFloor {
+  HandScene scene;
+  std::vector<VirtualLight> lights;
+
+  explicit LitFloor(size_t count) {
+    scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, scene.material(vec3(0.5f)));
+    scene.camera = cameraAt(vec3(0, 3, 0), vec3(0), 1.2f, 32, 32);
+    for (size_t i = 0; i < count; ++i) {
+      VirtualLight& l = lights.emplace_back();
+      l.position = vec3(float(i % 50) * 0.15f - 3.7f, 1.0f, float(i / 50) * 0.15f - 3.7f);
+      l.normal = l.geometricNormal = vec3(0, -1, 0);
+      l.radiance = vec3(i % 97 == 0 ? 50 : 1);
+      l.area = 0.01f;
+      l.alive = i % 5 != 1;
+    }
+  }
+  ListTable choose(int wanted, uint32_t sample) const {
+    const TracedScene traced(scene);
+    GatherSettings gather;
+    gather.lights = wanted;
+    uint64_t rays = 0;
+    return chooseLights(
+        {.view = traced.view, .rays = traced.rays, .lights = lights, .gather = gather, .sample = sample}, rays);
+  }
+};
+
+/// How often each light counts in the lists of a tile, mean over classes.
+std::vector<double> countsOf(const ListTable& table, size_t tile, size_t lights) {
+  std::vector<double> counts(lights, 0);
+  const size_t list = size_t(table.chunks + table.length);
+  for (size_t c = 0; c < kLightClasses; ++c) {
+    const uint32_t* texels = table.texels.data() + tile * table.row() + c * list;
+    uint32_t from = 0;
+    for (size_t chunk = 0; chunk < size_t(table.chunks); ++chunk) {
+      for (uint32_t i = from; i < texels[chunk]; ++i) {
+        const uint32_t entry = texels[size_t(table.chunks) + i];
+        counts[chunk * kLightsPerChunk + (entry & 0xffff)] +=
+            double(glm::unpackHalf1x16(uint16_t(entry >> 16))) / kLightClasses;
+      }
+      EXPECT_LE(from, texels[chunk]);
+      from = texels[chunk];
+    }
+    EXPECT_LE(from, uint32_t(table.length));
+  }
+  return counts;
+}
+
+TEST(ChooseLights, EachCountsOnceOnTheMean) {
+  for (const size_t count : {size_t(1000), size_t(5000)}) { // the second has three chunks
+    const LitFloor floor(count);
+    constexpr int kCycles = 200;
+    std::vector<double> mean(count, 0), squares(count, 0);
+    for (int cycle = 0; cycle < kCycles; ++cycle) {
+      const std::vector<double> counts = countsOf(floor.choose(32, 16 * uint32_t(cycle + 1)), 5, count);
+      for (size_t i = 0; i < count; ++i) mean[i] += counts[i] / kCycles, squares[i] += counts[i] * counts[i] / kCycles;
+    }
+    double sum = 0, alive = 0;
+    for (size_t i = 0; i < count; ++i) {
+      if (!floor.lights[i].alive) {
+        ASSERT_EQ(mean[i], 0) << i;
+        continue;
+      }
+      // Rare ticks leave lights that count alike in all cycles, or of many lights never.
+      const double error = std::sqrt(std::max(squares[i] - mean[i] * mean[i], 0.0) / kCycles);
+      if (count == 1000) {
+        ASSERT_NEAR(mean[i], 1, 6 * error + 0.03) << i;
+      }
+      sum += mean[i], ++alive;
+    }
+    EXPECT_NEAR(sum / alive, 1, 0.02) << count;
+  }
+}
+
+TEST(ChooseLights, TheStrongestAreInEveryList) {
+  const LitFloor floor(1000);
+  const std::vector<double> counts = countsOf(floor.choose(64, 0), 5, 1000);
+  size_t always = 0;
+  for (size_t i = 0; i < counts.size(); ++i) always += counts[i] == 1;
+  EXPECT_GT(always, 3u);
+  EXPECT_LT(always, 64u);
+}
+
+TEST(ChooseLights, FewLightsAreAllTaken) {
+  const LitFloor floor(50);
+  const ListTable table = floor.choose(64, 0);
+  for (size_t tile = 0; tile < 16; ++tile) {
+    const std::vector<double> counts = countsOf(table, tile, 50);
+    for (size_t i = 0; i < 50; ++i) ASSERT_EQ(counts[i], floor.lights[i].alive ? 1 : 0) << tile << ' ' << i;
+  }
+}
+
+TEST(ChooseLights, LightsWithoutNumbersAreLeftOut) {
+  LitFloor floor(200);
+  floor.lights[7].radiance = vec3(std::numeric_limits<float>::quiet_NaN());
+  floor.lights[8].radiance = vec3(kInfinity);
+  const std::vector<double> counts = countsOf(floor.choose(256, 0), 0, 200);
+  EXPECT_EQ(counts[7], 0);
+  EXPECT_EQ(counts[8], 0);
+  EXPECT_EQ(counts[9], 1);
+}
+
+} // namespace lambent::test::choose_lights_test
