@@ -19,6 +19,7 @@ namespace {
 constexpr int kPlaces = 4;           // of a tile
 constexpr float kLeastCosine = 0.1f; // normals differ within a tile
 constexpr float kEven = 0.1f;        // share of the weights that all lights have alike, for what no place of a tile saw
+constexpr int kMostTiles = 4096;     // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
 
 /// What a place needs of lights, component by component, so that compilers make vectors of the loop.
@@ -114,7 +115,9 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
   const CameraView& camera = in.view.camera;
   ListTable table;
   table.tile = in.gather.tile;
-  table.tiles = {(camera.width + table.tile - 1) / table.tile, (camera.height + table.tile - 1) / table.tile};
+  const auto tilesOf = [&] { return (glm::ivec2(camera.width, camera.height) + table.tile - 1) / table.tile; };
+  while (tilesOf().x * tilesOf().y > kMostTiles) table.tile *= 2;
+  table.tiles = tilesOf();
   table.chunks = std::max(1, int((in.lights.size() + kChunk - 1) / kChunk));
   table.length = in.gather.lights + 1; // systematic samples of a sum that is not whole are one more or one less
   table.texels.assign(table.row() * size_t(table.tiles.x) * size_t(table.tiles.y), 0);

@@ -124,7 +124,9 @@ class Table {
     number(SETTING(gather, lights), {1, 512, "lights", PowersOfTwo}, Nothing,
            "gather.mode lists: that a pixel gathers in a frame"),
         number(SETTING(gather, tile), {2, 64, "pixels", PowersOfTwo}, Nothing,
-               "gather.mode lists: along a side of a tile, which chooses lights for its pixels"),
+               "gather.mode lists: along a side of a tile, which chooses lights for its pixels; more where an image "
+               "would have "
+               "over 4096 tiles"),
         number(
             SETTING(gather, disk), {0, 1000}, Nothing,
             "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");

@@ -119,6 +119,14 @@ TEST(ChooseLights, FewLightsAreAllTaken) {
   }
 }
 
+TEST(ChooseLights, LargeImagesHaveLargerTiles) {
+  LitFloor floor(50);
+  floor.scene.size(1920, 1080);
+  const ListTable table = floor.choose(64, 0);
+  EXPECT_EQ(table.tile, 32);
+  EXPECT_EQ(table.tiles, glm::ivec2(60, 34));
+}
+
 TEST(ChooseLights, LightsWithoutNumbersAreLeftOut) {
   LitFloor floor(200);
   floor.lights[7].radiance = vec3(std::numeric_limits<float>::quiet_NaN());
