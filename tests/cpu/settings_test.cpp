@@ -86,7 +86,7 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
             return std::ranges::find(modes, axes.gather) != modes.end();
           };
           const bool patches = is({Multires, MultiresInterleaved, Splat, SplatPerVpl});
-          const bool subsets = is({Interleaved, MultiresInterleaved});
+          const bool subsets = is({Interleaved, Lists, MultiresInterleaved});
           const bool splats = is({Splat, SplatPerVpl}), volume = is({Volume}), stored = is({Cube});
           const bool upsampled = reconstruction >= int(Reconstruction::Upsample);
           const bool filtered = reconstruction % 2 == 1;
@@ -94,6 +94,9 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
           bool sense = upsampled == patches && (!filtered || subsets) &&
                        (lights || (axes.gather == Own && axes.visibility == VplVisibility::None));
           if (axes.source == VplSource::Hisr) sense = sense && !splats && !volume;
+          const bool onGpu =
+              axes.source == VplSource::Rsm || axes.source == VplSource::Isr || axes.source == VplSource::Hisr;
+          if (onGpu && is({Lists})) sense = false;
           const bool anyView = axes.source == VplSource::Ir || axes.source == VplSource::Poisson;
           if (stored) sense = sense && anyView && axes.visibility == VplVisibility::None;
           if (axes.source == VplSource::Hisr || volume) sense = sense && axes.visibility == VplVisibility::None;
