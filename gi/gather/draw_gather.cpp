@@ -97,6 +97,9 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
   program.set("scale", subsets && !in.lists ? float(kLightClasses) : 1.0f);
   gl::Texture lights;
   if (in.lists) {
+    if (packed.buffer->bytes() / sizeof(vec4) > gl::mostBufferTexels())
+      throw RunError("more virtual lights than this GPU's texture buffers hold (lower smc.vpls, or gather.mode "
+                     "interleaved)");
     lights = gl::Texture::ofBuffer("gather/lights", GL_RGBA32F, *packed.buffer);
     lights.bind(3);
     in.lists->texture->bind(4);

@@ -19,7 +19,8 @@ namespace {
 constexpr int kPlaces = 4;           // of a tile
 constexpr float kLeastCosine = 0.1f; // normals differ within a tile
 constexpr float kEven = 0.1f;        // share of the weights that all lights have alike, for what no place of a tile saw
-constexpr int kMostTiles = 4096;     // of an image: its tiles grow until they are no more
+constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
+constexpr int kMostTiles = 4096;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
 
 /// What a place needs of lights, component by component, so that compilers make vectors of the loop.
@@ -52,7 +53,8 @@ std::vector<uint32_t> alongCurve(std::span<const VirtualLight> lights) {
   vec3 low(kInfinity), high(-kInfinity);
   for (uint32_t slot = 0; slot < lights.size(); ++slot) {
     const VirtualLight& l = lights[slot];
-    if (!l.alive || !(l.intensity() > 0) || !std::isfinite(l.intensity())) continue;
+    const float length = glm::dot(l.position, l.position) + glm::dot(l.normal, l.normal);
+    if (!l.alive || !(l.intensity() > 0) || !std::isfinite(l.intensity()) || !std::isfinite(length)) continue;
     order.push_back(slot);
     low = glm::min(low, l.position), high = glm::max(high, l.position);
   }
@@ -119,7 +121,8 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
   while (tilesOf().x * tilesOf().y > kMostTiles) table.tile *= 2;
   table.tiles = tilesOf();
   table.chunks = std::max(1, int((in.lights.size() + kChunk - 1) / kChunk));
-  table.length = in.gather.lights + 1; // systematic samples of a sum that is not whole are one more or one less
+  table.length =
+      in.gather.lights + 3; // systematic samples of a sum that is not whole, or a little more by kLeastChance
   table.texels.assign(table.row() * size_t(table.tiles.x) * size_t(table.tiles.y), 0);
   const std::vector<uint32_t> order = alongCurve(in.lights);
   if (order.empty()) return table;
@@ -152,7 +155,7 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
                       if (!hit.valid()) continue;
                       bringsTo(columns, hit, brings);
                       const float sum = std::accumulate(brings.begin(), brings.end(), 0.0f), share = 1 / sum;
-                      if (!(sum > 0) || !std::isfinite(share)) continue;
+                      if (!(sum > 0) || !std::isfinite(sum) || !std::isfinite(share)) continue;
                       for (size_t i = 0; i < n; ++i) {
                         const float relative = brings[i] * share;
                         mean[i] += relative / float(places);
@@ -167,7 +170,8 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
                     uint32_t* row = table.texels.data() + t * table.row();
                     const size_t list = size_t(table.chunks + table.length);
                     Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
-                    double sum = 0, tick = in.sample < kLightClasses ? 0.5 : double(rng.next());
+                    double sum = 0;
+                    const double tick = double(rng.next());
                     uint32_t next = 0, chunk = 0;
                     const auto endChunks = [&](uint32_t until) {
                       for (; chunk < until; ++chunk)
@@ -176,9 +180,9 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
                     for (size_t i = 0; i < n; ++i) {
                       if (!(chances[i] > 0)) continue;
                       endChunks(order[i] / kChunk);
-                      const uint32_t entry =
-                          order[i] % kChunk | uint32_t(glm::packHalf1x16(1 / std::min(chances[i], 1.0f))) << 16;
-                      sum += double(chances[i]);
+                      const float chance = std::clamp(chances[i], kLeastChance, 1.0f);
+                      const uint32_t entry = order[i] % kChunk | uint32_t(glm::packHalf1x16(1 / chance)) << 16;
+                      sum += double(chance);
                       for (; (double(next) + tick) / kLightClasses < sum; ++next) {
                         const size_t c = next % kLightClasses;
                         if (filled[c] < uint32_t(table.length))

@@ -119,17 +119,15 @@ class Table {
     number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");
     number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
     choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
-           "4x4 subsets and filter; every VPL at every pixel (16 times the time), or at every patch of the image; "
-           "patches of each subset; VPLs splatted into patches, or each into patches of its own");
+           "4x4 subsets and filter; lights chosen for each tile; every VPL at every pixel (16 times the time), or at "
+           "every patch of the image; patches of each subset; VPLs splatted into patches, or each into its own");
     number(SETTING(gather, lights), {1, 512, "lights", PowersOfTwo}, Nothing,
-           "gather.mode lists: that a pixel gathers in a frame"),
-        number(SETTING(gather, tile), {2, 64, "pixels", PowersOfTwo}, Nothing,
-               "gather.mode lists: along a side of a tile, which chooses lights for its pixels; more where an image "
-               "would have "
-               "over 4096 tiles"),
-        number(
-            SETTING(gather, disk), {0, 1000}, Nothing,
-            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
+           "gather.mode lists: that a pixel gathers in a frame");
+    number(SETTING(gather, tile), {2, 64, "pixels", PowersOfTwo}, Nothing,
+           "gather.mode lists: along a side of a tile, which chooses lights for its pixels; more where an image would "
+           "have over 4096 tiles");
+    number(SETTING(gather, disk), {0, 1000}, Nothing,
+           "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number(

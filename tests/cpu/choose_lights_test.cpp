@@ -81,7 +81,7 @@ TEST(ChooseLights, EachCountsOnceOnTheMean) {
     constexpr int kCycles = 200;
     std::vector<double> mean(count, 0), squares(count, 0);
     for (int cycle = 0; cycle < kCycles; ++cycle) {
-      const std::vector<double> counts = countsOf(floor.choose(32, 16 * uint32_t(cycle + 1)), 5, count);
+      const std::vector<double> counts = countsOf(floor.choose(32, 16 * uint32_t(cycle)), 5, count);
       for (size_t i = 0; i < count; ++i) mean[i] += counts[i] / kCycles, squares[i] += counts[i] * counts[i] / kCycles;
     }
     double sum = 0, alive = 0;
@@ -116,6 +116,15 @@ TEST(ChooseLights, FewLightsAreAllTaken) {
   for (size_t tile = 0; tile < 16; ++tile) {
     const std::vector<double> counts = countsOf(table, tile, 50);
     for (size_t i = 0; i < 50; ++i) ASSERT_EQ(counts[i], floor.lights[i].alive ? 1 : 0) << tile << ' ' << i;
+  }
+}
+
+TEST(ChooseLights, RareLightsCountAFiniteNumberOfTimes) {
+  const LitFloor floor(20000);
+  for (uint32_t cycle = 0; cycle < 4; ++cycle) {
+    const ListTable table = floor.choose(1, 16 * cycle);
+    for (size_t tile = 0; tile < 16; ++tile)
+      for (const double counts : countsOf(table, tile, 20000)) ASSERT_TRUE(std::isfinite(counts));
   }
 }
 
