@@ -76,7 +76,7 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   // Lists leave gathered light with little noise, and mixing it would only blur; near light has much, until a still
   // view has averaged it.
   std::function<SurfaceLighting(const SurfaceLighting&)> mixNear;
-  if (lists && plan.on(EffectId::Filter) && !(stands && sample >= uint32_t(kNearFrames)))
+  if (lists && plan.on(EffectId::Filter) && !(stands && averaged_ >= kNearFrames))
     mixNear = [&](const SurfaceLighting& near) {
       SurfaceLighting noisy = near;
       noisy.subsets = true;

@@ -86,6 +86,71 @@ void bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<flo
   }
 }
 
+/// The pixel of a tile whose ray finds its k-th place: the middles of its quarters, as (u, v) of the image, v down.
+vec2 placeOf(const CameraView& camera, const ListTable& table, size_t tile, int k) {
+  const glm::ivec2 at(int(tile) % table.tiles.x, int(tile) / table.tiles.x);
+  const vec2 quarter = vec2(k % 2 ? 3 : 1, k / 2 ? 3 : 1) * (0.25f * float(table.tile));
+  const vec2 pixel = glm::floor(vec2(at * table.tile) + quarter) + 0.5f;
+  const vec2 uv = glm::min(pixel / vec2(camera.width, camera.height), vec2(1));
+  return {uv.x, 1 - uv.y}; // tiles count from the bottom
+}
+
+/// What lights are worth to a tile: their shares of what reaches its places, on the mean and where they are largest.
+class TileWeights {
+ public:
+  explicit TileWeights(const LightColumns& lights)
+      : lights_(lights), brings_(lights.x.size()), weights_(brings_.size()), most_(brings_.size()) {}
+
+  std::span<const float> of(std::span<const SurfaceHit> places) {
+    const size_t n = weights_.size();
+    std::fill(weights_.begin(), weights_.end(), kEven / float(n));
+    std::fill(most_.begin(), most_.end(), 0.0f);
+    const auto seen = std::count_if(places.begin(), places.end(), [](const SurfaceHit& p) { return p.valid(); });
+    for (const SurfaceHit& place : places) {
+      if (!place.valid()) continue;
+      bringsTo(lights_, place, brings_);
+      const float sum = std::accumulate(brings_.begin(), brings_.end(), 0.0f), share = 1 / sum;
+      if (!(sum > 0) || !std::isfinite(sum) || !std::isfinite(share)) continue;
+      for (size_t i = 0; i < n; ++i) {
+        const float relative = brings_[i] * share;
+        weights_[i] += relative / float(seen);
+        most_[i] = std::max(most_[i], relative);
+      }
+    }
+    for (size_t i = 0; i < n; ++i) weights_[i] += most_[i];
+    return weights_;
+  }
+
+ private:
+  const LightColumns& lights_;
+  std::vector<float> brings_, weights_, most_;
+};
+
+/// Fills the lists of a tile: a tick in each sixteenth of a step of 1 along the sum of chances, each for a class.
+void fillLists(const ListTable& table, std::span<const uint32_t> slots, std::span<const float> chances, float first,
+               std::span<uint32_t> row) {
+  const size_t list = size_t(table.chunks + table.length);
+  std::array<uint32_t, kLightClasses> filled{};
+  double sum = 0;
+  uint32_t tick = 0, chunk = 0;
+  const auto endChunks = [&](uint32_t until) {
+    for (; chunk < until; ++chunk)
+      for (size_t c = 0; c < kLightClasses; ++c) row[c * list + chunk] = filled[c];
+  };
+  for (size_t i = 0; i < slots.size(); ++i) {
+    if (!(chances[i] > 0)) continue;
+    endChunks(slots[i] / kChunk);
+    const float chance = std::clamp(chances[i], kLeastChance, 1.0f);
+    const uint32_t entry = slots[i] % kChunk | uint32_t(glm::packHalf1x16(1 / chance)) << 16;
+    sum += double(chance);
+    for (; (double(tick) + double(first)) / kLightClasses < sum; ++tick) {
+      const size_t c = tick % kLightClasses;
+      if (filled[c] < uint32_t(table.length)) row[c * list + size_t(table.chunks) + filled[c]++] = entry;
+    }
+  }
+  endChunks(uint32_t(table.chunks));
+}
+
 } // namespace
 
 void chancesOf(std::span<const float> weights, float wanted, std::span<float> chances) {
@@ -121,77 +186,28 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
   while (tilesOf().x * tilesOf().y > kMostTiles) table.tile *= 2;
   table.tiles = tilesOf();
   table.chunks = std::max(1, int((in.lights.size() + kChunk - 1) / kChunk));
-  table.length =
-      in.gather.lights + 3; // systematic samples of a sum that is not whole, or a little more by kLeastChance
-  table.texels.assign(table.row() * size_t(table.tiles.x) * size_t(table.tiles.y), 0);
+  // Systematic samples of a sum that is not whole, or a little more by kLeastChance.
+  table.length = in.gather.lights + 3;
+  const size_t tiles = size_t(table.tiles.x) * size_t(table.tiles.y);
+  table.texels.assign(table.row() * tiles, 0);
   const std::vector<uint32_t> order = alongCurve(in.lights);
   if (order.empty()) return table;
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
-  const size_t n = order.size();
   constexpr size_t kGrain = 8;
-  parallelCount(size_t(table.tiles.x) * size_t(table.tiles.y), kGrain, rays,
-                [&](size_t begin, size_t end, uint64_t& count) {
-                  std::vector<vec2> at;
-                  const float quarter = 0.25f * float(table.tile);
-                  for (size_t t = begin; t < end; ++t) {
-                    const vec2 corner = vec2(glm::ivec2(int(t) % table.tiles.x, int(t) / table.tiles.x) * table.tile);
-                    for (int k = 0; k < kPlaces; ++k) {
-                      const vec2 pixel = glm::floor(corner + quarter * vec2(k % 2 ? 3 : 1, k / 2 ? 3 : 1)) + 0.5f;
-                      at.push_back(glm::min(pixel / vec2(camera.width, camera.height), vec2(1)));
-                      at.back().y = 1 - at.back().y; // rows from the bottom
-                    }
-                  }
-                  const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, at);
-                  count += at.size();
-                  std::vector<float> brings(n), mean(n), most(n), chances(n);
-                  std::array<uint32_t, kLightClasses> filled;
-                  for (size_t t = begin; t < end; ++t) {
-                    std::fill(mean.begin(), mean.end(), kEven / float(n));
-                    std::fill(most.begin(), most.end(), 0.0f);
-                    int places = 0;
-                    for (int k = 0; k < kPlaces; ++k) places += hits[(t - begin) * kPlaces + size_t(k)].valid();
-                    for (int k = 0; k < kPlaces; ++k) {
-                      const SurfaceHit& hit = hits[(t - begin) * kPlaces + size_t(k)];
-                      if (!hit.valid()) continue;
-                      bringsTo(columns, hit, brings);
-                      const float sum = std::accumulate(brings.begin(), brings.end(), 0.0f), share = 1 / sum;
-                      if (!(sum > 0) || !std::isfinite(sum) || !std::isfinite(share)) continue;
-                      for (size_t i = 0; i < n; ++i) {
-                        const float relative = brings[i] * share;
-                        mean[i] += relative / float(places);
-                        most[i] = std::max(most[i], relative);
-                      }
-                    }
-                    for (size_t i = 0; i < n; ++i) mean[i] += most[i];
-                    chancesOf(mean, float(in.gather.lights), chances);
-
-                    // A tick in each sixteenth of a step of 1 along the sum of chances, each for a class.
-                    filled.fill(0);
-                    uint32_t* row = table.texels.data() + t * table.row();
-                    const size_t list = size_t(table.chunks + table.length);
-                    Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
-                    double sum = 0;
-                    const double tick = double(rng.next());
-                    uint32_t next = 0, chunk = 0;
-                    const auto endChunks = [&](uint32_t until) {
-                      for (; chunk < until; ++chunk)
-                        for (size_t c = 0; c < kLightClasses; ++c) row[c * list + chunk] = filled[c];
-                    };
-                    for (size_t i = 0; i < n; ++i) {
-                      if (!(chances[i] > 0)) continue;
-                      endChunks(order[i] / kChunk);
-                      const float chance = std::clamp(chances[i], kLeastChance, 1.0f);
-                      const uint32_t entry = order[i] % kChunk | uint32_t(glm::packHalf1x16(1 / chance)) << 16;
-                      sum += double(chance);
-                      for (; (double(next) + tick) / kLightClasses < sum; ++next) {
-                        const size_t c = next % kLightClasses;
-                        if (filled[c] < uint32_t(table.length))
-                          row[c * list + size_t(table.chunks) + filled[c]++] = entry;
-                      }
-                    }
-                    endChunks(uint32_t(table.chunks));
-                  }
-                });
+  parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {
+    std::vector<vec2> at;
+    for (size_t t = begin; t < end; ++t)
+      for (int k = 0; k < kPlaces; ++k) at.push_back(placeOf(camera, table, t, k));
+    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, at);
+    count += at.size();
+    TileWeights weights(columns);
+    std::vector<float> chances(order.size());
+    for (size_t t = begin; t < end; ++t) {
+      chancesOf(weights.of(std::span(hits).subspan((t - begin) * kPlaces, kPlaces)), float(in.gather.lights), chances);
+      Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
+      fillLists(table, order, chances, rng.next(), std::span(table.texels).subspan(t * table.row(), table.row()));
+    }
+  });
   return table;
 }
 
