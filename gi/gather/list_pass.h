@@ -13,6 +13,7 @@ class ListPass {
   const LightLists& run(const ListInputs& in, uint64_t& rays);
 
  private:
+  ListTable table_;
   gl::Texture texture_;
   LightLists lists_;
 };

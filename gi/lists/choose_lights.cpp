@@ -4,10 +4,9 @@
 #include "engine/core/rng.h"
 #include "gi/vpl/smc.h"
 
-#include <glm/gtc/packing.hpp>
-
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -23,7 +22,12 @@ constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
 constexpr int kMostTiles = 4096;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
 
-/// What a place needs of lights, component by component, so that compilers make vectors of the loop.
+/// Sums side by side: one alone would wait for each addition.
+constexpr size_t kLanes = 16;
+using Lanes = std::array<float, kLanes>;
+float sumOf(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0f); }
+
+/// What a place needs of lights, component by component, so that compilers make vectors of the loop; kLanes at a time.
 struct LightColumns {
   std::vector<float> x, y, z, nx, ny, nz, power, widening;
 };
@@ -37,6 +41,9 @@ LightColumns columnsOf(std::span<const VirtualLight> lights, std::span<const uin
     c.power.push_back(l.intensity());
     c.widening.push_back(std::max(disk * l.area / kPi, 1e-12f));
   }
+  const size_t whole = (order.size() + kLanes - 1) / kLanes * kLanes; // what fills them up has no power
+  for (std::vector<float>* column : {&c.x, &c.y, &c.z, &c.nx, &c.ny, &c.nz, &c.power}) column->resize(whole, 0.0f);
+  c.widening.resize(whole, 1.0f);
   return c;
 }
 
@@ -70,20 +77,27 @@ std::vector<uint32_t> alongCurve(std::span<const VirtualLight> lights) {
   return order;
 }
 
-/// What each light would bring to a place, were it seen.
-void bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<float> brings) {
+/// What each light would bring to a place, were it seen; returns the sum.
+float bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<float> brings) {
   const float px = place.position.x, py = place.position.y, pz = place.position.z;
   const float nx = place.normal.x, ny = place.normal.y, nz = place.normal.z;
-  const size_t n = brings.size();
-  for (size_t i = 0; i < n; ++i) {
-    const float dx = px - lights.x[i], dy = py - lights.y[i], dz = pz - lights.z[i];
-    const float squared = dx * dx + dy * dy + dz * dz, inverse = 1 / std::sqrt(squared + 1e-20f);
-    const float atPlace = -(dx * nx + dy * ny + dz * nz) * inverse;
-    const float atLight = (dx * lights.nx[i] + dy * lights.ny[i] + dz * lights.nz[i]) * inverse;
-    const float cosines =
-        (atPlace > kLeastCosine ? atPlace : kLeastCosine) * (atLight > kLeastCosine ? atLight : kLeastCosine);
-    brings[i] = lights.power[i] * cosines / (squared + lights.widening[i]);
+  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
+  const float *lx = lights.nx.data(), *ly = lights.ny.data(), *lz = lights.nz.data();
+  const float *power = lights.power.data(), *widening = lights.widening.data();
+  Lanes sums{};
+  for (size_t first = 0; first < brings.size(); first += kLanes) {
+    float* to = brings.data() + first;
+    for (size_t k = 0; k < kLanes; ++k) {
+      const size_t i = first + k;
+      const float dx = px - x[i], dy = py - y[i], dz = pz - z[i];
+      const float squared = dx * dx + dy * dy + dz * dz + 1e-20f, least = kLeastCosine * std::sqrt(squared);
+      const float atPlace = -(dx * nx + dy * ny + dz * nz), atLight = dx * lx[i] + dy * ly[i] + dz * lz[i];
+      const float cosines = (atPlace > least ? atPlace : least) * (atLight > least ? atLight : least) / squared;
+      to[k] = power[i] * cosines / (squared + widening[i]);
+      sums[k] += to[k];
+    }
   }
+  return sumOf(sums);
 }
 
 /// The pixel of a tile whose ray finds its k-th place: the middles of its quarters, as (u, v) of the image, v down.
@@ -98,89 +112,110 @@ vec2 placeOf(const CameraView& camera, const ListTable& table, size_t tile, int 
 /// What lights are worth to a tile: their shares of what reaches its places, on the mean and where they are largest.
 class TileWeights {
  public:
-  explicit TileWeights(const LightColumns& lights)
-      : lights_(lights), brings_(lights.x.size()), weights_(brings_.size()), most_(brings_.size()) {}
+  TileWeights(const LightColumns& lights, size_t count)
+      : lights_(lights), count_(count), brings_(lights.x.size()), weights_(brings_.size()), most_(brings_.size()) {}
 
   std::span<const float> of(std::span<const SurfaceHit> places) {
-    const size_t n = weights_.size();
-    std::fill(weights_.begin(), weights_.end(), kEven / float(n));
+    std::fill(weights_.begin(), weights_.end(), kEven / float(count_));
     std::fill(most_.begin(), most_.end(), 0.0f);
     const auto seen = std::count_if(places.begin(), places.end(), [](const SurfaceHit& p) { return p.valid(); });
     for (const SurfaceHit& place : places) {
       if (!place.valid()) continue;
-      bringsTo(lights_, place, brings_);
-      const float sum = std::accumulate(brings_.begin(), brings_.end(), 0.0f), share = 1 / sum;
+      const float sum = bringsTo(lights_, place, brings_), share = 1 / sum;
       if (!(sum > 0) || !std::isfinite(sum) || !std::isfinite(share)) continue;
-      for (size_t i = 0; i < n; ++i) {
-        const float relative = brings_[i] * share;
-        weights_[i] += relative / float(seen);
-        most_[i] = std::max(most_[i], relative);
+      const float mean = share / float(seen);
+      for (size_t i = 0; i < weights_.size(); ++i) {
+        weights_[i] += brings_[i] * mean;
+        most_[i] = std::max(most_[i], brings_[i] * share);
       }
     }
-    for (size_t i = 0; i < n; ++i) weights_[i] += most_[i];
-    return weights_;
+    for (size_t i = 0; i < weights_.size(); ++i) weights_[i] += most_[i];
+    return std::span(weights_).first(count_);
   }
 
  private:
   const LightColumns& lights_;
+  size_t count_;
   std::vector<float> brings_, weights_, most_;
 };
 
+/// A half float; x in [1, 65504].
+uint32_t halfOf(float x) {
+  const uint32_t bits = std::bit_cast<uint32_t>(x);
+  return (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13;
+}
+
 /// Fills the lists of a tile: a tick in each sixteenth of a step of 1 along the sum of chances, each for a class.
 void fillLists(const ListTable& table, std::span<const uint32_t> slots, std::span<const float> chances, float first,
-               std::span<uint32_t> row) {
-  const size_t list = size_t(table.chunks + table.length);
-  std::array<uint32_t, kLightClasses> filled{};
-  double sum = 0;
+               uint32_t* row) {
+  std::array<uint32_t*, kLightClasses> begins, ends;
+  for (size_t c = 0; c < kLightClasses; ++c)
+    begins[c] = ends[c] = row + c * size_t(table.chunks + table.length) + table.chunks;
+  const uint32_t most = uint32_t(table.length) * kLightClasses;
+  double sum = 0; // in ticks
   uint32_t tick = 0, chunk = 0;
   const auto endChunks = [&](uint32_t until) {
     for (; chunk < until; ++chunk)
-      for (size_t c = 0; c < kLightClasses; ++c) row[c * list + chunk] = filled[c];
+      for (size_t c = 0; c < kLightClasses; ++c) (begins[c] - table.chunks)[chunk] = uint32_t(ends[c] - begins[c]);
   };
   for (size_t i = 0; i < slots.size(); ++i) {
     if (!(chances[i] > 0)) continue;
-    endChunks(slots[i] / kChunk);
     const float chance = std::clamp(chances[i], kLeastChance, 1.0f);
-    const uint32_t entry = slots[i] % kChunk | uint32_t(glm::packHalf1x16(1 / chance)) << 16;
-    sum += double(chance);
-    for (; (double(tick) + double(first)) / kLightClasses < sum; ++tick) {
-      const size_t c = tick % kLightClasses;
-      if (filled[c] < uint32_t(table.length)) row[c * list + size_t(table.chunks) + filled[c]++] = entry;
-    }
+    sum += double(chance * float(kLightClasses));
+    const uint32_t until = std::min(uint32_t(sum + double(first)), most); // ticks up to here
+    if (until == tick) continue;
+    if (slots[i] / kChunk != chunk) endChunks(slots[i] / kChunk);
+    const uint32_t entry = slots[i] % kChunk | halfOf(1 / chance) << 16;
+    for (; tick < until; ++tick) *ends[tick % kLightClasses]++ = entry;
   }
   endChunks(uint32_t(table.chunks));
+}
+
+/// Weights above 0 and below a limit.
+struct Shares {
+  double sum = 0, count = 0;
+};
+Shares sharesBelow(std::span<const float> weights, float limit) {
+  Lanes sums{}, counts{};
+  const auto add = [&](size_t lane, float w) {
+    const bool counted = w > 0 && w < limit;
+    sums[lane] += counted ? w : 0.0f;
+    counts[lane] += counted ? 1.0f : 0.0f;
+  };
+  const size_t whole = weights.size() / kLanes * kLanes;
+  for (size_t first = 0; first < whole; first += kLanes)
+    for (size_t k = 0; k < kLanes; ++k) add(k, weights[first + k]);
+  for (size_t i = whole; i < weights.size(); ++i) add(i - whole, weights[i]);
+  return {double(sumOf(sums)), double(sumOf(counts))};
 }
 
 } // namespace
 
 void chancesOf(std::span<const float> weights, float wanted, std::span<float> chances) {
-  double left = wanted, sum = 0;
-  size_t some = 0;
-  for (const float w : weights) sum += double(w), some += w > 0;
-  if (double(some) <= left) {
+  const Shares all = sharesBelow(weights, kInfinity);
+  if (all.count <= double(wanted)) {
     for (size_t i = 0; i < weights.size(); ++i) chances[i] = weights[i] > 0 ? 1.0f : 0.0f;
     return;
   }
   // Those whose share would be more than 1 have chance 1, and the rest share what is left.
+  double left = double(wanted), sum = all.sum;
   float limit = kInfinity; // weights from here on have chance 1
   while (true) {
     const float next = float(sum / left);
     if (!(next < limit)) break;
-    double below = 0;
-    size_t whole = 0;
-    for (const float w : weights) w >= next ? void(++whole) : void(below += double(w));
+    const Shares below = sharesBelow(weights, next);
     limit = next;
-    if (double(wanted) - double(whole) == left) break;
-    left = double(wanted) - double(whole), sum = below;
+    const double rest = double(wanted) - (all.count - below.count);
+    if (rest == left) break;
+    left = rest, sum = below.sum;
   }
-  const double factor = sum > 0 ? left / sum : 0;
+  const float factor = sum > 0 ? float(left / sum) : 0;
   for (size_t i = 0; i < weights.size(); ++i)
-    chances[i] = weights[i] >= limit ? 1.0f : std::min(1.0f, float(double(weights[i]) * factor));
+    chances[i] = weights[i] >= limit ? 1.0f : std::min(1.0f, weights[i] * factor);
 }
 
-ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
+void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   const CameraView& camera = in.view.camera;
-  ListTable table;
   table.tile = in.gather.tile;
   const auto tilesOf = [&] { return (glm::ivec2(camera.width, camera.height) + table.tile - 1) / table.tile; };
   while (tilesOf().x * tilesOf().y > kMostTiles) table.tile *= 2;
@@ -189,9 +224,9 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
   // Systematic samples of a sum that is not whole, or a little more by kLeastChance.
   table.length = in.gather.lights + 3;
   const size_t tiles = size_t(table.tiles.x) * size_t(table.tiles.y);
-  table.texels.assign(table.row() * tiles, 0);
+  table.texels.resize(table.row() * tiles);
   const std::vector<uint32_t> order = alongCurve(in.lights);
-  if (order.empty()) return table;
+  if (order.empty()) return std::fill(table.texels.begin(), table.texels.end(), 0u);
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
   constexpr size_t kGrain = 8;
   parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {
@@ -200,15 +235,14 @@ ListTable chooseLights(const ListInputs& in, uint64_t& rays) {
       for (int k = 0; k < kPlaces; ++k) at.push_back(placeOf(camera, table, t, k));
     const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, at);
     count += at.size();
-    TileWeights weights(columns);
+    TileWeights weights(columns, order.size());
     std::vector<float> chances(order.size());
     for (size_t t = begin; t < end; ++t) {
       chancesOf(weights.of(std::span(hits).subspan((t - begin) * kPlaces, kPlaces)), float(in.gather.lights), chances);
       Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
-      fillLists(table, order, chances, rng.next(), std::span(table.texels).subspan(t * table.row(), table.row()));
+      fillLists(table, order, chances, rng.next(), table.texels.data() + t * table.row());
     }
   });
-  return table;
 }
 
 } // namespace lambent

@@ -33,7 +33,8 @@ struct ListTable {
   std::vector<uint32_t> texels;
   size_t row() const { return size_t(kLightClasses) * size_t(chunks + length); }
 };
-ListTable chooseLights(const ListInputs& in, uint64_t& rays);
+/// Chooses them anew. Texels past the end of a list are whatever was there.
+void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays);
 
 /// Chances that sum to `wanted` (or to the number of weights above 0, if that is less), in proportion to weights and at
 /// most 1.

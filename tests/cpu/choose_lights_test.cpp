@@ -49,8 +49,10 @@ struct LitFloor {
     GatherSettings gather;
     gather.lights = wanted;
     uint64_t rays = 0;
-    return chooseLights(
-        {.view = traced.view, .rays = traced.rays, .lights = lights, .gather = gather, .sample = sample}, rays);
+    ListTable table;
+    chooseLights({.view = traced.view, .rays = traced.rays, .lights = lights, .gather = gather, .sample = sample},
+                 table, rays);
+    return table;
   }
 };
 
