@@ -4,8 +4,6 @@
 #include "gi/contract/light_lists.h"
 #include "gi/contract/light_provider.h"
 
-#include <functional>
-
 namespace lambent {
 
 struct GatherInputs {
@@ -16,8 +14,6 @@ struct GatherInputs {
   bool averaged = false; // there are such samples
   bool changes = false;  // light does; means are short then
   bool stands = false;   // neither light nor camera changes, and means follow no change before
-  /// Mixes near light with its neighbours', where nobody mixes what was gathered; empty: not.
-  std::function<SurfaceLighting(const SurfaceLighting&)> mixNear = {};
   bool stores = true; // what outlives frames follows the lights; else it stays as it is
 };
 

@@ -10,8 +10,7 @@ namespace {
 /// Light is averaged over frames. (Forced, it has nothing to do.)
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
-constexpr int kNearFrames = 16; // of near light in a mean that needs no neighbours
-constexpr int kListFrames = 4;  // of light by lists
+constexpr int kListFrames = 4; // of light by lists in a mean that needs no filter
 
 } // namespace
 
@@ -73,15 +72,6 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   const uint32_t sample = averaging ? history_.sample() : 0;
   const LightLists* lists = needs_.lists ? &chooseLists(frame, sample, stats) : nullptr;
   const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
-  // Lists leave gathered light with little noise, and mixing it would only blur; near light has much, until a still
-  // view has averaged it.
-  std::function<SurfaceLighting(const SurfaceLighting&)> mixNear;
-  if (lists && plan.on(EffectId::Filter) && !(stands && averaged_ >= kNearFrames))
-    mixNear = [&](const SurfaceLighting& near) {
-      SurfaceLighting noisy = near;
-      noisy.subsets = true;
-      return nearFilter_.run({frame.surfaces, noisy, frame.settings.filter});
-    };
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,
                             .lists = lists,
@@ -89,7 +79,6 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
                             .averaged = averaging,
                             .changes = changes,
                             .stands = stands,
-                            .mixNear = mixNear,
                             .stores = plan.on(EffectId::Gather)},
                            stats);
   if (lists) gathered_.enough = kListFrames;

@@ -45,7 +45,7 @@ class ComposedTechnique : public LightProvider {
   ListPass lists_;
   std::unique_ptr<Gather> gather_, shown_; // shown_: whose light the last frame still shows, until the next is there
   HistoryPass history_{context_};
-  FilterPass filter_{context_}, nearFilter_{context_};
+  FilterPass filter_{context_};
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
   int averaged_ = 0;         // samples in the history since anything changed

@@ -4,33 +4,17 @@
 
 namespace lambent {
 
-namespace {
-
-void add(PassContext context, const SurfaceLighting& light, const LightTarget& target, const glm::ivec2& tile) {
+void addLight(PassContext context, const SurfaceLighting& light, const LightTarget& target) {
   std::vector<std::string> defines;
-  if (tile.x > 0) defines.push_back("SUBSETS");
   light.irradiance->bind(2);
   if (light.glossy) {
     light.glossy->bind(3);
     defines.push_back("GLOSSY");
   }
-  const gl::Program& program = context.programs.get({.fragment = "add_pixels.frag", .defines = std::move(defines)});
-  program.use();
-  program.set("tileSize", tile);
+  context.programs.get({.fragment = "add_pixels.frag", .defines = std::move(defines)}).use();
   target.bind();
   gl::PipelineState{.add = true, .width = target.size().x, .height = target.size().y}.apply();
   gl::drawFullscreen();
-}
-
-} // namespace
-
-void addLight(PassContext context, const SurfaceLighting& light, const LightTarget& target) {
-  add(context, light, target, glm::ivec2(0));
-}
-
-void addToSubsets(PassContext context, const SurfaceLighting& light, const GBuffer& surfaces,
-                  const LightTarget& target) {
-  add(context, light, target, tileSize(surfaces));
 }
 
 void PixelAdder::add(std::span<const vec3> irradiance, std::span<const vec3> glossy, const GBuffer& surfaces,

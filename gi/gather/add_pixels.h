@@ -10,9 +10,6 @@ namespace lambent {
 
 /// Adds light that lies as the target's does, texel by texel, without its glossy part where it has none.
 void addLight(PassContext context, const SurfaceLighting& light, const LightTarget& target);
-/// Adds light of pixels in their places to a target that is de-interleaved.
-void addToSubsets(PassContext context, const SurfaceLighting& light, const GBuffer& surfaces,
-                  const LightTarget& target);
 
 class PixelAdder {
  public:

@@ -4,10 +4,18 @@
 
 namespace lambent {
 
+namespace {
+// Rays where light changes, whose means are the shortest, and where only the camera moves, by those of a still view.
+// Half as many: relMSE 0.056 instead of 0.050 in the hall, 0.045 instead of 0.035 in the citadel (frame 30, 96×54).
+constexpr int kChanges = 4, kMoves = 2;
+} // namespace
+
 void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int grid, FrameStats& stats) {
   const GatherSettings& gather = in.frame.settings.gather;
   const bool bounded = gather.disk > 0 || gather.clamp > 0;
   if (gather.near == 0 || !bounded || in.lights.list.slots.empty()) return;
+  if (in.sample == 0) memory_.forget();
+  const bool moves = in.averaged && !in.stands;
   NearLight light;
   {
     const CpuScope scope(stats.stages, key(StageId::NearLight));
@@ -16,26 +24,18 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .lights = in.frame.world.lights,
                             .virtuals = in.lights.list.slots,
                             .gather = gather,
-                            .casts = gather.near * (in.changes ? 2 : 1),
+                            .casts = gather.near * (in.changes ? kChanges : moves ? kMoves : 1),
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,
                             .seed = in.frame.seed,
                             .frame = in.sample,
-                            .frames = in.averaged ? in.frame.settings.history.frames : 1},
+                            .frames = in.averaged ? in.frame.settings.history.frames : 1,
+                            .memory = moves ? &memory_ : nullptr},
                            stats.raysNear);
     stats.of(EffectId::Indirect) += stats.raysNear.closest + stats.raysNear.occlusion;
   }
-  if (!in.mixNear || grid == 1) {
-    traced_.add(light.irradiance, light.glossy, in.frame.surfaces, target, grid);
-    return;
-  }
-  const gl::PassScope scope = context_.scope(StageId::NearLight);
-  pixels_.fit(in.frame.surfaces);
-  const SurfaceLighting near = pixels_.light();
-  uploadPixels(*near.irradiance, light.irradiance, in.frame.surfaces, 1);
-  if (near.glossy) uploadPixels(*near.glossy, light.glossy, in.frame.surfaces, 1);
-  addToSubsets(context_, in.mixNear(near), in.frame.surfaces, target);
+  traced_.add(light.irradiance, light.glossy, in.frame.surfaces, target, grid);
 }
 
 } // namespace lambent

@@ -19,7 +19,7 @@ constexpr int kPlaces = 4;           // of a tile
 constexpr float kLeastCosine = 0.1f; // normals differ within a tile
 constexpr float kEven = 0.1f;        // share of the weights that all lights have alike, for what no place of a tile saw
 constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
-constexpr int kMostTiles = 4096;             // of an image: its tiles grow until they are no more
+constexpr int kMostTiles = 1024;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
 
 /// Sums side by side: one alone would wait for each addition.
@@ -218,7 +218,7 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   const CameraView& camera = in.view.camera;
   table.tile = in.gather.tile;
   const auto tilesOf = [&] { return (glm::ivec2(camera.width, camera.height) + table.tile - 1) / table.tile; };
-  while (tilesOf().x * tilesOf().y > kMostTiles) table.tile *= 2;
+  while (tilesOf().x * tilesOf().y > kMostTiles) table.tile += in.gather.tile;
   table.tiles = tilesOf();
   table.chunks = std::max(1, int((in.lights.size() + kChunk - 1) / kChunk));
   // Systematic samples of a sum that is not whole, or a little more by kLeastChance.

@@ -13,7 +13,7 @@
 // stratified pattern, the same in every block and fixed in the surface's frame. Over the frames that are averaged
 // each pixel casts all rays of one of four longer patterns, and takes its neighbours' in. (With one pattern for all
 // there is no noise between pixels to mix, but its few dozen directions are seen as streaks and specks on folded
-// cloth.)
+// cloth.) In motion pixels cast as many rays as gi/near/near_memory.h says.
 #include "gi/near/near_light.h"
 
 #include "engine/core/parallel.h"
@@ -182,14 +182,108 @@ std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const N
   return irradiance;
 }
 
+namespace {
+
+NearLight noNearLight(const NearLightInputs& in) {
+  NearLight out;
+  out.irradiance.assign(size_t(in.view.camera.width) * in.view.camera.height, vec3(0));
+  if (in.glossy) out.glossy.assign(out.irradiance.size(), vec3(0));
+  return out;
+}
+
+/// Adds what a ray brings to a pixel that sees `h`.
+void add(NearLight& out, size_t pixel, const Near& ray, const vec3& light, const SceneView& view, const SurfaceHit& h) {
+  out.irradiance[pixel] += light;
+  if (out.glossy.empty()) return;
+  const Receiver receiver = receiverOf(view, h);
+  out.glossy[pixel] += light * glossyReflectance(receiver, ray.direction, ray.spread) / glossyTint(receiver);
+}
+
+vec2 centreOf(const CameraView& camera, size_t pixel) {
+  return (vec2(pixel % size_t(camera.width), pixel / size_t(camera.width)) + 0.5f) / vec2(camera.width, camera.height);
+}
+
+/// Light of pixels that cast other rays, mixed.
+void mixNeighbours(NearLight& light, const NeighbourSurfaces& seen, bool averaged) {
+  for (std::vector<vec3>* of : {&light.irradiance, &light.glossy})
+    if (!of->empty()) averaged ? mixPatterns(*of, seen) : mixBlocks(*of, seen);
+}
+
+/// What the pixels of a few rows or less did.
+struct CastCounts {
+  RayCounts rays;
+  uint64_t cast = 0;
+  CastCounts& operator+=(const CastCounts& o) {
+    rays += o.rays, cast += o.cast;
+    return *this;
+  }
+};
+
+/// Every pixel casts as many rays as the frame before says, each frame the next ones of its pattern.
+NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts& counts) {
+  constexpr uint32_t kPattern = 64;
+  constexpr size_t kGrain = 512; // pixels
+  const CameraView& camera = in.view.camera;
+  NearLight out = noNearLight(in);
+  NearMemory now;
+  now.fit(camera);
+  const NearRates rates(*in.memory, float(in.casts) / 16);
+  const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
+  const RadianceUpdate update{.paths = int(kPatterns * kPattern), .bounces = in.bounces, .seed = in.seed};
+  CastCounts sum;
+  parallelCount(out.irradiance.size(), kGrain, sum, [&](size_t begin, size_t end, CastCounts& count) {
+    std::vector<vec2> centres;
+    for (size_t i = begin; i < end; ++i) centres.push_back(centreOf(camera, i));
+    const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
+    count.rays.closest += centres.size();
+
+    NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1};
+    std::vector<NearRates::Rate> expected(surfaces.size());
+    std::vector<uint32_t> cast(surfaces.size(), 0), went(surfaces.size(), 0);
+    for (size_t s = 0; s < surfaces.size(); ++s) {
+      const SurfaceHit& h = surfaces[s];
+      if (!h.valid()) continue;
+      const uint32_t pixel = uint32_t(begin + s), x = pixel % uint32_t(camera.width), y = pixel / uint32_t(camera.width);
+      now.positions[pixel] = h.position;
+      now.normals[pixel] = h.normal;
+      expected[s] = rates.at(h);
+      cast[s] = uint32_t(expected[s].rays + Rng(in.seed, Stream::Turns, pixel, in.frame).next());
+      count.cast += cast[s];
+      // Rays of a frame are a quarter of the pattern apart, pixels of a block and frames side by side.
+      for (uint32_t ray = 0; ray < cast[s]; ++ray) {
+        const uint32_t path = (turnOf(x, y) + 5 * in.frame + ray * kPattern / 4 + ray / 4) % kPattern;
+        tracer.cast(h, uint32_t(s), path * kPatterns + patternOf(x, y));
+      }
+    }
+    tracer.follow(
+        surfaces,
+        [&](const Near& n, const vec3& light) {
+          ++went[n.surface];
+          add(out, begin + n.surface, n, light / expected[n.surface].rays, in.view, surfaces[n.surface]);
+        },
+        count.rays);
+    for (size_t s = 0; s < surfaces.size(); ++s) {
+      const NearRates::Rate& r = expected[s];
+      now.near[begin + s] = (r.near * r.known + float(went[s])) / std::max(r.known + float(cast[s]), 1.0f);
+    }
+  });
+  counts += sum.rays;
+  now.rate = rates.next(sum.cast, out.irradiance.size());
+  *in.memory = std::move(now);
+  const NearMemory& seen = *in.memory;
+  mixNeighbours(out, {seen.positions, seen.normals, camera.width, std::sqrt(cells.meanArea())}, true);
+  return out;
+}
+
+} // namespace
+
 NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   const CameraView& camera = in.view.camera;
-  const size_t pixels = size_t(camera.width) * camera.height;
-  NearLight out;
-  out.irradiance.assign(pixels, vec3(0));
-  if (in.glossy) out.glossy.assign(pixels, vec3(0));
+  NearLight out = noNearLight(in);
+  const size_t pixels = out.irradiance.size();
   const Cells cells(in.virtuals);
   if (!(cells.meanArea() > 0)) return out;
+  if (in.memory && in.subsets && in.frames > 1) return traceInMotion(in, cells, counts);
   std::vector<vec3> positions(pixels, vec3(kInfinity)), normals(pixels, vec3(0)); // that pixels see
   const int perBlock = in.casts;
   const uint32_t stride = in.subsets ? 16 : 1; // paths of a pixel: every so many
@@ -217,7 +311,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       if (averaged && path >= uint32_t(perBlock)) continue;
       asked.push_back(uint32_t(i));
       paths.push_back(path);
-      centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
+      centres.push_back(centreOf(camera, i));
     }
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
     count.closest += centres.size();
@@ -237,19 +331,12 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     tracer.follow(
         surfaces,
         [&](const Near& n, const vec3& light) {
-          out.irradiance[asked[n.surface]] += light;
-          if (!in.glossy) return;
-          const Receiver receiver = receiverOf(in.view, surfaces[n.surface]);
-          out.glossy[asked[n.surface]] +=
-              light * glossyReflectance(receiver, n.direction, n.spread) / glossyTint(receiver);
+          add(out, asked[n.surface], n, light, in.view, surfaces[n.surface]);
         },
         count);
   });
-  if (in.subsets) {
-    const NeighbourSurfaces seen{positions, normals, camera.width, std::sqrt(cells.meanArea())};
-    for (std::vector<vec3>* light : {&out.irradiance, &out.glossy})
-      if (!light->empty()) averaged ? mixPatterns(*light, seen) : mixBlocks(*light, seen);
-  }
+  if (in.subsets)
+    mixNeighbours(out, {positions, normals, camera.width, std::sqrt(cells.meanArea())}, averaged);
   return out;
 }
 

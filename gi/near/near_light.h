@@ -3,6 +3,7 @@
 
 #include "gi/contract/virtual_lights.h"
 #include "gi/lighting/light_set.h"
+#include "gi/near/near_memory.h"
 #include "gi/plan/settings.h"
 #include "gi/vpl/smc.h"
 
@@ -21,6 +22,7 @@ struct NearLightInputs {
   uint32_t seed = 1;
   uint32_t frame = 0; // which of those that are averaged
   int frames = 1;     // that are; 1: blocks of pixels are mixed
+  NearMemory* memory = nullptr; // of a view in motion: what it says of the frame before is used, and replaced
 };
 
 /// Near light at pixel centres of the view's camera, row by row from the top.

@@ -137,7 +137,7 @@ struct AreaSettings {
 struct GatherSettings {
   GatherMode mode = GatherMode::Interleaved;
   int lights = 64; // lists: of each pixel
-  int tile = 8;    // lists: pixels along a side of a tile
+  int tile = 4;    // lists: pixels along a side of a tile
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
   int near = 8; // rays per 4×4 pixels of subsets (else per pixel) for what disk and clamp take from near VPLs; 0: lost
