@@ -11,6 +11,7 @@ namespace {
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
 constexpr int kListFrames = 4; // of light by lists in a mean that needs no filter
+constexpr int kListStill = 16; // frames of a still view that lists bring through the noise of single classes
 
 } // namespace
 
@@ -70,8 +71,11 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   const ShadowedLights lights = maps_.update({frame, lights_, needs_.maps}, stats);
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
-  const LightLists* lists = needs_.lists ? &chooseLists(frame, sample, stats) : nullptr;
   const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
+  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean.
+  stood_ = stands ? stood_ + 1 : 0;
+  const bool choose = needs_.lists && stood_ < kListStill;
+  const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,
                             .lists = lists,

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kPlaces = 4;           // of a tile
 constexpr float kLeastCosine = 0.1f; // normals differ within a tile
+constexpr float kLeastDistance = 1e-6f; // between a place and a light, of the lights' extent
 constexpr float kEven = 0.1f;        // share of the weights that all lights have alike, for what no place of a tile saw
 constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
 constexpr int kMostTiles = 1024;             // of an image: its tiles grow until they are no more
@@ -30,17 +31,21 @@ float sumOf(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.en
 /// What a place needs of lights, component by component, so that compilers make vectors of the loop; kLanes at a time.
 struct LightColumns {
   std::vector<float> x, y, z, nx, ny, nz, power, widening;
+  float least = 0; // squared distance, m²
 };
 
 LightColumns columnsOf(std::span<const VirtualLight> lights, std::span<const uint32_t> order, float disk) {
   LightColumns c;
+  vec3 low(kInfinity), high(-kInfinity);
   for (const uint32_t slot : order) {
     const VirtualLight& l = lights[slot];
+    low = glm::min(low, l.position), high = glm::max(high, l.position);
     c.x.push_back(l.position.x), c.y.push_back(l.position.y), c.z.push_back(l.position.z);
     c.nx.push_back(l.normal.x), c.ny.push_back(l.normal.y), c.nz.push_back(l.normal.z);
     c.power.push_back(l.intensity());
-    c.widening.push_back(std::max(disk * l.area / kPi, 1e-12f));
+    c.widening.push_back(disk * l.area / kPi);
   }
+  c.least = kLeastDistance * kLeastDistance * glm::dot(high - low, high - low);
   const size_t whole = (order.size() + kLanes - 1) / kLanes * kLanes; // what fills them up has no power
   for (std::vector<float>* column : {&c.x, &c.y, &c.z, &c.nx, &c.ny, &c.nz, &c.power}) column->resize(whole, 0.0f);
   c.widening.resize(whole, 1.0f);
@@ -90,7 +95,7 @@ float bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<fl
     for (size_t k = 0; k < kLanes; ++k) {
       const size_t i = first + k;
       const float dx = px - x[i], dy = py - y[i], dz = pz - z[i];
-      const float squared = dx * dx + dy * dy + dz * dz + 1e-20f, least = kLeastCosine * std::sqrt(squared);
+      const float squared = dx * dx + dy * dy + dz * dz + lights.least, least = kLeastCosine * std::sqrt(squared);
       const float atPlace = -(dx * nx + dy * ny + dz * nz), atLight = dx * lx[i] + dy * ly[i] + dz * lz[i];
       const float cosines = (atPlace > least ? atPlace : least) * (atLight > least ? atLight : least) / squared;
       to[k] = power[i] * cosines / (squared + widening[i]);

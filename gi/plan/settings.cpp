@@ -119,13 +119,13 @@ class Table {
     number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");
     number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
     choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
-           "4x4 subsets and filter; lights chosen for each tile; every VPL at every pixel (16 times the time), or at "
+           "lights chosen for each tile; 4x4 subsets and filter; every VPL at every pixel (16 times the time), or at "
            "every patch of the image; patches of each subset; VPLs splatted into patches, or each into its own");
     number(SETTING(gather, lights), {1, 512, "lights", PowersOfTwo}, Nothing,
-           "gather.mode lists: that a pixel gathers in a frame");
+           "gather.mode lists: that a pixel gathers in a frame in motion");
     number(SETTING(gather, tile), {2, 64, "pixels", PowersOfTwo}, Nothing,
            "gather.mode lists: along a side of a tile, which chooses lights for its pixels; more where an image would "
-           "have over 4096 tiles");
+           "have over 1024 tiles");
     number(SETTING(gather, disk), {0, 1000}, Nothing,
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
@@ -138,7 +138,7 @@ class Table {
         SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
     flag(SETTING(gather, checks), Nothing,
-         "interleaved, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps say");
+         "lists and interleaved, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps say");
     flag(SETTING(gather, glossy), Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number(SETTING(gather, spread), {0, 1000}, Nothing,

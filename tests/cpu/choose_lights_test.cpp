@@ -134,8 +134,8 @@ TEST(ChooseLights, LargeImagesHaveLargerTiles) {
   LitFloor floor(50);
   floor.scene.size(1920, 1080);
   const ListTable table = floor.choose(64, 0);
-  EXPECT_EQ(table.tile, 32);
-  EXPECT_EQ(table.tiles, glm::ivec2(60, 34));
+  EXPECT_EQ(table.tile, 48);
+  EXPECT_EQ(table.tiles, glm::ivec2(40, 23));
 }
 
 TEST(ChooseLights, LightsWithoutNumbersAreLeftOut) {

@@ -7,6 +7,7 @@ namespace lambent::test::history_test {
 class HistoryTest : public StillRoomTest {
  protected:
   HistoryTest() {
+    settings.gather.mode = GatherMode::Interleaved;
     settings.gather.checks = false;
     settings.shadow.resolution = 64;
     settings.history.frames = 16;

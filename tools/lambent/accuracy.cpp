@@ -243,7 +243,7 @@ constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-
 
 PathFigure pathFigure(const std::string& name, bool quick) {
   if (name == "1.8")
-    return {{{"interleaved", {}}, {"all-maps", {{"gather.mode", "full"}}}, {"all-rays", {{"vpl.visibility", "rays"}}}},
+    return {{{"interleaved", {{"gather.mode", "interleaved"}}}, {"all-maps", {{"gather.mode", "full"}}}, {"all-rays", {{"vpl.visibility", "rays"}}}},
             {kTraced, kTracedClamped}};
   PathFigure figure{{}, {kTraced, kTracedClamped}, true};
   if (name == "1.9") {
