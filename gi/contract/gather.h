@@ -14,7 +14,7 @@ struct GatherInputs {
   bool averaged = false; // there are such samples
   bool changes = false;  // light does; means are short then
   bool stands = false;   // neither light nor camera changes, and means follow no change before
-  bool stores = true; // what outlives frames follows the lights; else it stays as it is
+  bool stores = true;    // what outlives frames follows the lights; else it stays as it is
 };
 
 class Gather {

@@ -16,7 +16,7 @@ struct LightLists {
   /// R32UI: row: tile. Class c has the texels from c · (chunks + length) on: where the lights of each chunk of 2048
   /// end, then the lights: slot in its chunk, and in the upper 16 bits, as half float, how many times it counts.
   const gl::Texture* texture = nullptr;
-  int tile = 8; // pixels along a side
+  int tile = 4; // pixels along a side
   glm::ivec2 tiles{0};
   int length = 0; // lights of a list, at most
 };

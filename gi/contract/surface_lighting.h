@@ -8,7 +8,7 @@ namespace lambent {
 
 /// Irradiance, W/m², albedo not included, and what the receivers' lobes reflect of it. De-interleaved: 16 sub-images in
 /// a 4×4 grid of tiles of ⌈W/4⌉×⌈H/4⌉; tile (x mod 4, y mod 4) holds pixel (x, y) at (x/4, y/4), lit by the lights of
-/// one class, times 16 (lightClassOf, gi/gather/draw_gather.h). Null textures: none.
+/// one class, times 16, or by a list (lightClassOf, gi/gather/draw_gather.h). Null textures: none.
 struct SurfaceLighting {
   const gl::Texture* irradiance = nullptr; // RGBA32F
   const gl::Texture* glossy = nullptr;     // RGBA32F W/(m² sr) over glossyTint (shaders/shared/ggx.h)

@@ -72,9 +72,10 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
   const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
-  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean.
-  stood_ = stands ? stood_ + 1 : 0;
-  const bool choose = needs_.lists && stood_ < kListStill;
+  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean. Means
+  // that are too short for both keep to lists.
+  stood_ = stands && sample > 0 ? stood_ + 1 : 0;
+  const bool choose = needs_.lists && (stood_ < kListStill || frame.settings.history.frames < 2 * kListStill);
   const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,

@@ -1,5 +1,6 @@
 // Gathers of virtual lights. Contents of this folder in data-flow order:
 //   draw_gather     the draw that all of them share
+//   list_pass       which lights it takes, for the GPU
 //   pixel_gather    at pixels: every light at each, or the 4×4 subsets of interleaved sampling
 //   ray_gather      at pixels, on the CPU, with a ray for every pair
 //   add_pixels      what the CPU found at pixels, added to what was gathered

@@ -11,11 +11,12 @@ constexpr int kChanges = 4, kMoves = 2;
 } // namespace
 
 void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int grid, FrameStats& stats) {
+  if (in.sample == 0) memory_.forget();
   const GatherSettings& gather = in.frame.settings.gather;
   const bool bounded = gather.disk > 0 || gather.clamp > 0;
   if (gather.near == 0 || !bounded || in.lights.list.slots.empty()) return;
-  if (in.sample == 0) memory_.forget();
-  const bool moves = in.averaged && !in.stands;
+  const bool moves = in.averaged && !in.stands && grid > 1; // each pixel casts by itself what it needs
+  const int times = moves ? in.changes ? kChanges : kMoves : in.changes ? 2 : 1;
   NearLight light;
   {
     const CpuScope scope(stats.stages, key(StageId::NearLight));
@@ -24,7 +25,7 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .lights = in.frame.world.lights,
                             .virtuals = in.lights.list.slots,
                             .gather = gather,
-                            .casts = gather.near * (in.changes ? kChanges : moves ? kMoves : 1),
+                            .casts = gather.near * times,
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cfloat>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -15,10 +16,10 @@ namespace lambent {
 
 namespace {
 
-constexpr int kPlaces = 4;           // of a tile
-constexpr float kLeastCosine = 0.1f; // normals differ within a tile
+constexpr int kPlaces = 4;              // of a tile
+constexpr float kLeastCosine = 0.1f;    // normals differ within a tile
 constexpr float kLeastDistance = 1e-6f; // between a place and a light, of the lights' extent
-constexpr float kEven = 0.1f;        // share of the weights that all lights have alike, for what no place of a tile saw
+constexpr float kEven = 0.1f; // share of the weights that all lights have alike, for what no place of a tile saw
 constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
 constexpr int kMostTiles = 1024;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
@@ -45,7 +46,7 @@ LightColumns columnsOf(std::span<const VirtualLight> lights, std::span<const uin
     c.power.push_back(l.intensity());
     c.widening.push_back(disk * l.area / kPi);
   }
-  c.least = kLeastDistance * kLeastDistance * glm::dot(high - low, high - low);
+  c.least = std::max(kLeastDistance * kLeastDistance * glm::dot(high - low, high - low), FLT_MIN);
   const size_t whole = (order.size() + kLanes - 1) / kLanes * kLanes; // what fills them up has no power
   for (std::vector<float>* column : {&c.x, &c.y, &c.z, &c.nx, &c.ny, &c.nz, &c.power}) column->resize(whole, 0.0f);
   c.widening.resize(whole, 1.0f);

@@ -27,7 +27,7 @@ struct ListInputs {
 
 /// Lists as LightLists::texture has them (gi/contract/light_lists.h).
 struct ListTable {
-  int tile = 8;
+  int tile = 4;
   glm::ivec2 tiles{0};
   int length = 0, chunks = 1;
   std::vector<uint32_t> texels;

@@ -209,15 +209,17 @@ void mixNeighbours(NearLight& light, const NeighbourSurfaces& seen, bool average
     if (!of->empty()) averaged ? mixPatterns(*of, seen) : mixBlocks(*of, seen);
 }
 
-/// What the pixels of a few rows or less did.
-struct CastCounts {
-  RayCounts rays;
-  uint64_t cast = 0;
-  CastCounts& operator+=(const CastCounts& o) {
-    rays += o.rays, cast += o.cast;
-    return *this;
-  }
-};
+/// Surfaces of about a thousand pixels, spread over the image.
+std::vector<SurfaceHit> someSurfaces(const NearLightInputs& in, RayCounts& counts) {
+  const CameraView& camera = in.view.camera;
+  const int step = std::max(1, int(std::sqrt(float(camera.width) * float(camera.height) / 1024)));
+  std::vector<vec2> centres;
+  for (int y = step / 2; y < camera.height; y += step)
+    for (int x = step / 2; x < camera.width; x += step)
+      centres.push_back(centreOf(camera, size_t(y) * size_t(camera.width) + size_t(x)));
+  counts.closest += centres.size();
+  return surfacesAt(in.rays, camera, centres);
+}
 
 /// Every pixel casts as many rays as the frame before says, each frame the next ones of its pattern.
 NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts& counts) {
@@ -227,15 +229,14 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
   NearLight out = noNearLight(in);
   NearMemory now;
   now.fit(camera);
-  const NearRates rates(*in.memory, float(in.casts) / 16);
+  const NearRates rates(*in.memory, someSurfaces(in, counts), float(in.casts) / 16);
   const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
   const RadianceUpdate update{.paths = int(kPatterns * kPattern), .bounces = in.bounces, .seed = in.seed};
-  CastCounts sum;
-  parallelCount(out.irradiance.size(), kGrain, sum, [&](size_t begin, size_t end, CastCounts& count) {
+  parallelCount(out.irradiance.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<vec2> centres;
     for (size_t i = begin; i < end; ++i) centres.push_back(centreOf(camera, i));
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
-    count.rays.closest += centres.size();
+    count.closest += centres.size();
 
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1};
     std::vector<NearRates::Rate> expected(surfaces.size());
@@ -243,12 +244,12 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
     for (size_t s = 0; s < surfaces.size(); ++s) {
       const SurfaceHit& h = surfaces[s];
       if (!h.valid()) continue;
-      const uint32_t pixel = uint32_t(begin + s), x = pixel % uint32_t(camera.width), y = pixel / uint32_t(camera.width);
+      const uint32_t pixel = uint32_t(begin + s), x = pixel % uint32_t(camera.width),
+                     y = pixel / uint32_t(camera.width);
       now.positions[pixel] = h.position;
       now.normals[pixel] = h.normal;
       expected[s] = rates.at(h);
-      cast[s] = uint32_t(expected[s].rays + Rng(in.seed, Stream::Turns, pixel, in.frame).next());
-      count.cast += cast[s];
+      cast[s] = uint32_t(expected[s].rays + Rng(in.seed, Stream::NearLight, pixel + 1, in.frame).next());
       // Rays of a frame are a quarter of the pattern apart, pixels of a block and frames side by side.
       for (uint32_t ray = 0; ray < cast[s]; ++ray) {
         const uint32_t path = (turnOf(x, y) + 5 * in.frame + ray * kPattern / 4 + ray / 4) % kPattern;
@@ -261,14 +262,12 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
           ++went[n.surface];
           add(out, begin + n.surface, n, light / expected[n.surface].rays, in.view, surfaces[n.surface]);
         },
-        count.rays);
+        count);
     for (size_t s = 0; s < surfaces.size(); ++s) {
       const NearRates::Rate& r = expected[s];
       now.near[begin + s] = (r.near * r.known + float(went[s])) / std::max(r.known + float(cast[s]), 1.0f);
     }
   });
-  counts += sum.rays;
-  now.rate = rates.next(sum.cast, out.irradiance.size());
   *in.memory = std::move(now);
   const NearMemory& seen = *in.memory;
   mixNeighbours(out, {seen.positions, seen.normals, camera.width, std::sqrt(cells.meanArea())}, true);
@@ -330,13 +329,10 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
     tracer.follow(
         surfaces,
-        [&](const Near& n, const vec3& light) {
-          add(out, asked[n.surface], n, light, in.view, surfaces[n.surface]);
-        },
+        [&](const Near& n, const vec3& light) { add(out, asked[n.surface], n, light, in.view, surfaces[n.surface]); },
         count);
   });
-  if (in.subsets)
-    mixNeighbours(out, {positions, normals, camera.width, std::sqrt(cells.meanArea())}, averaged);
+  if (in.subsets) mixNeighbours(out, {positions, normals, camera.width, std::sqrt(cells.meanArea())}, averaged);
   return out;
 }
 

@@ -20,8 +20,8 @@ struct NearLightInputs {
   bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each frame
   bool glossy = false;
   uint32_t seed = 1;
-  uint32_t frame = 0; // which of those that are averaged
-  int frames = 1;     // that are; 1: blocks of pixels are mixed
+  uint32_t frame = 0;           // which of those that are averaged
+  int frames = 1;               // that are; 1: blocks of pixels are mixed
   NearMemory* memory = nullptr; // of a view in motion: what it says of the frame before is used, and replaced
 };
 

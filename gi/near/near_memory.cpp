@@ -7,13 +7,13 @@ namespace lambent {
 
 namespace {
 
-constexpr float kGuess = 0.5f;                  // share where a surface comes into sight
-constexpr float kFresh = 2;                     // and how many times its weight there
-constexpr float kLeastShare = 1 / 64.0f;        // of what may only have been missed
+constexpr float kGuess = 0.5f;                     // share where a surface comes into sight
+constexpr float kFresh = 2;                        // and how many times its weight there
+constexpr float kLeastShare = 1 / 64.0f;           // of what may only have been missed
 constexpr float kLeastRays = 0.5f, kMostRays = 16; // fewer leave bright spots
-constexpr float kKnown = 8;                     // rays that a share is worth at most
-constexpr float kOnPlane = 1;                   // deviation from a pixel's plane, pixels
-constexpr float kAlike = 0.3f;                  // cosine between normals
+constexpr float kKnown = 8;                        // rays that a share found before is worth
+constexpr float kOnPlane = 1;                      // deviation from a pixel's plane, pixels
+constexpr float kAlike = 0.3f;                     // cosine between normals
 
 } // namespace
 
@@ -25,25 +25,35 @@ void NearMemory::fit(const CameraView& seenBy) {
   near.assign(pixels, 0);
 }
 
-NearRates::NearRates(const NearMemory& before, float budget)
+NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfaces, float budget)
     : before_(before), clipFromWorld_(clipFromView(before.camera) * glm::inverse(before.camera.worldFromView)),
-      budget_(budget), rate_(before.rate > 0 ? before.rate : budget) {}
+      budget_(budget), rate_(budget) {
+  std::vector<float> weights;
+  for (const SurfaceHit& h : surfaces)
+    if (h.valid()) weights.push_back(weightOf(nearOf(h)));
+  constexpr int kRounds = 8; // bounds make it a fixed point, that comes near soon
+  for (int i = 0; i < kRounds && !weights.empty(); ++i) {
+    double rays = 0;
+    for (const float w : weights) rays += double(raysOf(w));
+    rate_ *= budget * float(weights.size()) / float(rays);
+  }
+}
 
 NearRates::Rate NearRates::at(const SurfaceHit& surface) const {
   const float* near = nearOf(surface);
-  const float share = near ? *near : kGuess;
-  const float weight = std::sqrt(std::max(share, kLeastShare)) * (near ? 1 : kFresh);
-  return {std::clamp(weight * rate_, std::min(kLeastRays, budget_), std::max(kMostRays, budget_)), share,
-          near ? kKnown : 1};
+  return {raysOf(weightOf(near)), near ? *near : kGuess, near ? kKnown : 1};
 }
 
-float NearRates::next(uint64_t rays, size_t pixels) const {
-  const float wanted = budget_ * float(pixels);
-  return rays > 0 ? std::clamp(rate_ * wanted / float(rays), budget_ / 16, budget_ * 16) : rate_;
+float NearRates::weightOf(const float* near) const {
+  return near ? std::sqrt(std::max(*near, kLeastShare)) : kFresh * std::sqrt(kGuess);
+}
+
+float NearRates::raysOf(float weight) const {
+  return std::clamp(weight * rate_, std::min(kLeastRays, budget_), std::max(kMostRays, budget_));
 }
 
 const float* NearRates::nearOf(const SurfaceHit& surface) const {
-  if (!(before_.rate > 0)) return nullptr;
+  if (before_.positions.empty()) return nullptr;
   const CameraView& camera = before_.camera;
   const vec4 clip = clipFromWorld_ * vec4(surface.position, 1);
   if (!(clip.w > 0)) return nullptr;

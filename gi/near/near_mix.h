@@ -8,7 +8,7 @@
 
 namespace lambent {
 
-/// The surfaces that an image's pixels see, row by row. Those that cast no ray are infinitely far off.
+/// The surfaces that an image's pixels see, row by row. Those that are not to be mixed are infinitely far off.
 struct NeighbourSurfaces {
   std::span<const vec3> positions, normals; // world space, m; unit vectors
   int width = 0;                            // pixels

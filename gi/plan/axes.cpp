@@ -56,7 +56,7 @@ std::string whyNot(const Axes& axes) {
   if (source.tree && gather.splats)
     return mode + ": " + name +
            "'s clusters are chosen by who gathers (multires, multires-interleaved, interleaved or full)";
-  if (gather.lists && source.lights == LightSupply::Reflective)
+  if (gather.lists && source.lights == LightSupply::Reflective && axes.visibility != VplVisibility::Rays)
     return mode + ": " + name + "'s lights are on the GPU alone (interleaved or full)";
   const auto is = [&](Reconstruction r) { return axes.reconstruction == r; };
   if (gather.patches != (is(Reconstruction::Upsample) || is(Reconstruction::UpsampleFilter)))

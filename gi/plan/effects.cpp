@@ -18,7 +18,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"mapRefresh", "shadow maps of VPLs follow objects that move", "maps and rays"},
     {"relight", "VPLs follow lights and geometry that change", "VPLs"},
     {"replace", "VPLs are tested and replaced; off: the first set stays", "rays"},
-    {"filter", "mixes the 4x4 subsets of the interleaved gather", "draws"},
+    {"filter", "mixes the 4x4 subsets of a gather", "draws"},
     {"history", "indirect light of a pixel is averaged over frames; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
@@ -143,22 +143,22 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                              : !needs.textures    ? Answer{false, "the technique traces no light path"}
                              : scene.textured > 0 ? Answer{true, count(scene.textured, "textured surface")}
                                                   : Answer{false, "no base-colour texture"});
-  decide(EffectId::SoftShadows,
-         !emissive || scene.emissive == 0 ? Answer{false, "no emissive surface"}
-         : settings.shadow.emitterSamples > 1 || settings.shadow.emitters == EmitterShadows::Patches ||
-                 settings.direct.soft == SoftLightBy::Rays
-             ? Answer{true, count(scene.emissive, "lamp")}
-             : Answer{false, "shadow.emitterSamples is 1"});
+  decide(EffectId::SoftShadows, !emissive || scene.emissive == 0 ? Answer{false, "no emissive surface"}
+                                : settings.shadow.emitterSamples > 1 ||
+                                        settings.shadow.emitters == EmitterShadows::Patches ||
+                                        settings.direct.soft == SoftLightBy::Rays
+                                    ? Answer{true, count(scene.emissive, "lamp")}
+                                    : Answer{false, "shadow.emitterSamples is 1"});
   decide(EffectId::Filter, !lights               ? none
                            : !needs.subsets      ? Answer{false, "every pixel sees all VPLs"}
                            : !settings.filter.on ? Answer{false, "filter.on is off"}
-                                                 : Answer{true, "the gather is interleaved"});
+                                                 : Answer{true, "pixels of 4x4 gather different lights"});
 
   const bool bounded =
       needs.nearRays && settings.gather.near > 0 && (settings.gather.disk > 0 || settings.gather.clamp > 0);
   decide(EffectId::History, !lights                       ? none
                             : settings.history.frames < 2 ? Answer{false, "history.frames is less than 2"}
-                            : needs.subsets               ? Answer{true, "the gather is interleaved"}
+                            : needs.subsets               ? Answer{true, "pixels of 4x4 gather different lights"}
                             : bounded                     ? Answer{true, "near light is traced"}
                                                           : Answer{false, "every frame gathers the same light"});
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
@@ -222,8 +222,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : waiting              ? Answer{true, "shadow maps are waiting"}
                            : indirect && !status.pending.empty() ? Answer{true, status.pending}
                            : status.averaged < historyFrames     ? Answer{true, "light is averaged over frames"}
-                           : facts.directPending ? Answer{true, "direct light is averaged over frames"}
-                                                 : Answer{false, "nothing changed"});
+                           : facts.directPending                 ? Answer{true, "direct light is averaged over frames"}
+                                                                 : Answer{false, "nothing changed"});
   plan.onlyDirect_ = facts.directPending && !facts.first && !plan.changed_ && status.averaged >= historyFrames &&
                      !(indirect && !status.pending.empty());
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {

@@ -130,10 +130,11 @@ class Table {
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
-    number(
-        SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
-        "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; 0 "
-        "= lost");
+    number(SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
+           "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets (twice as many "
+           "while the "
+           "camera moves, four times while light changes), else per pixel (twice while light changes); 0 "
+           "= lost");
     number(
         SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
@@ -204,7 +205,7 @@ class Table {
            "gather.mode volume: cells that light goes from where it was reflected; what is then on its way is lost");
     flag(SETTING(lpv, occlusion), Nothing, "gather.mode volume: surfaces stop light; off: it goes through walls");
     number(SETTING(history, frames), {0, 256, "frames", PowersOfTwo}, Nothing,
-           "frames that the indirect light of a pixel is averaged over, each by other rays and another sixteenth of "
+           "frames that the indirect light of a pixel is averaged over, each by other rays and another part of "
            "the VPLs; 0 = each frame by itself");
     flag(SETTING(filter, on), Nothing, "cross-bilateral filter over the 4x4 subsets; denoiser of soft direct light");
     choice(SETTING(filter, kernel), {"separable", "whole"}, Nothing,

@@ -1,4 +1,4 @@
-// Light averaged over frames. Each pixel gathers another sixteenth of the lights in every frame and casts other
+// Light averaged over frames. Each pixel gathers another part of the lights in every frame and casts other
 // near rays, so that its mean holds them all, without the blur of a filter over its neighbours. It looks up what is
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //

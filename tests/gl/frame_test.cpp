@@ -32,6 +32,7 @@ class FrameTest : public GlTest {
 TEST_F(FrameTest, MapsAndInterleavingStayCloseToARayForEveryPair) {
   Settings settings = quick();
   settings.history.frames = 0;
+  settings.gather.mode = GatherMode::Interleaved;
   Viewer gi(settings);
   const Image interleaved = nextFrame(gi, scene.view());
   gi.settings().smc.moves = 0; // the same lights for all three
@@ -56,7 +57,8 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
   scene.size(48, 36);
   settings.image.exposure = 0;
   for (const VplSource source : {VplSource::Smc, VplSource::Rsm, VplSource::Hisr})
-    for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {
+    for (const GatherMode mode :
+         {GatherMode::Lists, GatherMode::Interleaved, GatherMode::Multires, GatherMode::Splat}) {
       settings.vpl.source = source;
       settings.vpl.visibility = source == VplSource::Smc ? VplVisibility::Maps : VplVisibility::None;
       settings.gather.mode = mode;

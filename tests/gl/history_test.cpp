@@ -74,6 +74,23 @@ TEST_F(HistoryTest, ListsHaveLessNoiseThanSubsets) {
   EXPECT_LT(rests, 0.15 * errors[0]);
 }
 
+TEST_F(HistoryTest, ListsGiveWayToClassesWhereAViewStands) {
+  settings.smc.vpls = 256;
+  for (const int frames : {64, 16}) {
+    Viewer gi(with(settings, GatherMode::Lists, frames));
+    EXPECT_GT(gi.run(room.scene.view()).raysLists.closest, 0u);
+    int drawn = 0, byLists = 0;
+    while (gi.run(still()).plan.on(EffectId::Redraw)) ++drawn, byLists += gi.stats().raysLists.closest > 0;
+    EXPECT_GE(drawn, frames - 1);
+    if (frames == 64)
+      EXPECT_EQ(byLists, 15) << "a mean that holds all classes";
+    else
+      EXPECT_EQ(byLists, drawn) << "a mean too short for both";
+    room.scene.camera.worldFromView[3].x += 0.01f;
+    EXPECT_GT(gi.run(view(kCameraChanged)).raysLists.closest, 0u);
+  }
+}
+
 TEST_F(HistoryTest, NearLightIsAveragedToo) {
   settings.gather.near = 8;
   settings.gather.nearLimit = 0;

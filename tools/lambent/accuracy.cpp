@@ -172,9 +172,9 @@ void accuracyDirect(const AccuracyOptions& options) {
   if (!study.opened->settings.direct.on) throw InputError("settings", "direct light is off (--direct needs direct.on)");
   needShot(options, study);
   study.trace(256, ReferenceBuffer::Direct, false, {}, options.frame);
-  std::vector<Variant> variants{study.variant("as set"), study.variant("maps", {{"direct.soft", "maps"}}),
-                                study.variant("maps, lamps by patches",
-                                              {{"direct.soft", "maps"}, {"shadow.emitters", "patches"}})};
+  std::vector<Variant> variants{
+      study.variant("as set"), study.variant("maps", {{"direct.soft", "maps"}}),
+      study.variant("maps, lamps by patches", {{"direct.soft", "maps"}, {"shadow.emitters", "patches"}})};
   if (options.alone) variants.resize(1);
   const std::vector<Column> columns{
       {{"shadows", "shadows"}, variantName},
@@ -193,9 +193,8 @@ void accuracyDirect(const AccuracyOptions& options) {
        }},
       {{"ms", "ms a frame", "%.0f"}, [](const Outcome& o) -> Value { return steadyMs(o.run.frames); }}};
   const int averaged = std::max(1, study.opened->settings.direct.frames);
-  study.report(columns, study.rows(columns, options.frame > 0
-                                                ? study.drawUpTo(options.frame, variants, Buffer::Direct)
-                                                : study.draw(variants, Buffer::Direct, averaged)));
+  study.report(columns, study.rows(columns, options.frame > 0 ? study.drawUpTo(options.frame, variants, Buffer::Direct)
+                                                              : study.draw(variants, Buffer::Direct, averaged)));
 }
 
 /// Light propagation volumes by what their settings take, next to lights that every pixel gathers.
@@ -243,7 +242,9 @@ constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-
 
 PathFigure pathFigure(const std::string& name, bool quick) {
   if (name == "1.8")
-    return {{{"interleaved", {{"gather.mode", "interleaved"}}}, {"all-maps", {{"gather.mode", "full"}}}, {"all-rays", {{"vpl.visibility", "rays"}}}},
+    return {{{"interleaved", {{"gather.mode", "interleaved"}}},
+             {"all-maps", {{"gather.mode", "full"}}},
+             {"all-rays", {{"vpl.visibility", "rays"}}}},
             {kTraced, kTracedClamped}};
   PathFigure figure{{}, {kTraced, kTracedClamped}, true};
   if (name == "1.9") {
@@ -352,7 +353,8 @@ void declareAccuracy(CLI::App& app) {
        "are right, frame time and path tracing's to the same error; beside it one picture, and every light at every "
        "pixel by rays");
   form("--direct", accuracyDirect,
-       "direct light as set, averaged over frames, against path tracing: bias, error and frame time; beside it by shadow "
+       "direct light as set, averaged over frames, against path tracing: bias, error and frame time; beside it by "
+       "shadow "
        "maps, and with lamps by patches");
   form("--volume", accuracyVolume,
        "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");

@@ -39,8 +39,8 @@ const Steps kSampling{{"candidates", "candidates", {Points, Candidates, Replace,
                       {"density", "density", {Density}}};
 const Steps kRendering{{"maps", "shadow maps", {VplMaps, MapComparison}},
                        {"shading",
-                        "interleaved shading",
-                        {Surfaces, Vpls, Gather, GatherByRays, IrradianceUpload, Patches, Stencil, Refine, Splat,
+                        "shading",
+                        {Surfaces, Vpls, Lists, Gather, GatherByRays, IrradianceUpload, Patches, Stencil, Refine, Splat,
                          SplatPerVpl, Upsample, Filter}},
                        {"beyond", "beyond the paper", {MapChecks, NearLight, History}}};
 
