@@ -75,7 +75,8 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean. Means
   // that are too short for both keep to lists.
   stood_ = stands && sample > 0 ? stood_ + 1 : 0;
-  const bool choose = needs_.lists && (stood_ < kListStill || frame.settings.history.frames < 2 * kListStill);
+  const bool choose =
+      needs_.lists && (stood_ < kListStill || frame.settings.history.frames < kListStill + kLightClasses);
   const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,

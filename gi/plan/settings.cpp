@@ -139,7 +139,8 @@ class Table {
         SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");
     flag(SETTING(gather, checks), Nothing,
-         "lists and interleaved, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps say");
+         "classes of interleaved gathers, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps "
+         "say");
     flag(SETTING(gather, glossy), Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number(SETTING(gather, spread), {0, 1000}, Nothing,

@@ -96,7 +96,7 @@ TEST(Axes, WhyNotIsEmptyJustForWhatMakesSense) {
           if (axes.source == VplSource::Hisr) sense = sense && !splats && !volume;
           const bool onGpu =
               axes.source == VplSource::Rsm || axes.source == VplSource::Isr || axes.source == VplSource::Hisr;
-          if (onGpu && is({Lists})) sense = false;
+          if (onGpu && is({Lists}) && axes.visibility != VplVisibility::Rays) sense = false;
           const bool anyView = axes.source == VplSource::Ir || axes.source == VplSource::Poisson;
           if (stored) sense = sense && anyView && axes.visibility == VplVisibility::None;
           if (axes.source == VplSource::Hisr || volume) sense = sense && axes.visibility == VplVisibility::None;
