@@ -11,7 +11,6 @@ namespace {
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
 constexpr int kListFrames = 4; // of light by lists in a mean that needs no filter
-constexpr int kListStill = 16; // frames of a still view that lists bring through the noise of single classes
 
 } // namespace
 
@@ -72,11 +71,8 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
   const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
-  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean. Means
-  // that are too short for both keep to lists.
-  stood_ = stands && sample > 0 ? stood_ + 1 : 0;
-  const bool choose =
-      needs_.lists && (stood_ < kListStill || frame.settings.history.frames < kListStill + kLightClasses);
+  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean.
+  const bool choose = needs_.lists && !stands;
   const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,

@@ -48,7 +48,6 @@ class ComposedTechnique : public LightProvider {
   FilterPass filter_{context_};
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
-  int stood_ = 0;            // frames since camera or light moved
   int averaged_ = 0;         // samples in the history since anything changed
 };
 
