@@ -92,7 +92,7 @@ constexpr const GatherRow& rowOf(GatherMode mode) { return kGathers[int(mode)]; 
 struct Axes {
   VplSource source = VplSource::Smc;
   VplVisibility visibility = VplVisibility::Maps;
-  GatherMode gather = GatherMode::Lists;
+  GatherMode gather = GatherMode::Interleaved;
   Reconstruction reconstruction = Reconstruction::Filter;
 };
 

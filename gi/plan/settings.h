@@ -135,7 +135,7 @@ struct AreaSettings {
 };
 
 struct GatherSettings {
-  GatherMode mode = GatherMode::Lists;
+  GatherMode mode = GatherMode::Interleaved;
   int lights = 64; // lists: of each pixel
   int tile = 4;    // lists: pixels along a side of a tile
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
