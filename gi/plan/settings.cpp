@@ -131,10 +131,9 @@ class Table {
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number(SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
-           "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets (twice as many "
-           "while the "
-           "camera moves, four times while light changes), else per pixel (twice while light changes); 0 "
-           "= lost");
+           "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; "
+           "twice "
+           "as many while light changes, by lists twice and four times as many in motion; 0 = lost");
     number(
         SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
         "near light: radiance of a surface counts up to so many times its VPL's, against bright spots; 0 = no limit");

@@ -71,7 +71,7 @@ TEST_F(HistoryTest, ListsHaveLessNoiseThanSubsets) {
   }
   const double rests = relativeRmse(gi.read(Buffer::Irradiance), all);
   std::printf("after 64 frames: %.4f\n", rests);
-  EXPECT_LT(rests, 0.3 * errors[0]);
+  EXPECT_LT(rests, 0.15 * errors[0]);
 }
 
 TEST_F(HistoryTest, ListsGiveWayToClassesWhereAViewStands) {

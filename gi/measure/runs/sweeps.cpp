@@ -32,7 +32,7 @@ std::vector<Assignments> jointDesign(bool quick) {
   static const Worth worths[] = {{"1024", "8", "64"}, {"2048", "16", "128"}, {"4096", "32", "128"}};
   std::vector<Assignments> sets;
   for (const char* vpls : {"256", "512", "1024", "2048", "4096", "8192"})
-    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "lists"));
+    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "interleaved"));
   if (quick) return {sets.front()};
   for (const char* mode : {"multires-interleaved", "multires"})
     for (const char* vpls : {"512", "2048"}) sets.push_back(worth(vpls, "2048", "16", "128", mode));
