@@ -1,17 +1,15 @@
 // lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7), or
 // of those from reflective shadow maps against every texel of these (paper 3, fig. 5).
-#include "gi/measure/stability.h"
 #include "engine/core/error.h"
-#include "gi/measure/statistics.h"
 #include "gi/plan/techniques.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/plot.h"
+#include "tools/lambent/stability_report.h"
 #include "tools/lambent/study.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <sstream>
+#include <ranges>
 
 namespace lambent {
 
@@ -23,42 +21,11 @@ struct StabilityOptions {
   LaunchOptions launch;
   OutputOptions output;
   std::vector<std::string> shots, techniques{"smc", "ir", "mir", "tcas"};
-  std::string truth = "path";
+  std::string truth = "path", protocol = "rays";
   int samples = 1024, frames = 0, grid = 16, still = 0, seeds = 1;
   bool quick = false;
 
   bool pathTraced() const { return truth == "path"; }
-};
-
-/// Errors of one technique at some of the watched pixels.
-struct GroupErrors {
-  StabilityErrors mean; // over the seeds
-  StatisticRuns error,
-      change;       // |E| and |E'| of each seed, and against halves of the truth: what rankings are made from
-  double still = 0; // |E| of the same views standing still, where ShotRun::still is set
-};
-
-/// One technique over one shot.
-struct TechniqueRun {
-  std::string name;
-  uint32_t vpls = 0;       // N; those of most in a frame where it varies; 0: every pixel has its own clusters
-  PixelSeries series = {}; // of the first seed
-  GroupErrors marked = {}, grid = {};
-  Latency latency = {}; // the worst of the seeds
-  double placeMs = 0;   // median time per frame of placing virtual lights, mean over the seeds
-};
-
-/// One shot. The first `marked` pixels are the shot's own, the others its grid.
-struct ShotRun {
-  std::string name;
-  double fps = 30;
-  size_t marked = 0;
-  PixelSeries truth;
-  std::vector<size_t> steps; // frames in which the scene changes by a step
-  bool still = false;        // also measured standing still
-  double truthError = 0;     // standard error of a value of the truth, RMS, tone-mapped luminance
-  Image image; // values of the display: the first frame, with the marked pixels numbered; empty: none are marked
-  std::vector<TechniqueRun> techniques;
 };
 
 /// What one seed's series adds to the means over `seeds`, and to what is known of them.
@@ -77,6 +44,33 @@ void addErrors(GroupErrors& to, const PixelSeries& series, const PixelSeries& tr
     to.error.halves[h] += half.error / seeds;
     to.change.halves[h] += half.change / seeds;
   }
+  if (halves.empty()) return;
+  addNoisyErrors(to.noisyError, ErrorKind::Error, series, truth, halves[0], halves[1], pixels);
+  addNoisyErrors(to.noisyChange, ErrorKind::Change, series, truth, halves[0], halves[1], pixels);
+}
+
+/// How techniques are drawn while they are compared.
+struct Protocol {
+  const char *name, *help;
+  Assignments set;
+};
+const Protocol kProtocols[] = {
+    {"rays", "sets of lights alone, a ray for every pixel and light (default)", {{"vpl.visibility", "rays"}}},
+    {"paper",
+     "paper 1's: maps, 4x4 subsets, filter, each frame by itself, one clamp for all, no near light",
+     {{"vpl.visibility", "maps"},
+      {"shadow.resolution", "128"},
+      {"gather.mode", "interleaved"},
+      {"gather.disk", "0"},
+      {"gather.clamp", "10"}, // theirs is set by hand for each scene and not told
+      {"gather.near", "0"},
+      {"gather.checks", "off"},
+      {"filter.on", "on"},
+      {"history.frames", "0"}}},
+    {"frames", "frames as they are drawn otherwise", {}},
+};
+const Protocol& protocolOf(const StabilityOptions& options) {
+  return *std::ranges::find(kProtocols, options.protocol, &Protocol::name);
 }
 
 constexpr int kPicturePaths = 32; // per pixel of the picture that shows where the marked pixels are
@@ -138,8 +132,8 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
                std::optional<double> stillAt = {}) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
-  // Placing lights is what is measured; the whole pipeline takes minutes for the comparators, which move every map.
-  launch.set.insert(launch.set.begin(), "vpl.visibility=rays");
+  for (const auto& [name, value] : protocolOf(options).set | std::views::reverse)
+    launch.set.insert(launch.set.begin(), name + "=" + value); // --set comes after it
   const auto opened = openLaunch(launch);
   refuseGlossy(opened->settings);
   if (!opened->shot) throw InputError(file, "not a shot (a .json file)");
@@ -155,6 +149,9 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
     context.emplace(GlContext::headless());
   ShotRun shot;
   shot.name = nameOf(file);
+  shot.protocol = options.protocol;
+  for (const auto& [name, value] : protocolOf(options).set)
+    shot.set += (shot.set.empty() ? "" : ", ") + name + "=" + settingText(opened->settings, name);
   shot.fps = opened->shot->fps;
   shot.marked = tracked.marked;
   RunPlan plan = planOf(*opened, options.frames);
@@ -230,159 +227,6 @@ void measureStill(const StabilityOptions& options, const std::string& file, std:
   shot.still = true;
 }
 
-/// Paper 1, table 1: |E'| of smc over that of ir in the sequence that a shot of ours follows.
-const std::map<std::string, double> kPublished{
-    {"office", 0.57}, {"citadel", 0.61}, {"maze", 0.57}, {"atrium", 0.32}, {"citadel-moving", 0.22}};
-
-/// |E'| of what a technique is compared with: of ir as in paper 1, among techniques from reflective maps of rsm. 0:
-/// none.
-double simplestChange(const ShotRun& shot, const TechniqueRun& t) {
-  const char* name = needsOf(techniqueByName(t.name)).reflective() ? "rsm" : "ir";
-  const auto simplest = std::ranges::find(shot.techniques, name, &TechniqueRun::name);
-  return simplest != shot.techniques.end() ? simplest->grid.mean.change : 0;
-}
-
-/// What is ranked, as rows of figures name it.
-struct Statistic {
-  const char *key, *title;
-  GroupErrors TechniqueRun::*pixels;
-  StatisticRuns GroupErrors::*runs;
-};
-constexpr Statistic kStatistics[] = {{"error_marked", "|E| marked", &TechniqueRun::marked, &GroupErrors::error},
-                                     {"change_marked", "|E'| marked", &TechniqueRun::marked, &GroupErrors::change},
-                                     {"error_grid", "|E| grid", &TechniqueRun::grid, &GroupErrors::error},
-                                     {"change_grid", "|E'| grid", &TechniqueRun::grid, &GroupErrors::change}};
-
-/// Of the shot's techniques. Empty where no pixel is marked: there is nothing to know of them.
-std::vector<UncertainValue> estimatesOf(const ShotRun& s, const Statistic& statistic) {
-  std::vector<StatisticRuns> all;
-  for (const TechniqueRun& t : s.techniques)
-    if (s.marked > 0 || statistic.pixels != &TechniqueRun::marked) all.push_back(t.*statistic.pixels.*statistic.runs);
-  return estimatesOf(all);
-}
-
-Value figuresOf(const ShotRun& s, size_t index) {
-  const TechniqueRun& t = s.techniques[index];
-  Value row = Value::of("shot", s.name, "technique", t.name, "vpls", t.vpls, "frames", s.truth.size(), "pixels_marked",
-                        s.marked, "pixels_grid", s.truth.front().size() - s.marked, "steps", s.steps, "error_marked",
-                        t.marked.mean.error, "change_marked", t.marked.mean.change, "error_grid", t.grid.mean.error,
-                        "change_grid", t.grid.mean.change, "bias_grid", t.grid.mean.bias, "l90_median",
-                        t.latency.median, "l90_worst_tenth", t.latency.worstTenth, "l90_followed", t.latency.followed,
-                        "l90_count", t.latency.count, "place_ms", t.placeMs, "truth_error", s.truthError);
-  for (const Statistic& statistic : kStatistics)
-    if (const auto estimates = estimatesOf(s, statistic); !estimates.empty() && !std::isnan(estimates[index].error))
-      row[std::string(statistic.key) + "_se"] = estimates[index].error;
-  if (t.latency.count > 0) row["l90"] = std::vector{t.latency.median, t.latency.worstTenth, 100 * t.latency.followed};
-  if (const double simplest = simplestChange(s, t); simplest > 0)
-    row["change_over_simplest"] = t.grid.mean.change / simplest;
-  const auto published = kPublished.find(s.name.substr(0, s.name.find("-small")));
-  if (t.name == techniqueTable().front().name && published != kPublished.end()) row["paper_1"] = published->second;
-  if (!s.still) return row;
-  row["error_still_marked"] = t.marked.still;
-  row["error_still_grid"] = t.grid.still;
-  row["error_over_still"] = std::vector{t.marked.mean.error / t.marked.still, t.grid.mean.error / t.grid.still};
-  return row;
-}
-
-const std::vector<TableColumn> kColumns{{"shot", "shot"},
-                                        {"technique", "technique"},
-                                        {"vpls", "N", "%g", 1, "cut"},
-                                        {"error_marked", "\\|E\\| marked", "%.4f"},
-                                        {"change_marked", "\\|E'\\| marked", "%.4f"},
-                                        {"error_grid", "\\|E\\| grid", "%.4f"},
-                                        {"change_grid", "\\|E'\\| grid", "%.4f"},
-                                        {"bias_grid", "bias", "%+.4f"},
-                                        {"change_over_simplest", "\\|E'\\| over ir's, rsm's", "%.2f"},
-                                        {"paper_1", "paper 1", "%.2f"},
-                                        {"error_over_still", "\\|E\\| over still", "%.2f"},
-                                        {"l90", "L90, worst tenth, % followed", "%.0f"},
-                                        {"place_ms", "ms to place", "%.1f"}};
-
-std::string seriesCsv(const ShotRun& s) {
-  std::ostringstream out;
-  out << "frame,pixel,marked,truth";
-  for (const TechniqueRun& t : s.techniques) out << ',' << t.name;
-  out << '\n';
-  for (size_t f = 0; f < s.truth.size(); ++f)
-    for (size_t p = 0; p < s.truth[f].size(); ++p) {
-      out << f << ',' << p << ',' << (p < s.marked) << ',' << s.truth[f][p];
-      for (const TechniqueRun& t : s.techniques) out << ',' << t.series[f][p];
-      out << '\n';
-    }
-  return out.str();
-}
-
-/// Tone-mapped luminance of each marked pixel over time, as paper 1, fig. 7.
-std::vector<Plot> plotsOf(const ShotRun& s) {
-  std::vector<Plot> plots;
-  std::vector<double> seconds;
-  for (size_t f = 0; f < s.truth.size(); ++f) seconds.push_back(double(f) / s.fps);
-  for (size_t p = 0; p < s.marked; ++p) {
-    Plot& plot = plots.emplace_back(format("%s, pixel %zu", s.name.c_str(), p), "time, s",
-                                    "luminance, tone-mapped (0 to 1)", false);
-    const auto add = [&](const std::string& name, const PixelSeries& series, const char* colour) {
-      PlotLine& line = plot.lines.emplace_back(name, seconds, std::vector<double>{}, colour);
-      for (const auto& frame : series) line.y.push_back(frame[p]);
-    };
-    for (const TechniqueRun& t : s.techniques) add(t.name, t.series, nullptr);
-    add("truth", s.truth, "#000");
-  }
-  return plots;
-}
-
-/// A row for each technique of each shot, for programs and for the tables.
-Value stabilityFigures(const std::vector<ShotRun>& shots) {
-  Value figures = Value::list();
-  for (const ShotRun& s : shots)
-    for (size_t t = 0; t < s.techniques.size(); ++t) figures.add(figuresOf(s, t));
-  return figures;
-}
-
-/// The rows as Markdown.
-std::string stabilityTable(const Value& figures) {
-  Value rows = figures;
-  for (Value& row : rows.items())
-    for (const Statistic& statistic : kStatistics)
-      if (const std::string error = std::string(statistic.key) + "_se"; row.has(error))
-        row[statistic.key] = format("%.4f ± %.4f", row[statistic.key].number(), row[error].number());
-  return tableText(kColumns, rows);
-}
-
-/// A line for each shot and error: who is better than whom, as far as noise lets one tell. Empty of one technique.
-std::string stabilityRankings(const std::vector<ShotRun>& shots) {
-  std::string text;
-  for (const ShotRun& s : shots)
-    for (const Statistic& statistic : kStatistics) {
-      const std::vector<UncertainValue> estimates = estimatesOf(s, statistic);
-      if (estimates.size() < 2) continue;
-      std::vector<Ranked> all;
-      for (size_t i = 0; i < estimates.size(); ++i) all.push_back({s.techniques[i].name, estimates[i]});
-      text += "- " + s.name + ", " + statistic.title + ": " + rankingText(ranked(std::move(all))) + "\n";
-    }
-  if (text.empty()) return text;
-  return "Rankings, the least first; a difference counts where seeds and the truth's noise make it in less than one of "
-         "twenty cases:\n\n" +
-         text;
-}
-
-/// stability.csv, stability.md (tables, rankings) and of each shot series-SHOT.csv and of its marked pixels a picture
-/// and plots, each in one step.
-void writeStabilityReport(const OutputOptions& output, const fs::path& folder, const std::vector<ShotRun>& shots,
-                          const std::string& conditions) {
-  const Value figures = stabilityFigures(shots);
-  std::string page = conditions + "\n\n" + stabilityTable(figures);
-  if (const std::string rankings = stabilityRankings(shots); !rankings.empty()) page += "\n" + rankings;
-  for (const ShotRun& s : shots) {
-    writeText(folder / ("series-" + s.name + ".csv"), seriesCsv(s));
-    if (s.marked == 0) continue;
-    writeShown(folder / ("marked-" + s.name + ".png"), s.image);
-    page += "\n![" + s.name + ", first frame, marked pixels](marked-" + s.name + ".png)\n";
-    writeText(folder / ("series-" + s.name + ".svg"), svgOf(plotsOf(s), 2));
-    page += "\n![" + s.name + ", marked pixels over time](series-" + s.name + ".svg)\n";
-  }
-  writeReport(output, folder, "stability", "Temporal stability", page, csvText(figures), figures);
-}
-
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) techniqueByName(name); // or a guess at what was meant
   const fs::path folder = reportFolder(options.output.out, "out/stability");
@@ -393,9 +237,12 @@ void stability(const StabilityOptions& options) {
     if (options.still > 0 && shots.back().steps.empty()) measureStill(options, file, context, shots.back());
   }
 
-  std::string conditions = "Truth: every texel of the reflective shadow maps at every pixel";
-  if (options.pathTraced()) {
-    conditions =
+  const std::string& set = shots.front().set;
+  std::string conditions = "Protocol: " + options.protocol + (set.empty() ? "" : " (" + set + ")") + ". ";
+  if (!options.pathTraced()) {
+    conditions += "Truth: every texel of the reflective shadow maps at every pixel";
+  } else {
+    conditions +=
         format("Truth: path tracing with %d paths per pixel; standard error of its values (tone-mapped luminance):",
                options.samples);
     for (const ShotRun& s : shots)
@@ -419,6 +266,13 @@ void declareStability(CLI::App& app) {
   command.choice("--truth", options->truth, {"path", "reflective"},
                  "path: path tracing (default); reflective: every texel of the reflective shadow maps at every pixel, "
                  "which rsm, isr, hisr and the multires techniques approximate");
+  std::vector<std::string> protocols;
+  std::string help;
+  for (const Protocol& p : kProtocols) {
+    protocols.push_back(p.name);
+    help += (help.empty() ? "" : "; ") + std::string(p.name) + ": " + p.help;
+  }
+  command.choice("--protocol", options->protocol, protocols, help + "; --set changes single settings of it");
   command.number("--spp", &options->samples, 4, 1 << 24, // two halves, of two or more each
                  "paths per pixel and frame of the truth (default 1024)");
   command.number("--frames", &options->frames, 1, 1000000, "only the first so many of each shot");

@@ -1,17 +1,11 @@
 // Rankings must not hold noise for a difference, nor a difference for noise.
-#include "engine/core/rng.h"
 #include "gi/measure/stability.h"
 #include "gi/measure/statistics.h"
 
+#include "tests/support/normal.h"
 #include "tests/support/test.h"
 
 namespace lambent::test::ranking_test {
-
-/// Standard normal, by Box and Muller.
-double normal(Rng& random) {
-  const double r = std::sqrt(-2 * std::log(1 - double(random.next())));
-  return r * std::cos(2 * double(kPi) * double(random.next()));
-}
 
 TEST(Ranking, MeanOverSeedsAndItsError) {
   const double runs[] = {1, 2, 6};
