@@ -64,7 +64,6 @@ const Protocol kProtocols[] = {
       {"gather.disk", "0"},
       {"gather.clamp", "10"}, // theirs is set by hand for each scene and not told
       {"gather.near", "0"},
-      {"gather.checks", "off"},
       {"filter.on", "on"},
       {"history.frames", "0"}}},
     {"frames", "frames as they are drawn otherwise", {}},
