@@ -57,7 +57,7 @@ struct Protocol {
 const Protocol kProtocols[] = {
     {"rays", "sets of lights alone, a ray for every pixel and light (default)", {{"vpl.visibility", "rays"}}},
     {"paper",
-     "paper 1's: maps, 4x4 subsets, filter, each frame by itself, one clamp for all, no near light",
+     "as paper 1: maps, 4x4 subsets, filter, each frame by itself, one clamp for all, no near light",
      {{"vpl.visibility", "maps"},
       {"shadow.resolution", "128"},
       {"gather.mode", "interleaved"},
