@@ -131,6 +131,7 @@ void needShot(const AccuracyOptions& options, const Study& study) {
 
 /// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
 void accuracyLight(const AccuracyOptions& options) {
+  if (options.apart) return accuracyApart(options);
   Study study(options, options.launch.scene, {.size = "160x90"});
   needShot(options, study);
   study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame);
@@ -379,6 +380,8 @@ void declareAccuracy(CLI::App& app) {
   command.number("--frame", &o->frame, 1, 1000000, "--light, --direct: of a shot, with all that moves before it");
   command.flag("--joint", o->joint, "--report: only what presets are chosen among");
   command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
+  command.flag("--apart", o->apart,
+               "--light: the parts of the squared error instead: near light, choice of lights, maps, history, set");
   command.flag("--quick", o->quick, "small and rough, to try whether it runs");
   command.run([o] { accuracy(*o); });
 }

@@ -9,7 +9,7 @@ namespace lambent {
 struct AccuracyOptions : MeasureOptions {
   int slots = 64, points = 1024;
   std::string curve, figure; // empty: none
-  bool alone = false, joint = false;
+  bool alone = false, apart = false, joint = false;
   void (*form)(const AccuracyOptions&) = nullptr; // null: shadow maps of virtual lights
 
   SweepPart sweepPart() const { return quick ? SweepPart::Quick : joint ? SweepPart::Joint : SweepPart::All; }
@@ -17,6 +17,8 @@ struct AccuracyOptions : MeasureOptions {
 
 /// What accuracy costs in time: all knobs and techniques, in several scenes, on one page.
 void accuracyReport(const AccuracyOptions& options);
+/// Indirect light against path tracing: which part of the squared error is whose (--light --apart).
+void accuracyApart(const AccuracyOptions& options);
 /// Error against threshold: "patches" of the picture (paper 3, fig. 9) or "clusters" of the lights (fig. 13).
 void accuracyCurve(const AccuracyOptions& options);
 /// Figures of papers 2 and 3, as --figure takes them: "2.7"; table, plot and pictures go into the folder.
