@@ -1,6 +1,6 @@
 // Distance maps of VPLs and emissive samples: bookkeeping, the two makers and the choice between them. Paper 1, section
-// 4.4, draws them on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
-// Maps of both agree up to the rounding of a texel, which tests/gl/maps_test.cpp checks.
+// 4.4, draws them on the GPU; we also cast rays on the CPU. Maps of both agree up to half a texel, which
+// tests/gl/maps_test.cpp checks.
 #include "gi/visibility/paraboloid_maps.h"
 
 #include "engine/core/error.h"
@@ -108,10 +108,12 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
 
   const ShadowMaker asked = in.rays ? in.maker : ShadowMaker::Raster;
-  if (asked != ShadowMaker::Auto && !jobs.empty()) maker_.take(asked == ShadowMaker::Raster);
-  if (asked == ShadowMaker::Auto && !maker_.measured() && !jobs.empty()) measureMakers(in, jobs);
-  const bool raster = asked == ShadowMaker::Raster || (asked == ShadowMaker::Auto && maker_.gpu());
-  raster ? drawRaster(in, jobs) : drawRays(in, jobs);
+  if (!jobs.empty()) {
+    const bool automatic = asked == ShadowMaker::Auto;
+    if (automatic && context_.makers == Makers::Measured && !maker_.measured()) measureMakers(in, jobs);
+    maker_.take(automatic ? std::nullopt : std::optional(asked == ShadowMaker::Raster));
+    maker_.gpu() ? drawRaster(in, jobs) : drawRays(in, jobs);
+  }
   mapsDrawn_ = uint32_t(jobs.size());
   return {arrays_, resolution_, in.farDistance};
 }

@@ -79,6 +79,7 @@ TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
 TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   poses.resize(20, poses[0]);
   const ParaboloidMapInputs in = inputs();
+  ParaboloidMapPass pass({programs, profiler, Makers::Measured}, StageId::VplMaps);
   pass.run(in);
   EXPECT_EQ(pass.mapsDrawn(), 20u) << "a new array starts with all of its maps";
   const std::string report = pass.maker().report();
