@@ -41,7 +41,9 @@ Play::Play(const GameOptions& options, GlContext& context, Hud& hud, Preferences
     : options_(options), context_(context), hud_(hud), preferences_(preferences), stage_(std::move(loaded.stage)),
       props_(*stage_->props), solids_(std::move(loaded.solids)), goal_(std::move(loaded.goal)), shot_(stage_->shot),
       scene_(stage_->scene), diameter_(worldBounds(scene_).diameter()), player_(stage_->camera, worldBounds(scene_)),
-      gi_(preferred(), stage_->seed), truth_(stage_->seed) {
+      gi_(preferred(), stage_->seed,
+          options.fps ? Makers::ByRule : Makers::Measured), // a replay is that of lambent record
+      truth_(stage_->seed) {
   for (const std::string& warning : scene_.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   for (const std::string& note : stage_->notes) hud_.say(note);
   // A warm lamp that lights its surroundings as brightly in a doll's house as in a hall.

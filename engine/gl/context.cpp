@@ -47,4 +47,13 @@ void requireContext() {
     throw RunError("array textures have only " + std::to_string(layers) + " layers here (2048 are needed)");
 }
 
+bool drawnByCpu(const std::string& renderer) {
+  // A driver on top of a CPU's Vulkan names that one in brackets.
+  for (const char* name : {"llvmpipe", "softpipe", "lavapipe", "swrast", "SWR", "SwiftShader", "Software Rasterizer"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
+bool drawnByCpu() { return drawnByCpu(reinterpret_cast<const char*>(glGetString(GL_RENDERER))); }
+
 } // namespace lambent::gl

@@ -8,12 +8,20 @@
 // SDL, Qt, X11 and Wayland do, and contexts without a surface. (Not OSMesa, which epoxy does not know.)
 //
 // The context may be the host's own, whose state every call of GiFrame leaves as found (StateGuard), or a second one
-// that shares objects with it, on a thread of its own; textures by name (GiFrame::indirectIrradiance) then need the host's fence.
+// that shares objects with it, on a thread of its own; textures by name (GiFrame::indirectIrradiance) then need the
+// host's fence.
 #pragma once
+
+#include <string>
 
 namespace lambent::gl {
 
 /// Throws RunError, in one line, where no context is current on this thread or it is not as above.
 void requireContext();
+
+/// Whether GL_RENDERER names a driver that draws on the CPU.
+bool drawnByCpu(const std::string& renderer);
+/// Whether the current context is drawn by one.
+bool drawnByCpu();
 
 } // namespace lambent::gl

@@ -70,13 +70,6 @@ std::vector<DeviceAttempt> deviceAttempts(std::span<const DeviceDescription> dev
   return attempts;
 }
 
-bool drawnByCpu(const std::string& renderer) {
-  // A driver on top of a CPU's Vulkan names that one in brackets.
-  for (const char* name : {"llvmpipe", "softpipe", "lavapipe", "swrast", "SWR", "SwiftShader", "Software Rasterizer"})
-    if (renderer.find(name) != std::string::npos) return true;
-  return false;
-}
-
 std::string noContextMessage(std::span<const DeviceDescription> devices, const DeviceWish& wish,
                              std::span<const std::string> reasons) {
   std::string text = "no OpenGL 4.5 without a display (";

@@ -39,9 +39,6 @@ struct DeviceAttempt {
 /// there.
 std::vector<DeviceAttempt> deviceAttempts(std::span<const DeviceDescription> devices, const DeviceWish& wish);
 
-/// Whether GL_RENDERER names a driver that draws on the CPU.
-bool drawnByCpu(const std::string& renderer);
-
 /// What to tell when every attempt failed: one line, with the cure. `reasons` are those of the attempts.
 std::string noContextMessage(std::span<const DeviceDescription> devices, const DeviceWish& wish,
                              std::span<const std::string> reasons);

@@ -75,7 +75,7 @@ EGLContext contextOn(EGLDisplay display, Drawn drawn, std::string& why) {
   else if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
     why = "context cannot be made current";
   else if (const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-           drawn != Drawn::ByAny && drawnByCpu(renderer) != (drawn == Drawn::ByCpu))
+           drawn != Drawn::ByAny && gl::drawnByCpu(renderer) != (drawn == Drawn::ByCpu))
     why = (drawn == Drawn::ByCpu ? "not software: " : "only software: ") + renderer;
   else
     return context;

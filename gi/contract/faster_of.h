@@ -1,6 +1,8 @@
 // Who does what two can do: the CPU's makers and tracers, or the GPU's.
 #pragma once
 
+#include "engine/gl/context.h"
+
 #include <spdlog/fmt/fmt.h>
 
 #include <optional>
@@ -8,32 +10,38 @@
 
 namespace lambent {
 
-/// Holds the choice and the measurement that made it. The two differ in a few texels or rays along edges, so a
-/// machine's noise must not decide which image it is: the GPU is taken only where it is twice as fast. (Software Mesa
-/// is 2 to 12 times on the one side, a GPU with a slow CPU as far on the other.)
+/// Holds the choice and what made it. The two differ in a few texels or rays along edges, so what writes files must
+/// not ask a clock which image it is: a rule says who, the CPU where OpenGL is drawn by it (software Mesa takes 5 to 13
+/// times as long as rays do), else the GPU. What is only looked at may be measured: the GPU is taken where it is twice
+/// as fast.
 class FasterOf {
  public:
-  FasterOf(const char* cpu, const char* gpu) : cpu_(cpu), gpu_(gpu) {}
+  FasterOf(const char* cpu, const char* gpu) : cpuName_(cpu), gpuName_(gpu) {}
 
   bool measured() const { return gpuWins_.has_value(); }
-  bool gpu() const { return gpuWins_.value_or(false); }
+  bool gpu() const { return gpu_; }
   /// Chooses by the milliseconds that each took for a `unit` ("a map").
   void measure(double cpuMs, double gpuMs, const char* unit) {
     gpuWins_ = 2 * gpuMs < cpuMs;
-    const auto [best, other] = gpu() ? std::pair(gpuMs, cpuMs) : std::pair(cpuMs, gpuMs);
-    take(gpu());
-    report_ += fmt::format(" ({:.2f} ms {}, {} {:.2f} ms)", best, unit, gpu() ? cpu_ : gpu_, other);
+    const auto [best, other] = *gpuWins_ ? std::pair(gpuMs, cpuMs) : std::pair(cpuMs, gpuMs);
+    times_ = fmt::format(" ({:.2f} ms {}, {} {:.2f} ms)", best, unit, *gpuWins_ ? cpuName_ : gpuName_, other);
+    take();
   }
-  /// Takes a choice that was made elsewhere, without a measurement.
-  void take(bool gpu) { report_ = maker_ = gpu ? gpu_ : cpu_; }
+  /// Takes what is asked for; where nothing is, what was measured, else what the rule says.
+  void take(std::optional<bool> askedGpu = {}) {
+    gpu_ = askedGpu ? *askedGpu : gpuWins_ ? *gpuWins_ : !gl::drawnByCpu();
+    maker_ = gpu_ ? gpuName_ : cpuName_;
+    report_ = maker_ + (askedGpu ? "" : times_);
+  }
 
   const std::string& maker() const { return maker_; }   // "rays"; empty: nothing was done yet
-  const std::string& report() const { return report_; } // "rays (2.10 ms a map, raster 14.00 ms)"
+  const std::string& report() const { return report_; } // "rays", measured "rays (2.10 ms a map, raster 14.00 ms)"
 
  private:
-  const char *cpu_, *gpu_;
+  const char *cpuName_, *gpuName_;
   std::optional<bool> gpuWins_;
-  std::string maker_, report_;
+  bool gpu_ = false;
+  std::string maker_, report_, times_;
 };
 
 } // namespace lambent

@@ -3,6 +3,7 @@
 
 #include "engine/gl/profiler.h"
 #include "engine/gl/program.h"
+#include "gi/plan/settings.h"
 #include "gi/plan/stages.h"
 
 namespace lambent {
@@ -11,6 +12,7 @@ namespace lambent {
 struct PassContext {
   gl::ProgramCache& programs;
   gl::GpuProfiler& profiler;
+  Makers makers = Makers::ByRule;
 
   /// Opens the scope that all GL commands of a stage run inside.
   gl::PassScope scope(StageId stage) const { return {profiler, key(stage)}; }

@@ -7,6 +7,8 @@
 #include "engine/scene/scene_hash.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <fstream>
 
 namespace lambent {
@@ -25,6 +27,14 @@ struct Header {
 static_assert(sizeof(Header) == 24);
 constexpr uint32_t kBytes = uint32_t(sizeof(CubeEntry) * 1000 + sizeof(VirtualLight));
 
+/// Bytes of a type between its members, which hold whatever memory held. Zero in the file, so that the same cube has
+/// the same bytes.
+struct Padding {
+  size_t begin = 0, end = 0;
+};
+constexpr Padding kOfGather{offsetof(GatherSettings, glossy) + 1, offsetof(GatherSettings, spread)};
+constexpr Padding kOfLight{offsetof(VirtualLight, alive) + 1, sizeof(VirtualLight)};
+
 struct Writer {
   std::ofstream& out;
   Hash hash{kVersion};
@@ -32,10 +42,17 @@ struct Writer {
     out.write(static_cast<const char*>(data), std::streamsize(size));
     hash.bytes(data, size);
   }
-  template <class T> void vector(std::vector<T>& v) {
+  template <class T> void padded(const T* first, Padding padding, size_t count = 1) {
+    std::vector<std::byte> copy(count * sizeof(T));
+    if (count > 0) std::memcpy(copy.data(), first, copy.size());
+    for (size_t at = 0; at < copy.size(); at += sizeof(T))
+      std::memset(copy.data() + at + padding.begin, 0, padding.end - padding.begin);
+    bytes(copy.data(), copy.size());
+  }
+  template <class T> void vector(std::vector<T>& v, Padding padding = {}) {
     uint64_t count = v.size();
     bytes(&count, sizeof count);
-    bytes(v.data(), v.size() * sizeof(T));
+    padding.end == 0 ? bytes(v.data(), v.size() * sizeof(T)) : padded(v.data(), padding, v.size());
   }
 };
 
@@ -48,7 +65,8 @@ struct Reader {
     left -= size;
     hash.bytes(data, size);
   }
-  template <class T> void vector(std::vector<T>& v) {
+  template <class T> void padded(T* value, Padding) { bytes(value, sizeof *value); }
+  template <class T> void vector(std::vector<T>& v, Padding = {}) {
     uint64_t count = 0;
     bytes(&count, sizeof count);
     if (count > left / sizeof(T)) throw std::ios_base::failure("short");
@@ -69,12 +87,12 @@ struct CubeFile {
     stream.bytes(&s.levels_, sizeof s.levels_);
     stream.bytes(&s.split_, sizeof s.split_);
     stream.bytes(&cube.settings_, sizeof cube.settings_);
-    stream.bytes(&cube.gather_, sizeof cube.gather_);
+    stream.padded(&cube.gather_, kOfGather);
     stream.vector(s.nodes_);
     stream.vector(s.cubes_);
     stream.vector(s.firsts_);
     stream.vector(s.entries_);
-    stream.vector(cube.in_);
+    stream.vector(cube.in_, kOfLight);
     stream.vector(cube.seen_);
     stream.vector(cube.sums_);
   }

@@ -82,10 +82,10 @@ void AreaLightPass::collect(const World& world) {
 /// Embree or the GPU.
 const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces& surfaces,
                                          const AreaSettings& settings) {
-  const bool automatic = settings.tracer == AreaTracer::Auto, measures = automatic && !tracer_.measured();
-  const bool gpu = settings.tracer == AreaTracer::Gpu || (automatic && tracer_.gpu());
-  if (!automatic) tracer_.take(gpu);
-  if (!gpu && !measures) {
+  const bool automatic = settings.tracer == AreaTracer::Auto;
+  const bool measures = automatic && context_.makers == Makers::Measured && !tracer_.measured();
+  tracer_.take(automatic ? std::nullopt : std::optional(settings.tracer == AreaTracer::Gpu));
+  if (!tracer_.gpu() && !measures) {
     gpuRays_.reset();
     return world.rays;
   }
@@ -104,8 +104,10 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
   };
   msPerMillion(*gpuRays_); // compiles
   const double onGpu = msPerMillion(*gpuRays_), onCpu = msPerMillion(world.rays);
-  if (onCpu == 0) return world.rays; // no light reaches the frame: another one decides
-  tracer_.measure(onCpu, onGpu, "a million rays");
+  if (onCpu > 0)
+    tracer_.measure(onCpu, onGpu, "a million rays");
+  else
+    tracer_.take(false); // no light reaches the frame: another one decides
   if (tracer_.gpu()) return *gpuRays_;
   gpuRays_.reset();
   return world.rays;
@@ -121,8 +123,7 @@ void AreaLightPass::readLevels(const FrameSurfaces& seen, const PatchPyramid& py
     at.smooth.assign(size_t(at.size.x) * size_t(at.size.y), 0);
     if (level == 0) {
       for (int y = 0; y < seen.height; ++y)
-        for (int x = 0; x < seen.width; ++x)
-          at.smooth[size_t(y) * size_t(at.size.x) + size_t(x)] = seen.seen({x, y});
+        for (int x = 0; x < seen.width; ++x) at.smooth[size_t(y) * size_t(at.size.x) + size_t(x)] = seen.seen({x, y});
       continue;
     }
     split.resize(at.smooth.size());

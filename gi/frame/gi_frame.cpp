@@ -24,7 +24,7 @@ struct GiFrame::Kept {
 
   gl::ProgramCache programs;
   gl::GpuProfiler profiler;
-  PassContext context{programs, profiler};
+  PassContext context;
   WorldState world{programs};
   SurfacePass surfaces{context};
   PatchPass patches{context, StageId::Patches};
@@ -35,22 +35,24 @@ struct GiFrame::Kept {
   FrameOutputs outputs;
   FrameStats stats;
 
-  Kept(const Settings& s, uint32_t seed_) : settings(s), seed(seed_) {}
+  Kept(const Settings& s, uint32_t seed_, Makers makers)
+      : settings(s), seed(seed_), context{programs, profiler, makers} {}
 
   LightProvider& technique();
   void begin(const SceneView& given);
   void end(Clock::time_point begin, const gl::Counts& before);
 };
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed)
-    : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed))) {}
+GiFrame::GiFrame(const Settings& settings, uint32_t seed, Makers makers)
+    : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed, makers))) {}
 GiFrame::~GiFrame() = default;
 
 void GiFrame::restart() {
   const Settings settings = kept_->settings;
   const uint32_t seed = kept_->seed;
+  const Makers makers = kept_->context.makers;
   kept_.reset(); // not both in memory
-  kept_ = std::make_unique<Kept>(settings, seed);
+  kept_ = std::make_unique<Kept>(settings, seed, makers);
 }
 
 // The frame -----------------------------------------------------------------------------------------------------------

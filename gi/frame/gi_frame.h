@@ -22,10 +22,11 @@ struct FrameOutputs; // gi/contract/frame_outputs.h
 struct PassContext;
 
 /// Owns all GI state of one scene in the current GL context (OpenGL 4.5, the host's or ours). Not copyable; destroy
-/// while the context is current.
+/// while the context is current. The same views and settings give the same light to the bit, unless `makers` are
+/// measured.
 class GiFrame {
  public:
-  explicit GiFrame(const Settings& settings, uint32_t seed = 1);
+  explicit GiFrame(const Settings& settings, uint32_t seed = 1, Makers makers = Makers::ByRule);
   ~GiFrame();
 
   /// Makes this as a new GiFrame with the present settings: nothing of earlier frames is kept.

@@ -62,7 +62,7 @@ class Table {
     number(SETTING(shadow, resolution), {16, 2048, "texels", PowersOfTwo}, Maps,
            "texels per side of a VPL's map; N * resolution^2 * 2 bytes");
     choice(SETTING(shadow, maker), {"auto", "raster", "rays"}, Nothing,
-           "who draws VPL maps; auto measures both once and keeps the faster");
+           "who draws VPL maps; auto: rays where the CPU draws anyway, else raster; the window measures both once");
     number(SETTING(shadow, bias), {0, 100, "texels"}, Nothing, "depth bias of VPL maps, texels at the receiver");
     number(SETTING(shadow, refresh), {0, 32768, "maps", PowersOfTwo}, Nothing,
            "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
@@ -115,7 +115,7 @@ class Table {
            "between patches: radial basis functions around the three nearest samples, or level by level as "
            "multires.upsample");
     choice(SETTING(area, tracer), {"auto", "cpu", "gpu"}, Nothing,
-           "who traces these rays; auto measures both once and takes the GPU where it is twice as fast");
+           "who traces these rays; auto: the CPU where it draws anyway, else the GPU; the window measures both once");
     number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");
     number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
     choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
@@ -194,7 +194,7 @@ class Table {
     number(SETTING(cube, hemicube), {16, 2048, "texels", PowersOfTwo}, Nothing,
            "along an edge of these images; half of it for lights after the first bounce");
     choice("cube.maker", &Settings::hemicubes, &HemicubeSettings::maker, {"auto", "raster", "rays"}, Nothing,
-           "who makes these images: the GPU, rays on the CPU, or whoever is faster on the first of them");
+           "who makes these images; auto: rays where the CPU draws anyway, else raster; the window measures both once");
     number(SETTING(lpv, cells), {4, 128, "cells", PowersOfTwo}, Nothing,
            "gather.mode volume: cells along each edge of the grid; time and memory grow with their cube");
     number(SETTING(lpv, size), {0, kNoLimit, "m"}, Nothing,

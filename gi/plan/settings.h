@@ -13,7 +13,7 @@
 
 namespace lambent {
 
-enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps; auto measures both once
+enum class ShadowMaker : int { Auto, Raster, Rays }; // who draws paraboloid maps
 // What a VPL stands for: π r_k²/k (paper 1) | the same over neighbours on its side | its cell of the surface, sampled.
 enum class DensityEstimator : int { Knn, KnnSide, Cells };
 // What splits a patch: distance from its plane | largest less least depth (papers 2 and 3).
@@ -23,13 +23,16 @@ enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
 // What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
-enum class AreaTracer : int { Auto, Cpu, Gpu }; // auto measures both once
+enum class AreaTracer : int { Auto, Cpu, Gpu };
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
-enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes; auto measures both once
+enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes
+// What auto means for these: CPU where OpenGL is drawn by it, else GPU | whoever is faster, as measured once, which may
+// come out otherwise the next time.
+enum class Makers : int { ByRule, Measured };
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
 enum class SoftLightBy : int { Rays, Maps };

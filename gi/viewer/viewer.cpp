@@ -21,8 +21,8 @@ struct Viewer::Passes {
   FrameStats stats;
 };
 
-Viewer::Viewer(const Settings& settings, uint32_t seed)
-    : gi_(settings, seed), passes_(std::make_unique<Passes>(gi_.context())) {}
+Viewer::Viewer(const Settings& settings, uint32_t seed, Makers makers)
+    : gi_(settings, seed, makers), passes_(std::make_unique<Passes>(gi_.context())) {}
 Viewer::~Viewer() = default;
 
 void Viewer::restart() {

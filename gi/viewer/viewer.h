@@ -33,7 +33,7 @@ const std::vector<std::string>& bufferNames();
 /// A GiFrame with a view on it. Not copyable; destroy while the context is current.
 class Viewer {
  public:
-  explicit Viewer(const Settings& settings, uint32_t seed = 1);
+  explicit Viewer(const Settings& settings, uint32_t seed = 1, Makers makers = Makers::ByRule);
   ~Viewer();
 
   /// Runs GiFrame::run, then makes the image. The figures are those of both.

@@ -1,6 +1,6 @@
 // Distance maps of VPLs and emissive samples: bookkeeping, the two makers and the choice between them. Paper 1, section
-// 4.4, draws them on the GPU; we also cast rays on the CPU, and keep whichever is faster on this machine and scene.
-// Maps of both agree up to the rounding of a texel, which tests/gl/maps_test.cpp checks.
+// 4.4, draws them on the GPU; we also cast rays on the CPU. Maps of both agree up to half a texel, which
+// tests/gl/maps_test.cpp checks.
 #include "gi/visibility/paraboloid_maps.h"
 
 #include "engine/core/error.h"
@@ -108,10 +108,12 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
 
   const ShadowMaker asked = in.rays ? in.maker : ShadowMaker::Raster;
-  if (asked != ShadowMaker::Auto && !jobs.empty()) maker_.take(asked == ShadowMaker::Raster);
-  if (asked == ShadowMaker::Auto && !maker_.measured() && !jobs.empty()) measureMakers(in, jobs);
-  const bool raster = asked == ShadowMaker::Raster || (asked == ShadowMaker::Auto && maker_.gpu());
-  raster ? drawRaster(in, jobs) : drawRays(in, jobs);
+  if (!jobs.empty()) {
+    const bool automatic = asked == ShadowMaker::Auto;
+    if (automatic && context_.makers == Makers::Measured && !maker_.measured()) measureMakers(in, jobs);
+    maker_.take(automatic ? std::nullopt : std::optional(asked == ShadowMaker::Raster));
+    maker_.gpu() ? drawRaster(in, jobs) : drawRays(in, jobs);
+  }
   mapsDrawn_ = uint32_t(jobs.size());
   return {arrays_, resolution_, in.farDistance};
 }
@@ -187,7 +189,10 @@ MakerComparison ParaboloidMapPass::compareMakers(const ParaboloidMapInputs& in, 
 
 void ParaboloidMapPass::rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array,
                                    int layer) {
-  const int faceResolution = in.resolution * 3 / 2;
+  // A map's texel takes the nearest of a face's, whose ray is up to 0.7 of those away: it should be less of its own.
+  // With faces of half as many, corners lay up to 0.7 of a map's texel off, and more was dark that is seen than lit
+  // that is not.
+  const int faceResolution = in.resolution * 3;
   if (!faces_ || faces_.width() != faceResolution) {
     faces_ = gl::Texture(name_ + "/faces", {.kind = gl::TextureKind::Array,
                                             .format = GL_DEPTH_COMPONENT32F,

@@ -1,4 +1,4 @@
-// Distance maps of virtual lights and of emissive samples: kept, and drawn by the faster of two makers.
+// Distance maps of virtual lights and of emissive samples: kept, and drawn by one of two makers.
 #pragma once
 
 #include "gi/contract/faster_of.h"

@@ -6,6 +6,9 @@
 #include "tests/support/files.h"
 #include "tests/support/random_world.h"
 
+#include <cstddef>
+#include <cstring>
+
 namespace lambent::test::layered_cube_test {
 
 CubeSettings smallCube(CubeVisibility sights = CubeVisibility::Rays, int resolution = 32) {
@@ -364,6 +367,19 @@ TEST_F(CubeFileTest, GivesBackWhatWasSavedAndGoesOn) {
   EXPECT_EQ(on.update(w.inputs(settings)).lightsIn, 1u);
   whole.update(w.inputs(settings));
   for (size_t e = 0; e < whole.surfaces().entries().size(); ++e) ASSERT_EQ(on.irradiance(e), whole.irradiance(e));
+}
+
+/// What memory holds between members does not reach the file. (After those of lights: tests/cli/busy.)
+TEST_F(CubeFileTest, TheSameCubeHasTheSameBytes) {
+  const auto bytesWith = [&](int between) {
+    constexpr size_t kBegin = offsetof(GatherSettings, glossy) + 1;
+    std::memset(reinterpret_cast<char*>(&w.gather) + kBegin, between, offsetof(GatherSettings, spread) - kBegin);
+    LayeredCube cube;
+    cube.update(w.inputs(settings));
+    saveCube(file_, cube, key_);
+    return readBytes(file_);
+  };
+  EXPECT_EQ(bytesWith(0x55), bytesWith(0xaa));
 }
 
 TEST_F(CubeFileTest, SaysWhatIsWrongWithAFile) {

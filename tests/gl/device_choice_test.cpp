@@ -1,6 +1,7 @@
 // Which EGL device is tried first, and when software is refused: a choice over descriptions, no device needed.
 #include "engine/platform/device_choice.h"
 
+#include "engine/gl/context.h"
 #include "tests/support/files.h"
 
 namespace lambent::test::device_choice_test {
@@ -48,12 +49,12 @@ TEST(DeviceChoice, ReadsTheEnvironment) {
 }
 
 TEST(DeviceChoice, KnowsDriversThatDrawOnTheCpu) {
-  EXPECT_TRUE(drawnByCpu("llvmpipe (LLVM 15.0.6, 256 bits)"));
-  EXPECT_TRUE(drawnByCpu("zink (llvmpipe (LLVM 15.0.6, 256 bits))"));
-  EXPECT_TRUE(drawnByCpu("softpipe"));
-  EXPECT_FALSE(drawnByCpu("NVIDIA H100 80GB HBM3/PCIe/SSE2"));
-  EXPECT_FALSE(drawnByCpu("AMD Radeon RX 6600 (navi23, LLVM 15.0.6, DRM 3.49)"));
-  EXPECT_FALSE(drawnByCpu("zink (NVIDIA GeForce RTX 3070)"));
+  EXPECT_TRUE(gl::drawnByCpu("llvmpipe (LLVM 15.0.6, 256 bits)"));
+  EXPECT_TRUE(gl::drawnByCpu("zink (llvmpipe (LLVM 15.0.6, 256 bits))"));
+  EXPECT_TRUE(gl::drawnByCpu("softpipe"));
+  EXPECT_FALSE(gl::drawnByCpu("NVIDIA H100 80GB HBM3/PCIe/SSE2"));
+  EXPECT_FALSE(gl::drawnByCpu("AMD Radeon RX 6600 (navi23, LLVM 15.0.6, DRM 3.49)"));
+  EXPECT_FALSE(gl::drawnByCpu("zink (NVIDIA GeForce RTX 3070)"));
 }
 
 TEST(DeviceChoice, TellsTheCureInOneLine) {

@@ -215,7 +215,7 @@ class HemicubeFrameTest : public HemicubeTest {
   };
   Result run(CubeMaker maker) {
     settings.hemicubes.maker = maker;
-    Viewer gi(settings);
+    Viewer gi(settings, 1, Makers::Measured);
     const FrameStats& stats = gi.run(room.scene.view());
     return {gi.read(Buffer::Irradiance), stats};
   }
@@ -243,7 +243,7 @@ TEST_F(HemicubeFrameTest, AFrameSaysWhoMadeThem) {
 
 /// Both are measured once; who makes them may be changed while frames run, and the cube stays.
 TEST_F(HemicubeFrameTest, AutoMeasuresBothMakersOnce) {
-  Viewer gi(settings);
+  Viewer gi(settings, 1, Makers::Measured);
   const std::string report = gi.run(room.scene.view()).cubeMakerTimes;
   room.scene.lights[0].position.x = -0.3f;
   const FrameStats& stats = gi.run(room.scene.view(kLightsChanged));

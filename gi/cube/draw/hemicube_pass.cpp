@@ -21,9 +21,10 @@ void HemicubePass::prepare(const World& world, CubeMaker maker) {
 
 void HemicubePass::make(std::span<Hemicube> hemicubes) {
   if (hemicubes.empty()) return;
-  if (maker_ != CubeMaker::Auto) faster_.take(maker_ == CubeMaker::Raster);
-  if (maker_ == CubeMaker::Auto && !faster_.measured()) measureMakers(hemicubes);
-  maker_ == CubeMaker::Raster || (maker_ == CubeMaker::Auto && faster_.gpu()) ? draw(hemicubes) : cast(hemicubes);
+  const bool automatic = maker_ == CubeMaker::Auto;
+  if (automatic && context_.makers == Makers::Measured && !faster_.measured()) measureMakers(hemicubes);
+  faster_.take(automatic ? std::nullopt : std::optional(maker_ == CubeMaker::Raster));
+  faster_.gpu() ? draw(hemicubes) : cast(hemicubes);
 }
 
 void HemicubePass::tell(FrameStats& stats) {

@@ -1,4 +1,4 @@
-// Hemicubes of virtual lights (gi/cube/hemicube.h), drawn by the GPU or cast on the CPU, whichever is faster here.
+// Hemicubes of virtual lights (gi/cube/hemicube.h), drawn by the GPU or cast on the CPU.
 #pragma once
 
 #include "gi/contract/faster_of.h"
@@ -17,7 +17,7 @@ class HemicubePass : public HemicubeMaker {
   /// Sets the world that the next hemicubes show and the maker that draws them.
   void prepare(const World& world, CubeMaker maker);
   void make(std::span<Hemicube> hemicubes) override;
-  /// Adds to the figures the rays since the last call and the maker: "rays (2.1 ms a hemicube, raster 14.0 ms)".
+  /// Adds to the figures the rays since the last call and the maker.
   void tell(FrameStats& stats);
 
  private:
