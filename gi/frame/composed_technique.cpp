@@ -70,7 +70,8 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   const ShadowedLights lights = maps_.update({frame, lights_, needs_.maps}, stats);
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
-  const bool stands = averaging && !changes && !frame.world.view.changes.camera && !history_.follows();
+  const SceneChanges& world = frame.world.view.changes;
+  const bool stands = averaging && (world.first || (!changes && !world.camera && !history_.follows()));
   // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean.
   const bool choose = needs_.lists && !stands;
   const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;

@@ -62,7 +62,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const gl::StateGuard guard;
   const std::function<void(int, int)> progress = gl::callingOut(told);
   Kept& k = *kept_;
-  const Settings& settings = k.settings;
+  const Settings settings = asGathered(k.settings);
   FrameStats& stats = k.stats;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   if (host) checkHost(*host, given.camera);

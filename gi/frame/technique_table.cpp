@@ -15,10 +15,10 @@ using V = VplVisibility;
 using R = Reconstruction;
 
 constexpr Technique kTechniques[] = {
-    {"smc", "sequential Monte Carlo instant radiosity (paper 1), the default", {Smc, V::Maps, Interleaved, R::Filter}},
-    {"ir", "instant radiosity: photons from the lights", {Ir, V::Maps, Interleaved, R::Filter}},
-    {"mir", "Metropolis instant radiosity: paths from the camera", {Mir, V::Maps, Interleaved, R::Filter}},
-    {"tcas", "temporally coherent sampling of reflective maps", {Tcas, V::Maps, Interleaved, R::Filter}},
+    {"smc", "sequential Monte Carlo instant radiosity (paper 1), the default", {Smc, V::Maps, Lists, R::Filter}},
+    {"ir", "instant radiosity: photons from the lights", {Ir, V::Maps, Lists, R::Filter}},
+    {"mir", "Metropolis instant radiosity: paths from the camera", {Mir, V::Maps, Lists, R::Filter}},
+    {"tcas", "temporally coherent sampling of reflective maps", {Tcas, V::Maps, Lists, R::Filter}},
     {"rsm", "reflective shadow maps, every light at every pixel", {Rsm, V::None, Full, R::None}},
     {"multires-splat", "the same lights splatted into patches (paper 2)", {Rsm, V::None, Splat, R::Upsample}},
     {"multires-gather", "the same lights gathered at patches (paper 3)", {Rsm, V::None, Multires, R::Upsample}},
@@ -32,7 +32,7 @@ constexpr Technique kTechniques[] = {
      {Hisr, V::None, Multires, R::Upsample}},
     {"area-multires",
      "smc, with direct light of emissive surfaces at patches (paper 4)",
-     {Smc, V::Maps, Interleaved, R::Filter},
+     {Smc, V::Maps, Lists, R::Filter},
      EmitterShadows::Patches,
      "the visible surfaces, where anything glows"},
     {"lpv",

@@ -92,7 +92,7 @@ constexpr const GatherRow& rowOf(GatherMode mode) { return kGathers[int(mode)]; 
 struct Axes {
   VplSource source = VplSource::Smc;
   VplVisibility visibility = VplVisibility::Maps;
-  GatherMode gather = GatherMode::Interleaved;
+  GatherMode gather = GatherMode::Lists;
   Reconstruction reconstruction = Reconstruction::Filter;
 };
 

@@ -54,5 +54,7 @@ struct ProviderStatus {
 Needs needsOf(const Axes& axes);
 /// Needs of the technique that the settings choose.
 Needs needsOf(const Settings& settings);
+/// The settings as the stages of a frame take them: gather.disk is widened by gather.nearDisk where near rays are cast.
+Settings asGathered(Settings settings);
 
 } // namespace lambent

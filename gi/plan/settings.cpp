@@ -128,6 +128,8 @@ class Table {
            "have over 1024 tiles");
     number(SETTING(gather, disk), {0, 1000}, Nothing,
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
+    number(SETTING(gather, nearDisk), {0, kNoLimit}, Nothing,
+           "times gather.disk where gather.near gives back what that takes: what is close to a VPL's cell is lit by rays");
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number(SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
@@ -405,6 +407,11 @@ Axes axesOf(const Settings& s) {
 }
 
 Needs needsOf(const Settings& settings) { return settings.own ? settings.own->needs : needsOf(axesOf(settings)); }
+
+Settings asGathered(Settings settings) {
+  if (settings.gather.near > 0 && needsOf(settings).nearRays) settings.gather.disk *= settings.gather.nearDisk;
+  return settings;
+}
 
 std::string whyNot(const Settings& settings) {
   if (!settings.own && settings.gather.mode == GatherMode::Own)
