@@ -1,5 +1,7 @@
 #version 450
-// Surface attributes seen by the camera. Variant GLOSSY: roughness and metalness too.
+// Surface attributes seen by the camera. Variants: GLOSSY (roughness and metalness too), KEEPS_MODE (for llvmpipe, Mesa
+// 22.3: where the depth test rejects a whole block of pixels of a draw to half floats without any discard, the thread
+// no longer flushes denormals to zero, and what it draws from then on may differ from what other threads draw).
 #include "lib/material.glsl"
 #include "shared/camera_block.h"
 
@@ -19,6 +21,9 @@ layout(location = 3) out vec2 outRoughnessMetalness;
 
 void main() {
   vec4 base = baseColorAt(uv, color);
+#ifdef KEEPS_MODE
+  if (camera.size.x < 0.0) discard; // never, which the compiler cannot know
+#endif
 #ifdef ALPHA_MASK
   if (base.a < material.emission.a) discard;
 #endif

@@ -93,7 +93,10 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   const bool shows = showsMaterials(kind);
   if (!shows) desc.defines.push_back("DEPTH_ONLY");
   if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
-  if (tested(material)) desc.defines.push_back("ALPHA_MASK");
+  if (tested(material))
+    desc.defines.push_back("ALPHA_MASK");
+  else if (shows && drawnByCpu_)
+    desc.defines.push_back("KEEPS_MODE");
   if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
   if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");

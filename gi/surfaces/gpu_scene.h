@@ -2,6 +2,7 @@
 // surface reflect, and the ray tracer sees both.
 #pragma once
 
+#include "engine/gl/context.h"
 #include "engine/gl/objects.h"
 #include "engine/gl/program.h"
 #include "engine/gl/ring.h"
@@ -111,6 +112,7 @@ class GpuScene {
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
   gl::ProgramCache& programs_;
+  const bool drawnByCpu_ = gl::drawnByCpu();
   gl::Buffer positions_, normals_, uvs_, colors_, indices_, instanceRows_, materials_;
   gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
   mutable gl::Ring commands_{"scene/draws"};

@@ -1,5 +1,6 @@
 // The G-buffer against rays: what a pixel holds is what the ray through its centre meets.
 #include "gl_fixture.h"
+#include "shader_copy.h"
 
 namespace lambent::test::gbuffer_test {
 
@@ -50,6 +51,53 @@ TEST_F(GBufferTest, PixelsOfALengthWithoutSquareHaveNormals) {
   const Image normal = surfaceBuffer(Buffer::Normal, frame);
   for (const vec3& n : normal.pixels) ASSERT_NEAR(glm::length(n), 1, 1e-3f);
   EXPECT_GT(surfaceBuffer(Buffer::Depth, frame).at(32, 24).x, 0);
+}
+
+/// Texels of a draw whose value, too small for a normal number, was not flushed to 0. Each takes long enough for all
+/// threads of a driver on the CPU to have a share.
+class DenormalProbe {
+ public:
+  DenormalProbe() { folder_.write("denormals.frag", kProgram); }
+  size_t kept() const {
+    target_.bind();
+    gl::PipelineState{.width = kSide, .height = kSide}.apply();
+    const gl::Program& program = programs_.get({.fragment = "denormals.frag"});
+    program.use();
+    program.set("root", 1e-20f);
+    gl::drawFullscreen();
+    return size_t(std::ranges::count_if(readTexture(texels_), [](const vec4& v) { return v.x != 0; }));
+  }
+
+ private:
+  static constexpr int kSide = 512;
+  static constexpr const char* kProgram = R"(#version 450
+uniform float root;
+layout(location = 0) out float outSquare;
+void main() {
+  uint h = uint(gl_FragCoord.x);
+  for (int i = 0; i < 1000; ++i) h = (h ^ h >> 15) * 1664525u + 1013904223u;
+  outSquare = h == 0u ? 0.0 : root * root;
+}
+)";
+  ShaderCopy folder_;
+  mutable gl::ProgramCache programs_{folder_.path};
+  gl::Texture texels_{"denormals", {.format = GL_R32F, .width = kSide, .height = kSide}};
+  gl::Framebuffer target_{"denormals", {&texels_}};
+};
+
+/// Threads of llvmpipe that take denormals in two ways draw other bytes whenever they share the tiles otherwise.
+TEST_F(GBufferTest, LeavesThreadsOfTheDriverTheirWayWithDenormals) {
+  HandScene scene; // the second wall is hidden by the first
+  scene.quad({-4, -4, -2}, {8, 0, 0}, {0, 8, 0}, scene.material(vec3(0.5f)));
+  scene.quad({-8, -8, -3}, {16, 0, 0}, {0, 16, 0}, scene.material(vec3(0.4f)));
+  scene.camera = cameraAt(vec3(0), {0, 0, -1}, 1);
+  scene.size(512, 384);
+  const DenormalProbe probe;
+  const size_t before = probe.kept();
+  for (const bool glossy : {false, true}) {
+    surfaces(scene, glossy);
+    EXPECT_EQ(probe.kept(), before);
+  }
 }
 
 /// Behind a surface its shading normal is turned, not given up for that of the triangle.
