@@ -71,9 +71,10 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
   const SceneChanges& world = frame.world.view.changes;
-  const bool stands = averaging && (world.first || (!changes && !world.camera && !history_.follows()));
-  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean.
-  const bool choose = needs_.lists && !stands;
+  const bool stands = averaging && !changes && !world.camera && !history_.follows();
+  // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean. A first
+  // frame may be the first of these.
+  const bool choose = needs_.lists && !stands && !(averaging && world.first);
   const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,

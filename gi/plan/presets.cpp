@@ -18,8 +18,8 @@ Assignments worth(const char* vpls, const char* points, const char* paths, const
 
 const std::vector<Preset>& presetTable() {
   static const std::vector<Preset> table{
-      {"low", worth("256", "1024", "8", "64", "interleaved"), 0.458, 1.920},
-      {"medium", worth("1024", "2048", "16", "128", "interleaved"), 0.743, 1.051},
+      {"low", worth("256", "1024", "8", "64", "lists"), 0.507, 1.950},
+      {"medium", worth("1024", "4096", "32", "128", "lists"), 0.777, 0.918},
   };
   return table;
 }

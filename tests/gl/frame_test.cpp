@@ -69,7 +69,8 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
       EXPECT_EQ(first.readBacks, 1u);
       for (const bool rays : {false, true}) {
         gi.settings().shadow.rays = rays;
-        const FrameStats second = gi.run(scene.view());
+        const FrameStats second = gi.run(scene.view(kCameraChanged));
+        EXPECT_EQ(second.raysLists.closest > 0, mode == GatherMode::Lists);
         EXPECT_GT(second.draws, 3u);
         EXPECT_EQ(second.waits, 0u);
         EXPECT_EQ(second.readBacks, rays ? 2u : 0u);

@@ -32,7 +32,7 @@ std::vector<Assignments> jointDesign(bool quick) {
   static const Worth worths[] = {{"1024", "8", "64"}, {"2048", "16", "128"}, {"4096", "32", "128"}};
   std::vector<Assignments> sets;
   for (const char* vpls : {"256", "512", "1024", "2048", "4096", "8192"})
-    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "interleaved"));
+    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "lists"));
   if (quick) return {sets.front()};
   for (const char* mode : {"multires-interleaved", "multires"})
     for (const char* vpls : {"512", "2048"}) sets.push_back(worth(vpls, "2048", "16", "128", mode));
@@ -69,6 +69,7 @@ const std::vector<Knob>& knobTable() {
       {"gather.checks", {"off", "on"}},
       // Bounded energy, and how it is given back.
       {"gather.disk", {"0", "1", "4"}},
+      {"gather.nearDisk", {"1", "2", "4", "8"}},
       {"gather.near", {"0", "2", "8", "32"}},
       {"gather.nearLimit", {"2", "8", "0"}},
       {"gather.clamp", {"1", "10", "0"}, Indirect, clamped},
