@@ -313,6 +313,7 @@ void accuracy(AccuracyOptions& o) {
   if (o.form != accuracyReport && o.scenes.size() > 1)
     throw InputError(o.scenes[1], "one scene or shot is enough (several go with --report)");
   o.launch.scene = o.scenes[0];
+  if (o.apart && o.form != accuracyLight) throw InputError("command line", "--apart takes --light apart, and needs it");
   const bool reflective = std::ranges::count(reflectiveFigureNames(), o.figure) > 0;
   if (const std::string& technique = o.launch.technique; !technique.empty()) {
     if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
