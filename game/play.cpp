@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/gl/objects.h"
 #include "engine/gl/pulse.h"
+#include "gi/plan/needs.h"
 
 #include <epoxy/gl.h>
 
@@ -122,7 +123,9 @@ void Play::prepare(const std::function<void(const Progressed&)>& progress, const
     // The second of a kind says what frames cost: shaders are compiled, maps are drawn.
     gi_.settings() = rough;
     const FrameStats& stats = gi_.run(viewAt(0.99f * kRoughScale));
-    const double gather = stats.ms(StageId::Gather), lights = double(wanted.smc.vpls) / rough.smc.vpls;
+    // By lists a pixel gathers as many lights whatever there are.
+    const double gather = stats.ms(StageId::Gather),
+                 lights = needsOf(wanted).lists ? 1 : double(wanted.smc.vpls) / rough.smc.vpls;
     gi_.settings() = wanted;
     model_.pacer.expect((stats.costMs() + gather * (lights - 1)) / double(kRoughScale * kRoughScale), gi_.settings());
     if (!model_.pacer.preset().empty()) model_.preset = model_.pacer.preset();

@@ -17,15 +17,15 @@ namespace {
 
 constexpr char kMagic[8] = {'L', 'A', 'M', 'B', 'C', 'U', 'B', '\n'};
 // Counts up when the file or the meaning of its numbers changes.
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 struct Header {
   char magic[8];
-  uint32_t version, entryBytes; // of an entry and a light: another build's may differ
+  uint32_t version, entryBytes; // of an entry, a light and settings: another build's may differ
   uint64_t key;
 };
 static_assert(sizeof(Header) == 24);
-constexpr uint32_t kBytes = uint32_t(sizeof(CubeEntry) * 1000 + sizeof(VirtualLight));
+constexpr uint32_t kBytes = uint32_t((sizeof(CubeEntry) * 1000 + sizeof(VirtualLight)) * 1000 + sizeof(GatherSettings));
 
 /// Bytes of a type between its members, which hold whatever memory held. Zero in the file, so that the same cube has
 /// the same bytes.

@@ -129,17 +129,16 @@ class Table {
     number(SETTING(gather, disk), {0, 1000}, Nothing,
            "widens r^2 by disk*a/pi: bounds a VPL near by through its own area (1 = paper 3's form factor, 0 = off)");
     number(
-        SETTING(gather, nearDisk), {0, kNoLimit}, Nothing,
-        "times gather.disk where gather.near gives back what that takes: what is close to a VPL's cell is lit by rays");
+        SETTING(gather, nearDisk), {1, 1000}, Nothing,
+        "times gather.disk where pixels and patches cast near rays, which give back what it takes; 1 = as elsewhere");
     number(SETTING(gather, clamp), {0, kNoLimit, "1/m^2"}, Nothing,
            "largest geometry term of a VPL, 1/m^2 (paper 1's clamp); 0 = none");
     number(SETTING(gather, near), {0, 256, "rays", PowersOfTwo}, Nothing,
            "rays for what gather.disk and gather.clamp take from near VPLs: per block of 4x4 subsets, else per pixel; "
-           "twice "
-           "as many while light changes; by lists three times, and twice while the camera moves; 0 = lost");
+           "twice as many while light changes, by lists three times, and twice while the camera moves; 0 = lost");
     number(SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
-           "near light: radiance of a surface counts up to so many times its VPL's, four times "
-           "that where a view stands, against bright spots; 0 = no limit");
+           "near light: radiance of a surface counts up to so many times its VPL's, four times that where a view "
+           "stands, against bright spots; 0 = no limit");
     flag(SETTING(gather, checks), Nothing,
          "classes of interleaved gathers, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps "
          "say");

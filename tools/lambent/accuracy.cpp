@@ -313,7 +313,8 @@ void accuracy(AccuracyOptions& o) {
   if (o.form != accuracyReport && o.scenes.size() > 1)
     throw InputError(o.scenes[1], "one scene or shot is enough (several go with --report)");
   o.launch.scene = o.scenes[0];
-  if (o.apart && o.form != accuracyLight) throw InputError("command line", "--apart takes --light apart, and needs it");
+  if (o.apart && (o.form != accuracyLight || o.frame == 0))
+    throw InputError("command line", "--apart takes a frame in motion apart, and needs --light and --frame");
   const bool reflective = std::ranges::count(reflectiveFigureNames(), o.figure) > 0;
   if (const std::string& technique = o.launch.technique; !technique.empty()) {
     if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
@@ -381,8 +382,9 @@ void declareAccuracy(CLI::App& app) {
   command.number("--frame", &o->frame, 1, 1000000, "--light, --direct: of a shot, with all that moves before it");
   command.flag("--joint", o->joint, "--report: only what presets are chosen among");
   command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
-  command.flag("--apart", o->apart,
-               "--light: the parts of the squared error instead: near light, choice of lights, maps, history, set");
+  command.flag(
+      "--apart", o->apart,
+      "--light --frame: the parts of the squared error instead: near light, choice of lights, maps, history, set");
   command.flag("--quick", o->quick, "small and rough, to try whether it runs");
   command.run([o] { accuracy(*o); });
 }

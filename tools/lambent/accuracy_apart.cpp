@@ -1,9 +1,11 @@
-// Which part of the error of indirect light comes from what: each approximation is replaced by the exact thing, one
-// after the other, and what the error loses is that part's. Squared errors add up where parts are independent.
+// Which part of the error of indirect light in motion comes from what: each approximation is replaced by the exact
+// thing, one after the other, and what the error loses is that part's. Squared errors add up where parts are
+// independent.
 #include "gi/measure/image_error.h"
 #include "tools/lambent/accuracy.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lambent {
 
@@ -29,20 +31,17 @@ const std::vector<ExactPart>& exactParts() {
 
 void accuracyApart(const AccuracyOptions& options) {
   Study study(options, options.launch.scene, {.size = "160x90"});
-  if (options.frame > 0 && !study.opened->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
+  if (!study.opened->shot) throw InputError(study.launch.scene, "is no shot (--frame needs one)");
   study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame);
   const int seeds = options.seeds.value_or(options.quick ? 1 : 3);
-  const int averaged = std::max(1, study.opened->settings.history.frames);
 
   // By step, as set first; then by seed.
   std::vector<std::vector<double>> errors;
   Assignments set;
   const auto measure = [&](const char* name) {
     const std::vector<Variant> variants = seeded({study.variant(name, set)}, seeds);
-    const int frames = study.opened->settings.history.frames > 0 ? averaged : 1;
     std::vector<double>& of = errors.emplace_back();
-    for (const Measured& m : options.frame > 0 ? study.drawUpTo(options.frame, variants, Buffer::Irradiance)
-                                               : study.draw(variants, Buffer::Irradiance, frames))
+    for (const Measured& m : study.drawUpTo(options.frame, variants, Buffer::Irradiance))
       of.push_back(study.outcome(m).error.relMse);
   };
   measure("as set");
@@ -66,7 +65,7 @@ void accuracyApart(const AccuracyOptions& options) {
     Value row = Value::of();
     row["part"] = part;
     row["rel_mse"] = relMse.value;
-    if (seeds > 1 && relMse.error == relMse.error) row["error"] = relMse.error;
+    if (!std::isnan(relMse.error)) row["error"] = relMse.error;
     row["share"] = all > 0 ? relMse.value / all : 0.0;
     row["by"] = by;
     rows.add(row);
