@@ -10,8 +10,7 @@ namespace {
 /// Light is averaged over frames. (Forced, it has nothing to do.)
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
-constexpr int kListFrames = 4;   // of light by lists in a mean that needs no filter
-constexpr int kAfterClasses = 8; // frames by lists that outweigh those of classes before them
+constexpr int kListFrames = 4; // of light by lists in a mean that needs no filter
 
 } // namespace
 
@@ -86,8 +85,7 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
                             .stands = stands,
                             .stores = plan.on(EffectId::Gather)},
                            stats);
-  listFrames_ = lists ? listFrames_ + 1 : 0;
-  if (lists && (!averaging || listFrames_ > kAfterClasses)) gathered_.enough = kListFrames;
+  if (lists) gathered_.enough = kListFrames;
   if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = draws();
   return reconstruct(frame, stats);
 }

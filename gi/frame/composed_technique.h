@@ -49,7 +49,6 @@ class ComposedTechnique : public LightProvider {
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
   int averaged_ = 0;         // samples in the history since anything changed
-  int listFrames_ = 0;       // by lists, one after the other
 };
 
 } // namespace lambent
