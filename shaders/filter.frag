@@ -19,11 +19,13 @@ uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along 
 
 vec4 irradianceAt(ivec2 pixel) { return texelFetch(irradiance, placeOf(pixel), 0); }
 
-uniform bool fresh;   // light of one frame, whatever its a
-uniform float enough; // frames in a mean that needs no neighbours
+uniform bool fresh; // light of one frame
+layout(binding = 5) uniform sampler2D worthOfMean; // HistoryPass::worth
+
+const float kEnough = 16.0; // frames in a mean that needs no neighbours
 
 /// What a neighbour counts for, by the frames in this pixel's mean.
-float shareOf(float frames) { return fresh ? 1.0 : clamp((enough - frames) / (enough - 1.0), 0.0, 1.0); }
+float shareOf(float frames) { return fresh ? 1.0 : clamp((kEnough - frames) / (kEnough - 1.0), 0.0, 1.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -33,7 +35,7 @@ void main() {
 #ifdef FILTER
   PixelPlane plane = planeAt(pixel, depth);
   vec4 own = irradianceAt(pixel);
-  float share = shareOf(own.a);
+  float share = shareOf(fresh ? 1.0 : texelFetch(worthOfMean, pixel, 0).a);
 #ifdef GLOSSY
   vec4 ownGlossy = texelFetch(glossy, placeOf(pixel), 0);
   float glossyShare = shareOf(ownGlossy.a);

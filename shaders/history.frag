@@ -2,7 +2,7 @@
 // Mean of the light that fell on the place of a pixel, in this frame and those before it. The place is looked up where
 // the camera before saw it; of the four pixels around, those count that saw the same surface. Variants: SUBSETS (this
 // frame's light is de-interleaved), CHANGES (what is kept, and this frame's difference to it, for
-// history_follow.frag), GLOSSY, VARIANCE (of a frame's luminance about the denoised frame before).
+// history_follow.frag), GLOSSY.
 #include "lib/gbuffer.glsl"
 #include "lib/subsets.glsl"
 #include "lib/variance.glsl"
@@ -14,7 +14,8 @@ layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames that the mean is worth, or 0
 uniform float mostFrames; // of those before that count at most; 0: there are none
 uniform bool stands;    // the camera is where it was
-layout(location = 0) out vec4 outIrradiance; // a: frames in the mean, of VARIANCE in the variance
+uniform bool smoothed;  // what was shown before had little noise: its edges say how much looking up blurs
+layout(location = 0) out vec4 outIrradiance; // a: frames in the variance
 #ifdef CHANGES
 layout(location = 1) out vec4 outChange;
 #else
@@ -26,21 +27,15 @@ layout(binding = 8) uniform sampler2D keptGlossy; // a: frames in its mean
 uniform float mostGlossyFrames; // as `mostFrames`
 layout(location = 2) out vec4 outGlossy;
 #endif
-#ifdef VARIANCE
 layout(binding = 9) uniform sampler2D keptVariance;
 layout(binding = 10) uniform sampler2D smoothIrradiance; // what is kept, without most of its noise
 #ifdef GLOSSY
 layout(binding = 11) uniform sampler2D smoothGlossy;
 #endif
 layout(location = 3) out vec2 outVariance; // of irradiance, of glossy light
-#endif
 
-const float kOnPlane = 1.0; // deviation from the pixel's plane, pixels
-#ifdef VARIANCE
-const float kAlike = 0.7; // cosine between normals: a moulding's faces see other lamps
-#else
-const float kAlike = 0.3; // mouldings mix, corners do not
-#endif
+const float kOnPlane = 0.4;  // deviation from the pixel's plane, pixels
+const float kAlike = 0.9;    // cosine between normals: a moulding's faces see other lights
 const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
 const float kKnown = 16.0;   // earlier frames in a variance
 
@@ -62,9 +57,7 @@ void main() {
 #ifdef GLOSSY
   outGlossy = vec4(0.0);
 #endif
-#ifdef VARIANCE
   outVariance = vec2(0.0);
-#endif
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
@@ -74,11 +67,9 @@ void main() {
 #ifdef GLOSSY
   vec4 keptLobe = vec4(0.0);
 #endif
-#ifdef VARIANCE
   float known = 0.0; // frames in the variance
   vec2 variance = vec2(0.0), least = vec2(1e38);
   vec2 span = vec2(1e38, 0.0), lobeSpan = span; // of what was looked up, luminance
-#endif
   vec4 clip = before.clipFromWorld * vec4(position, 1.0);
   vec2 at = stands ? vec2(pixel) : (clip.xy / clip.w * 0.5 + 0.5) * before.size.xy - 0.5;
   if (mostFrames > 0.0 && clip.w > 0.0 && all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, before.size.xy))) {
@@ -99,7 +90,6 @@ void main() {
       vec4 lobe = texelFetch(keptGlossy, tap, 0);
       keptLobe += weight * lobe;
 #endif
-#ifdef VARIANCE
       known += weight * light.a;
       vec2 tapVariance = texelFetch(keptVariance, tap, 0).rg;
       variance += weight * tapVariance;
@@ -108,23 +98,20 @@ void main() {
 #ifdef GLOSSY
       lobeSpan = spanWith(lobeSpan, texelFetch(smoothGlossy, tap, 0).rgb);
 #endif
-#endif
     }
   }
   vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
-  kept = weights > 0.0 ? kept / weights : vec4(now, 0.0);
+  // Where some of the four saw another surface, the others stand beside the place: they count as fewer frames.
+  kept = weights > 0.0 ? vec4(kept.rgb / weights, kept.a) : vec4(now, 0.0);
   if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one frame, not of all that follow
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
-#ifdef VARIANCE
   if (weights > 0.0) variance /= weights, known = min(known / weights, kKnown);
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
   outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, known);
-  float counts = min(kept.a, stands ? kept.a : framesWorth(least.r, span));
-#else
-  float counts = kept.a, known = kept.a;
-#endif
+  bool blurs = smoothed && !stands;
+  float counts = min(kept.a, blurs ? framesWorth(least.r, span) : kept.a);
 #ifdef CHANGES
   outIrradiance = vec4(kept.rgb, counts);
   bool isNumber = !any(isnan(now)) && !any(isinf(now));
@@ -139,10 +126,8 @@ void main() {
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   float lobeCounts = keptLobe.a;
-#ifdef VARIANCE
   outVariance.g = varianceWith(variance.g, dot(kLuminance, lobe), lobeSpan, known);
-  if (!stands) lobeCounts = min(lobeCounts, framesWorth(least.g, lobeSpan));
-#endif
+  if (blurs) lobeCounts = min(lobeCounts, framesWorth(least.g, lobeSpan));
   vec3 mean = lobeCounts > 0.0 ? mix(keptLobe.rgb, lobe, 1.0 / (lobeCounts + 1.0)) : lobe;
   outGlossy = vec4(mean, lobeCounts + 1.0);
 #endif

@@ -19,6 +19,9 @@ struct LightLists {
   int tile = 4; // pixels along a side
   glm::ivec2 tiles{0};
   int length = 0; // lights of a list, at most
+  /// RG32F: by tile, share of its light that changed lately, halved in each frame; and what it gained in this one, of
+  /// the larger of before and now. Without the noise of a gather. Null: not known.
+  const gl::Texture* changed = nullptr;
 };
 
 } // namespace lambent

@@ -14,7 +14,6 @@ struct SurfaceLighting {
   const gl::Texture* glossy = nullptr;     // RGBA32F W/(m² sr) over glossyTint (shaders/shared/ggx.h)
   bool deinterleaved = false;
   bool subsets = deinterleaved; // pixels side by side were lit by other classes
-  int enough = 16;              // frames of these in a mean that needs no filter
 };
 
 /// A stage's own textures for SurfaceLighting, and the framebuffer that draws into them.

@@ -102,6 +102,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
                     .filter = frame.settings.filter,
                     .follow = kFollow,
                     .smooth = history_.sample() > 0 ? denoised_ : SurfaceLighting{},
+                    .apart = true,
                     .glossyFrames = kGlossy});
   denoised_ = denoise_.run({frame.surfaces, mean, history_.variance(), history_.worth(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::SoftLight);

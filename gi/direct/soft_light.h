@@ -29,8 +29,8 @@ class SoftLightPass {
 
   PassContext context_;
   LightTarget samples_{"soft light"};
-  HistoryPass history_{context_, StageId::SoftLight, true};
-  DenoisePass denoise_{context_};
+  HistoryPass history_{context_, StageId::SoftLight};
+  DenoisePass denoise_{context_, StageId::SoftLight};
   SoftParts parts_ = SoftParts::All;
   SurfaceLighting denoised_; // of the last frame
   gl::Texture next_;         // by the last frame: samples beyond direct.samples

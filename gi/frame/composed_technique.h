@@ -35,7 +35,7 @@ class ComposedTechnique : public LightProvider {
 
  private:
   const LightLists& chooseLists(const Frame& frame, uint32_t sample, FrameStats& stats);
-  SurfaceLighting reconstruct(const Frame& frame, FrameStats& stats);
+  SurfaceLighting reconstruct(const Frame& frame, const LightLists* lists, FrameStats& stats);
 
   PassContext context_;
   Axes axes_{.source = VplSource::None, .gather = GatherMode::Own};
@@ -45,9 +45,12 @@ class ComposedTechnique : public LightProvider {
   ListPass lists_;
   std::unique_ptr<Gather> gather_, shown_; // shown_: whose light the last frame still shows, until the next is there
   HistoryPass history_{context_};
+  DenoisePass denoise_{context_, StageId::Filter};
   FilterPass filter_{context_};
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
+  SurfaceLighting smooth_;   // of the last frame that was averaged
+  int unknown_ = 0;          // frames in which lights do not say how much light changed: things moved
   int averaged_ = 0;         // samples in the history since anything changed
 };
 

@@ -106,6 +106,33 @@ float bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<fl
   return sumOf(sums);
 }
 
+/// Lights that stay, by what they gained or lost in a frame, and by the larger of what they had and have.
+class LightChange {
+ public:
+  LightChange(std::span<const VirtualLight> lights, std::span<const float> before, float disk) {
+    std::vector<uint32_t> order;
+    for (uint32_t slot = 0; slot < std::min(lights.size(), before.size()); ++slot) {
+      const float now = lights[slot].intensity(), larger = std::max(now, before[slot]);
+      if (lights[slot].alive && before[slot] >= 0 && larger > 0 && std::isfinite(larger)) order.push_back(slot);
+    }
+    larger_ = columnsOf(lights, order, disk);
+    for (size_t i = 0; i < order.size(); ++i)
+      larger_.power[i] = std::max(lights[order[i]].intensity(), before[order[i]]);
+    difference_ = larger_;
+    for (size_t i = 0; i < order.size(); ++i)
+      difference_.power[i] = lights[order[i]].intensity() - before[order[i]];
+  }
+  /// Share of what reaches a place; `scratch`: a column.
+  float at(const SurfaceHit& place, std::vector<float>& scratch) const {
+    scratch.resize(larger_.x.size());
+    const float all = bringsTo(larger_, place, scratch), share = bringsTo(difference_, place, scratch) / all;
+    return all > 0 && std::isfinite(share) ? share : 0;
+  }
+
+ private:
+  LightColumns larger_, difference_;
+};
+
 /// The pixel of a tile whose ray finds its k-th place: the middles of its quarters, as (u, v) of the image, v down.
 vec2 placeOf(const CameraView& camera, const ListTable& table, size_t tile, int k) {
   const glm::ivec2 at(int(tile) % table.tiles.x, int(tile) / table.tiles.x);
@@ -232,8 +259,10 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   const size_t tiles = size_t(table.tiles.x) * size_t(table.tiles.y);
   table.texels.resize(table.row() * tiles);
   const std::vector<uint32_t> order = alongCurve(in.lights);
-  if (order.empty()) return std::fill(table.texels.begin(), table.texels.end(), 0u);
+  table.changed.assign(in.before.empty() ? 0 : tiles, 0.0f);
+  if (order.empty() && in.before.empty()) return std::fill(table.texels.begin(), table.texels.end(), 0u);
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
+  const LightChange change(in.lights, in.before, in.gather.disk);
   constexpr size_t kGrain = 8;
   parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {
     std::vector<vec2> at;
@@ -242,9 +271,14 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
     const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, at);
     count += at.size();
     TileWeights weights(columns, order.size());
-    std::vector<float> chances(order.size());
+    std::vector<float> chances(order.size()), scratch;
     for (size_t t = begin; t < end; ++t) {
-      chancesOf(weights.of(std::span(hits).subspan((t - begin) * kPlaces, kPlaces)), float(in.gather.lights), chances);
+      const std::span<const SurfaceHit> places = std::span(hits).subspan((t - begin) * kPlaces, kPlaces);
+      if (!table.changed.empty()) {
+        const auto place = std::find_if(places.begin(), places.end(), [](const SurfaceHit& p) { return p.valid(); });
+        if (place != places.end()) table.changed[t] = change.at(*place, scratch);
+      }
+      chancesOf(weights.of(places), float(in.gather.lights), chances);
       Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
       fillLists(table, order, chances, rng.next(), table.texels.data() + t * table.row());
     }

@@ -139,7 +139,7 @@ struct AreaSettings {
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Lists;
-  int lights = 64; // lists: of each pixel
+  int lights = 48; // lists: of each pixel
   int tile = 4;    // lists: pixels along a side of a tile
   float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float nearDisk = 4; // times disk where pixels cast near rays: a place on a cell's rim is as near as its VPL

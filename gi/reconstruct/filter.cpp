@@ -25,8 +25,8 @@ SurfaceLighting FilterPass::run(const FilterInputs& in) {
     program.use();
     program.set("tileSize", tileSize(in.surfaces));
     program.set("reach", reach);
-    program.set("fresh", in.fresh);
-    program.set("enough", float(in.gathered.enough));
+    program.set("fresh", in.worth == nullptr);
+    if (in.worth) in.worth->bind(5);
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
     from.irradiance->bind(2);

@@ -3,8 +3,9 @@
 // kept where the camera before saw its place, and takes it as far as that is of the same surface.
 //
 // Where light changes, means over many frames lag. There, means hold few frames, and what is kept follows this frame:
-// a share (half for indirect light) of the filtered difference between the two, which has little noise, is added, so
-// that half of a coarse change is shown in its first frame and nine tenths within three. Tiles of the frame whose
+// a share of the filtered difference between the two, which has less noise, is added. For indirect light that is half,
+// so that half of a coarse change is shown in its first frame and nine tenths within three; or less where the lights,
+// lit again by the same paths, are known to bring about what they brought (gi/lists). Tiles of the frame whose
 // light changes by much more than its noise start again (history_follow.frag). Numbers: docs/measurements/light.md.
 #include "gi/gather/draw_gather.h"
 #include "gi/reconstruct/reconstruct.h"
@@ -35,7 +36,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
   if (changes) follow(in, now);
   before_ = in.surfaces.block;
   ++frames_;
-  return {&now.irradiance, orNull(now.glossy), false, in.gathered.subsets, in.gathered.enough};
+  return {&now.irradiance, orNull(now.glossy), false, in.gathered.subsets};
 }
 
 void HistoryPass::fit(const GBuffer& surfaces) {
@@ -53,43 +54,43 @@ void HistoryPass::fit(const GBuffer& surfaces) {
     next.irradiance = make("history/irradiance");
     next.seen = make("history/seen");
     next.glossy = make("history/glossy", glossy);
-    next.variance = make("history/variance", keepsVariance_, GL_RG32F);
-    next.framebuffer =
-        gl::Framebuffer("history", {&next.irradiance, &next.seen, orNull(next.glossy), orNull(next.variance)});
+    next.variance = make("history/variance", true, GL_RG32F);
+    next.framebuffer = gl::Framebuffer("history", {&next.irradiance, &next.seen, orNull(next.glossy), &next.variance});
   }
   if (fits(found_) && bool(foundGlossy_) == glossy) return;
   found_ = make("history/found");
   change_ = make("history/change");
   foundGlossy_ = make("history/found glossy", glossy);
-  foundVariance_ = make("history/found variance", keepsVariance_, GL_RG32F);
+  foundVariance_ = make("history/found variance", true, GL_RG32F);
   tiles_ = gl::Texture("history/tiles", {.format = GL_RGBA32F,
                                          .width = (surfaces.width + 15) / 16,
                                          .height = (surfaces.height + 15) / 16,
                                          .linear = true});
   tilesFramebuffer_ = gl::Framebuffer("history/tiles", {&tiles_});
-  changing_ = gl::Framebuffer("history/changing", {&found_, &change_, orNull(foundGlossy_), orNull(foundVariance_)});
+  changing_ = gl::Framebuffer("history/changing", {&found_, &change_, orNull(foundGlossy_), &foundVariance_});
 }
 
 void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Framebuffer& to, bool changes) {
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
   if (changes) defines.push_back("CHANGES");
-  if (keepsVariance_) defines.push_back("VARIANCE"), before.variance.bind(9);
+  before.variance.bind(9);
   const gl::Program& program = context_.programs.get({.fragment = "history.frag", .defines = std::move(defines)});
   program.use();
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
   program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
+  program.set("smoothed", in.smooth.irradiance != nullptr);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
   in.gathered.irradiance->bind(2);
   before.irradiance.bind(3);
-  if (keepsVariance_) (in.smooth.irradiance ? *in.smooth.irradiance : before.irradiance).bind(10);
+  (in.smooth.irradiance ? *in.smooth.irradiance : before.irradiance).bind(10);
   before.seen.bind(4);
   if (in.gathered.glossy) {
     in.gathered.glossy->bind(5);
     before.glossy.bind(8);
-    if (keepsVariance_) (in.smooth.glossy ? *in.smooth.glossy : before.glossy).bind(11);
+    (in.smooth.glossy ? *in.smooth.glossy : before.glossy).bind(11);
     program.set("mostGlossyFrames", float(changes || in.cameraMoved ? std::min(most, in.glossyFrames) : most));
   }
   to.bind();
@@ -107,13 +108,17 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   gl::PipelineState{.width = tiles_.width(), .height = tiles_.height()}.apply();
   gl::drawFullscreen();
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
-  if (keepsVariance_) defines.push_back("VARIANCE"), foundVariance_.bind(8);
+  foundVariance_.bind(8);
+  const gl::Texture* lights = in.lists ? in.lists->changed : nullptr;
+  if (lights) defines.push_back("LIGHTS"), lights->bind(9);
   const gl::Program& program =
       context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
   program.use();
   if (foundGlossy_) foundGlossy_.bind(5);
   program.set("effectiveSamples", in.filter.on ? 34.0f : 1.0f); // (Σw)²/Σw² of the tent of 7×7
   program.set("follow", in.follow);
+  program.set("apart", in.apart);
+  if (lights) program.set("tileSide", float(in.lists->tile));
   filtered.irradiance->bind(4);
   tiles_.bind(6);
   now.framebuffer.bind();

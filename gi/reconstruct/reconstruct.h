@@ -6,6 +6,7 @@
 #pragma once
 
 #include "engine/gl/ring.h"
+#include "gi/contract/light_lists.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/surface_lighting.h"
 #include "gi/plan/settings.h"
@@ -16,7 +17,7 @@ struct FilterInputs {
   const GBuffer& surfaces;
   const SurfaceLighting& gathered;
   const FilterSettings& filter;
-  bool fresh = true; // of one frame; else a texel's alpha says how many sixteenths of the lights it holds evenly
+  const gl::Texture* worth = nullptr; // of a mean: HistoryPass::worth; the more frames, the less its neighbours count
 };
 
 /// Filters with a cross-bilateral 7×7 kernel; with the filter off only puts the pixels back in their places. Light of
@@ -38,17 +39,17 @@ struct HistoryInputs {
   bool lightChanges; // what is kept then follows this frame; glossy light is of few
   const HistorySettings& settings;
   const FilterSettings& filter;
-  float follow = 0.5f;         // share of a coarse change that its first frame shows
-  SurfaceLighting smooth = {}; // the frame before, denoised, or null: what variance is about, and edges are found in
-  int glossyFrames = 0;        // earlier frames that a mean of glossy light holds at most while camera or light moves
+  float follow = 0.5f;               // share of a coarse change that its first frame shows
+  SurfaceLighting smooth = {};       // the frame before, denoised, or null: what variance is about; its edges end means
+  const LightLists* lists = nullptr; // that say by how much the light of their tiles changed, or null
+  bool apart = false;                // the noise of pixels is each its own, so that a change of light is told from it
+  int glossyFrames = 0; // earlier frames that a mean of glossy light holds at most while camera or light moves
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.
 class HistoryPass {
  public:
-  /// `variance`: also keeps that of a pixel's frames, and tells change from noise by it.
-  explicit HistoryPass(PassContext context, StageId stage = StageId::History, bool variance = false)
-      : context_(context), stage_(stage), keepsVariance_(variance) {}
+  explicit HistoryPass(PassContext context, StageId stage = StageId::History) : context_(context), stage_(stage) {}
   /// Makes room; call it before the gather. Frames of another size are looked up like any others; those of another kind
   /// are forgotten.
   void fit(const GBuffer& surfaces);
@@ -75,7 +76,6 @@ class HistoryPass {
   PassContext context_;
   FilterPass filter_{context_};
   StageId stage_;
-  bool keepsVariance_;
   Kept kept_[2];
   // Where light changes: what is kept, and this frame's difference to it; the mean of glossy light.
   gl::Texture found_, change_, foundGlossy_, foundVariance_;
@@ -90,20 +90,23 @@ class HistoryPass {
 
 struct DenoiseInputs {
   const GBuffer& surfaces;
-  const SurfaceLighting& mean;         // of HistoryPass, with a variance
+  const SurfaceLighting& mean;         // of HistoryPass
   const gl::Texture &variance, &worth; // HistoryPass's
   const FilterSettings& filter;
+  int steps = 3;     // of the filter: of 1, 2, 4 … pixels
+  bool even = false; // each frame takes other parts of one sum, so that a mean's noise goes down as its frames
 };
 
 /// Averages each pixel with neighbours that are alike within its noise: à-trous wavelets guided by variance (Schied et
 /// al., "Spatiotemporal variance-guided filtering", 2017). Light without noise stays as it is.
 class DenoisePass {
  public:
-  explicit DenoisePass(PassContext context) : context_(context) {}
+  explicit DenoisePass(PassContext context, StageId stage) : context_(context), stage_(stage) {}
   SurfaceLighting run(const DenoiseInputs& in);
 
  private:
   PassContext context_;
+  StageId stage_;
   LightTarget targets_[2]{LightTarget("denoise/even"), LightTarget("denoise/odd")};
 };
 

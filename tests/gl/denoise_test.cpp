@@ -14,8 +14,8 @@ class DenoiseTest : public GatherTest {
   /// The mean of frames, row by row from the bottom, after and before the filter. `rare`: one pixel in so many has all
   /// light of a frame.
   std::pair<Image, Image> denoised(int frames, float noise, int odd = -1, int rare = 1) {
-    HistoryPass history(passes, StageId::History, true);
-    DenoisePass denoise(passes);
+    HistoryPass history(passes, StageId::History);
+    DenoisePass denoise(passes, StageId::SoftLight);
     Rng rng(7, Stream::Test, 0);
     SurfaceLighting mean, smooth;
     gl::Texture given;

@@ -132,6 +132,28 @@ TEST_F(HistoryTest, TheNearLimitIsWiderWhereAViewStands) {
   EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)), wide, 0.25 * (wide - narrow));
 }
 
+/// By lists a small change is followed by what the lights know of it, and the mean is nearer to all lights than a frame
+/// is.
+TEST_F(HistoryTest, ListsFollowWhatLightsKnow) {
+  settings.gather.mode = GatherMode::Lists;
+  settings.gather.lights = 16;
+  settings.gather.near = 0;
+  Viewer gi(settings);
+  stand(gi, 8);
+  for (int i = 0; i < 16; ++i) { // a tenth more in all
+    room.scene.lights[0].intensity *= 1.006f;
+    gi.run(view(kLightsChanged));
+  }
+  const Image last = gi.read(Buffer::Irradiance);
+  gi.settings() = with(settings, GatherMode::Full, 0); // the same lights
+  const Image all = nextFrame(gi, still());
+  gi.settings() = with(settings, GatherMode::Lists, 0);
+  const double mean = relativeRmse(last, all), one = relativeRmse(nextFrame(gi, still()), all);
+  std::printf("lists, light changing: mean %.4f, one frame %.4f\n", mean, one);
+  EXPECT_LT(mean, 0.7 * one);
+  EXPECT_NEAR(meanLuminance(last), meanLuminance(all), 0.02 * meanLuminance(all));
+}
+
 TEST_F(HistoryTest, FollowsTheCamera) {
   Viewer gi(settings);
   gi.run(room.scene.view());
