@@ -16,7 +16,6 @@ layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 #ifdef BEGIN
 layout(binding = 4) uniform sampler2D frameVariance; // HistoryPass::variance
 layout(binding = 5) uniform sampler2D worthOfMean; // HistoryPass::worth
-uniform bool even; // DenoiseInputs::even
 #endif
 const int kReach = 1; // taps
 uniform int stride; // pixels between taps
@@ -54,7 +53,7 @@ void add(inout Sum sum, vec4 tap, float variance, float weight) {
 vec4 meanOf(Sum sum, float frames, float worth) {
   if (!(sum.weights > 0.0)) return vec4(sum.own.rgb, 0.0);
   vec3 mean = sum.light / sum.weights;
-  float ofFrames = mean.x / max(even ? worth * worth : worth, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
+  float ofFrames = mean.x / max(worth, 1.0), ofNeighbours = max(mean.z - mean.y * mean.y, 0.0);
   return vec4(sum.own.rgb, mix(ofNeighbours, ofFrames, clamp((frames - 1.0) / 4.0, 0.0, 1.0)));
 }
 #else

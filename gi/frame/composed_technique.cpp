@@ -135,8 +135,7 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
                           .variance = history_.variance(),
                           .worth = history_.worth(),
                           .filter = filter,
-                          .steps = kSteps,
-                          .even = true});
+                          .steps = kSteps});
   else
     light = filter_.run({frame.surfaces, light, filter, averaging ? &history_.worth() : nullptr});
   if (filter.on) stats.of(EffectId::Filter) = draws();

@@ -17,7 +17,6 @@ SurfaceLighting DenoisePass::run(const DenoiseInputs& in) {
     program.use();
     program.set("normalPower", in.filter.normalPower);
     program.set("distanceSigma", in.filter.distance);
-    if (i == 0) program.set("even", in.even);
     program.set("stride", i == 0 ? 1 : 1 << (i - 1));
     light.irradiance->bind(2);
     if (light.glossy) light.glossy->bind(3);

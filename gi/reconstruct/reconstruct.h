@@ -93,8 +93,7 @@ struct DenoiseInputs {
   const SurfaceLighting& mean;         // of HistoryPass
   const gl::Texture &variance, &worth; // HistoryPass's
   const FilterSettings& filter;
-  int steps = 3;     // of the filter: of 1, 2, 4 … pixels
-  bool even = false; // each frame takes other parts of one sum, so that a mean's noise goes down as its frames
+  int steps = 3; // of the filter: of 1, 2, 4 … pixels
 };
 
 /// Averages each pixel with neighbours that are alike within its noise: à-trous wavelets guided by variance (Schied et
