@@ -111,16 +111,18 @@ class LightChange {
  public:
   LightChange(std::span<const VirtualLight> lights, std::span<const float> before, float disk) {
     std::vector<uint32_t> order;
+    bool differ = false;
     for (uint32_t slot = 0; slot < std::min(lights.size(), before.size()); ++slot) {
       const float now = lights[slot].intensity(), larger = std::max(now, before[slot]);
-      if (lights[slot].alive && before[slot] >= 0 && larger > 0 && std::isfinite(larger)) order.push_back(slot);
+      if (lights[slot].alive && before[slot] >= 0 && larger > 0 && std::isfinite(larger))
+        order.push_back(slot), differ |= now != before[slot];
     }
+    if (!differ) return; // no place has to ask
     larger_ = columnsOf(lights, order, disk);
     for (size_t i = 0; i < order.size(); ++i)
       larger_.power[i] = std::max(lights[order[i]].intensity(), before[order[i]]);
     difference_ = larger_;
-    for (size_t i = 0; i < order.size(); ++i)
-      difference_.power[i] = lights[order[i]].intensity() - before[order[i]];
+    for (size_t i = 0; i < order.size(); ++i) difference_.power[i] = lights[order[i]].intensity() - before[order[i]];
   }
   /// Share of what reaches a place; `scratch`: a column.
   float at(const SurfaceHit& place, std::vector<float>& scratch) const {
