@@ -139,11 +139,11 @@ struct AreaSettings {
 
 struct GatherSettings {
   GatherMode mode = GatherMode::Lists;
-  int lights = 48; // lists: of each pixel
-  int tile = 4;    // lists: pixels along a side of a tile
-  float disk = 1;  // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
+  int lights = 48;    // lists: of each pixel
+  int tile = 4;       // lists: pixels along a side of a tile
+  float disk = 1;     // r² + disk·a/π instead of r²: bounds every VPL by its own area a (1: paper 3's disk; 0: off)
   float nearDisk = 4; // times disk where pixels cast near rays: a place on a cell's rim is as near as its VPL
-  float clamp = 0; // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
+  float clamp = 0;    // largest geometry term G, 1/m² (paper 1's hand-set clamp); 0 = none
   int near = 8; // rays per 4×4 pixels of subsets (else per pixel) for what disk and clamp take from near VPLs; 0: lost
   float nearLimit = 8; // radiance of a near surface counts up to so many times its VPL's; 0 = whatever it is
   bool checks = true;  // subsets, still: rays check what maps say (gi/gather/map_checks.h)
