@@ -22,16 +22,17 @@ enum class PatchCriterion : int { Plane, Depth };
 enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
-// What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
-enum class AreaTracer : int { Auto, Cpu, Gpu };
+enum class AreaTracer : int { Auto, Cpu, Gpu }; // who traces rays of these patches
+// What splits them: how many rays their quarters and those next to them find open | which rays their quarters do (paper
+// 4) | which the eight patches around do (Nichols et al. 2010).
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
 enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes
-// What auto means for these: CPU where OpenGL is drawn by it, else GPU | whoever is faster, as measured once, which may
-// come out otherwise the next time.
+// What auto means for ShadowMaker, AreaTracer and CubeMaker: the CPU where OpenGL is drawn by it, else the GPU | as
+// measured once: the GPU where it is twice as fast, else the CPU, which may come out otherwise the next time.
 enum class Makers : int { ByRule, Measured };
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
