@@ -4,6 +4,7 @@
 #include "gi/lists/light_columns.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 namespace lambent {
@@ -47,58 +48,76 @@ struct ChangedLights {
   }
 };
 
-/// The change at one place.
-LightChange changeAt(const ChangedLights& of, const SurfaceHit& place) {
-  const Unshadowed unshadowed(of.larger, place);
-  const float *power = of.larger.power.data(), *gained = of.gained.data(), *colour = of.colour.data(),
-              *came = of.came.data();
-  Lanes all{}, gain{}, tint{}, square{}, fresh{};
-  for (size_t first = 0; first < of.larger.x.size(); first += kLanes)
-    for (size_t k = 0; k < kLanes; ++k) {
-      const size_t i = first + k;
-      const float reaches = unshadowed(i), change = reaches * gained[i];
-      all[k] += reaches * power[i];
-      gain[k] += change;
-      tint[k] += reaches * colour[i];
-      square[k] += change * change;
-      fresh[k] += reaches * came[i];
-    }
-  const float sum = sumOf(all);
-  if (!(sum > 0) || !std::isfinite(sum)) return {.share = of.gone};
-  // What single lights gain and lose adds up as noise does: paths that flip are many and small, lamps that move few.
-  const float share = std::max({std::abs(sumOf(gain)), std::abs(sumOf(tint)), std::sqrt(sumOf(square))}) / sum;
-  return {std::min(1.0f, share + sumOf(fresh) / sum + of.gone), sumOf(gain) / sum};
-}
+/// Says what changed at single places.
+class PlaceChange {
+ public:
+  PlaceChange(const ChangedLights& lights, std::span<const MovedSphere> moved)
+      : lights_(lights), moved_(moved), reaches_(lights.larger.x.size()) {}
 
-/// Share of the light at a place that comes through one of the spheres.
-float shadedAt(const LightColumns& lights, const SurfaceHit& place, std::span<const MovedSphere> spheres,
-               std::vector<float>& outside) {
-  outside.assign(lights.x.size(), 1.0f);
-  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data(), *power = lights.power.data();
-  float* out = outside.data();
-  for (const MovedSphere& s : spheres) {
-    const vec3 p = place.position, c = s.centre - p;
-    const float distance2 = glm::dot(c, c), radius2 = s.radius * s.radius;
-    for (size_t i = 0; i < outside.size(); ++i) { // squared distance of the segment from the centre
-      const float dx = x[i] - p.x, dy = y[i] - p.y, dz = z[i] - p.z;
-      const float length2 = dx * dx + dy * dy + dz * dz + lights.least, along = dx * c.x + dy * c.y + dz * c.z;
-      float t = along / length2;
-      t = t < 0 ? 0 : t > 1 ? 1 : t;
-      const float apart2 = distance2 + t * (t * length2 - 2 * along);
-      out[i] = apart2 < radius2 ? 0 : out[i];
+  LightChange at(const SurfaceHit& place) {
+    const Unshadowed unshadowed(lights_.larger, place);
+    for (size_t i = 0; i < reaches_.size(); ++i) reaches_[i] = unshadowed(i);
+    const float all = sum([power = lights_.larger.power.data()](size_t i) { return power[i]; });
+    if (!(all > 0) || !std::isfinite(all)) return {.share = lights_.gone};
+    LightChange change{.share = lights_.gone};
+    if (lights_.differ) {
+      const float *gained = lights_.gained.data(), *colour = lights_.colour.data(), *came = lights_.came.data();
+      const float gain = sum([=](size_t i) { return gained[i]; }), tint = sum([=](size_t i) { return colour[i]; });
+      // What single lights gain and lose adds up as noise does: paths that flip are many and small, lamps that move
+      // few.
+      const float* reaches = reaches_.data();
+      const float square = sum([=](size_t i) { return reaches[i] * gained[i] * gained[i]; });
+      change.gained = gain / all;
+      change.share += std::max({std::abs(gain), std::abs(tint), std::sqrt(square)}) / all;
+      change.share += sum([=](size_t i) { return came[i]; }) / all;
     }
+    if (!moved_.empty()) change.share = std::max(change.share, through(place) / all);
+    change.share = std::isfinite(change.share) ? std::min(1.0f, change.share) : 1;
+    return change;
   }
-  const Unshadowed unshadowed(lights, place);
-  Lanes all{}, through{};
-  for (size_t first = 0; first < outside.size(); first += kLanes)
-    for (size_t k = 0; k < kLanes; ++k) {
-      const float brings = unshadowed(first + k) * power[first + k];
-      all[k] += brings;
-      through[k] += brings * (1 - out[first + k]);
+
+ private:
+  /// Irradiance by some power of lights.
+  template <class Power> float sum(const Power& power) const {
+    Lanes sums{};
+    const float* reaches = reaches_.data();
+    for (size_t first = 0; first < reaches_.size(); first += kLanes)
+      for (size_t k = 0; k < kLanes; ++k) sums[k] += reaches[first + k] * power(first + k);
+    return sumOf(sums);
+  }
+  /// What comes through one of the spheres.
+  float through(const SurfaceHit& place) {
+    const LightColumns& l = lights_.larger;
+    const float *x = l.x.data(), *y = l.y.data(), *z = l.z.data(), *power = l.power.data(), *reaches = reaches_.data();
+    const vec3 p = place.position;
+    Lanes sums{};
+    for (size_t first = 0; first < reaches_.size(); first += kLanes) {
+      Lanes nearest; // squared distance of segments from the centres, in radii, less 1
+      nearest.fill(0);
+      for (const MovedSphere& s : moved_) {
+        const vec3 c = s.centre - p;
+        const float scale = 1 / std::max(s.radius * s.radius, FLT_MIN), centre2 = glm::dot(c, c) * scale - 1;
+        for (size_t k = 0; k < kLanes; ++k) {
+          const float dx = x[first + k] - p.x, dy = y[first + k] - p.y, dz = z[first + k] - p.z;
+          const float length2 = dx * dx + dy * dy + dz * dz + l.least, along = dx * c.x + dy * c.y + dz * c.z;
+          const float ahead = along > 0 ? along : 0, at = ahead < length2 ? ahead : length2;
+          const float from = centre2 + at / length2 * (at - 2 * along) * scale;
+          nearest[k] = from < nearest[k] ? from : nearest[k];
+        }
+      }
+      constexpr float kEdge = 8; // the rim counts by degrees
+      for (size_t k = 0; k < kLanes; ++k) {
+        const float inside = -kEdge * nearest[k];
+        sums[k] += reaches[first + k] * power[first + k] * (inside < 1 ? inside : 1.0f);
+      }
     }
-  const float share = sumOf(through) / sumOf(all);
-  return std::isfinite(share) ? share : 0;
-}
+    return sumOf(sums);
+  }
+
+  const ChangedLights& lights_;
+  std::span<const MovedSphere> moved_;
+  std::vector<float> reaches_; // irradiance per power of each light
+};
 
 } // namespace
 
@@ -113,7 +132,7 @@ std::vector<LightChange> lightChanges(const LightChangeInputs& in) {
   }
   constexpr size_t kGrain = 8;
   parallelFor(tiles, kGrain, [&](size_t begin, size_t end) {
-    std::vector<float> scratch;
+    PlaceChange change(lights, in.moved);
     for (size_t t = begin; t < end; ++t) {
       const std::span<const SurfaceHit> places = in.places.subspan(t * perTile, perTile);
       // Two places that lie apart speak for a tile.
@@ -124,8 +143,7 @@ std::vector<LightChange> lightChanges(const LightChangeInputs& in) {
       LightChange& tile = changes[t];
       int count = 0;
       for (const SurfaceHit* place = &*first;; place = last) {
-        LightChange c = lights.differ ? changeAt(lights, *place) : LightChange{.share = lights.gone};
-        if (!in.moved.empty()) c.share = std::max(c.share, shadedAt(lights.larger, *place, in.moved, scratch));
+        const LightChange c = change.at(*place);
         // Where they disagree it is not known.
         const float apart = count > 0 ? std::abs(c.gained - tile.gained) : 0;
         tile.share = std::max({tile.share, c.share, apart});
