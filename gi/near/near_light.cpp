@@ -290,7 +290,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   // Within a cycle each pixel casts once; the cycles begin anywhere, so that nothing that moves over the pixels keeps
   // step with them.
   const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock)), casts = in.frame / cycle;
-  const uint32_t turn = (in.frame % cycle + Rng(in.seed, Stream::Turns, casts).below(cycle)) % cycle;
+  const uint32_t turn = (in.frame % cycle + Rng(in.seed, Stream::NearLightTurns, casts).below(cycle)) % cycle;
   // The pattern has as many rays as a pixel casts in all frames that are averaged, one after the other.
   const bool averaged = in.frames > 1;
   const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.frames) / cycle));
