@@ -5,12 +5,6 @@
 namespace lambent {
 
 namespace {
-// By lists, whose other noise is little, times the rays of a still view: where light changes, whose means are the
-// shortest, and where only the camera moves. relMSE and time of a frame, of interleaving without nearDisk (hall,
-// citadel-moving-small; frame 30, 96×54; 320×180; 64 lights, before the denoiser): 4: 0.051, 0.031, 1.22, 1.30;
-// 3: 0.054, 0.034, 1.14, 1.15. Where classes take turns twice as many gave 0.079 instead of 0.083 for a sixth more
-// time.
-constexpr int kChanges = 3, kMoves = 2;
 // A mean of many frames needs less of a limit: bias of living-room-2 −2.8, −6.0 % without this, −0.4, −3.6 % with it.
 constexpr float kLimitStanding = 4;
 } // namespace
@@ -22,7 +16,6 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
   const bool bounded = gather.disk > 0 || gather.clamp > 0;
   if (gather.near == 0 || !bounded || in.lights.list.slots.empty()) return;
   const bool moves = in.lists && in.averaged; // each pixel casts by itself what it needs
-  const int times = moves ? in.changes ? kChanges : kMoves : in.changes ? 2 : 1;
   NearLight light;
   {
     const CpuScope scope(stats.stages, key(StageId::NearLight));
@@ -31,7 +24,7 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .lights = in.frame.world.lights,
                             .virtuals = in.lights.list.slots,
                             .gather = gather,
-                            .casts = gather.near * times,
+                            .casts = gather.near * nearTimes(in.lists, in.averaged, in.changes),
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,
