@@ -1,5 +1,5 @@
 #version 450
-// Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + a/π)·V.
+// Irradiance from VPLs (or samples of emissive surfaces): E = Σ L·a·cosx·cosy/(r² + disk·a/π)·V.
 // Variants of lib/gathered_pixel.glsl and lib/vpl_shading.glsl; LISTS: the lights that the pixel's tile has chosen.
 #include "lib/gbuffer.glsl"
 #include "lib/vpl_shading.glsl"

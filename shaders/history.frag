@@ -13,6 +13,7 @@ layout(binding = 2) uniform sampler2D irradiance; // of this frame
 layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames that the mean is worth, or 0
 uniform float mostFrames; // of those before that count at most; 0: there are none
+uniform float mostKnown; // earlier frames in a variance; 0: they had other noise
 uniform bool stands;    // the camera is where it was
 uniform bool smoothed;  // what was shown before had little noise: its edges say how much looking up blurs
 layout(location = 0) out vec4 outIrradiance; // a: frames in the variance
@@ -37,7 +38,6 @@ layout(location = 3) out vec2 outVariance; // of irradiance, of glossy light
 const float kOnPlane = 0.4;  // deviation from the pixel's plane, pixels
 const float kAlike = 0.9;    // cosine between normals: a moulding's faces see other lights
 const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
-const float kKnown = 16.0;   // earlier frames in a variance
 
 /// Position that a pixel of the frame before saw.
 vec3 positionBefore(ivec2 pixel, float viewDistance) {
@@ -93,7 +93,7 @@ void main() {
       known += weight * light.a;
       vec2 tapVariance = texelFetch(keptVariance, tap, 0).rg;
       variance += weight * tapVariance;
-      if (light.a > 1.5) least = min(least, tapVariance); // one frame has no variance yet
+      if (light.a > 1.5 && mostKnown > 0.0) least = min(least, tapVariance); // one frame has no variance yet
       span = spanWith(span, texelFetch(smoothIrradiance, tap, 0).rgb);
 #ifdef GLOSSY
       lobeSpan = spanWith(lobeSpan, texelFetch(smoothGlossy, tap, 0).rgb);
@@ -107,7 +107,7 @@ void main() {
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
-  if (weights > 0.0) variance /= weights, known = min(known / weights, kKnown);
+  if (weights > 0.0) variance /= weights, known = min(known / weights, mostKnown);
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
   outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, known);
   bool blurs = smoothed && !stands;

@@ -13,7 +13,7 @@ layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag: share, it
 uniform float follow; // share of a coarse change
 uniform bool apart;   // pixels' noise is each its own: what exceeds it is followed wholly
 #ifdef LIGHTS
-layout(binding = 9) uniform sampler2D lights; // LightLists::changed
+layout(binding = 9) uniform sampler2D lights; // LightChangeMap
 uniform float tileSide;                       // pixels
 #endif
 layout(location = 0) out vec4 outIrradiance;
@@ -27,6 +27,7 @@ uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights; 1: unf
 layout(location = 3) out vec2 outVariance;
 
 const float kSure = 8.0, kLeast = 0.1; // a changed share of 1/16 is followed by half, none by a tenth
+const float kAgrees = 2.0; // times a coarse difference, which has noise: what lights say counts that far
 const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
 const float kGuess = 4.0; // frames that a guess of variance counts as
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
@@ -49,8 +50,11 @@ void main() {
 #ifdef LIGHTS
   vec2 known = texture(lights, gl_FragCoord.xy / (tileSide * vec2(textureSize(lights, 0)))).rg;
   gain = clamp(kSure * known.r, kLeast, follow);
-  // What was kept is made as bright as the lights say; what they do not know is followed.
+  // What was kept is made as bright as the lights say, as far as this frame agrees: lights behind walls say it too. What
+  // they do not know is followed.
   vec3 gained = before.rgb * clamp(known.g > 0.0 ? known.g / (1.0 - known.g) : known.g, -0.5, 1.0);
+  float wanted = dot(kLuminance, gained);
+  gained *= wanted != 0.0 ? clamp(kAgrees * dot(kLuminance, coarse) / wanted, 0.0, 1.0) : 0.0;
   before.rgb += gained;
   difference.rgb -= gained;
   coarse -= gained;

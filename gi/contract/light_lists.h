@@ -18,10 +18,7 @@ struct LightLists {
   const gl::Texture* texture = nullptr;
   int tile = 4; // pixels along a side
   glm::ivec2 tiles{0};
-  int length = 0; // lights of a list, at most
-  /// RG32F: by tile, share of its light that changed lately, halved in each frame; and what it gained in this one, of
-  /// the larger of before and now. Without the noise of a gather. Null: not known.
-  const gl::Texture* changed = nullptr;
+  int chunks = 1; // of lights
 };
 
 } // namespace lambent

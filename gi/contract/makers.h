@@ -3,8 +3,8 @@
 
 namespace lambent {
 
-/// The CPU's where OpenGL is drawn by it, else the GPU's | whoever is faster, as measured once, which may come out
-/// otherwise the next time.
+/// What auto means for ShadowMaker, AreaTracer and CubeMaker: the CPU where OpenGL is drawn by it, else the GPU | as
+/// measured once: the GPU where it is twice as fast, else the CPU, which may come out otherwise the next time.
 enum class Makers : int { ByRule, Measured };
 
 } // namespace lambent

@@ -10,8 +10,8 @@ namespace {
 /// Light is averaged over frames. (Forced, it has nothing to do.)
 bool averages(const EffectPlan& plan) { return plan.on(EffectId::History) && plan.calledFor(EffectId::History); }
 
-constexpr int kUnknown = 5; // frames after things moved in which light may change that lights do not know of
-constexpr int kSteps = 2;   // of the denoiser; a third takes 0 to 1 % off the error of hall and citadel
+constexpr int kRest = 8;  // frames after motion until a view counts as standing
+constexpr int kSteps = 2; // of the denoiser; a third takes 0 to 1 % off the error of hall and citadel
 
 } // namespace
 
@@ -36,6 +36,7 @@ void ComposedTechnique::forget() {
   if (source_) source_->forget();
   maps_.forget();
   history_.forget();
+  change_.forget();
   gathered_ = {};
 }
 
@@ -63,6 +64,7 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   shown_ = nullptr;
   if (!frame.plan.on(EffectId::Gather) && !needs_.stored) {
     history_.forget(); // it would be of another place
+    change_.forget();
     return {};
   }
   const gl::DrawCount draws;
@@ -72,16 +74,29 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
   const SceneChanges& world = frame.world.view.changes;
-  const bool stands = averaging && !changes && !world.camera && !history_.follows();
+  const bool follows = averaging && (changes || history_.follows()), moves = follows || world.camera;
+  restless_ = world.first ? 0 : moves ? kRest : std::max(0, restless_ - 1);
+  const bool stands = averaging && !moves && !(needs_.lists && restless_ > 0);
   // Where a view stands, sixteen frames of classes by slot hold every light once, and lists only on the mean. A first
   // frame may be the first of these.
   const bool choose = needs_.lists && !stands && !(averaging && world.first);
-  if (world.first || world.instances || world.geometry || frame.settingsChanged)
-    unknown_ = kUnknown;
-  else if (maps_.waiting() == 0 && unknown_ > 0)
-    --unknown_;
-  if (!choose) lists_.forget();
-  const LightLists* lists = choose ? &chooseLists(frame, sample, stats) : nullptr;
+  change_.observe({.lights = lights_,
+                   .moved = frame.world.moved.boxes(),
+                   .mapsWait = maps_.waiting() > 0,
+                   .unknown = world.first || frame.settingsChanged});
+  const LightLists* lists = nullptr;
+  LightChangeMap change;
+  if (choose) {
+    const CpuScope scope(stats.stages, key(StageId::Lists));
+    lists = &lists_.run({.view = frame.world.view,
+                         .rays = frame.world.rays,
+                         .lights = lights_.slots,
+                         .gather = frame.settings.gather,
+                         .sample = sample,
+                         .seed = frame.seed},
+                        stats.raysLists.closest);
+    if (follows) change = change_.run(lists_.table(), frame.settings.gather.disk);
+  }
   gathered_ = gather_->run({.frame = frame,
                             .lights = lights,
                             .lists = lists,
@@ -92,21 +107,11 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
                             .stores = plan.on(EffectId::Gather)},
                            stats);
   if (plan.on(EffectId::Gather)) stats.of(EffectId::Gather) = draws();
-  return reconstruct(frame, lists, stats);
+  return reconstruct(frame, lists, change, stats);
 }
 
-const LightLists& ComposedTechnique::chooseLists(const Frame& frame, uint32_t sample, FrameStats& stats) {
-  const CpuScope scope(stats.stages, key(StageId::Lists));
-  return lists_.run({.view = frame.world.view,
-                     .rays = frame.world.rays,
-                     .lights = lights_.slots,
-                     .gather = frame.settings.gather,
-                     .sample = sample,
-                     .seed = frame.seed},
-                    lights_.moved, unknown_ == 0, stats.raysLists.closest);
-}
-
-SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLists* lists, FrameStats& stats) {
+SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLists* lists,
+                                               const LightChangeMap& change, FrameStats& stats) {
   const EffectPlan& plan = frame.plan;
   const bool averaging = averages(plan);
   FilterSettings filter = frame.settings.filter;
@@ -114,7 +119,7 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
   SurfaceLighting light = gathered_;
   if (averaging) {
     const gl::DrawCount draws;
-    const SurfaceLighting before = lists && history_.sample() > 0 ? smooth_ : SurfaceLighting{};
+    const SurfaceLighting before = lists && filter.on && history_.sample() > 0 ? smooth_ : SurfaceLighting{};
     light = history_.run({.surfaces = frame.surfaces,
                           .gathered = gathered_,
                           .cameraMoved = frame.world.view.changes.camera,
@@ -122,7 +127,9 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
                           .settings = frame.settings.history,
                           .filter = filter,
                           .smooth = before,
-                          .lists = lists});
+                          .change = change.texture ? &change : nullptr,
+                          .otherNoise = byLists_ != (lists != nullptr)});
+    byLists_ = lists != nullptr;
     stats.of(EffectId::History) = draws();
     averaged_ = plan.changed() ? 1 : averaged_ + 1;
   }

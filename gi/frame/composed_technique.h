@@ -5,6 +5,7 @@
 #include "gi/contract/gather.h"
 #include "gi/contract/light_source.h"
 #include "gi/contract/pass_context.h"
+#include "gi/gather/light_change_pass.h"
 #include "gi/gather/list_pass.h"
 #include "gi/reconstruct/reconstruct.h"
 #include "gi/visibility/shadow_map_cache.h"
@@ -34,8 +35,8 @@ class ComposedTechnique : public LightProvider {
   ProviderInside inside() const override;
 
  private:
-  const LightLists& chooseLists(const Frame& frame, uint32_t sample, FrameStats& stats);
-  SurfaceLighting reconstruct(const Frame& frame, const LightLists* lists, FrameStats& stats);
+  SurfaceLighting reconstruct(const Frame& frame, const LightLists* lists, const LightChangeMap& change,
+                              FrameStats& stats);
 
   PassContext context_;
   Axes axes_{.source = VplSource::None, .gather = GatherMode::Own};
@@ -43,6 +44,7 @@ class ComposedTechnique : public LightProvider {
   std::unique_ptr<LightSource> source_;
   ShadowMapCache maps_{context_};
   ListPass lists_;
+  LightChangePass change_;
   std::unique_ptr<Gather> gather_, shown_; // shown_: whose light the last frame still shows, until the next is there
   HistoryPass history_{context_};
   DenoisePass denoise_{context_, StageId::Filter};
@@ -50,7 +52,8 @@ class ComposedTechnique : public LightProvider {
   VirtualLights lights_;     // of this frame
   SurfaceLighting gathered_; // of the last run
   SurfaceLighting smooth_;   // of the last frame that was averaged
-  int unknown_ = 0;          // frames in which lights do not say how much light changed: things moved
+  int restless_ = 0;         // frames until a view counts as standing
+  bool byLists_ = false;     // light of the last frame that was averaged
   int averaged_ = 0;         // samples in the history since anything changed
 };
 

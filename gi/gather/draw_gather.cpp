@@ -105,12 +105,13 @@ void drawGather(gl::ProgramCache& programs, const gl::Framebuffer& target, const
     in.lists->texture->bind(4);
     program.set("listTile", in.lists->tile);
     program.set("tilesAcross", in.lists->tiles.x);
-    program.set("chunks", int(std::max(1u, (packed.count + kLightsPerChunk - 1) / kLightsPerChunk)));
+    program.set("chunks", in.lists->chunks);
   }
   target.bind();
 
   constexpr uint64_t kBlockBytes = kClassesPerLightBlock * kLightsPerClass * sizeof(VplLight);
   const uint32_t chunks = std::max(1u, (packed.count + kLightsPerChunk - 1) / kLightsPerChunk);
+  if (in.lists) CHECK_EQ(uint32_t(in.lists->chunks), chunks);
   for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
     const uint32_t lights = std::min(kLightsPerChunk, packed.count - chunk * kLightsPerChunk);
     program.set("perClass", int((lights + kLightClasses - 1) / kLightClasses));

@@ -9,19 +9,14 @@ namespace lambent {
 
 class ListPass {
  public:
-  /// Valid until the next run. Adds its rays to the count. `moved`: slots whose light is another than in the last run;
-  /// `followed`: says by how much the light of tiles changed since then.
-  const LightLists& run(ListInputs in, std::span<const uint32_t> moved, bool followed, uint64_t& rays);
-  /// The next run's frame is not the one after the last's.
-  void forget() { before_.clear(), changed_.clear(); }
+  /// Valid until the next run. Adds its rays to the count.
+  const LightLists& run(const ListInputs& in, uint64_t& rays);
+  /// The lists of the last run, and the places that they were chosen for.
+  const ListTable& table() const { return table_; }
 
  private:
-  void keepChanges();
-
   ListTable table_;
-  gl::Texture texture_, changes_;
-  std::vector<float> before_; // W/sr, by slots
-  std::vector<vec2> changed_; // as LightLists::changed
+  gl::Texture texture_;
   LightLists lists_;
 };
 

@@ -2,56 +2,24 @@
 
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
+#include "gi/lists/light_columns.h"
 #include "gi/vpl/smc.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cfloat>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace lambent {
 
 namespace {
 
-constexpr int kPlaces = 4;              // of a tile
-constexpr float kLeastCosine = 0.1f;    // normals differ within a tile
-constexpr float kLeastDistance = 1e-6f; // between a place and a light, of the lights' extent
+constexpr int kPlaces = kListPlaces;
 constexpr float kEven = 0.1f; // share of the weights that all lights have alike, for what no place of a tile saw
 constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
 constexpr int kMostTiles = 1024;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
-
-/// Sums side by side: one alone would wait for each addition.
-constexpr size_t kLanes = 16;
-using Lanes = std::array<float, kLanes>;
-float sumOf(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0f); }
-
-/// What a place needs of lights, component by component, so that compilers make vectors of the loop; kLanes at a time.
-struct LightColumns {
-  std::vector<float> x, y, z, nx, ny, nz, power, widening;
-  float least = 0; // squared distance, m²
-};
-
-LightColumns columnsOf(std::span<const VirtualLight> lights, std::span<const uint32_t> order, float disk) {
-  LightColumns c;
-  vec3 low(kInfinity), high(-kInfinity);
-  for (const uint32_t slot : order) {
-    const VirtualLight& l = lights[slot];
-    low = glm::min(low, l.position), high = glm::max(high, l.position);
-    c.x.push_back(l.position.x), c.y.push_back(l.position.y), c.z.push_back(l.position.z);
-    c.nx.push_back(l.normal.x), c.ny.push_back(l.normal.y), c.nz.push_back(l.normal.z);
-    c.power.push_back(l.intensity());
-    c.widening.push_back(disk * l.area / kPi);
-  }
-  c.least = std::max(kLeastDistance * kLeastDistance * glm::dot(high - low, high - low), FLT_MIN);
-  const size_t whole = (order.size() + kLanes - 1) / kLanes * kLanes; // what fills them up has no power
-  for (std::vector<float>* column : {&c.x, &c.y, &c.z, &c.nx, &c.ny, &c.nz, &c.power}) column->resize(whole, 0.0f);
-  c.widening.resize(whole, 1.0f);
-  return c;
-}
 
 uint32_t spread(uint32_t v) { // ten bits to every third
   v = (v | v << 16) & 0x030000ff;
@@ -85,55 +53,18 @@ std::vector<uint32_t> alongCurve(std::span<const VirtualLight> lights) {
 
 /// What each light would bring to a place, were it seen; returns the sum.
 float bringsTo(const LightColumns& lights, const SurfaceHit& place, std::span<float> brings) {
-  const float px = place.position.x, py = place.position.y, pz = place.position.z;
-  const float nx = place.normal.x, ny = place.normal.y, nz = place.normal.z;
-  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
-  const float *lx = lights.nx.data(), *ly = lights.ny.data(), *lz = lights.nz.data();
-  const float *power = lights.power.data(), *widening = lights.widening.data();
+  const Unshadowed unshadowed(lights, place);
+  const float* power = lights.power.data();
   Lanes sums{};
   for (size_t first = 0; first < brings.size(); first += kLanes) {
     float* to = brings.data() + first;
     for (size_t k = 0; k < kLanes; ++k) {
-      const size_t i = first + k;
-      const float dx = px - x[i], dy = py - y[i], dz = pz - z[i];
-      const float squared = dx * dx + dy * dy + dz * dz + lights.least, least = kLeastCosine * std::sqrt(squared);
-      const float atPlace = -(dx * nx + dy * ny + dz * nz), atLight = dx * lx[i] + dy * ly[i] + dz * lz[i];
-      const float cosines = (atPlace > least ? atPlace : least) * (atLight > least ? atLight : least) / squared;
-      to[k] = power[i] * cosines / (squared + widening[i]);
+      to[k] = power[first + k] * unshadowed(first + k);
       sums[k] += to[k];
     }
   }
   return sumOf(sums);
 }
-
-/// Lights that stay, by what they gained or lost in a frame, and by the larger of what they had and have.
-class LightChange {
- public:
-  LightChange(std::span<const VirtualLight> lights, std::span<const float> before, float disk) {
-    std::vector<uint32_t> order;
-    bool differ = false;
-    for (uint32_t slot = 0; slot < std::min(lights.size(), before.size()); ++slot) {
-      const float now = lights[slot].intensity(), larger = std::max(now, before[slot]);
-      if (lights[slot].alive && before[slot] >= 0 && larger > 0 && std::isfinite(larger))
-        order.push_back(slot), differ |= now != before[slot];
-    }
-    if (!differ) return; // no place has to ask
-    larger_ = columnsOf(lights, order, disk);
-    for (size_t i = 0; i < order.size(); ++i)
-      larger_.power[i] = std::max(lights[order[i]].intensity(), before[order[i]]);
-    difference_ = larger_;
-    for (size_t i = 0; i < order.size(); ++i) difference_.power[i] = lights[order[i]].intensity() - before[order[i]];
-  }
-  /// Share of what reaches a place; `scratch`: a column.
-  float at(const SurfaceHit& place, std::vector<float>& scratch) const {
-    scratch.resize(larger_.x.size());
-    const float all = bringsTo(larger_, place, scratch), share = bringsTo(difference_, place, scratch) / all;
-    return all > 0 && std::isfinite(share) ? share : 0;
-  }
-
- private:
-  LightColumns larger_, difference_;
-};
 
 /// The pixel of a tile whose ray finds its k-th place: the middles of its quarters, as (u, v) of the image, v down.
 vec2 placeOf(const CameraView& camera, const ListTable& table, size_t tile, int k) {
@@ -260,27 +191,20 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   table.length = in.gather.lights + 3;
   const size_t tiles = size_t(table.tiles.x) * size_t(table.tiles.y);
   table.texels.resize(table.row() * tiles);
+  table.places.resize(tiles * kPlaces);
   const std::vector<uint32_t> order = alongCurve(in.lights);
-  table.changed.assign(in.before.empty() ? 0 : tiles, 0.0f);
-  if (order.empty() && in.before.empty()) return std::fill(table.texels.begin(), table.texels.end(), 0u);
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
-  const LightChange change(in.lights, in.before, in.gather.disk);
   constexpr size_t kGrain = 8;
   parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {
     std::vector<vec2> at;
     for (size_t t = begin; t < end; ++t)
       for (int k = 0; k < kPlaces; ++k) at.push_back(placeOf(camera, table, t, k));
-    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, at);
+    std::ranges::copy(surfacesAt(in.rays, camera, at), table.places.begin() + ptrdiff_t(begin * kPlaces));
     count += at.size();
     TileWeights weights(columns, order.size());
-    std::vector<float> chances(order.size()), scratch;
+    std::vector<float> chances(order.size());
     for (size_t t = begin; t < end; ++t) {
-      const std::span<const SurfaceHit> places = std::span(hits).subspan((t - begin) * kPlaces, kPlaces);
-      if (!table.changed.empty()) {
-        const auto place = std::find_if(places.begin(), places.end(), [](const SurfaceHit& p) { return p.valid(); });
-        if (place != places.end()) table.changed[t] = change.at(*place, scratch);
-      }
-      chancesOf(weights.of(places), float(in.gather.lights), chances);
+      chancesOf(weights.of(std::span(table.places).subspan(t * kPlaces, kPlaces)), float(in.gather.lights), chances);
       Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
       fillLists(table, order, chances, rng.next(), table.texels.data() + t * table.row());
     }

@@ -16,6 +16,8 @@
 
 namespace lambent {
 
+inline constexpr int kListPlaces = 4; // of a tile
+
 struct ListInputs {
   const SceneView& view;
   const RayQuery& rays;
@@ -23,7 +25,6 @@ struct ListInputs {
   const GatherSettings& gather;         // bounds, lights, tile
   uint32_t sample = 0;                  // of those that are averaged: every 16 share the lights out anew
   uint32_t seed = 1;
-  std::span<const float> before = {}; // W/sr, by slots, a frame ago; negative: another light was there; empty: unknown
 };
 
 /// Lists as LightLists::texture has them (gi/contract/light_lists.h).
@@ -32,7 +33,7 @@ struct ListTable {
   glm::ivec2 tiles{0};
   int length = 0, chunks = 1;
   std::vector<uint32_t> texels;
-  std::vector<float> changed; // of each tile: what lights that stay gained, of the larger of before and now; or empty
+  std::vector<SurfaceHit> places; // kListPlaces of each tile
   size_t row() const { return size_t(kLightClasses) * size_t(chunks + length); }
 };
 /// Chooses them anew. Texels past the end of a list are whatever was there.

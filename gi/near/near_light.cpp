@@ -166,10 +166,8 @@ struct NearTracer {
 } // namespace
 
 // By lists, whose other noise is little, times the rays of a still view: where light changes, whose means are the
-// shortest, and where only the camera moves. relMSE and time of a frame, of interleaving without nearDisk (hall,
-// citadel-moving-small; frame 30, 96×54; 320×180; 64 lights, before the denoiser): 4: 0.051, 0.031, 1.22, 1.30;
-// 3: 0.054, 0.034, 1.14, 1.15. Where classes take turns twice as many gave 0.079 instead of 0.083 for a sixth more
-// time.
+// shortest, and where only the camera moves. Where classes take turns more rays bring little. What they cost and bring:
+// docs/decisions.md, 2026-11-26, near light by lists.
 int nearTimes(bool lists, bool averaged, bool changes) {
   constexpr int kChanges = 3, kMoves = 2;
   if (lists && averaged) return changes ? kChanges : kMoves;

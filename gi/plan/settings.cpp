@@ -118,9 +118,12 @@ class Table {
            "who traces these rays; auto: the CPU where it draws anyway, else the GPU; the window measures both once");
     number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");
     number(SETTING(shadow, skyResolution), {16, 2048, "texels", PowersOfTwo}, Maps, "texels per side of their maps");
-    choice(SETTING(gather, mode), namesOf(kGathers), Nothing,
-           "lights chosen for each tile; 4x4 subsets and filter; every VPL at every pixel (16 times the time), or at "
-           "every patch of the image; patches of each subset; VPLs splatted into patches, or each into its own");
+    choice(
+        SETTING(gather, mode), namesOf(kGathers), Nothing,
+        "interleaved: 4x4 subsets and filter; lists: lights chosen for each tile in motion, interleaved where a view "
+        "stands; full: every VPL at every pixel (16 times the time); multires: at every patch of the image, or "
+        "multires-interleaved: of each subset; splat: VPLs into patches, or splat-per-vpl: each into its own; volume: "
+        "a grid that light propagates through; cube: a layered depth cube; own: the technique's");
     number(SETTING(gather, lights), {1, 512, "lights", PowersOfTwo}, Nothing,
            "gather.mode lists: that a pixel gathers in a frame in motion");
     number(SETTING(gather, tile), {2, 64, "pixels", PowersOfTwo}, Nothing,
@@ -139,9 +142,9 @@ class Table {
     number(SETTING(gather, nearLimit), {0, kNoLimit}, Nothing,
            "near light: radiance of a surface counts up to so many times its VPL's, four times that where a view "
            "stands, against bright spots; 0 = no limit");
-    flag(SETTING(gather, checks), Nothing,
-         "classes of interleaved gathers, while nothing changes: a ray per pixel and 2048 VPLs checks what shadow maps "
-         "say");
+    flag(
+        SETTING(gather, checks), Nothing,
+        "interleaved gathers, and lists once a view stands: a ray per pixel and 2048 VPLs checks what shadow maps say");
     flag(SETTING(gather, glossy), Nothing,
          "surfaces that the camera sees reflect by roughness (at least 0.3) and metalness; light paths stay Lambert");
     number(SETTING(gather, spread), {0, 1000}, Nothing,
@@ -209,9 +212,10 @@ class Table {
     number(SETTING(history, frames), {0, 256, "frames", PowersOfTwo}, Nothing,
            "frames that the indirect light of a pixel is averaged over, each by other rays and another part of "
            "the VPLs; 0 = each frame by itself");
-    flag(SETTING(filter, on), Nothing, "cross-bilateral filter over the 4x4 subsets; denoiser of soft direct light");
+    flag(SETTING(filter, on), Nothing,
+         "cross-bilateral filter over the 4x4 subsets; denoiser of soft direct light, and of lists in motion");
     choice(SETTING(filter, kernel), {"separable", "whole"}, Nothing,
-           "7x7 filter along rows then columns, or all 49 taps at once");
+           "7x7 filter along rows then columns, or all 49 taps at once; the denoiser has a kernel of its own");
     number(SETTING(filter, normalPower), {0, 1024}, Nothing, "weight max(0, n.n')^power");
     number(SETTING(filter, distance), {1e-6, 10}, Nothing,
            "deviation from the pixel's plane, share of its view distance");

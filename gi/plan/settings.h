@@ -22,8 +22,9 @@ enum class PatchCriterion : int { Plane, Depth };
 enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
-// What splits its patches: visibility within them | visibility of the eight patches around (Nichols et al. 2010).
-enum class AreaTracer : int { Auto, Cpu, Gpu };
+enum class AreaTracer : int { Auto, Cpu, Gpu }; // who traces rays of these patches
+// What splits them: how many rays their quarters and those next to them find open | which rays their quarters do (paper
+// 4) | which the eight patches around do (Nichols et al. 2010).
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };

@@ -17,8 +17,9 @@ namespace lambent {
 
 namespace {
 
-constexpr int kFollowOn = 4;  // frames after the last change that still follow
-constexpr int kFewFrames = 8; // that means hold at most while light changes
+constexpr int kFollowOn = 4;       // frames after the last change that still follow
+constexpr int kFewFrames = 8;      // that means hold at most while light changes
+constexpr float kKnownFrames = 16; // earlier ones in a variance
 
 const gl::Texture* orNull(const gl::Texture& texture) { return texture ? &texture : nullptr; }
 
@@ -80,6 +81,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   program.set("tileSize", tileSize(in.surfaces));
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
   program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
+  program.set("mostKnown", in.otherNoise ? 0.0f : kKnownFrames);
   program.set("smoothed", in.smooth.irradiance != nullptr);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);
@@ -109,8 +111,7 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   gl::drawFullscreen();
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   foundVariance_.bind(8);
-  const gl::Texture* lights = in.lists ? in.lists->changed : nullptr;
-  if (lights) defines.push_back("LIGHTS"), lights->bind(9);
+  if (in.change) defines.push_back("LIGHTS"), in.change->texture->bind(9);
   const gl::Program& program =
       context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
   program.use();
@@ -118,7 +119,7 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   program.set("effectiveSamples", in.filter.on ? 34.0f : 1.0f); // (Σw)²/Σw² of the tent of 7×7
   program.set("follow", in.follow);
   program.set("apart", in.apart);
-  if (lights) program.set("tileSide", float(in.lists->tile));
+  if (in.change) program.set("tileSide", float(in.change->tile));
   filtered.irradiance->bind(4);
   tiles_.bind(6);
   now.framebuffer.bind();

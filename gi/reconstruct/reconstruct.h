@@ -6,7 +6,7 @@
 #pragma once
 
 #include "engine/gl/ring.h"
-#include "gi/contract/light_lists.h"
+#include "gi/contract/light_change_map.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/surface_lighting.h"
 #include "gi/plan/settings.h"
@@ -39,11 +39,12 @@ struct HistoryInputs {
   bool lightChanges; // what is kept then follows this frame; glossy light is of few
   const HistorySettings& settings;
   const FilterSettings& filter;
-  float follow = 0.5f;               // share of a coarse change that its first frame shows
-  SurfaceLighting smooth = {};       // the frame before, denoised, or null: what variance is about; its edges end means
-  const LightLists* lists = nullptr; // that say by how much the light of their tiles changed, or null
-  bool apart = false;                // the noise of pixels is each its own, so that a change of light is told from it
-  int glossyFrames = 0; // earlier frames that a mean of glossy light holds at most while camera or light moves
+  float follow = 0.5f;         // share of a coarse change that its first frame shows
+  SurfaceLighting smooth = {}; // the frame before, denoised, or null: what variance is about; its edges end means
+  const LightChangeMap* change = nullptr; // what lights know of it, or null
+  bool apart = false;      // the noise of pixels is each its own, so that a change of light is told from it
+  bool otherNoise = false; // the noise of a frame is of another kind than the last's, so its variance is not known
+  int glossyFrames = 0;    // earlier frames that a mean of glossy light holds at most while camera or light moves
 };
 
 /// Averages what was gathered at the place of each pixel in this frame and those before it.

@@ -106,8 +106,8 @@ vec3 inFrame(VplLight light, vec3 lightNormal, vec3 v) {
   return vec3(dot(light.tangentNormalY.xyz, v), dot(light.bitangentNormalZ.xyz, v), dot(lightNormal, v));
 }
 
-/// E = L·a·cosx·cosy/(r² + a/π)·V. No branches: pixels of a group disagree nearly always, and software Mesa pays for every
-/// mask. An empty slot has no power. `layer` is its map's. It counts `times`.
+/// E = L·a·cosx·cosy/(r² + disk·a/π)·V. No branches: pixels of a group disagree nearly always, and software Mesa pays for
+/// every mask. An empty slot has no power. `layer` is its map's. It counts `times`.
 void receive(inout Received sum, Surface s, VplLight light, int layer, float times) {
   vec3 fromLight = s.position - light.positionArea.xyz;
   float distance2 = squaredLength(fromLight);

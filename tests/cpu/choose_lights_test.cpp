@@ -44,7 +44,7 @@ struct LitFloor {
       l.alive = i % 5 != 1;
     }
   }
-  ListTable choose(int wanted, uint32_t sample, std::span<const float> before = {}) const {
+  ListTable choose(int wanted, uint32_t sample) const {
     const TracedScene traced(scene);
     GatherSettings gather;
     gather.lights = wanted;
@@ -54,8 +54,7 @@ struct LitFloor {
                   .rays = traced.rays,
                   .lights = lights,
                   .gather = gather,
-                  .sample = sample,
-                  .before = before},
+                  .sample = sample},
                  table, rays);
     return table;
   }
@@ -211,39 +210,6 @@ TEST(ChooseLights, LightsWithoutNumbersAreLeftOut) {
   EXPECT_EQ(counts[7], 0);
   EXPECT_EQ(counts[8], 0);
   EXPECT_EQ(counts[9], 1);
-}
-
-/// Without the noise of a gather: lights that stay say it by what they brought and bring.
-TEST(ChooseLights, TilesKnowByHowMuchTheirLightChanged) {
-  LitFloor floor(200);
-  std::vector<float> before;
-  for (const VirtualLight& l : floor.lights) before.push_back(l.intensity());
-  const auto changes = [&] {
-    const std::vector<float> changed = floor.choose(16, 0, before).changed;
-    return std::pair(*std::ranges::min_element(changed), *std::ranges::max_element(changed));
-  };
-  EXPECT_TRUE(floor.choose(16, 0).changed.empty()) << "not known";
-  EXPECT_EQ(changes(), std::pair(0.0f, 0.0f));
-  for (VirtualLight& l : floor.lights) l.radiance *= 0.75f;
-  EXPECT_NEAR(changes().first, -0.25f, 1e-4f);
-  EXPECT_NEAR(changes().second, -0.25f, 1e-4f);
-  for (VirtualLight& l : floor.lights) l.radiance = vec3(0);
-  EXPECT_NEAR(changes().second, -1, 1e-4f) << "all went out";
-  for (VirtualLight& l : floor.lights) l.radiance = vec3(1);
-  std::ranges::fill(before, -1.0f);
-  EXPECT_EQ(changes().second, 0) << "others stood there";
-  before[0] = 0;
-  EXPECT_GT(changes().second, 0.9f) << "the only one that stays came on";
-}
-
-/// Where lights gain and lose alike the sum stays.
-TEST(ChooseLights, ChangesThatCancelOutAreNone) {
-  LitFloor floor(200);
-  std::vector<float> before;
-  for (const VirtualLight& l : floor.lights) before.push_back(l.intensity());
-  for (size_t i = 0; i < 200; ++i) floor.lights[i].radiance *= i % 2 ? 1.1f : 0.9f;
-  const std::vector<float> changed = floor.choose(16, 0, before).changed;
-  for (const float c : changed) EXPECT_LT(std::abs(c), 0.08f);
 }
 
 } // namespace lambent::test::choose_lights_test

@@ -90,8 +90,8 @@ class ListGatherTest : public GatherTest {
     Image mean(gbuffer.width, gbuffer.height);
     for (uint32_t sample = 0; sample < frames; ++sample) {
       chosen = pass.run(
-          {.view = world.view, .rays = world.rays, .lights = lights, .gather = settings.gather, .sample = sample}, {},
-          false, rays);
+          {.view = world.view, .rays = world.rays, .lights = lights, .gather = settings.gather, .sample = sample},
+          rays);
       const SurfaceLighting raw =
           gather->run({.frame = frame, .lights = {given}, .lists = &chosen, .sample = sample}, stats);
       const Image one = read(buffer, gbuffer, {}, filterPass.run({gbuffer, raw, {.on = false}}));

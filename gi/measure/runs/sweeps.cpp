@@ -75,7 +75,7 @@ const std::vector<Knob>& knobTable() {
       {"gather.clamp", {"1", "10", "0"}, Indirect, clamped},
       // Where light is gathered, and how it is put together.
       {"gather.mode", {"interleaved", "lists", "multires-interleaved", "multires", "full"}},
-      {"gather.lights", {"32", "64", "128"}, Indirect, byLists},
+      {"gather.lights", {"24", "48", "96"}, Indirect, byLists},
       {"gather.tile", {"16", "8", "4"}, Indirect, byLists},
       {"filter.on", {"off", "on"}},
       {"filter.kernel", {"separable", "whole"}},
