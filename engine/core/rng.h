@@ -32,7 +32,9 @@ enum class Stream : uint32_t {
   Turns,
   SkyLight,
   SamplerSkyLight,
-  SurfaceSamples
+  SurfaceSamples,
+  NearLightTurns,
+  LightLists
 };
 
 /// A sequence of numbers addressed by what they are for.

@@ -82,17 +82,22 @@ void AreaLightPass::collect(const World& world) {
 /// Embree or the GPU.
 const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces& surfaces,
                                          const AreaSettings& settings) {
-  const bool automatic = settings.tracer == AreaTracer::Auto;
-  const bool measures = automatic && context_.makers == Makers::Measured && !tracer_.measured();
-  tracer_.take(automatic ? std::nullopt : std::optional(settings.tracer == AreaTracer::Gpu));
-  if (!tracer_.gpu() && !measures) {
-    gpuRays_.reset();
-    return world.rays;
-  }
+  tracer_.take(settings.tracer == AreaTracer::Auto ? std::nullopt : std::optional(settings.tracer == AreaTracer::Gpu),
+               [&] { return timesOf(world, surfaces); });
+  if (tracer_.gpu()) return gpuRays(world);
+  gpuRays_.reset();
+  return world.rays;
+}
+
+const RayQuery& AreaLightPass::gpuRays(const World& world) {
   if (!gpuRays_ || world.view.changes.first)
     gpuRays_ = std::make_unique<GpuRays>(context_.programs, *world.view.assets);
   gpuRays_->update(world.view);
-  if (!measures) return *gpuRays_;
+  return *gpuRays_;
+}
+
+/// None where no light reaches the frame: another one decides.
+std::optional<MakerTimes> AreaLightPass::timesOf(const World& world, const FrameSurfaces& surfaces) {
   const std::vector<glm::ivec2> pixels = surfaces.some(256); // with 64 rays each
   const auto msPerMillion = [&](const RayQuery& rays) {
     uint64_t count = 0;
@@ -102,15 +107,11 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
     });
     return count > 0 ? seconds * 1e9 / double(count) : 0;
   };
-  msPerMillion(*gpuRays_); // compiles
-  const double onGpu = msPerMillion(*gpuRays_), onCpu = msPerMillion(world.rays);
-  if (onCpu > 0)
-    tracer_.measure(onCpu, onGpu, "a million rays");
-  else
-    tracer_.take(false); // no light reaches the frame: another one decides
-  if (tracer_.gpu()) return *gpuRays_;
-  gpuRays_.reset();
-  return world.rays;
+  const RayQuery& gpu = gpuRays(world);
+  msPerMillion(gpu); // compiles
+  const double onGpu = msPerMillion(gpu), onCpu = msPerMillion(world.rays);
+  if (!(onCpu > 0)) return {};
+  return MakerTimes{onCpu, onGpu, "a million rays"};
 }
 
 /// What the CPU has to know of the image. Waits for the GPU.

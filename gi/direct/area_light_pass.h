@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/gpu_trace/gpu_rays.h"
-#include "gi/contract/faster_of.h"
 #include "gi/contract/figures.h"
+#include "gi/contract/maker_choice.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/patches.h"
 #include "gi/contract/surface_lighting.h"
@@ -32,6 +32,8 @@ class AreaLightPass {
 
  private:
   const RayQuery& tracerFor(const World& world, const FrameSurfaces& surfaces, const AreaSettings& settings);
+  const RayQuery& gpuRays(const World& world);
+  std::optional<MakerTimes> timesOf(const World& world, const FrameSurfaces& surfaces);
   void readLevels(const FrameSurfaces& seen, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void collect(const World& world);
@@ -43,7 +45,7 @@ class AreaLightPass {
   AreaLights lights_;
   std::vector<EmitterTriangle> triangles_; // that they are of
   std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
-  FasterOf tracer_{"cpu", "gpu"};
+  MakerChoice tracer_{context_, "cpu", "gpu"};
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};
   gl::Texture share_, stencil_, lobes_;

@@ -25,7 +25,7 @@ struct GiFrame::Kept {
   gl::ProgramCache programs;
   gl::GpuProfiler profiler;
   PassContext context;
-  WorldState world{programs};
+  WorldState world{context};
   SurfacePass surfaces{context};
   PatchPass patches{context, StageId::Patches};
   DirectLight direct{context};

@@ -6,6 +6,7 @@
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
 #include "gi/contract/figures.h"
+#include "gi/contract/makers.h"
 #include "gi/contract/surfaces.h"
 #include "gi/plan/settings.h"
 #include "gi/plan/techniques.h"

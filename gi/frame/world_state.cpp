@@ -22,7 +22,7 @@ bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
   if (opened_ == assets.identity.value()) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
   opened_ = 0; // until it is: a pulse may throw
-  gpu_ = std::make_unique<GpuScene>(programs_, assets);
+  gpu_ = std::make_unique<GpuScene>(context_, assets);
   rays_ = std::make_unique<EmbreeQuery>(assets);
   view_ = {};
   frozen_ = false;

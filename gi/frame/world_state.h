@@ -1,10 +1,10 @@
 // The scene from frame to frame: taken over, placed for rays and for drawing as far as the plan goes; and the plan.
 #pragma once
 
-#include "engine/gl/program.h"
 #include "engine/scene/view_copy.h"
 #include "engine/trace/embree_query.h"
 #include "gi/contract/figures.h"
+#include "gi/contract/pass_context.h"
 #include "gi/contract/world.h"
 #include "gi/lighting/dirty_region.h"
 #include "gi/lighting/light_set.h"
@@ -24,7 +24,7 @@ struct PlanInputs {
 
 class WorldState {
  public:
-  explicit WorldState(gl::ProgramCache& programs) : programs_(programs) {}
+  explicit WorldState(const PassContext& context) : context_(context) {}
 
   /// Prepares for a scene. Returns whether it is another one.
   bool open(const SceneAssets& assets, FrameStats& stats);
@@ -45,7 +45,7 @@ class WorldState {
   World current() const { return {view_.view(), *gpu_, *rays_, moved_, lights_, farDistance_}; }
 
  private:
-  gl::ProgramCache& programs_;
+  PassContext context_;
   uint64_t opened_ = 0; // identity of its assets
   std::unique_ptr<GpuScene> gpu_;
   std::unique_ptr<EmbreeQuery> rays_;

@@ -5,10 +5,6 @@
 namespace lambent {
 
 namespace {
-// By lists, whose other noise is little, times the rays of a still view: where light changes, whose means are the
-// shortest, and where only the camera moves. Where classes take turns more rays bring little. What they cost and bring:
-// docs/decisions.md, 2026-11-26, near light by lists.
-constexpr int kChanges = 3, kMoves = 2;
 // A mean of many frames needs less of a limit: bias of living-room-2 −2.8, −6.0 % without this, −0.4, −3.6 % with it.
 constexpr float kLimitStanding = 4;
 } // namespace
@@ -20,7 +16,6 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
   const bool bounded = gather.disk > 0 || gather.clamp > 0;
   if (gather.near == 0 || !bounded || in.lights.list.slots.empty()) return;
   const bool moves = in.lists && in.averaged; // each pixel casts by itself what it needs
-  const int times = moves ? in.changes ? kChanges : kMoves : in.changes ? 2 : 1;
   NearLight light;
   {
     const CpuScope scope(stats.stages, key(StageId::NearLight));
@@ -29,7 +24,7 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .lights = in.frame.world.lights,
                             .virtuals = in.lights.list.slots,
                             .gather = gather,
-                            .casts = gather.near * times,
+                            .casts = gather.near * nearTimes(in.lists, in.averaged, in.changes),
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,

@@ -165,6 +165,15 @@ struct NearTracer {
 
 } // namespace
 
+// By lists, whose other noise is little, times the rays of a still view: where light changes, whose means are the
+// shortest, and where only the camera moves. Where classes take turns more rays bring little. What they cost and bring:
+// docs/decisions.md, 2026-11-26, near light by lists.
+int nearTimes(bool lists, bool averaged, bool changes) {
+  constexpr int kChanges = 3, kMoves = 2;
+  if (lists && averaged) return changes ? kChanges : kMoves;
+  return changes ? 2 : 1;
+}
+
 std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const NearLightInputs& in, RayCounts& counts) {
   std::vector<vec3> irradiance(surfaces.size(), vec3(0));
   const Cells cells(in.virtuals);
@@ -290,7 +299,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
   // Within a cycle each pixel casts once; the cycles begin anywhere, so that nothing that moves over the pixels keeps
   // step with them.
   const uint32_t cycle = std::max(1u, stride / uint32_t(perBlock)), casts = in.frame / cycle;
-  const uint32_t turn = (in.frame % cycle + Rng(in.seed, Stream::Turns, casts).below(cycle)) % cycle;
+  const uint32_t turn = (in.frame % cycle + Rng(in.seed, Stream::NearLightTurns, casts).below(cycle)) % cycle;
   // The pattern has as many rays as a pixel casts in all frames that are averaged, one after the other.
   const bool averaged = in.frames > 1;
   const uint32_t steps = std::bit_floor(std::max(1u, uint32_t(in.frames) / cycle));

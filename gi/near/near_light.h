@@ -25,6 +25,10 @@ struct NearLightInputs {
   NearMemory* memory = nullptr; // of a view in motion: what it says of the frame before is used, and replaced
 };
 
+/// How many times GatherSettings::near is cast in a frame. `lists`: of lights that were chosen for tiles; `averaged`:
+/// over frames; `changes`: light does.
+int nearTimes(bool lists, bool averaged, bool changes);
+
 /// Near light at pixel centres of the view's camera, row by row from the top.
 struct NearLight {
   std::vector<vec3> irradiance;

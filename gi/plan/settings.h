@@ -31,9 +31,6 @@ enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
 enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes
-// What auto means for ShadowMaker, AreaTracer and CubeMaker: the CPU where OpenGL is drawn by it, else the GPU | as
-// measured once: the GPU where it is twice as fast, else the CPU, which may come out otherwise the next time.
-enum class Makers : int { ByRule, Measured };
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
 enum class SoftLightBy : int { Rays, Maps };

@@ -95,13 +95,13 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
   if (tested(material))
     desc.defines.push_back("ALPHA_MASK");
-  else if (shows && drawnByCpu_)
+  else if (shows && context_.drawnByCpu)
     desc.defines.push_back("KEEPS_MODE");
   if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
   if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
   if (material.roughnessMetalnessTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
-  return programs_.get(desc);
+  return context_.programs.get(desc);
 }
 
 void GpuScene::bindMaterial(uint32_t index) const {

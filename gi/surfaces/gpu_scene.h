@@ -2,11 +2,10 @@
 // surface reflect, and the ray tracer sees both.
 #pragma once
 
-#include "engine/gl/context.h"
 #include "engine/gl/objects.h"
-#include "engine/gl/program.h"
 #include "engine/gl/ring.h"
 #include "engine/scene/scene_view.h"
+#include "gi/contract/pass_context.h"
 #include "shaders/shared/material_block.h"
 
 #include <map>
@@ -36,7 +35,7 @@ enum class Instances { All, Still, Moving };
 class GpuScene {
  public:
   /// Uploads meshes, materials and textures (mipmapped). `assets` is read only here.
-  GpuScene(gl::ProgramCache& programs, const SceneAssets& assets);
+  GpuScene(const PassContext& context, const SceneAssets& assets);
 
   /// Takes over this frame's instances; uploads transforms when any moved, and the vertices of what was reshaped.
   void place(std::span<const InstanceView> instances);
@@ -111,8 +110,7 @@ class GpuScene {
   }
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
-  gl::ProgramCache& programs_;
-  const bool drawnByCpu_ = gl::drawnByCpu();
+  PassContext context_;
   gl::Buffer positions_, normals_, uvs_, colors_, indices_, instanceRows_, materials_;
   gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
   mutable gl::Ring commands_{"scene/draws"};

@@ -68,7 +68,7 @@ void attribute(const gl::VertexArray& array, GLuint location, const gl::Buffer& 
 
 } // namespace
 
-GpuScene::GpuScene(gl::ProgramCache& programs, const SceneAssets& assets) : programs_(programs) {
+GpuScene::GpuScene(const PassContext& context, const SceneAssets& assets) : context_(context) {
   uploadMeshes(assets);
   uploadMaterials(assets);
 }

@@ -109,9 +109,8 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
 
   const ShadowMaker asked = in.rays ? in.maker : ShadowMaker::Raster;
   if (!jobs.empty()) {
-    const bool automatic = asked == ShadowMaker::Auto;
-    if (automatic && context_.makers == Makers::Measured && !maker_.measured()) measureMakers(in, jobs);
-    maker_.take(automatic ? std::nullopt : std::optional(asked == ShadowMaker::Raster));
+    maker_.take(asked == ShadowMaker::Auto ? std::nullopt : std::optional(asked == ShadowMaker::Raster),
+                [&] { return timesOf(in, jobs); });
     maker_.gpu() ? drawRaster(in, jobs) : drawRays(in, jobs);
   }
   mapsDrawn_ = uint32_t(jobs.size());
@@ -138,7 +137,7 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   slots_ = in.poses.size();
 }
 
-void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
+MakerTimes ParaboloidMapPass::timesOf(const ParaboloidMapInputs& in, std::span<const MapJob> jobs) {
   // The first map of each maker pays for shaders and caches. Eight more, spread over the slots, are timed: enough to
   // even out where they stand, and the rays' worker threads get more than one map each.
   std::vector<MapJob> sample;
@@ -159,7 +158,7 @@ void ParaboloidMapPass::measureMakers(const ParaboloidMapInputs& in, std::span<c
   constexpr double kHopeless = 4;
   double rasterMs = msOfEach(one, raster);
   if (rasterMs < kHopeless * raysMs) rasterMs = msOfEach(sample, raster);
-  maker_.measure(raysMs, rasterMs, "a map");
+  return {raysMs, rasterMs, "a map"};
 }
 
 std::vector<float> ParaboloidMapPass::readLayer(uint32_t slot) const {

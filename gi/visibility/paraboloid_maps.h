@@ -1,7 +1,7 @@
 // Distance maps of virtual lights and of emissive samples: kept, and drawn by one of two makers.
 #pragma once
 
-#include "gi/contract/faster_of.h"
+#include "gi/contract/maker_choice.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/virtual_lights.h"
 #include "gi/plan/settings.h"
@@ -41,7 +41,7 @@ class ParaboloidMapPass {
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole
   /// Says which maker draws and how it was chosen. Empty before the first map.
-  const FasterOf& maker() const { return maker_; }
+  const MakerChoice& maker() const { return maker_; }
   /// Reads the stored map of a slot, as distances in metres (kInfinity where nothing is met).
   std::vector<float> readLayer(uint32_t slot) const;
   /// Draws one pose with both makers into scratch maps, for the measure of their agreement. Requires in.rays.
@@ -49,7 +49,7 @@ class ParaboloidMapPass {
 
  private:
   void allocate(const ParaboloidMapInputs& in);
-  void measureMakers(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
+  MakerTimes timesOf(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array, int layer);
@@ -57,7 +57,7 @@ class ParaboloidMapPass {
   PassContext context_;
   StageId stage_;
   std::string name_;
-  FasterOf maker_{"rays", "raster"};
+  MakerChoice maker_{context_, "rays", "raster"};
   std::vector<gl::Texture> arrays_;
   gl::Texture faces_;
   gl::Framebuffer facesFramebuffer_, layerFramebuffer_;

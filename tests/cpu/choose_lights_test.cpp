@@ -81,6 +81,17 @@ std::vector<double> countsOf(const ListTable& table, size_t tile, size_t lights)
   return counts;
 }
 
+/// The slots in the list of each class of a tile. Of one chunk.
+std::vector<std::vector<uint32_t>> slotsOf(const ListTable& table, size_t tile) {
+  EXPECT_EQ(table.chunks, 1);
+  std::vector<std::vector<uint32_t>> slots(kLightClasses);
+  for (size_t c = 0; c < kLightClasses; ++c) {
+    const uint32_t* texels = table.texels.data() + tile * table.row() + c * size_t(1 + table.length);
+    for (uint32_t i = 0; i < texels[0]; ++i) slots[c].push_back(texels[1 + i] & 0xffff);
+  }
+  return slots;
+}
+
 TEST(ChooseLights, EachCountsOnceOnTheMean) {
   for (const size_t count : {size_t(1000), size_t(5000)}) { // the second has three chunks
     const LitFloor floor(count);
@@ -114,6 +125,55 @@ TEST(ChooseLights, TheStrongestAreInEveryList) {
   for (size_t i = 0; i < counts.size(); ++i) always += counts[i] == 1;
   EXPECT_GT(always, 3u);
   EXPECT_LT(always, 64u);
+}
+
+/// Ticks go round: all lists are as long, none has a light twice, and what has 16 ticks is in each.
+TEST(ChooseLights, ClassesTakeTurns) {
+  const LitFloor floor(1000);
+  const ListTable table = floor.choose(64, 0);
+  for (size_t tile = 0; tile < 64; ++tile) {
+    const std::vector<double> counts = countsOf(table, tile, 1000);
+    size_t shortest = 1000, longest = 0, always = 0;
+    std::vector<int> lists(1000, 0);
+    for (const std::vector<uint32_t>& of : slotsOf(table, tile)) {
+      shortest = std::min(shortest, of.size()), longest = std::max(longest, of.size());
+      ASSERT_EQ(std::set(of.begin(), of.end()).size(), of.size()) << tile;
+      for (const uint32_t slot : of) ++lists[slot];
+    }
+    EXPECT_GE(longest, 64u) << tile;
+    EXPECT_LE(longest - shortest, 1u) << tile;
+    for (size_t i = 0; i < 1000; ++i) always += counts[i] == 1 && lists[i] == kLightClasses;
+    EXPECT_GT(always, 1u) << tile;
+  }
+}
+
+/// For sixteen frames, in which every pixel sees the lists of all classes.
+TEST(ChooseLights, ListsStayUntilAllClassesWereSeen) {
+  const LitFloor floor(1000);
+  const std::vector<uint32_t> first = floor.choose(32, 16).texels;
+  for (const uint32_t sample : {17u, 20u, 31u}) EXPECT_EQ(floor.choose(32, sample).texels, first) << sample;
+  for (const uint32_t sample : {0u, 15u, 32u}) EXPECT_NE(floor.choose(32, sample).texels, first) << sample;
+}
+
+/// Rows of tiles count from the bottom of the image.
+TEST(ChooseLights, TilesTakeTheLightsThatStandOverThem) {
+  LitFloor floor(0);
+  const CameraView& camera = floor.scene.camera;
+  constexpr int kTiles = 8; // along a side, of 4 pixels
+  for (int t = 0; t < kTiles * kTiles; ++t) {
+    const CameraRay ray =
+        cameraRay(camera, (float(t % kTiles) + 0.5f) / kTiles, 1 - (float(t / kTiles) + 0.5f) / kTiles);
+    VirtualLight& l = floor.lights.emplace_back();
+    l.position = ray.origin - ray.direction * ((ray.origin.y - 0.1f) / ray.direction.y);
+    l.normal = l.geometricNormal = vec3(0, -1, 0);
+    l.radiance = vec3(1);
+    l.area = 0.01f;
+    l.alive = true;
+  }
+  const ListTable table = floor.choose(4, 0);
+  ASSERT_EQ(table.tiles, glm::ivec2(kTiles));
+  for (size_t t = 0; t < kTiles * kTiles; ++t)
+    for (const std::vector<uint32_t>& of : slotsOf(table, t)) EXPECT_EQ(std::ranges::count(of, t), 1) << t;
 }
 
 TEST(ChooseLights, FewLightsAreAllTaken) {

@@ -86,7 +86,7 @@ TEST_F(CountsTest, ARingOfQueriesNeitherWaitsNorForgets) {
 TEST_F(CountsTest, ARunOfOneMaterialIsOneDraw) {
   Room room;
   room.scene.assets.materials[1].alphaMode = AlphaMode::Mask;
-  GpuScene gpu(programs, room.scene.assets);
+  GpuScene gpu(passes, room.scene.assets);
   gpu.place(room.scene.instances);
   mat4 everything(0.1f);
   everything[3] = vec4(0, 0, 0.5f, 1);

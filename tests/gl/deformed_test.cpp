@@ -57,7 +57,7 @@ class DeformedDraw : public GlTest {
 };
 
 TEST_F(DeformedDraw, GBufferAgreesWithRaysAsTheShapeChanges) {
-  GpuScene gpu(programs, scene.assets);
+  GpuScene gpu(passes, scene.assets);
   SurfacePass pass(passes);
   for (const float phase : {0.0f, 1.0f, 2.5f}) {
     reshape(phase);
@@ -74,7 +74,7 @@ TEST_F(DeformedDraw, GBufferAgreesWithRaysAsTheShapeChanges) {
 }
 
 TEST_F(DeformedDraw, DepthMapsShowTheSameShape) {
-  GpuScene gpu(programs, scene.assets);
+  GpuScene gpu(passes, scene.assets);
   SurfacePass pass(passes);
   reshape(1.5f);
   gpu.place(scene.instances);
@@ -95,7 +95,7 @@ TEST_F(DeformedDraw, DepthMapsShowTheSameShape) {
 }
 
 TEST_F(DeformedDraw, PicturesOfRigidScenesDoNotDependOnThem) {
-  GpuScene gpu(programs, scene.assets), fresh(programs, scene.assets);
+  GpuScene gpu(passes, scene.assets), fresh(passes, scene.assets);
   SurfacePass pass(passes);
   const auto normals = [&](GpuScene& on) {
     on.place(scene.instances);

@@ -336,7 +336,7 @@ TEST_F(DirectTest, MapsAreDrawnOnlyWhenTheyMust) {
   room.scene.lights.push_back({.type = LightType::Directional, .direction = {0, -1, 0}});
   room.scene.lights.push_back({.type = LightType::Point, .position = {0, 0.5f, 0.5f}});
   SceneView view = room.scene.view();
-  GpuScene gpu(programs, room.scene.assets);
+  GpuScene gpu(passes, room.scene.assets);
   gpu.place(view.instances);
   LightShadowPass pass(passes);
   Aabb receivers{vec3(-0.2f), vec3(0.2f)};
@@ -379,7 +379,7 @@ TEST_F(DirectTest, WhatMovesIsDrawnOverWhatStandsStill) {
   lights.back().outerConeCos = 0.5f;
   room.scene.box({-0.1f, -0.1f, 0.2f}, {0.1f, 0.1f, 0.4f}, room.scene.material(vec3(0.5f)), false);
   const size_t block = room.scene.instances.size() - 2, ball = room.scene.instances.size() - 1;
-  GpuScene gpu(programs, room.scene.assets);
+  GpuScene gpu(passes, room.scene.assets);
   settings.sunResolution = settings.pointResolution = settings.spotResolution = 64;
   LightShadowPass kept(passes);
   const auto texels = [](std::span<const LightBlock> blocks) {

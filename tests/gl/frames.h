@@ -19,7 +19,7 @@ inline Image firstFrame(const Settings& settings, const SceneView& view, Buffer 
 /// Irradiance by direct light, or radiance where gather.glossy is on; row 0 at the top.
 inline Image directOf(PassContext passes, const HandScene& scene, const LightSet& lights, const Settings& settings,
                       FrameStats& stats, uint32_t mostDoubts = ShadowRayPass::kMost) {
-  PlacedScene placed(passes.programs, scene);
+  PlacedScene placed(passes, scene);
   const World world = placed.world(lights);
   const bool glossy = settings.gather.glossy;
   SurfacePass surfacePass(passes);

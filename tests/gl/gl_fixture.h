@@ -19,6 +19,8 @@
 namespace lambent::test {
 
 class GlTest : public ::testing::Test {
+  uint64_t errorsBefore_; // first: it makes the context, which the others need
+
  protected:
   GlTest() : errorsBefore_((context(), glDebugErrors())) {} // fixtures make GL objects in their constructors
   void TearDown() override {
@@ -34,9 +36,6 @@ class GlTest : public ::testing::Test {
   gl::ProgramCache programs;
   gl::GpuProfiler profiler;
   PassContext passes{programs, profiler};
-
- private:
-  uint64_t errorsBefore_;
 };
 
 /// Of a float texture with as many texels, row 0 at the bottom.
@@ -105,8 +104,8 @@ inline LightSet emitterAt(const vec3& centre, const vec3& normal, const vec3& ra
 /// A scene as the stages of a frame see it when nothing moves.
 class PlacedScene {
  public:
-  PlacedScene(gl::ProgramCache& programs, const HandScene& scene)
-      : gpu_(programs, scene.assets), rays_(scene.assets), view_(scene.view()) {
+  PlacedScene(const PassContext& context, const HandScene& scene)
+      : gpu_(context, scene.assets), rays_(scene.assets), view_(scene.view()) {
     gpu_.place(scene.instances);
     rays_.update(view_, true);
   }
@@ -161,7 +160,7 @@ inline Image surfaceBuffer(Buffer buffer, const GBuffer& gbuffer) {
 class GatherTest : public GlTest {
  protected:
   GBuffer surfaces(const HandScene& scene, bool glossy = false) {
-    placed = std::make_unique<PlacedScene>(programs, scene);
+    placed = std::make_unique<PlacedScene>(passes, scene);
     return surfacePass.run({placed->gpu(), scene.camera, glossy});
   }
   SurfaceLighting gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,

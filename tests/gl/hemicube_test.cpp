@@ -91,7 +91,7 @@ class HemicubeTest : public GlTest {
 
 TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetInARoom) {
   const Room room;
-  PlacedScene placed(programs, room.scene);
+  PlacedScene placed(passes, room.scene);
   const vec3 tilted = glm::normalize(vec3(0.2f, 1, -0.3f));
   std::vector<VirtualLight> lights = {
       lightAt({0.5f, -1, 0.3f}, {0, 1, 0}, vec3(1), 0.01f), lightAt({-1, 0.2f, 0.1f}, {1, 0, 0}, vec3(1), 0.01f),
@@ -108,7 +108,7 @@ TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetInARoom) {
 
 TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetWhileAnythingMoves) {
   RandomWorld world(0.01f);
-  GpuScene gpu(programs, world.assets());
+  GpuScene gpu(passes, world.assets());
   const LightSet none;
   Agreement sum;
   for (int frame = 0; frame < 4; ++frame) {
@@ -144,7 +144,7 @@ TEST_F(HemicubeTest, MasksAreCutOutAsRaysDo) {
         scene.instance(mesh, glm::translate(mat4(1), at) * turned * glm::scale(mat4(1), {i % 2 ? -1 : 1, 0.8f, 1}));
     if (i >= 6) scene.reshape(made, waves(scene.assets.meshes[mesh], 0.2f, float(i)));
   }
-  PlacedScene placed(programs, scene);
+  PlacedScene placed(passes, scene);
   const std::vector<VirtualLight> lights = {lightAt({0, 0, 0}, {0, 1, 0}, vec3(1), 0.01f),
                                             lightAt({2, 0, 0.5f}, {0, 1, 0}, vec3(1), 0.01f),
                                             lightAt({-4, 2, 1}, {1, 0, 0}, vec3(1), 0.01f)};
@@ -161,7 +161,7 @@ TEST_F(HemicubeTest, NothingIsTooNear) {
     scene.box(vec3(-4, 0, -4), vec3(4, 4, 4), white, true);
     scene.box(vec3(-1, gap, -1), vec3(1, 1, 1), white, false);
     scene.box(vec3(1, 0, -1), vec3(1 + gap, 1, 1), white, false); // a slit beside it
-    PlacedScene placed(programs, scene);
+    PlacedScene placed(passes, scene);
     const std::vector<VirtualLight> lights = {lightAt({0.1f, 0, 0.2f}, {0, 1, 0}, vec3(1), 0.01f),
                                               lightAt({1 - gap, 0, 0.2f}, {0, 1, 0}, vec3(1), 0.01f),
                                               lightAt({-1, 0.4f, 0}, {-1, 0, 0}, vec3(1), 0.01f)};
@@ -174,7 +174,7 @@ TEST_F(HemicubeTest, NothingIsTooNear) {
 TEST_F(HemicubeTest, ACubeOfDrawnOnesIsThatOfCastOnes) {
   RandomWorld world(0.01f);
   const SceneView& view = world.step(20);
-  GpuScene gpu(programs, world.assets());
+  GpuScene gpu(passes, world.assets());
   gpu.place(view.instances);
   const LightSet none;
   const World now{view, gpu, world.rays(), kNothingMoved, none, view.boundsWorld.diameter()};

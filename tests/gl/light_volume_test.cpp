@@ -35,7 +35,7 @@ class LightVolumeTest : public GatherTest {
 
   /// Flux on its way after so many steps.
   vec3 flux(const HandScene& scene, std::span<const VirtualLight> lights, int steps) {
-    PlacedScene world(programs, scene);
+    PlacedScene world(passes, scene);
     LightVolume volume(passes);
     settings.lpv.steps = steps;
     volume.update({world.world(), lights, settings.lpv}, stats);
@@ -57,7 +57,7 @@ TEST_F(LightVolumeTest, FluxNeverGrows) {
   }
   for (const bool occlusion : {true, false}) {
     settings.lpv.occlusion = occlusion;
-    PlacedScene world(programs, room.scene);
+    PlacedScene world(passes, room.scene);
     LightVolume volume(passes);
     vec3 before(kInfinity);
     std::printf("flux on its way, W, %s:", occlusion ? "walls stop light" : "walls let light through");
@@ -144,7 +144,7 @@ TEST_F(LightVolumeTest, PolesAreNoWalls) {
     HandScene scene;
     scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
     add(scene);
-    PlacedScene world(programs, scene);
+    PlacedScene world(passes, scene);
     VolumeVisibility sights;
     RayCounts counts;
     sights.update(volumeGrid({.cells = 8}, scene.view(), {}), world.world(), true, counts);
@@ -165,7 +165,7 @@ TEST_F(LightVolumeTest, SightsThatAreKeptAreThoseThatWouldBeFound) {
   const uint32_t block = uint32_t(scene.instances.size());
   scene.box(vec3(0.2f, -0.6f, 0.1f), vec3(0.5f, 0, 0.5f), 0, false);
   EmbreeQuery rays(scene.assets);
-  GpuScene gpu(programs, scene.assets);
+  GpuScene gpu(passes, scene.assets);
   LightSet none;
   VolumeVisibility kept;
   SceneView view = scene.view();

@@ -1,5 +1,5 @@
 // Who makes what two can make: as asked, by rule where files are written, by measure where a window asks for it.
-#include "gi/contract/faster_of.h"
+#include "gi/contract/maker_choice.h"
 
 #include "engine/gl/context.h"
 #include "gl_fixture.h"
@@ -41,20 +41,42 @@ class MakersTest : public GlTest {
 };
 
 TEST_F(MakersTest, WhatIsAskedForGoesBeforeTheMeasureAndThatBeforeTheRule) {
-  FasterOf of{"rays", "raster"};
-  of.take();
-  EXPECT_EQ(of.gpu(), !cpu) << "the rule";
-  EXPECT_EQ(of.report(), cpu ? "rays" : "raster");
-  of.measure(10, 4.9, "a map");
+  int measured = 0;
+  const auto times = [&](double gpuMs) {
+    return [&measured, gpuMs]() -> std::optional<MakerTimes> {
+      ++measured;
+      return MakerTimes{10, gpuMs, "a map"};
+    };
+  };
+  for (const bool onCpu : {false, true}) {
+    MakerChoice ruled{{programs, profiler, Makers::ByRule, onCpu}, "rays", "raster"};
+    EXPECT_EQ(ruled.maker(), "");
+    ruled.take({}, times(4.9));
+    EXPECT_EQ(ruled.gpu(), !onCpu);
+    EXPECT_EQ(ruled.report(), onCpu ? "rays" : "raster");
+    ruled.take(onCpu, times(4.9));
+    EXPECT_EQ(ruled.gpu(), onCpu);
+    EXPECT_EQ(measured, 0);
+  }
+  PassContext window{programs, profiler, Makers::Measured, true};
+  MakerChoice of{window, "rays", "raster"};
+  of.take({}, [] { return std::nullopt; });
+  EXPECT_EQ(of.report(), "rays") << "nothing to measure yet";
+  of.take({}, times(4.9));
   EXPECT_EQ(of.report(), "raster (4.90 ms a map, rays 10.00 ms)");
-  of.take(false);
+  of.take(false, times(4.9));
   EXPECT_FALSE(of.gpu());
   EXPECT_EQ(of.report(), "rays");
-  of.take();
+  of.take({}, times(4.9));
   EXPECT_TRUE(of.gpu());
   EXPECT_EQ(of.maker(), "raster");
-  of.measure(10, 5.1, "a map");
-  EXPECT_EQ(of.report(), "rays (10.00 ms a map, raster 5.10 ms)");
+  EXPECT_EQ(measured, 1) << "once";
+  window.drawnByCpu = false;
+  MakerChoice close{window, "rays", "raster"};
+  close.take(true, times(5.1));
+  EXPECT_EQ(measured, 1) << "asked for";
+  close.take({}, times(5.1));
+  EXPECT_EQ(close.report(), "rays (10.00 ms a map, raster 5.10 ms)");
 }
 
 /// No clock has a say: who makes is the rule's, is told as --set takes it, and asked for by that name makes the same.

@@ -141,7 +141,7 @@ class MapScheduleTest : public GlTest {
   GlContext& current = context(); // what follows needs one before SetUp
   RoomWithBlock room;
   EmbreeQuery rays{room.scene.assets};
-  GpuScene gpu{programs, room.scene.assets};
+  GpuScene gpu{passes, room.scene.assets};
   const std::vector<MapPose> poses = posesOnWalls();
   const std::vector<float> brightness = std::vector<float>(poses.size(), 1.0f);
   ParaboloidMapInputs in{.scene = gpu,

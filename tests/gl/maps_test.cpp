@@ -12,7 +12,7 @@ class MapsTest : public GatherTest {
   }
 
   Room room;
-  GpuScene gpu{programs, room.scene.assets};
+  GpuScene gpu{passes, room.scene.assets};
   std::vector<MapPose> poses{{{0.5f, -1, 0.3f}, {0, 1, 0}, {0, 1, 0}}}; // on the floor
   std::vector<MapJob> jobs;
   ParaboloidMapPass pass{passes, StageId::VplMaps};

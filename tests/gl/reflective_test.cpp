@@ -11,7 +11,7 @@ constexpr ReflectiveNeeds kGrid, kTrees{.clusters = true}, kClusters{.clusters =
 class ReflectiveTest : public GatherTest {
  protected:
   void place(const HandScene& scene) {
-    placed = std::make_unique<PlacedScene>(programs, scene);
+    placed = std::make_unique<PlacedScene>(passes, scene);
     bounds = scene.view().boundsWorld;
   }
   ReflectiveMaps maps(const std::vector<LightView>& lights, const RsmSettings& rsm, ReflectiveNeeds needs) {

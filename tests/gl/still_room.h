@@ -31,4 +31,24 @@ class StillRoomTest : public GlTest {
   Settings settings;
 };
 
+/// Its light averaged over frames, and what they come to.
+class AveragedRoomTest : public StillRoomTest {
+ protected:
+  AveragedRoomTest() {
+    settings.gather.mode = GatherMode::Interleaved;
+    settings.gather.checks = false;
+    settings.shadow.resolution = 64;
+    settings.history.frames = 16;
+    room.scene.size(96, 72);
+  }
+
+  static Settings with(Settings s, GatherMode mode, int frames) {
+    s.gather.mode = mode;
+    s.history.frames = frames;
+    return s;
+  }
+  /// Every light at every pixel.
+  Image allLights() const { return firstFrame(with(settings, GatherMode::Full, 0), room.scene.view()); }
+};
+
 } // namespace lambent::test

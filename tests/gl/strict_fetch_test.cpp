@@ -39,7 +39,7 @@ class StrictFetchTest : public GlTest {
     std::vector<std::vector<vec4>> images;
     for (const glm::ivec2 size : {glm::ivec2(64, 32), glm::ivec2(67, 39)}) { // patches fit, or reach beyond the picture
       room.scene.size(size.x, size.y);
-      PlacedScene placed(strict, room.scene);
+      PlacedScene placed(context, room.scene);
       const World world = placed.world();
       SurfacePass surfacePass{context};
       const GBuffer gbuffer = surfacePass.run({world.gpu, room.scene.camera});

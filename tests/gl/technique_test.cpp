@@ -166,7 +166,7 @@ TEST_F(TechniqueTest, AccumulatedLightBeginsAgainWhereTheWorldChanges) {
 TEST_F(TechniqueTest, AccumulatedLightConvergesOnAHostsSurfacesAndRestsInTheDark) {
   applyTechnique(settings, kProgressive);
   const SceneView view = room.scene.view();
-  GpuScene gpu(programs, room.scene.assets);
+  GpuScene gpu(passes, room.scene.assets);
   gpu.place(view.instances);
   SurfacePass surfaces(passes);
   const GBuffer drawn = surfaces.run({gpu, view.camera});
@@ -394,7 +394,7 @@ TEST_F(TechniqueTest, WhatDoesNotGoTogetherIsRefusedByTheFrame) {
 /// What one frame drew is another's host.
 TEST_F(TechniqueTest, AHostsSurfacesGiveTheSamePicture) {
   const SceneView view = room.scene.view();
-  GpuScene gpu(programs, room.scene.assets);
+  GpuScene gpu(passes, room.scene.assets);
   gpu.place(view.instances);
   SurfacePass surfaces(passes);
   const GBuffer drawn = surfaces.run({gpu, view.camera});

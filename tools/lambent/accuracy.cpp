@@ -131,10 +131,10 @@ void needShot(const AccuracyOptions& options, const Study& study) {
 
 /// Bias and error of indirect irradiance against path tracing, as set, and with every light at every pixel by rays.
 void accuracyLight(const AccuracyOptions& options) {
-  if (options.apart) return accuracyApart(options);
   Study study(options, options.launch.scene, {.size = "160x90"});
   needShot(options, study);
   study.trace(2048, ReferenceBuffer::Irradiance, false, {}, options.frame);
+  if (options.apart) return accuracyApart(options, study);
   const int averaged = std::max(1, study.opened->settings.history.frames),
             seeds = options.seeds.value_or(options.quick ? 1 : 3);
   std::vector<std::pair<Variant, int>> ways{{study.variant("as set"), averaged}}; // and frames of a still view
@@ -384,7 +384,8 @@ void declareAccuracy(CLI::App& app) {
   command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
   command.flag(
       "--apart", o->apart,
-      "--light --frame: the parts of the squared error instead: near light, choice of lights, maps, history, set");
+      "--light --frame: the parts of the squared error instead: near light, reconstruction, choice of lights, maps, "
+      "history, set");
   command.flag("--quick", o->quick, "small and rough, to try whether it runs");
   command.run([o] { accuracy(*o); });
 }

@@ -18,7 +18,7 @@ struct AccuracyOptions : MeasureOptions {
 /// What accuracy costs in time: all knobs and techniques, in several scenes, on one page.
 void accuracyReport(const AccuracyOptions& options);
 /// Indirect light against path tracing: which part of the squared error is whose (--light --apart).
-void accuracyApart(const AccuracyOptions& options);
+void accuracyApart(const AccuracyOptions& options, const Study& study);
 /// Error against threshold: "patches" of the picture (paper 3, fig. 9) or "clusters" of the lights (fig. 13).
 void accuracyCurve(const AccuracyOptions& options);
 /// Figures of papers 2 and 3, as --figure takes them: "2.7"; table, plot and pictures go into the folder.

@@ -16,24 +16,23 @@ void HemicubePass::prepare(const World& world, CubeMaker maker) {
   // Lights stand farther off their surfaces, and no surface is known better. Reversed depth of floats is as precise
   // whatever it is.
   near_ = std::max(world.rays.rayEpsilon(), 1e-20f);
-  maker_ = maker;
+  asked_ = maker;
 }
 
 void HemicubePass::make(std::span<Hemicube> hemicubes) {
   if (hemicubes.empty()) return;
-  const bool automatic = maker_ == CubeMaker::Auto;
-  if (automatic && context_.makers == Makers::Measured && !faster_.measured()) measureMakers(hemicubes);
-  faster_.take(automatic ? std::nullopt : std::optional(maker_ == CubeMaker::Raster));
-  faster_.gpu() ? draw(hemicubes) : cast(hemicubes);
+  maker_.take(asked_ == CubeMaker::Auto ? std::nullopt : std::optional(asked_ == CubeMaker::Raster),
+              [&] { return timesOf(hemicubes); });
+  maker_.gpu() ? draw(hemicubes) : cast(hemicubes);
 }
 
 void HemicubePass::tell(FrameStats& stats) {
   stats.raysCube += std::exchange(counts_, {});
-  stats.cubeMakerTimes = faster_.report();
-  stats.cubeMaker = faster_.maker();
+  stats.cubeMakerTimes = maker_.report();
+  stats.cubeMaker = maker_.maker();
 }
 
-void HemicubePass::measureMakers(std::span<const Hemicube> hemicubes) {
+MakerTimes HemicubePass::timesOf(std::span<const Hemicube> hemicubes) {
   // As ParaboloidMapPass does: the first of each pays for shaders and caches, eight more are timed.
   const size_t count = std::min<size_t>(8, hemicubes.size());
   std::vector<Hemicube> sample;
@@ -42,7 +41,7 @@ void HemicubePass::measureMakers(std::span<const Hemicube> hemicubes) {
   cast(std::span(sample).first(1));
   const double rasterMs = gl::secondsOf([&] { draw(sample); }) * 1e3 / double(count);
   const double raysMs = gl::secondsOf([&] { cast(sample); }) * 1e3 / double(count);
-  faster_.measure(raysMs, rasterMs, "a hemicube");
+  return {raysMs, rasterMs, "a hemicube"};
 }
 
 void HemicubePass::cast(std::span<Hemicube> hemicubes) {

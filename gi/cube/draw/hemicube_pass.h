@@ -1,8 +1,8 @@
 // Hemicubes of virtual lights (gi/cube/hemicube.h), drawn by the GPU or cast on the CPU.
 #pragma once
 
-#include "gi/contract/faster_of.h"
 #include "gi/contract/figures.h"
+#include "gi/contract/maker_choice.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/world.h"
 #include "gi/cube/hemicube.h"
@@ -21,7 +21,7 @@ class HemicubePass : public HemicubeMaker {
   void tell(FrameStats& stats);
 
  private:
-  void measureMakers(std::span<const Hemicube> hemicubes);
+  MakerTimes timesOf(std::span<const Hemicube> hemicubes);
   void cast(std::span<Hemicube> hemicubes);
   void draw(std::span<Hemicube> hemicubes);
   void allocate(int resolution, int layers);
@@ -31,8 +31,8 @@ class HemicubePass : public HemicubeMaker {
   const GpuScene* scene_ = nullptr;
   const RayQuery* rays_ = nullptr;
   float near_ = 0; // metres
-  CubeMaker maker_ = CubeMaker::Auto;
-  FasterOf faster_{"rays", "raster"};
+  CubeMaker asked_ = CubeMaker::Auto;
+  MakerChoice maker_{context_, "rays", "raster"};
   RayCounts counts_;
   gl::Texture texels_; // a layer is a hemicube, as in Hemicube::texels
   gl::Texture depth_;
