@@ -27,7 +27,6 @@ uniform float effectiveSamples; // (Σw)²/Σw² of the filter's weights; 1: unf
 layout(location = 3) out vec2 outVariance;
 
 const float kSure = 8.0, kLeast = 0.1; // a changed share of 1/16 is followed by half, none by a tenth
-const float kAgrees = 2.0; // times a coarse difference, which has noise: what lights say counts that far
 const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
 const float kGuess = 4.0; // frames that a guess of variance counts as
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
@@ -54,7 +53,7 @@ void main() {
   // they do not know is followed.
   vec3 gained = before.rgb * clamp(known.g > 0.0 ? known.g / (1.0 - known.g) : known.g, -0.5, 1.0);
   float wanted = dot(kLuminance, gained);
-  gained *= wanted != 0.0 ? clamp(kAgrees * dot(kLuminance, coarse) / wanted, 0.0, 1.0) : 0.0;
+  gained *= wanted != 0.0 ? clamp(dot(kLuminance, coarse) / wanted, 0.0, 1.0) : 0.0;
   before.rgb += gained;
   difference.rgb -= gained;
   coarse -= gained;

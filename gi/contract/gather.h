@@ -13,8 +13,8 @@ struct GatherInputs {
   uint32_t sample = 0;   // of those that are averaged: each takes other rays, and pixels another part of the lights
   bool averaged = false; // there are such samples
   bool changes = false;  // light does; means are short then
-  bool stands = false;   // neither light nor camera changes, and means follow no change before
-  bool stores = true;    // what outlives frames follows the lights; else it stays as it is
+  float rest = 0;     // 1: neither light nor camera changes, and means follow no change before; on the way there, less
+  bool stores = true; // what outlives frames follows the lights; else it stays as it is
 };
 
 class Gather {

@@ -35,7 +35,7 @@ float cellOf(std::span<const VirtualLight> lights) {
 std::span<const gl::Framebuffer> MapChecks::begin(const GatherInputs& in, const LightTarget& target, bool subsets) {
   framebuffers_.clear();
   const bool known = in.lights.maps && !in.lights.list.slots.empty() && in.frame.surfaces.depth->holdsSinglePrecision();
-  if (!in.frame.settings.gather.checks || !subsets || in.lists || !in.stands || !known) return {};
+  if (!in.frame.settings.gather.checks || !subsets || in.lists || in.rest < 1 || !known) return {};
   const glm::ivec2 size = target.size();
   const size_t chunks = (in.lights.list.packed.count + kLightsPerChunk - 1) / kLightsPerChunk;
   if (chunks == 0) return {};

@@ -15,9 +15,10 @@ constexpr LightChange kAllUnknown{.share = 1};
 
 /// What lights say of a frame and the one before, at equal areas: a light takes area from its neighbours when it comes.
 struct ChangedLights {
-  LightColumns larger;                     // power: the larger of before and now
-  std::vector<float> gained, colour, came; // power: luminance; red less blue; of lights that were not there
-  float gone = 0;                          // share of the light before whose lights are no more
+  LightColumns larger;                  // power: the larger of before and now
+  std::vector<float> gained, came;      // power: of lights that stay; of those that were not there
+  std::vector<float> colour, brightest; // W/sr: red less blue of what they gained; the largest component
+  float gone = 0;                       // share of the light before whose lights are no more
   bool differ = false;
 
   ChangedLights(std::span<const VirtualLight> lights, std::span<const vec3> before, float disk) {
@@ -35,6 +36,7 @@ struct ChangedLights {
       const vec3 change = was.x >= 0 ? (l.radiance - was) * l.area : vec3(0);
       gained.push_back(luminance(change));
       colour.push_back(change.x - change.z);
+      brightest.push_back(std::max(maxComponent(l.radiance), maxComponent(was)) * l.area);
       came.push_back(was.x >= 0 ? 0 : larger);
       differ |= change != vec3(0) || !(was.x >= 0);
     }
@@ -43,7 +45,7 @@ struct ChangedLights {
       const vec3 was = order[i] < before.size() ? before[order[i]] : vec3(0);
       larger.power[i] = std::max(luminance(lights[order[i]].radiance), luminance(was)) * lights[order[i]].area;
     }
-    for (std::vector<float>* column : {&gained, &colour, &came}) column->resize(larger.x.size(), 0.0f);
+    for (std::vector<float>* column : {&gained, &came, &colour, &brightest}) column->resize(larger.x.size(), 0.0f);
     gone = all > 0 ? float(lost / all) : 0;
   }
 };
@@ -61,14 +63,17 @@ class PlaceChange {
     if (!(all > 0) || !std::isfinite(all)) return {.share = lights_.gone};
     LightChange change{.share = lights_.gone};
     if (lights_.differ) {
-      const float *gained = lights_.gained.data(), *colour = lights_.colour.data(), *came = lights_.came.data();
-      const float gain = sum([=](size_t i) { return gained[i]; }), tint = sum([=](size_t i) { return colour[i]; });
+      const float *gained = lights_.gained.data(), *came = lights_.came.data(), *colour = lights_.colour.data(),
+                  *brightest = lights_.brightest.data();
+      const float gain = sum([=](size_t i) { return gained[i]; });
+      const float tint = std::abs(sum([=](size_t i) { return colour[i]; })) /
+                         std::max(sum([=](size_t i) { return brightest[i]; }), FLT_MIN);
       // What single lights gain and lose adds up as noise does: paths that flip are many and small, lamps that move
       // few.
       const float* reaches = reaches_.data();
       const float square = sum([=](size_t i) { return reaches[i] * gained[i] * gained[i]; });
       change.gained = gain / all;
-      change.share += std::max({std::abs(gain), std::abs(tint), std::sqrt(square)}) / all;
+      change.share += std::max(std::max(std::abs(gain), std::sqrt(square)) / all, tint);
       change.share += sum([=](size_t i) { return came[i]; }) / all;
     }
     if (!moved_.empty()) change.share = std::max(change.share, through(place) / all);

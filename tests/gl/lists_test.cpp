@@ -1,4 +1,5 @@
 // Lights by lists against every light at every pixel, and where lists serve.
+#include "gi/gather/light_change_pass.h"
 #include "gi/gather/list_pass.h"
 #include "still_room.h"
 
@@ -27,7 +28,8 @@ TEST_F(ListsTest, ListsHaveLessNoiseThanSubsets) {
     errors[mode == GatherMode::Interleaved] = relativeRmse(one, all);
     EXPECT_NEAR(meanLuminance(one), meanLuminance(all), 0.01 * meanLuminance(all));
   }
-  std::printf("one frame, 64 lights by lists: %.4f, 128 of a class: %.4f\n", errors[0], errors[1]);
+  std::printf("one frame, %d lights by lists: %.4f, %d of a class: %.4f\n", settings.gather.lights, errors[0],
+              settings.smc.vpls / kLightClasses, errors[1]);
   EXPECT_LT(errors[0], 0.6 * errors[1]);
   Viewer gi(with(settings, GatherMode::Lists, 64));
   gi.run(room.scene.view());
@@ -72,6 +74,83 @@ TEST_F(ListsTest, ListsFollowWhatLightsKnow) {
   std::printf("lists, light changing: mean %.4f, one frame %.4f\n", mean, one);
   EXPECT_LT(mean, 0.7 * one);
   EXPECT_NEAR(meanLuminance(last), meanLuminance(all), 0.02 * meanLuminance(all));
+}
+
+/// The first change after a view stood is known: most of a step of a tenth shows in a few frames.
+TEST_F(ListsTest, FollowsTheFirstStepAfterAViewStood) {
+  settings.gather.mode = GatherMode::Lists;
+  Viewer gi(settings);
+  stand(gi, 20);
+  const double before = meanLuminance(gi.read(Buffer::Irradiance));
+  room.scene.lights[0].intensity *= 0.9f;
+  gi.run(view(kLightsChanged));
+  for (int i = 0; i < 2; ++i) gi.run(still());
+  const double shown = meanLuminance(gi.read(Buffer::Irradiance)) / before;
+  EXPECT_NEAR(shown, 0.9, 0.01);
+}
+
+/// What lights say holds as if nothing stood between: a lamp that flickers behind a wall does not shine through.
+TEST_F(ListsTest, WhatFlickersBehindAWallStaysThere) {
+  settings.gather.mode = GatherMode::Lists;
+  room.scene.quad({0.05f, -1, -1}, {0, 2, 0}, {0, 0, 1.8f}, room.scene.material(vec3(0.7f), vec3(0), true));
+  room.scene.lights[0].position = {-0.5f, 0.6f, 0.2f};
+  room.scene.lamp({0.6f, 0.3f, -0.4f}, vec3(4));
+  const auto meanLeft = [](const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width / 3; ++x) sum += double(luminance(vec3(image.at(x, y))));
+    return sum;
+  };
+  double shown[2], wanted[2];
+  Viewer gi(settings);
+  stand(gi, 20);
+  for (int i = 0; i < 12; ++i) {
+    room.scene.lights[1].intensity = vec3(i % 2 ? 4.0f : 0.8f);
+    const double mean = meanLeft(nextFrame(gi, view(kLightsChanged)));
+    if (i >= 10)
+      shown[i % 2] = mean, wanted[i % 2] = meanLeft(firstFrame(with(settings, GatherMode::Full, 0), view({})));
+  }
+  std::printf("left of the wall, lamp on / off: shown %.3f, right %.3f\n", shown[1] / shown[0], wanted[1] / wanted[0]);
+  EXPECT_NEAR(shown[1] / shown[0], wanted[1] / wanted[0], 0.05);
+}
+
+/// A source that places all lights anew says nothing of what changed: it is followed by half.
+TEST_F(ListsTest, FollowsLightOfAnotherSet) {
+  settings.gather.mode = GatherMode::Lists;
+  settings.vpl.source = VplSource::Ir;
+  Viewer gi(settings);
+  stand(gi, 20);
+  const double before = meanLuminance(gi.read(Buffer::Irradiance));
+  room.scene.lights[0].intensity *= 0.9f;
+  for (int i = 0; i < 4; ++i) {
+    room.scene.lights[0].position.x += 1e-4f;
+    gi.run(view(kLightsChanged));
+  }
+  EXPECT_NEAR(meanLuminance(gi.read(Buffer::Irradiance)) / before, 0.9, 0.02);
+}
+
+/// Where a view comes to rest lists go on, and the error does not rise when classes follow.
+TEST_F(ListsTest, GoOnForSomeFramesAfterMotion) {
+  settings.gather.mode = GatherMode::Lists;
+  settings.history.frames = 64;
+  const Image all = allLights();
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  for (int i = 0; i < 8; ++i) {
+    room.scene.camera.worldFromView[3].x += 0.004f * (i < 4 ? 1.0f : -1.0f); // and back
+    gi.run(view(kCameraChanged));
+  }
+  const double moving = relativeRmse(gi.read(Buffer::Irradiance), all);
+  int byLists = 0;
+  double most = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Image shown = nextFrame(gi, still());
+    byLists += gi.stats().raysLists.closest > 0;
+    most = std::max(most, relativeRmse(shown, all));
+  }
+  std::printf("moving %.4f, coming to rest at most %.4f, %d frames by lists\n", moving, most, byLists);
+  EXPECT_EQ(byLists, 23);
+  EXPECT_LT(most, 1.1 * moving);
 }
 
 /// Lights that are given, by lists that are chosen for what a camera sees.
@@ -167,6 +246,62 @@ TEST_F(ListGatherTest, LobesCountLightsAsOftenAsIrradianceDoes) {
   const double error = relativeRmse(lists, all);
   std::printf("glossy, 400 lights, 16 frames by lists of 64: %.4f, one %.4f\n", error, relativeRmse(one, all));
   EXPECT_LT(error, 0.02);
+}
+
+/// Lights above a floor and what its tiles are told of them, frame by frame.
+class LightChangePassTest : public GlTest {
+ protected:
+  LightChangePassTest() {
+    for (int i = 0; i < 64; ++i)
+      slots.push_back(lightAt({float(i % 8) - 3.5f, 1, float(i / 8) - 3.5f}, {0, -1, 0}, vec3(1), 0.1f));
+    table.tiles = {1, 1};
+    table.places.resize(kListPlaces);
+    for (SurfaceHit& p : table.places) p.t = 1, p.normal = {0, 1, 0};
+  }
+  /// r and g of the only tile.
+  vec2 next(std::span<const Aabb> moved = {}, bool mapsWait = false, bool unknown = false) {
+    lights.slots = slots;
+    pass.observe({.lights = lights, .moved = moved, .mapsWait = mapsWait, .unknown = unknown});
+    std::vector<vec2> texels(1);
+    pass.run(table, 1).texture->read(std::span(texels), GL_RG, GL_FLOAT);
+    return texels[0];
+  }
+
+  std::vector<VirtualLight> slots;
+  VirtualLights lights;
+  ListTable table;
+  LightChangePass pass;
+};
+
+TEST_F(LightChangePassTest, ChangesFadeByHalf) {
+  EXPECT_EQ(next().x, 1) << "the first frame";
+  EXPECT_EQ(next().x, 0.5f);
+  for (int i = 0; i < 20; ++i) next();
+  for (VirtualLight& l : slots) l.radiance *= 0.75f;
+  EXPECT_NEAR(next().x, 0.25f, 1e-4f);
+  const vec2 after = next();
+  EXPECT_NEAR(after.x, 0.125f, 1e-4f);
+  EXPECT_EQ(after.y, 0) << "what was gained is of one frame";
+  EXPECT_EQ(next({}, false, true).x, 1);
+}
+
+TEST_F(LightChangePassTest, LightsThatMovedAreOthers) {
+  for (int i = 0; i < 20; ++i) next();
+  for (uint32_t slot = 0; slot < 32; ++slot) lights.moved.push_back(slot), slots[slot].radiance *= 2.0f;
+  const vec2 change = next();
+  EXPECT_EQ(change.y, 0);
+  EXPECT_GT(change.x, 0.3f);
+}
+
+TEST_F(LightChangePassTest, WhatMovedCountsForSomeFramesAndWhileMapsWait) {
+  for (int i = 0; i < 20; ++i) next();
+  const Aabb above{vec3(-0.3f, 0.1f, -0.3f), vec3(0.3f, 0.5f, 0.3f)};
+  const float share = next({&above, 1}).x;
+  EXPECT_GT(share, 0.2f);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(next().x, share);
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(next({}, true).x, share);
+  for (int i = 0; i < 20; ++i) next();
+  EXPECT_LT(next().x, 0.01f * share);
 }
 
 } // namespace lambent::test::lists_test
