@@ -72,8 +72,7 @@ SurfaceLighting ComposedTechnique::run(const Frame& frame, FrameStats& stats) {
   const gl::DrawCount draws;
   const EffectPlan& plan = frame.plan;
   const bool averaging = averages(plan), changes = averaging && plan.lightChanges();
-  const ShadowedLights lights = maps_.update(
-      {frame, lights_, needs_.maps, byLists_ ? std::span(lists_.table().need) : std::span<const float>()}, stats);
+  const ShadowedLights lights = maps_.update({frame, lights_, needs_.maps}, stats);
   if (averaging) history_.fit(frame.surfaces);
   const uint32_t sample = averaging ? history_.sample() : 0;
   const SceneChanges& world = frame.world.view.changes;

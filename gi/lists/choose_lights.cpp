@@ -105,18 +105,6 @@ class TileWeights {
   std::vector<float> brings_, weights_, most_;
 };
 
-/// What tiles add up.
-struct Sums {
-  uint64_t rays = 0;
-  std::vector<float> need; // of lights, in their order
-  Sums& operator+=(const Sums& other) {
-    rays += other.rays;
-    need.resize(std::max(need.size(), other.need.size()));
-    for (size_t i = 0; i < other.need.size(); ++i) need[i] += other.need[i];
-    return *this;
-  }
-};
-
 /// A half float; x in [1, 65504].
 uint32_t halfOf(float x) {
   const uint32_t bits = std::bit_cast<uint32_t>(x);
@@ -207,27 +195,20 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   const std::vector<uint32_t> order = alongCurve(in.lights);
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
   constexpr size_t kGrain = 8;
-  Sums sums;
-  parallelCount(tiles, kGrain, sums, [&](size_t begin, size_t end, Sums& sum) {
+  parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {
     std::vector<vec2> at;
     for (size_t t = begin; t < end; ++t)
       for (int k = 0; k < kPlaces; ++k) at.push_back(placeOf(camera, table, t, k));
     std::ranges::copy(surfacesAt(in.rays, camera, at), table.places.begin() + ptrdiff_t(begin * kPlaces));
-    sum.rays += at.size();
-    sum.need.assign(order.size(), 0.0f);
+    count += at.size();
     TileWeights weights(columns, order.size());
     std::vector<float> chances(order.size());
     for (size_t t = begin; t < end; ++t) {
-      const std::span<const float> worth = weights.of(std::span(table.places).subspan(t * kPlaces, kPlaces));
-      for (size_t i = 0; i < worth.size(); ++i) sum.need[i] += worth[i];
-      chancesOf(worth, float(in.gather.lights), chances);
-      Rng rng(in.seed, Stream::Turns, uint32_t(t), in.sample / kLightClasses);
+      chancesOf(weights.of(std::span(table.places).subspan(t * kPlaces, kPlaces)), float(in.gather.lights), chances);
+      Rng rng(in.seed, Stream::LightLists, uint32_t(t), in.sample / kLightClasses);
       fillLists(table, order, chances, rng.next(), table.texels.data() + t * table.row());
     }
   });
-  rays += sums.rays;
-  table.need.assign(in.lights.size(), 0.0f);
-  for (size_t i = 0; i < order.size() && i < sums.need.size(); ++i) table.need[order[i]] = sums.need[i];
 }
 
 } // namespace lambent

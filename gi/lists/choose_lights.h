@@ -33,7 +33,6 @@ struct ListTable {
   glm::ivec2 tiles{0};
   int length = 0, chunks = 1;
   std::vector<uint32_t> texels;
-  std::vector<float> need; // of lights, by slots: their shares of what reaches the tiles, summed
   std::vector<SurfaceHit> places; // kListPlaces of each tile
   size_t row() const { return size_t(kLightClasses) * size_t(chunks + length); }
 };

@@ -53,11 +53,9 @@ std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, FrameStats
   const ShadowSettings& shadow = in.frame.settings.shadow;
   const int resolution = shadow.resolution;
   std::vector<float> brightness;
-  for (size_t slot = 0; slot < in.lights.slots.size(); ++slot) {
-    const VirtualLight& light = in.lights.slots[slot];
-    const float brings = slot < in.need.size() ? in.need[slot] : light.intensity();
+  for (const VirtualLight& light : in.lights.slots) {
     // A light that brings nothing now may do so later, so its map is not given up.
-    brightness.push_back(light.alive ? std::max(brings, 1e-20f) : 0);
+    brightness.push_back(light.alive ? std::max(light.intensity(), 1e-20f) : 0);
   }
   int64_t budget = int64_t(shadow.refresh) * resolution * resolution;
   if (view.changes.first || old_) {

@@ -13,7 +13,6 @@ struct ShadowMapInputs {
   const FrameWorld& frame; // its seed is that of the rays that look for moved objects
   const VirtualLights& lights;
   bool maps = true; // they have any
-  std::span<const float> need = {}; // by slots: what pixels take of the lights; empty: as much as these bring
 };
 
 class ShadowMapCache {

@@ -113,12 +113,13 @@ TEST(LightChange, WhatMovesMayShadeWhatPassesIt) {
 /// Places of a tile that lie apart.
 TEST(LightChange, PlacesThatDisagreeDoNotKnow) {
   LitPlace place;
-  for (size_t i = 0; i < 100; ++i) place.lights[i].radiance *= i % 10 < 5 ? 0.2f : 1.0f;
+  for (size_t i = 0; i < 100; ++i) place.lights[i].radiance *= i % 10 < 5 ? 0.5f : 1.5f;
   place.see({vec3(-1.5f, 0.5f, 0)});
   const LightChange left = place.change();
   place.see({vec3(1.5f, 0.5f, 0)});
   const LightChange right = place.change();
-  EXPECT_LT(left.gained, 2 * right.gained);
+  EXPECT_LT(left.gained, 0);
+  EXPECT_GT(right.gained, 0);
   place.see({vec3(-1.5f, 0.5f, 0), vec3(0), vec3(1.5f, 0.5f, 0)});
   EXPECT_NEAR(place.change().gained, (left.gained + right.gained) / 2, 1e-4f);
   EXPECT_GE(place.change().share, right.gained - left.gained);
