@@ -111,9 +111,21 @@ uint32_t halfOf(float x) {
   return (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13;
 }
 
-/// Fills the lists of a tile: a tick in each sixteenth of a step of 1 along the sum of chances, each for a class.
+/// The class of the pixel of 4×4 that takes a tick: ordered dither, so that the ticks of 2×2 pixels are four apart.
+constexpr std::array<uint8_t, kLightClasses> kClassOfTick = [] {
+  std::array<uint8_t, kLightClasses> classes{};
+  for (uint32_t c = 0; c < kLightClasses; ++c) {
+    const uint32_t y = c / 4, d = c % 4 ^ y;
+    classes[(d & 1) << 3 | (y & 1) << 2 | (d & 2) | (y & 2) >> 1] = uint8_t(c);
+  }
+  return classes;
+}();
+
+/// Fills the lists of a tile: a tick in each sixteenth of a step of 1 along the sum of chances, each for a class. The
+/// classes take turns from `turn` on: if every tile began with the same one, rows of pixels in all of them had lights
+/// of the same regions, which shows as stripes.
 void fillLists(const ListTable& table, std::span<const uint32_t> slots, std::span<const float> chances, float first,
-               uint32_t* row) {
+               uint32_t turn, uint32_t* row) {
   std::array<uint32_t*, kLightClasses> begins, ends;
   for (size_t c = 0; c < kLightClasses; ++c)
     begins[c] = ends[c] = row + c * size_t(table.chunks + table.length) + table.chunks;
@@ -132,7 +144,7 @@ void fillLists(const ListTable& table, std::span<const uint32_t> slots, std::spa
     if (until == tick) continue;
     if (slots[i] / kChunk != chunk) endChunks(slots[i] / kChunk);
     const uint32_t entry = slots[i] % kChunk | halfOf(1 / chance) << 16;
-    for (; tick < until; ++tick) *ends[tick % kLightClasses]++ = entry;
+    for (; tick < until; ++tick) *ends[kClassOfTick[(tick + turn) % kLightClasses]]++ = entry;
   }
   endChunks(uint32_t(table.chunks));
 }
@@ -206,7 +218,9 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
     for (size_t t = begin; t < end; ++t) {
       chancesOf(weights.of(std::span(table.places).subspan(t * kPlaces, kPlaces)), float(in.gather.lights), chances);
       Rng rng(in.seed, Stream::LightLists, uint32_t(t), in.sample / kLightClasses);
-      fillLists(table, order, chances, rng.next(), table.texels.data() + t * table.row());
+      const float first = rng.next();
+      const uint32_t turn = uint32_t(rng.next() * kLightClasses);
+      fillLists(table, order, chances, first, turn, table.texels.data() + t * table.row());
     }
   });
 }

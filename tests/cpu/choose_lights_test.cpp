@@ -212,4 +212,18 @@ TEST(ChooseLights, LightsWithoutNumbersAreLeftOut) {
   EXPECT_EQ(counts[9], 1);
 }
 
+/// A class has lights of other regions in each tile: else rows of pixels are stripes where a frame stands alone.
+TEST(ChooseLights, TilesBeginWithOtherClasses) {
+  const LitFloor floor(2000);
+  const ListTable table = floor.choose(1, 0);
+  vec3 low(kInfinity), high(-kInfinity);
+  for (size_t tile = 0; tile < 64; ++tile)
+    for (const uint32_t slot : slotsOf(table, tile)[0]) {
+      low = glm::min(low, floor.lights[slot].position);
+      high = glm::max(high, floor.lights[slot].position);
+    }
+  EXPECT_GT(high.x - low.x, 5);
+  EXPECT_GT(high.z - low.z, 4);
+}
+
 } // namespace lambent::test::choose_lights_test
