@@ -11,6 +11,7 @@ namespace lambent {
 
 namespace {
 
+constexpr float kTint = 0.02f; // of a light's luminance
 constexpr LightChange kAllUnknown{.share = 1};
 
 /// What lights say of a frame and the one before, at equal areas: a light takes area from its neighbours when it comes.
@@ -19,7 +20,7 @@ struct ChangedLights {
   std::vector<float> gained, came;      // power: of lights that stay; of those that were not there
   std::vector<float> colour, brightest; // W/sr: red less blue of what they gained; the largest component
   float gone = 0;                       // share of the light before whose lights are no more
-  bool differ = false;
+  bool differ = false, tinted = false;  // any light; by more than a little in its colour
 
   ChangedLights(std::span<const VirtualLight> lights, std::span<const vec3> before, float disk) {
     std::vector<uint32_t> order;
@@ -38,6 +39,10 @@ struct ChangedLights {
       colour.push_back(change.x - change.z);
       brightest.push_back(std::max(maxComponent(l.radiance), maxComponent(was)) * l.area);
       came.push_back(was.x >= 0 ? 0 : larger);
+      // Light of the same colour changes all components alike.
+      const float ratio = luminance(change) / larger;
+      for (int c = 0; c < 3; ++c)
+        tinted |= std::abs(change[c] - ratio * std::max(l.radiance[c], was[c]) * l.area) > kTint * larger;
       differ |= change != vec3(0) || !(was.x >= 0);
     }
     larger = columnsOf(lights, order, disk);
@@ -58,37 +63,42 @@ class PlaceChange {
 
   LightChange at(const SurfaceHit& place) {
     const Unshadowed unshadowed(lights_.larger, place);
-    for (size_t i = 0; i < reaches_.size(); ++i) reaches_[i] = unshadowed(i);
-    const float all = sum([power = lights_.larger.power.data()](size_t i) { return power[i]; });
-    if (!(all > 0) || !std::isfinite(all)) return {.share = lights_.gone};
-    LightChange change{.share = lights_.gone};
-    if (lights_.differ) {
-      const float *gained = lights_.gained.data(), *came = lights_.came.data(), *colour = lights_.colour.data(),
-                  *brightest = lights_.brightest.data();
-      const float gain = sum([=](size_t i) { return gained[i]; });
-      const float tint = std::abs(sum([=](size_t i) { return colour[i]; })) /
-                         std::max(sum([=](size_t i) { return brightest[i]; }), FLT_MIN);
-      // What single lights gain and lose adds up as noise does: paths that flip are many and small, lamps that move
-      // few.
-      const float* reaches = reaches_.data();
-      const float square = sum([=](size_t i) { return reaches[i] * gained[i] * gained[i]; });
-      change.gained = gain / all;
-      change.share += std::max(std::max(std::abs(gain), std::sqrt(square)) / all, tint);
-      change.share += sum([=](size_t i) { return came[i]; }) / all;
+    const float *power = lights_.larger.power.data(), *gained = lights_.gained.data(), *came = lights_.came.data();
+    Lanes all{}, gain{}, square{}, fresh{};
+    for (size_t first = 0; first < reaches_.size(); first += kLanes) {
+      Lanes reaches;
+      for (size_t k = 0; k < kLanes; ++k) reaches[k] = unshadowed(first + k);
+      for (size_t k = 0; k < kLanes; ++k) {
+        const float change = reaches[k] * gained[first + k];
+        all[k] += reaches[k] * power[first + k];
+        gain[k] += change;
+        square[k] += change * change;
+        fresh[k] += reaches[k] * came[first + k];
+      }
+      std::ranges::copy(reaches, reaches_.begin() + ptrdiff_t(first));
     }
-    if (!moved_.empty()) change.share = std::max(change.share, through(place) / all);
+    const float sum = sumOf(all);
+    if (!(sum > 0) || !std::isfinite(sum)) return {.share = lights_.gone};
+    LightChange change{.gained = sumOf(gain) / sum};
+    // What single lights gain and lose adds up as noise does: paths that flip are many and small, lamps that move few.
+    change.share = std::max({std::abs(change.gained), std::sqrt(sumOf(square)) / sum, lights_.tinted ? tint() : 0.0f});
+    change.share += sumOf(fresh) / sum + lights_.gone;
+    if (!moved_.empty()) change.share = std::max(change.share, through(place) / sum);
     change.share = std::isfinite(change.share) ? std::min(1.0f, change.share) : 1;
     return change;
   }
 
  private:
-  /// Irradiance by some power of lights.
-  template <class Power> float sum(const Power& power) const {
-    Lanes sums{};
-    const float* reaches = reaches_.data();
+  /// Change of colour: of red less blue, of the largest component.
+  float tint() const {
+    const float *colour = lights_.colour.data(), *brightest = lights_.brightest.data(), *reaches = reaches_.data();
+    Lanes change{}, all{};
     for (size_t first = 0; first < reaches_.size(); first += kLanes)
-      for (size_t k = 0; k < kLanes; ++k) sums[k] += reaches[first + k] * power(first + k);
-    return sumOf(sums);
+      for (size_t k = 0; k < kLanes; ++k) {
+        change[k] += reaches[first + k] * colour[first + k];
+        all[k] += reaches[first + k] * brightest[first + k];
+      }
+    return std::abs(sumOf(change)) / std::max(sumOf(all), FLT_MIN);
   }
   /// What comes through one of the spheres.
   float through(const SurfaceHit& place) {
@@ -139,23 +149,10 @@ std::vector<LightChange> lightChanges(const LightChangeInputs& in) {
   parallelFor(tiles, kGrain, [&](size_t begin, size_t end) {
     PlaceChange change(lights, in.moved);
     for (size_t t = begin; t < end; ++t) {
+      // The first place that is seen speaks for the tile.
       const std::span<const SurfaceHit> places = in.places.subspan(t * perTile, perTile);
-      // Two places that lie apart speak for a tile.
-      const auto valid = [](const SurfaceHit& p) { return p.valid(); };
-      const auto first = std::ranges::find_if(places, valid);
-      if (first == places.end()) continue;
-      const SurfaceHit* last = &*std::find_if(places.rbegin(), places.rend(), valid);
-      LightChange& tile = changes[t];
-      int count = 0;
-      for (const SurfaceHit* place = &*first;; place = last) {
-        const LightChange c = change.at(*place);
-        // Where they disagree it is not known.
-        const float apart = count > 0 ? std::abs(c.gained - tile.gained) : 0;
-        tile.share = std::max({tile.share, c.share, apart});
-        tile.gained = (tile.gained * float(count) + c.gained) / float(count + 1);
-        ++count;
-        if (place == last) break;
-      }
+      const auto place = std::ranges::find_if(places, [](const SurfaceHit& p) { return p.valid(); });
+      if (place != places.end()) changes[t] = change.at(*place);
     }
   });
   return changes;

@@ -23,7 +23,7 @@ struct LightChangeInputs {
   std::span<const VirtualLight> lights; // by slots
   std::span<const vec3> before;         // radiance a frame ago, W/(m² sr), by slots; x = kOtherLight: not known
   std::span<const MovedSphere> moved;   // of this frame and the last few
-  std::span<const SurfaceHit> places;   // `perTile` of each tile
+  std::span<const SurfaceHit> places;   // `perTile` of each tile: the first that is seen speaks for it
   int perTile = 1;
   float disk = 1; // GatherSettings::disk
 };

@@ -217,11 +217,13 @@ TEST(ChooseLights, TilesBeginWithOtherClasses) {
   const LitFloor floor(2000);
   const ListTable table = floor.choose(1, 0);
   vec3 low(kInfinity), high(-kInfinity);
-  for (size_t tile = 0; tile < 64; ++tile)
-    for (const uint32_t slot : slotsOf(table, tile)[0]) {
+  for (size_t tile = 0; tile < 64; ++tile) {
+    const std::vector<std::vector<uint32_t>> slots = slotsOf(table, tile);
+    for (const uint32_t slot : slots[0]) {
       low = glm::min(low, floor.lights[slot].position);
       high = glm::max(high, floor.lights[slot].position);
     }
+  }
   EXPECT_GT(high.x - low.x, 5);
   EXPECT_GT(high.z - low.z, 4);
 }

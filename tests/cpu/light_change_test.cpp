@@ -110,21 +110,16 @@ TEST(LightChange, WhatMovesMayShadeWhatPassesIt) {
   EXPECT_EQ(place.change().gained, 0);
 }
 
-/// Places of a tile that lie apart.
-TEST(LightChange, PlacesThatDisagreeDoNotKnow) {
+TEST(LightChange, TheFirstPlaceThatIsSeenSpeaks) {
   LitPlace place;
-  for (size_t i = 0; i < 100; ++i) place.lights[i].radiance *= i % 10 < 5 ? 0.5f : 1.5f;
+  for (size_t i = 0; i < 100; ++i) place.lights[i].radiance *= i % 10 < 5 ? 0.5f : 1.0f;
   place.see({vec3(-1.5f, 0.5f, 0)});
-  const LightChange left = place.change();
-  place.see({vec3(1.5f, 0.5f, 0)});
-  const LightChange right = place.change();
-  EXPECT_LT(left.gained, 0);
-  EXPECT_GT(right.gained, 0);
-  place.see({vec3(-1.5f, 0.5f, 0), vec3(0), vec3(1.5f, 0.5f, 0)});
-  EXPECT_NEAR(place.change().gained, (left.gained + right.gained) / 2, 1e-4f);
-  EXPECT_GE(place.change().share, right.gained - left.gained);
-  SurfaceHit none;
-  place.places = {none, none};
+  const float left = place.change().gained;
+  place.see({vec3(1.5f, 0.5f, 0), vec3(-1.5f, 0.5f, 0)});
+  EXPECT_GT(place.change().gained, left + 0.1f);
+  place.places[0] = SurfaceHit{};
+  EXPECT_EQ(place.change().gained, left);
+  place.places[1] = SurfaceHit{};
   EXPECT_EQ(place.change().share, 0) << "nothing is seen";
 }
 
