@@ -97,7 +97,7 @@ struct ShadowSettings {
   int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
   float bias = 0.4f;   // depth left for round-off and curved receivers, texels of the map at the receiver
-  int refresh = 32;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  int refresh = 48;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
   int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the frame, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w

@@ -64,7 +64,7 @@ const std::vector<Knob>& knobTable() {
       // Who sees them.
       {"vpl.visibility", {"none", "maps", "rays"}},
       {"shadow.resolution", {"32", "64", "128", "256"}},
-      {"shadow.refresh", {"8", "32", "128"}},
+      {"shadow.refresh", {"12", "48", "192"}},
       {"shadow.motionRays", {"0", "4", "16", "64"}},
       {"gather.checks", {"off", "on"}},
       // Bounded energy, and how it is given back.
