@@ -134,7 +134,7 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
                           .otherNoise = byLists_ != (lists != nullptr)});
     byLists_ = lists != nullptr;
     stats.of(EffectId::History) = draws();
-    averaged_ = plan.changed() || lists ? 1 : averaged_ + 1; // the mean of a view that stands holds no lists
+    averaged_ = plan.changed() || lists ? 1 : averaged_ + 1; // counted from where lists end
   }
   const gl::DrawCount draws;
   // Of classes by slot every sixteen neighbours hold all lights, and the filter weighs them alike. Lists bring pixels

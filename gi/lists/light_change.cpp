@@ -24,33 +24,32 @@ struct ChangedLights {
 
   ChangedLights(std::span<const VirtualLight> lights, std::span<const vec3> before, float disk) {
     std::vector<uint32_t> order;
+    std::vector<float> power;
     double all = 0, lost = 0;
     for (uint32_t slot = 0; slot < lights.size(); ++slot) {
       const VirtualLight& l = lights[slot];
       const vec3 was = slot < before.size() ? before[slot] : vec3(kOtherLight);
-      const float larger = std::max(luminance(l.radiance), luminance(was)) * l.area;
+      const float most = std::max(luminance(l.radiance), luminance(was)) * l.area;
       if (was.x >= 0) all += double(luminance(was));
       if (was.x >= 0 && !l.alive) lost += double(luminance(was));
-      if (!l.alive || !(larger > 0) || !std::isfinite(larger) || !std::isfinite(glm::dot(l.position, l.position)))
-        continue;
+      if (!l.alive || !(most > 0) || !std::isfinite(most) || !std::isfinite(glm::dot(l.position, l.position))) continue;
       order.push_back(slot);
+      power.push_back(most);
       const vec3 change = was.x >= 0 ? (l.radiance - was) * l.area : vec3(0);
       gained.push_back(luminance(change));
       colour.push_back(change.x - change.z);
       brightest.push_back(std::max(maxComponent(l.radiance), maxComponent(was)) * l.area);
-      came.push_back(was.x >= 0 ? 0 : larger);
+      came.push_back(was.x >= 0 ? 0 : most);
       // Light of the same colour changes all components alike.
-      const float ratio = luminance(change) / larger;
+      const float ratio = luminance(change) / most;
       for (int c = 0; c < 3; ++c)
-        tinted |= std::abs(change[c] - ratio * std::max(l.radiance[c], was[c]) * l.area) > kTint * larger;
+        tinted |= std::abs(change[c] - ratio * std::max(l.radiance[c], was[c]) * l.area) > kTint * most;
       differ |= change != vec3(0) || !(was.x >= 0);
     }
     larger = columnsOf(lights, order, disk);
-    for (size_t i = 0; i < order.size(); ++i) {
-      const vec3 was = order[i] < before.size() ? before[order[i]] : vec3(0);
-      larger.power[i] = std::max(luminance(lights[order[i]].radiance), luminance(was)) * lights[order[i]].area;
-    }
-    for (std::vector<float>* column : {&gained, &came, &colour, &brightest}) column->resize(larger.x.size(), 0.0f);
+    larger.power = std::move(power);
+    for (std::vector<float>* column : {&larger.power, &gained, &came, &colour, &brightest})
+      column->resize(larger.x.size(), 0.0f);
     gone = all > 0 ? float(lost / all) : 0;
   }
 };

@@ -11,7 +11,7 @@
 
 namespace lambent {
 
-inline constexpr float kOtherLight = -1; // LightsBefore: another light was in the slot, or none
+inline constexpr float kOtherLight = -1; // LightChangeInputs::before: another light was in the slot, or none
 
 /// A sphere around what moved. World space, m.
 struct MovedSphere {
