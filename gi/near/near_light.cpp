@@ -278,8 +278,10 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
     }
   });
   *in.memory = std::move(now);
-  const NearMemory& seen = *in.memory;
-  mixNeighbours(out, {seen.positions, seen.normals, camera.width, std::sqrt(cells.meanArea())}, true);
+  const NeighbourSurfaces seen{in.memory->positions, in.memory->normals, camera.width, std::sqrt(cells.meanArea())};
+  for (std::vector<vec3>* of : {&out.irradiance, &out.glossy})
+    if (!of->empty()) spreadOutliers(*of, seen);
+  mixNeighbours(out, seen, true);
   return out;
 }
 

@@ -40,10 +40,41 @@ TEST(NearMix, LightIsMovedNeitherMadeNorLost) {
       for (size_t i = 0; i < light.size(); ++i) // bright spots, so that edges between them matter
         if (glm::length(corner.normals[i]) > 0) light[i] = std::pow(rng.next(), 8.0f) * vec3(9, 3, 1);
       const std::vector<vec3> traced = light;
-      mixPatterns(light, corner.seen(cell));
-      EXPECT_LT(glm::length(sumOf(light) - sumOf(traced)), 1e-5 * glm::length(sumOf(traced)));
-      EXPECT_EQ(light != traced, cell > 0.2f) << "cell " << cell;
+      for (const auto& [move, least] : {std::pair(&mixPatterns, 0.2f), std::pair(&spreadOutliers, 0.4f)}) {
+        light = traced;
+        move(light, corner.seen(cell));
+        EXPECT_LT(glm::length(sumOf(light) - sumOf(traced)), 1e-5 * glm::length(sumOf(traced)));
+        EXPECT_EQ(light != traced, cell > least) << "cell " << cell;
+      }
     }
+}
+
+TEST(NearMix, OutliersAreSpreadOverTheirSurface) {
+  const Corner corner(6);
+  std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+  for (const auto [x, y] : Pixels(kWidth, kHeight))
+    if (casts(x, y)) light[size_t(y) * kWidth + x] = vec3(1);
+  light[9 * kWidth + 11] = vec3(8); // within what its neighbours allow
+  const std::vector<vec3> even = light;
+  spreadOutliers(light, corner.seen(3));
+  EXPECT_EQ(light, even);
+  light[9 * kWidth + 11] = vec3(33);
+  spreadOutliers(light, corner.seen(3));
+  for (const auto [x, y] :
+       Pixels(kWidth, kHeight)) { // 25 pixels within 3; those of the wall's rows are not of its kind
+    const bool near = casts(x, y) && std::abs(x - 11) <= 3 && std::abs(y - 9) <= 3;
+    EXPECT_NEAR(light[size_t(y) * kWidth + x].x, casts(x, y) ? (near ? 2 : 1) + (x == 11 && y == 9 ? 7 : 0) : 0, 1e-5)
+        << x << ", " << y;
+  }
+}
+
+TEST(NearMix, OutliersStayOnTheirSideOfAnEdge) {
+  const Corner corner(6);
+  std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+  light[6 * kWidth + 10] = vec3(1);
+  spreadOutliers(light, corner.seen(3));
+  EXPECT_LT(light[6 * kWidth + 10].x, 0.1f);
+  for (const auto [x, y] : Pixels({0, 0}, {kWidth, 6})) ASSERT_EQ(light[size_t(y) * kWidth + x], vec3(0));
 }
 
 TEST(NearMix, FourPatternsAreEvenedOutOnAPlane) {
