@@ -127,6 +127,43 @@ TEST(ReferenceAgainstVpls, NearLightInMotionMeansTheSame) {
   EXPECT_NEAR(double(cast[1]), double(cast[0]), 0.25 * double(cast[0])) << "more of them go on";
 }
 
+/// What a single ray brings does not stay in a few pixels.
+TEST(ReferenceAgainstVpls, NearLightInMotionHasNoOutliers) {
+  Room room;
+  CameraView& camera = room.view.camera;
+  camera.width = 96;
+  camera.height = 72;
+  GatherSettings gather;
+  gather.disk = 4;
+  const std::vector<VirtualLight> lights = room.spread(600, 1);
+  NearMemory memory;
+  size_t lit = 0, outliers = 0; // pixels
+  for (uint32_t frame = 0; frame < 4; ++frame) {
+    const std::vector<vec3> near = traceNearLight({.view = room.view,
+                                                   .rays = room.rays,
+                                                   .lights = room.lights,
+                                                   .virtuals = lights,
+                                                   .gather = gather,
+                                                   .casts = 8,
+                                                   .bounces = kBounces,
+                                                   .subsets = true,
+                                                   .frame = frame,
+                                                   .frames = 64,
+                                                   .memory = &memory},
+                                                  room.counts)
+                                       .irradiance;
+    for (const auto [x, y] : Pixels({3, 3}, {camera.width - 3, camera.height - 3})) {
+      const auto at = [&](int u, int v) { return luminance(near[size_t(v) * size_t(camera.width) + size_t(u)]); };
+      float around = 0;
+      for (const auto [u, v] : Pixels({x - 3, y - 3}, {x + 4, y + 4})) around += at(u, v) / 49;
+      lit += at(x, y) > 0;
+      outliers += at(x, y) > 8 * around;
+    }
+  }
+  EXPECT_GT(lit, 1000);
+  EXPECT_LT(double(outliers), 0.002 * double(lit)) << "0.004 where nothing is spread";
+}
+
 /// No ray brings more than the limit allows, and where the limit is out of reach nothing changes.
 TEST(ReferenceAgainstVpls, NearLightKeepsToItsLimit) {
   Room room;
