@@ -8,18 +8,17 @@
 
 namespace lambent {
 
-Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* mode) {
-  return {{"smc.vpls", vpls},
-          {"smc.points", points},
-          {"smc.paths", paths},
-          {"shadow.resolution", resolution},
-          {"gather.mode", mode}};
+Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* near,
+                  const char* mode) {
+  return {{"smc.vpls", vpls},    {"smc.points", points}, {"smc.paths", paths}, {"shadow.resolution", resolution},
+          {"gather.near", near}, {"gather.mode", mode}};
 }
 
 const std::vector<Preset>& presetTable() {
   static const std::vector<Preset> table{
-      {"low", worth("256", "1024", "8", "64", "lists"), 0.507, 1.950},
-      {"medium", worth("1024", "4096", "32", "128", "lists"), 0.777, 0.918},
+      {"low", worth("256", "1024", "8", "64", "8", "lists"), 0.497, 1.716},
+      {"medium", worth("1024", "2048", "16", "128", "8", "lists"), 0.767, 1.015},
+      {"high", worth("2048", "4096", "32", "128", "32", "lists"), 1.275, 0.726},
   };
   return table;
 }

@@ -12,8 +12,9 @@ namespace lambent {
 /// Settings by name, as on the command line.
 using Assignments = std::vector<std::pair<std::string, std::string>>;
 
-/// Numbers of virtual lights, what each is worth, and where light is gathered: what presets set.
-Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* mode);
+/// Numbers of virtual lights, what each is worth, near rays, and where light is gathered: what presets set.
+Assignments worth(const char* vpls, const char* points, const char* paths, const char* resolution, const char* near,
+                  const char* mode);
 
 struct Preset {
   std::string name;
@@ -23,11 +24,11 @@ struct Preset {
   double time, error;
 };
 /// The presets, cheapest first. The rule that chose them: ladderOf, gi/measure/front.h. Without a preset the defaults
-/// hold, which cost more than the last.
+/// hold, whose cost lies between medium's and high's.
 const std::vector<Preset>& presetTable();
 const std::vector<std::string>& presetNames();
-/// Sets what the preset is about (numbers of VPLs, paths, map texels; of a technique that samples its lights also the
-/// gather) and leaves everything else. Throws InputError that names the presets.
+/// Sets what the preset is about (numbers of VPLs, paths, map texels, near rays; of a technique that samples its lights
+/// also the gather) and leaves everything else. Throws InputError that names the presets.
 void applyPreset(Settings& settings, const std::string& name);
 
 } // namespace lambent

@@ -57,9 +57,9 @@ TEST(Settings, PresetsSetWhatTheySayAndNoMore) {
       if (row.get(set) != row.get(odd)) changed.push_back(row.name);
     for (const std::string& c : changed)
       EXPECT_TRUE(c == "smc.vpls" || c == "smc.points" || c == "smc.paths" || c == "shadow.resolution" ||
-                  c == "gather.mode")
+                  c == "gather.near" || c == "gather.mode")
           << name << " changes " << c;
-    EXPECT_GE(changed.size(), 4u) << name;
+    EXPECT_GE(changed.size(), 5u) << name;
   }
   // A technique with a gather of its own keeps it.
   Settings isr;

@@ -18,11 +18,13 @@ TEST_F(PresetTest, EveryPresetDrawsARoomAndSetsOnlyWhatItIsAbout) {
   Room room;
   room.scene.size(48, 32);
   room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
-  const std::set<std::string> about{"smc.vpls", "smc.points", "smc.paths", "shadow.resolution", "gather.mode"};
+  const std::set<std::string> about{"smc.vpls",          "smc.points",  "smc.paths",
+                                    "shadow.resolution", "gather.near", "gather.mode"};
   Settings odd; // no preset's values
   odd.smc = {.vpls = 77, .moves = 3, .paths = 79, .points = 78, .warmup = 4};
   odd.shadow = {.resolution = 80, .maker = ShadowMaker::Rays};
   odd.gather.mode = GatherMode::SplatPerVpl;
+  odd.gather.near = 5;
   odd.filter.normalPower = 7;
   for (const std::string& name : presetNames()) {
     SCOPED_TRACE(name);

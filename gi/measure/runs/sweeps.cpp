@@ -24,18 +24,19 @@ Settings settingsOf(const Assignments& set) {
 const char* kDefault[] = {"default", "default, direct light"}; // by KnobLight
 
 /// Lights and what each is worth: the more of them, the less a single one's map and paths matter. Lean, as by default,
-/// rich at every N; then other gathers, where these may pay.
+/// rich, and rich with four times the near rays at every N; then other gathers, where these may pay.
 std::vector<Assignments> jointDesign(bool quick) {
   struct Worth {
-    const char *points, *paths, *resolution;
+    const char *points, *paths, *resolution, *near;
   };
-  static const Worth worths[] = {{"1024", "8", "64"}, {"2048", "16", "128"}, {"4096", "32", "128"}};
+  static const Worth worths[] = {
+      {"1024", "8", "64", "8"}, {"2048", "16", "128", "8"}, {"4096", "32", "128", "8"}, {"4096", "32", "128", "32"}};
   std::vector<Assignments> sets;
   for (const char* vpls : {"256", "512", "1024", "2048", "4096", "8192"})
-    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, "lists"));
+    for (const Worth& w : worths) sets.push_back(worth(vpls, w.points, w.paths, w.resolution, w.near, "lists"));
   if (quick) return {sets.front()};
   for (const char* mode : {"multires-interleaved", "multires"})
-    for (const char* vpls : {"512", "2048"}) sets.push_back(worth(vpls, "2048", "16", "128", mode));
+    for (const char* vpls : {"512", "2048"}) sets.push_back(worth(vpls, "2048", "16", "128", "8", mode));
   return sets;
 }
 
