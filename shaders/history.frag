@@ -14,6 +14,7 @@ layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames that the mean is worth, or 0
 uniform float mostFrames; // of those before that count at most; 0: there are none
 uniform float mostKnown; // earlier frames in a variance; 0: they had other noise
+uniform float whole; // frames that hold all lights: of a mean of fewer each counts as its share of them; 0: each as one
 uniform bool stands;    // the camera is where it was
 uniform bool smoothed;  // what was shown before had little noise: its edges say how much looking up blurs
 layout(location = 0) out vec4 outIrradiance; // a: frames in the variance
@@ -107,6 +108,7 @@ void main() {
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
+  if (whole > 0.0) kept.a *= min(kept.a / whole, 1.0);
   if (weights > 0.0) variance /= weights, known = min(known / weights, mostKnown);
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
   outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, known);

@@ -28,7 +28,7 @@ layout(location = 3) out vec2 outVariance;
 
 const float kSure = 8.0, kLeast = 0.1; // a changed share of 1/16 is followed by half, none by a tenth
 const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
-const float kGuess = 4.0; // frames that a guess of variance counts as
+const float kGuess = 1.0; // frames that a guess of variance counts as: its neighbours say more
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
 
 void main() {

@@ -131,6 +131,7 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
                           .filter = filter,
                           .smooth = before,
                           .change = change.texture ? &change : nullptr,
+                          .whole = lists && !byLists_ ? float(kLightClasses) : 0,
                           .otherNoise = byLists_ != (lists != nullptr)});
     byLists_ = lists != nullptr;
     stats.of(EffectId::History) = draws();

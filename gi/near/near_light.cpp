@@ -13,7 +13,8 @@
 // stratified pattern, the same in every block and fixed in the surface's frame. Over the frames that are averaged
 // each pixel casts all rays of one of four longer patterns, and takes its neighbours' in. (With one pattern for all
 // there is no noise between pixels to mix, but its few dozen directions are seen as streaks and specks on folded
-// cloth.) In motion pixels cast as many rays as gi/near/near_memory.h says.
+// cloth.) In motion pixels cast as many rays as gi/near/near_memory.h says, and what one finds by chance its neighbours
+// share.
 #include "gi/near/near_light.h"
 
 #include "engine/core/parallel.h"
@@ -87,13 +88,16 @@ uint32_t turnOf(size_t x, size_t y) {
 /// The pattern of a pixel: columns and rows of the chessboard's diagonals take turns.
 uint32_t patternOf(uint32_t x, uint32_t y) { return ((x + y) >> 1 & 1) | ((x + ~y) >> 1 & 1) << 1; }
 
+/// Which of 2×2 blocks of 4×4 pixels holds a pixel.
+uint32_t quarterOf(uint32_t x, uint32_t y) { return (x >> 2 & 1) | (y >> 2 & 1) << 1; }
+
 /// A ray that goes on.
 struct Near {
   uint32_t surface; // that it leaves
   vec3 direction;   // from there
   float weight;     // first the number that says whether it goes on; then, times the radiance met, irradiance
   float spread;     // lobeSpread of the surface met
-  uint32_t path;    // of the pattern
+  uint32_t path;    // that says what the surface met reflects
   float most;       // luminance that the radiance met counts up to
 };
 
@@ -110,15 +114,15 @@ struct NearTracer {
   std::vector<Ray> segments = {};
   std::vector<Near> near = {};
 
-  /// A ray of the pattern from a surface.
-  void cast(const SurfaceHit& h, uint32_t surface, uint32_t path) {
+  /// A ray of the pattern from a surface, and which light path says what the surface reflects that it meets.
+  void cast(const SurfaceHit& h, uint32_t surface, uint32_t path, uint32_t lightPath) {
     const vec3 u = additiveRecurrence3(path, shift);
     const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
     if (glm::dot(direction, h.geometricNormal) <= 0) return;
     // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
     const float reach2 = reach2Of(std::max(u.z, 1e-6f) * kCertain / kWide, cells.meanArea(), gather);
     segments.push_back({offsetPoint(h.position, h.geometricNormal, rays.rayEpsilon()), direction, std::sqrt(reach2)});
-    near.push_back({surface, direction, u.z, 0, path, kInfinity});
+    near.push_back({surface, direction, u.z, 0, lightPath, kInfinity});
   }
   /// Calls found(ray, irradiance) for each that brings any.
   template <class Found> void follow(std::span<const SurfaceHit> surfaces, const Found& found, RayCounts& count) {
@@ -184,7 +188,7 @@ std::vector<vec3> traceNearLightAt(std::span<const SurfaceHit> surfaces, const N
   parallelCount(surfaces.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1 / float(in.casts)};
     for (size_t s = begin; s < end; ++s)
-      for (uint32_t path = 0; path < uint32_t(in.casts); ++path) tracer.cast(surfaces[s], uint32_t(s), path);
+      for (uint32_t path = 0; path < uint32_t(in.casts); ++path) tracer.cast(surfaces[s], uint32_t(s), path, path);
     tracer.follow(
         surfaces, [&](const Near& n, const vec3& light) { irradiance[n.surface] += light; }, count);
   });
@@ -236,8 +240,10 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
   constexpr size_t kGrain = 512; // pixels
   const CameraView& camera = in.view.camera;
   NearLight out = noNearLight(in);
+  constexpr float kLightKept = 15 / 16.0f; // of a pixel's mean, each frame
   NearMemory now;
   now.fit(camera);
+  std::vector<float> known(out.irradiance.size(), 0); // luminance
   const NearRates rates(*in.memory, someSurfaces(in, counts), float(in.casts) / 16);
   const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
   const RadianceUpdate update{.paths = int(kPatterns * kPattern), .bounces = in.bounces, .seed = in.seed};
@@ -259,10 +265,13 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
       now.normals[pixel] = h.normal;
       expected[s] = rates.at(h);
       cast[s] = uint32_t(expected[s].rays + Rng(in.seed, Stream::NearLight, pixel + 1, in.frame).next());
-      // Rays of a frame are a quarter of the pattern apart, pixels of a block and frames side by side.
+      // Rays of a frame are a quarter of the pattern apart, pixels of a block and frames side by side. Blocks take the
+      // quarters of the light paths in turn: by the same few in all of them, a wall flashes in the frame of a bright
+      // one.
       for (uint32_t ray = 0; ray < cast[s]; ++ray) {
-        const uint32_t path = (turnOf(x, y) + 5 * in.frame + ray * kPattern / 4 + ray / 4) % kPattern;
-        tracer.cast(h, uint32_t(s), path * kPatterns + patternOf(x, y));
+        const uint32_t turn = turnOf(x, y) + 5 * in.frame + ray * kPattern / 4 + ray / 4;
+        const auto path = [&](uint32_t t) { return t % kPattern * kPatterns + patternOf(x, y); };
+        tracer.cast(h, uint32_t(s), path(turn), path(turn + quarterOf(x, y) * kPattern / 4));
       }
     }
     tracer.follow(
@@ -275,12 +284,13 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
     for (size_t s = 0; s < surfaces.size(); ++s) {
       const NearRates::Rate& r = expected[s];
       now.near[begin + s] = (r.near * r.known + float(went[s])) / std::max(r.known + float(cast[s]), 1.0f);
+      known[begin + s] = r.light;
+      now.light[begin + s] = glm::mix(luminance(out.irradiance[begin + s]), r.light, kLightKept);
     }
   });
   *in.memory = std::move(now);
   const NeighbourSurfaces seen{in.memory->positions, in.memory->normals, camera.width, std::sqrt(cells.meanArea())};
-  for (std::vector<vec3>* of : {&out.irradiance, &out.glossy})
-    if (!of->empty()) spreadOutliers(*of, seen);
+  spreadOutliers(out.irradiance, known, seen);
   mixNeighbours(out, seen, true);
   return out;
 }
@@ -335,7 +345,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       for (uint32_t p = paths[s]; p < uint32_t(perBlock); p += stride) {
         uint32_t path = (p % stride + 5 * casts) % pattern + pattern * (p / stride);
         if (averaged) path = path * kPatterns + patternOf(asked[s] % camera.width, asked[s] / camera.width);
-        tracer.cast(h, s, path);
+        tracer.cast(h, s, path, path);
       }
     }
     tracer.follow(

@@ -23,6 +23,7 @@ void NearMemory::fit(const CameraView& seenBy) {
   positions.assign(pixels, vec3(kInfinity));
   normals.assign(pixels, vec3(0));
   near.assign(pixels, 0);
+  light.assign(pixels, 0);
 }
 
 NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfaces, float budget)
@@ -30,7 +31,7 @@ NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfa
       budget_(budget), rate_(budget) {
   std::vector<float> weights;
   for (const SurfaceHit& h : surfaces)
-    if (h.valid()) weights.push_back(weightOf(nearOf(h)));
+    if (h.valid()) weights.push_back(weightOf(pixelOf(h)));
   constexpr int kRounds = 8; // bounds make it a fixed point, that comes near soon
   for (int i = 0; i < kRounds && !weights.empty(); ++i) {
     double rays = 0;
@@ -40,31 +41,33 @@ NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfa
 }
 
 NearRates::Rate NearRates::at(const SurfaceHit& surface) const {
-  const float* near = nearOf(surface);
-  return {raysOf(weightOf(near)), near ? *near : kGuess, near ? kKnown : 1};
+  const std::optional<size_t> pixel = pixelOf(surface);
+  const float rays = raysOf(weightOf(pixel));
+  if (!pixel) return {rays, kGuess, 1, 0};
+  return {rays, before_.near[*pixel], kKnown, before_.light[*pixel]};
 }
 
-float NearRates::weightOf(const float* near) const {
-  return near ? std::sqrt(std::max(*near, kLeastShare)) : kFresh * std::sqrt(kGuess);
+float NearRates::weightOf(std::optional<size_t> pixel) const {
+  return pixel ? std::sqrt(std::max(before_.near[*pixel], kLeastShare)) : kFresh * std::sqrt(kGuess);
 }
 
 float NearRates::raysOf(float weight) const {
   return std::clamp(weight * rate_, std::min(kLeastRays, budget_), std::max(kMostRays, budget_));
 }
 
-const float* NearRates::nearOf(const SurfaceHit& surface) const {
-  if (before_.positions.empty()) return nullptr;
+std::optional<size_t> NearRates::pixelOf(const SurfaceHit& surface) const {
+  if (before_.positions.empty()) return {};
   const CameraView& camera = before_.camera;
   const vec4 clip = clipFromWorld_ * vec4(surface.position, 1);
-  if (!(clip.w > 0)) return nullptr;
+  if (!(clip.w > 0)) return {};
   const vec2 at = (vec2(clip.x, -clip.y) / clip.w * 0.5f + 0.5f) * vec2(camera.width, camera.height);
-  if (!(at.x >= 0 && at.y >= 0 && at.x < float(camera.width) && at.y < float(camera.height))) return nullptr;
+  if (!(at.x >= 0 && at.y >= 0 && at.x < float(camera.width) && at.y < float(camera.height))) return {};
   const size_t pixel = size_t(at.y) * size_t(camera.width) + size_t(at.x);
   const float half = camera.orthoHalfHeight > 0 ? camera.orthoHalfHeight : std::tan(camera.fovY / 2) * clip.w;
   const float off = glm::dot(before_.positions[pixel] - surface.position, surface.normal);
   const bool same = std::abs(off) <= kOnPlane * 2 * half / float(camera.height) &&
                     glm::dot(before_.normals[pixel], surface.normal) >= kAlike;
-  return same ? &before_.near[pixel] : nullptr;
+  return same ? std::optional(pixel) : std::nullopt;
 }
 
 } // namespace lambent

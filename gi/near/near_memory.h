@@ -8,16 +8,18 @@
 #include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace lambent {
 
-/// What the pixels of a frame found, row by row from the top. 28 bytes a pixel.
+/// What the pixels of a frame found, row by row from the top. 32 bytes a pixel.
 struct NearMemory {
   CameraView camera;
   std::vector<vec3> positions, normals; // world space, m; unit vectors; infinitely far: no surface
   std::vector<float> near;              // share of a pixel's rays that brought light
+  std::vector<float> light;             // that they brought, luminance of the irradiance: a mean over frames
 
   void forget() { positions.clear(); }
   void fit(const CameraView& seenBy);
@@ -32,13 +34,14 @@ class NearRates {
     float rays;  // of the pixel, expected
     float near;  // share that brought light before; a guess where it is not known
     float known; // rays that this share is worth
+    float light; // luminance that its rays brought before; 0 where it is not known
   };
   Rate at(const SurfaceHit& surface) const;
 
  private:
-  /// Share of the pixel that saw the place; null: none did.
-  const float* nearOf(const SurfaceHit& surface) const;
-  float weightOf(const float* near) const;
+  /// The pixel that saw the place; none: none did.
+  std::optional<size_t> pixelOf(const SurfaceHit& surface) const;
+  float weightOf(std::optional<size_t> pixel) const;
   float raysOf(float weight) const;
 
   const NearMemory& before_;

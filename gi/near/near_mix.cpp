@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 
 namespace lambent {
@@ -80,9 +81,10 @@ void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(
 
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(light, seen, kTent); }
 
-void spreadOutliers(std::vector<vec3>& light, const NeighbourSurfaces& seen) {
-  constexpr int kAround = 3;    // pixels
-  constexpr float kOutlier = 8; // times what its neighbours have on the mean
+void spreadOutliers(std::vector<vec3>& light, std::span<const float> known, const NeighbourSurfaces& seen) {
+  constexpr int kAround = 3;       // pixels
+  constexpr float kOutlier = 8;    // times what its neighbours have on the mean
+  constexpr float kAboveKnown = 4; // and times what it is known to have
   constexpr Bounds kBounds{0.4f, 0.4f, 0.4f};
   struct Outlier {
     int x, y;
@@ -93,7 +95,7 @@ void spreadOutliers(std::vector<vec3>& light, const NeighbourSurfaces& seen) {
   std::vector<std::vector<Outlier>> found(light.size() / size_t(width)); // by rows
   forPixels(seen, height, [&](int x, int y, size_t at) {
     const float own = luminance(light[at]);
-    if (!(own > 0)) return;
+    if (!(own > kAboveKnown * known[at])) return;
     float sum = 0;
     uint64_t takers = 0, bit = 1;
     aroundPixel(x, y, kAround, width, height, [&](int, int, size_t other) {
@@ -103,8 +105,9 @@ void spreadOutliers(std::vector<vec3>& light, const NeighbourSurfaces& seen) {
       }
       bit <<= 1;
     });
-    const float neighbours = float(std::popcount(takers)), most = kOutlier * sum / std::max(neighbours, 1.0f);
-    if (takers == 0 || own <= most) return;
+    const float neighbours = float(std::popcount(takers));
+    const float most = std::max(kOutlier * sum / std::max(neighbours, 1.0f), kAboveKnown * known[at]);
+    if (takers == 0 || !(own > most) || !std::isfinite(own)) return;
     const vec3 kept = light[at] * (most / own);
     found[size_t(y)].push_back({x, y, takers, kept, (light[at] - kept) / (neighbours + 1)});
   });

@@ -21,9 +21,11 @@ struct NeighbourSurfaces {
 /// 0.045; bias of living-room-2 -2.9 and -2.2 %.)
 void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
-/// Spreads what a pixel has above 8 times its neighbours' mean over 7×7 pixels whose surfaces are near: a single ray to
-/// a bright spot. Light is moved, not made. What it brings: docs/decisions.md, 2026-11-27, outliers of near light.
-void spreadOutliers(std::vector<vec3>& light, const NeighbourSurfaces& seen);
+/// Takes from a pixel what it has above 8 times the mean of its neighbours and 4 times what it is known to have, and
+/// shares it equally among the pixel and these: pixels of 7×7 whose surfaces are near and alike. Keeps the sum over the
+/// image, not each pixel's mean. `known`: luminance of a pixel in frames before; 0: none is known. What it brings:
+/// docs/decisions.md, 2026-11-27, outliers of near light.
+void spreadOutliers(std::vector<vec3>& light, std::span<const float> known, const NeighbourSurfaces& seen);
 
 /// Mixes 5×5 pixels, so that each of the 16 parts of a block's one pattern weighs alike. The filter over the subsets,
 /// which separates normals, finds too few pixels to mix on mouldings and leaves.

@@ -25,6 +25,11 @@ struct Corner {
   NeighbourSurfaces seen(float cell) const { return {positions, normals, kWidth, cell}; }
 };
 
+/// Outliers of a frame before which nothing was known.
+void spread(std::vector<vec3>& light, const NeighbourSurfaces& seen) {
+  spreadOutliers(light, std::vector<float>(light.size(), 0), seen);
+}
+
 glm::dvec3 sumOf(const std::vector<vec3>& light) {
   glm::dvec3 sum(0);
   for (const vec3& l : light) sum += l;
@@ -40,7 +45,7 @@ TEST(NearMix, LightIsMovedNeitherMadeNorLost) {
       for (size_t i = 0; i < light.size(); ++i) // bright spots, so that edges between them matter
         if (glm::length(corner.normals[i]) > 0) light[i] = std::pow(rng.next(), 8.0f) * vec3(9, 3, 1);
       const std::vector<vec3> traced = light;
-      for (const auto& [move, least] : {std::pair(&mixPatterns, 0.2f), std::pair(&spreadOutliers, 0.4f)}) {
+      for (const auto& [move, least] : {std::pair(&mixPatterns, 0.2f), std::pair(&spread, 0.4f)}) {
         light = traced;
         move(light, corner.seen(cell));
         EXPECT_LT(glm::length(sumOf(light) - sumOf(traced)), 1e-5 * glm::length(sumOf(traced)));
@@ -56,10 +61,10 @@ TEST(NearMix, OutliersAreSpreadOverTheirSurface) {
     if (casts(x, y)) light[size_t(y) * kWidth + x] = vec3(1);
   light[9 * kWidth + 11] = vec3(8); // within what its neighbours allow
   const std::vector<vec3> even = light;
-  spreadOutliers(light, corner.seen(3));
+  spread(light, corner.seen(3));
   EXPECT_EQ(light, even);
   light[9 * kWidth + 11] = vec3(33);
-  spreadOutliers(light, corner.seen(3));
+  spread(light, corner.seen(3));
   for (const auto [x, y] :
        Pixels(kWidth, kHeight)) { // 25 pixels within 3; those of the wall's rows are not of its kind
     const bool near = casts(x, y) && std::abs(x - 11) <= 3 && std::abs(y - 9) <= 3;
@@ -68,11 +73,52 @@ TEST(NearMix, OutliersAreSpreadOverTheirSurface) {
   }
 }
 
+TEST(NearMix, WhatIsKnownToBeBrightStaysSo) {
+  const Corner floor(0);
+  std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(1));
+  std::vector<float> known(light.size(), 0);
+  light[9 * kWidth + 11] = vec3(39);
+  known[9 * kWidth + 11] = 10;
+  const std::vector<vec3> traced = light;
+  spreadOutliers(light, known, floor.seen(3));
+  EXPECT_EQ(light, traced);
+  light[9 * kWidth + 11] = vec3(65); // 25 pixels share what is above 40
+  spreadOutliers(light, known, floor.seen(3));
+  EXPECT_NEAR(light[9 * kWidth + 11].x, 41, 1e-4);
+}
+
+TEST(NearMix, WhatIsNoNumberIsNotSpread) {
+  const Corner floor(0);
+  for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(1));
+    light[9 * kWidth + 11] = vec3(odd);
+    light[5 * kWidth + 11] = vec3(100);
+    spread(light, floor.seen(3));
+    int odds = 0;
+    for (const vec3& l : light) odds += !std::isfinite(l.x);
+    EXPECT_EQ(odds, 1);
+  }
+}
+
+/// Planes one behind the other, and what is far off, get nothing.
+TEST(NearMix, OutliersStayOnTheirPlaneAndNear) {
+  Corner floor(0);
+  for (const auto [x, y] : Pixels({12, 0}, {kWidth, kHeight})) floor.positions[size_t(y) * kWidth + x].y -= 0.15f;
+  std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
+  light[9 * kWidth + 11] = vec3(100);
+  spread(light, floor.seen(0.8f)); // 0.32 m far: the pixel 3 away, not that 3 and 3 away
+  for (const auto [x, y] : Pixels({8, 6}, {15, 13})) {
+    const int across = x - 11, up = y - 9;
+    const bool far = across * across + up * up > 10, below = x >= 12;
+    EXPECT_EQ(light[size_t(y) * kWidth + x].x > 0, casts(x, y) && !far && !below) << x << ", " << y;
+  }
+}
+
 TEST(NearMix, OutliersStayOnTheirSideOfAnEdge) {
   const Corner corner(6);
   std::vector<vec3> light(size_t(kWidth) * kHeight, vec3(0));
   light[6 * kWidth + 10] = vec3(1);
-  spreadOutliers(light, corner.seen(3));
+  spread(light, corner.seen(3));
   EXPECT_LT(light[6 * kWidth + 10].x, 0.1f);
   for (const auto [x, y] : Pixels({0, 0}, {kWidth, 6})) ASSERT_EQ(light[size_t(y) * kWidth + x], vec3(0));
 }

@@ -54,6 +54,18 @@ TEST_F(ListsTest, ListsGiveWayToClassesWhereAViewStands) {
   }
 }
 
+/// A first frame is of classes: behind one of lists it counts as the sixteenth that it is, and leaves no lattice.
+TEST_F(ListsTest, AFirstFrameOfClassesCountsLittle) {
+  settings.gather.near = 0;
+  const Image all = allLights(), one = firstFrame(with(settings, GatherMode::Lists, 0), room.scene.view());
+  Viewer gi(with(settings, GatherMode::Lists, 64));
+  gi.run(room.scene.view());
+  gi.run(view(kCameraChanged)); // by less than can be seen
+  const double mean = relativeRmse(gi.read(Buffer::Irradiance), all), frame = relativeRmse(one, all);
+  std::printf("lists after a frame of classes: %.4f, one frame of lists %.4f\n", mean, frame);
+  EXPECT_LT(mean, 1.1 * frame);
+}
+
 /// By lists a small change is followed by what the lights know of it, and the mean is nearer to all lights than a frame
 /// is.
 TEST_F(ListsTest, ListsFollowWhatLightsKnow) {
