@@ -105,10 +105,10 @@ void main() {
   // Where some of the four saw another surface, the others stand beside the place: they count as fewer frames.
   kept = weights > 0.0 ? vec4(kept.rgb / weights, kept.a) : vec4(now, 0.0);
   if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one frame, not of all that follow
+  if (whole > 0.0) kept.a *= min(kept.a / whole, 1.0); // by all that it holds, before it is cut to few
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
-  if (whole > 0.0) kept.a *= min(kept.a / whole, 1.0);
   if (weights > 0.0) variance /= weights, known = min(known / weights, mostKnown);
   if (any(isnan(variance)) || any(isinf(variance))) variance = vec2(0.0);
   outVariance.r = varianceWith(variance.r, dot(kLuminance, now), span, known);
@@ -125,6 +125,7 @@ void main() {
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
+  if (whole > 0.0) keptLobe.a *= min(keptLobe.a / whole, 1.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   float lobeCounts = keptLobe.a;
