@@ -14,7 +14,7 @@ layout(binding = 3) uniform sampler2D keptIrradiance;
 layout(binding = 4) uniform sampler2D keptSeen; // octahedral normal, view distance, frames that the mean is worth, or 0
 uniform float mostFrames; // of those before that count at most; 0: there are none
 uniform float mostKnown; // earlier frames in a variance; 0: they had other noise
-uniform float whole; // frames that hold all lights: of a mean of fewer each counts as its share of them; 0: each as one
+uniform float cycleFrames; // as HistoryInputs::cycleFrames
 uniform bool stands;    // the camera is where it was
 uniform bool smoothed;  // what was shown before had little noise: its edges say how much looking up blurs
 layout(location = 0) out vec4 outIrradiance; // a: frames in the variance
@@ -105,7 +105,7 @@ void main() {
   // Where some of the four saw another surface, the others stand beside the place: they count as fewer frames.
   kept = weights > 0.0 ? vec4(kept.rgb / weights, kept.a) : vec4(now, 0.0);
   if (any(isnan(kept)) || any(isinf(kept))) kept = vec4(now, 0.0); // of one frame, not of all that follow
-  if (whole > 0.0) kept.a *= min(kept.a / whole, 1.0); // by all that it holds, before it is cut to few
+  if (cycleFrames > 0.0) kept.a *= min(kept.a / cycleFrames, 1.0); // by all that it holds, before it is cut to few
   // Of a smaller frame a pixel is a blur of several of ours: it counts as fewer.
   float finer = min(before.size.x / camera.size.x, 1.0);
   kept.a = min(kept.a, stands ? mostFrames : min(mostFrames, (kMoving - 1.0) * finer * finer));
@@ -125,7 +125,7 @@ void main() {
 #ifdef GLOSSY
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
-  if (whole > 0.0) keptLobe.a *= min(keptLobe.a / whole, 1.0);
+  if (cycleFrames > 0.0) keptLobe.a *= min(keptLobe.a / cycleFrames, 1.0);
   keptLobe.a = min(keptLobe.a, mostGlossyFrames);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   float lobeCounts = keptLobe.a;

@@ -28,7 +28,6 @@ layout(location = 3) out vec2 outVariance;
 
 const float kSure = 8.0, kLeast = 0.1; // a changed share of 1/16 is followed by half, none by a tenth
 const float kCalm = 4.0; // variances: a coarse change within these is as likely noise
-const float kGuess = 1.0; // frames that a guess of variance counts as: its neighbours say more
 const float kNoise = 0.15, kCertain = 0.4; // changes of a tile: from here on it forgets, here wholly
 
 void main() {
@@ -64,10 +63,10 @@ void main() {
     gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
   outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / frames), frames);
-  // Where the mean begins again its variance is a guess; of light that became darker, a smaller one.
+  // Where the mean begins again the variance found so far is a guess; of light that became darker, a smaller one.
   float left = brightness < 0.0 ? 1.0 - tile.r : 1.0;
   outVariance *= mix(left * left, 1.0, stays);
-  outIrradiance.a = mix(min(difference.a, kGuess), difference.a, stays);
+  outIrradiance.a = mix(1.0, difference.a, stays); // begun again, so its neighbours tell the variance
   outSeen = vec4(octahedralFromUnit(texelFetch(gbufferNormal, pixel, 0).xyz), viewDistanceFromDepth(camera, depth),
                  frames);
 #ifdef GLOSSY

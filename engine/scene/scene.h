@@ -6,7 +6,7 @@
 #include "engine/scene/assets.h"
 #include "engine/scene/components.h"
 #include "engine/scene/deform.h"
-#include "engine/scene/scene_view.h"
+#include "engine/scene/view_changes.h"
 
 #include <filesystem>
 #include <functional>
@@ -94,12 +94,7 @@ class SceneExtractor {
   std::vector<InstanceView> placeInstances(const Scene& scene);
 
   std::unordered_map<uint32_t, Shape> shapes_; // by entity
-  std::vector<InstanceView> instances_;
-  std::vector<Aabb> addedOrRemoved_;
-  std::vector<LightView> lights_;
-  CameraView camera_;
-  Sky sky_;
-  bool first_ = true;
+  ViewChanges changes_;
 };
 
 } // namespace lambent

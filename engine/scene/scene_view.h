@@ -16,10 +16,12 @@ struct DeformedMesh {
   std::vector<vec3> positions, normals;
   std::vector<Aabb> primitiveBoundsObject; // parallel to Mesh::primitives
   Aabb boundsObject;
-  /// Different for every shape that any extraction of this process has made: who keeps a copy knows by it whether the
-  /// copy still holds. Says nothing else, and so may not enter a result.
+  /// Different for every shape that this process has made: who keeps a copy knows by it whether the copy still holds.
+  /// Says nothing else, and so may not enter a result.
   uint64_t revision = 0;
 };
+/// An empty shape with a revision of its own.
+std::shared_ptr<DeformedMesh> newShape();
 
 /// One placed mesh. `id` is stable while the entity lives; instances keep their order between frames.
 struct InstanceView {

@@ -122,6 +122,7 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
   SurfaceLighting light = gathered_;
   if (averaging) {
     const gl::DrawCount draws;
+    const bool otherNoise = byLists_ != (lists != nullptr);
     const SurfaceLighting before = lists && filter.on && history_.sample() > 0 ? smooth_ : SurfaceLighting{};
     light = history_.run({.surfaces = frame.surfaces,
                           .gathered = gathered_,
@@ -131,8 +132,8 @@ SurfaceLighting ComposedTechnique::reconstruct(const Frame& frame, const LightLi
                           .filter = filter,
                           .smooth = before,
                           .change = change.texture ? &change : nullptr,
-                          .whole = lists && !byLists_ ? float(kLightClasses) : 0,
-                          .otherNoise = byLists_ != (lists != nullptr)});
+                          .cycleFrames = lists && otherNoise ? float(kLightClasses) : 0,
+                          .otherNoise = otherNoise});
     byLists_ = lists != nullptr;
     stats.of(EffectId::History) = draws();
     averaged_ = plan.changed() || lists ? 1 : averaged_ + 1; // counted from where lists end

@@ -93,12 +93,12 @@ uint32_t quarterOf(uint32_t x, uint32_t y) { return (x >> 2 & 1) | (y >> 2 & 1) 
 
 /// A ray that goes on.
 struct Near {
-  uint32_t surface; // that it leaves
-  vec3 direction;   // from there
-  float weight;     // first the number that says whether it goes on; then, times the radiance met, irradiance
-  float spread;     // lobeSpread of the surface met
-  uint32_t path;    // that says what the surface met reflects
-  float most;       // luminance that the radiance met counts up to
+  uint32_t surface;   // that it leaves
+  vec3 direction;     // from there
+  float weight;       // first the number that says whether it goes on; then, times the radiance met, irradiance
+  float spread;       // lobeSpread of the surface met
+  uint32_t lightPath; // estimates the radiance of the surface met
+  float most;         // luminance that the radiance met counts up to
 };
 
 /// Near light of a few surfaces, ray by ray.
@@ -114,9 +114,9 @@ struct NearTracer {
   std::vector<Ray> segments = {};
   std::vector<Near> near = {};
 
-  /// A ray of the pattern from a surface, and which light path says what the surface reflects that it meets.
-  void cast(const SurfaceHit& h, uint32_t surface, uint32_t path, uint32_t lightPath) {
-    const vec3 u = additiveRecurrence3(path, shift);
+  /// Casts ray `ray` of the pattern; `lightPath` estimates the radiance of what it meets.
+  void cast(const SurfaceHit& h, uint32_t surface, uint32_t ray, uint32_t lightPath) {
+    const vec3 u = additiveRecurrence3(ray, shift);
     const vec3 direction = sampleCosineHemisphere(h.normal, {u.x, u.y});
     if (glm::dot(direction, h.geometricNormal) <= 0) return;
     // Whether it goes on is drawn first, as for a light of mean area: it need not look farther than that.
@@ -157,7 +157,7 @@ struct NearTracer {
       v.id = 1;
     }
     std::vector<RadianceJob> jobs;
-    for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].path)});
+    for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].lightPath)});
     count += estimateRadiance(jobs, rays, lights, update).rays;
     for (size_t j = 0; j < kept; ++j) {
       const Near& n = near[j];
@@ -240,10 +240,9 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
   constexpr size_t kGrain = 512; // pixels
   const CameraView& camera = in.view.camera;
   NearLight out = noNearLight(in);
-  constexpr float kLightKept = 15 / 16.0f; // of a pixel's mean, each frame
   NearMemory now;
   now.fit(camera);
-  std::vector<float> known(out.irradiance.size(), 0); // luminance
+  std::vector<float> lightBefore(out.irradiance.size(), 0); // luminance
   const NearRates rates(*in.memory, someSurfaces(in, counts), float(in.casts) / 16);
   const vec3 shift = Rng(in.seed, Stream::NearLight, 0).next3();
   const RadianceUpdate update{.paths = int(kPatterns * kPattern), .bounces = in.bounces, .seed = in.seed};
@@ -254,7 +253,7 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
     count.closest += centres.size();
 
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1};
-    std::vector<NearRates::Rate> expected(surfaces.size());
+    std::vector<NearExpected> expected(surfaces.size());
     std::vector<uint32_t> cast(surfaces.size(), 0), went(surfaces.size(), 0);
     for (size_t s = 0; s < surfaces.size(); ++s) {
       const SurfaceHit& h = surfaces[s];
@@ -282,15 +281,13 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
         },
         count);
     for (size_t s = 0; s < surfaces.size(); ++s) {
-      const NearRates::Rate& r = expected[s];
-      now.near[begin + s] = (r.near * r.known + float(went[s])) / std::max(r.known + float(cast[s]), 1.0f);
-      known[begin + s] = r.light;
-      now.light[begin + s] = glm::mix(luminance(out.irradiance[begin + s]), r.light, kLightKept);
+      lightBefore[begin + s] = expected[s].light;
+      now.keep(begin + s, expected[s], cast[s], went[s], luminance(out.irradiance[begin + s]));
     }
   });
   *in.memory = std::move(now);
   const NeighbourSurfaces seen{in.memory->positions, in.memory->normals, camera.width, std::sqrt(cells.meanArea())};
-  spreadOutliers(out.irradiance, known, seen);
+  spreadOutliers(out.irradiance, lightBefore, seen);
   mixNeighbours(out, seen, true);
   return out;
 }

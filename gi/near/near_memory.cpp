@@ -12,6 +12,7 @@ constexpr float kFresh = 2;                        // and how many times its wei
 constexpr float kLeastShare = 1 / 64.0f;           // of what may only have been missed
 constexpr float kLeastRays = 0.5f, kMostRays = 16; // fewer leave bright spots
 constexpr float kKnown = 8;                        // rays that a share found before is worth
+constexpr float kLightKept = 15 / 16.0f;           // of a pixel's mean, each frame
 constexpr float kOnPlane = 1;                      // deviation from a pixel's plane, pixels
 constexpr float kAlike = 0.3f;                     // cosine between normals
 
@@ -24,6 +25,11 @@ void NearMemory::fit(const CameraView& seenBy) {
   normals.assign(pixels, vec3(0));
   near.assign(pixels, 0);
   light.assign(pixels, 0);
+}
+
+void NearMemory::keep(size_t pixel, const NearExpected& before, uint32_t cast, uint32_t brought, float found) {
+  near[pixel] = (before.near * before.worthRays + float(brought)) / std::max(before.worthRays + float(cast), 1.0f);
+  light[pixel] = std::isfinite(found) ? glm::mix(found, before.light, kLightKept) : before.light;
 }
 
 NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfaces, float budget)
@@ -40,7 +46,7 @@ NearRates::NearRates(const NearMemory& before, std::span<const SurfaceHit> surfa
   }
 }
 
-NearRates::Rate NearRates::at(const SurfaceHit& surface) const {
+NearExpected NearRates::at(const SurfaceHit& surface) const {
   const std::optional<size_t> pixel = pixelOf(surface);
   const float rays = raysOf(weightOf(pixel));
   if (!pixel) return {rays, kGuess, 1, 0};

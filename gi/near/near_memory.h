@@ -2,7 +2,8 @@
 // surface has just come into sight, which is little of an image. So pixels remember how many of their rays brought
 // light, and cast as many as that says: as the root of the share, for the variance of a pixel goes with it. Each ray
 // counts 1 over the rays that its pixel was expected to cast, which only frames before decide. What it brings:
-// docs/decisions.md, 2026-11-26, near light by lists.
+// docs/decisions.md, 2026-11-26, near light by lists. They also remember what their rays brought, by which outliers are
+// told (near_mix.h).
 #pragma once
 
 #include "engine/scene/scene_view.h"
@@ -14,15 +15,27 @@
 
 namespace lambent {
 
+/// What frames before say of a pixel.
+struct NearExpected {
+  float rays;      // that it is expected to cast
+  float near;      // share of its rays that brought light; a guess where it is not known
+  float worthRays; // rays that this share is worth
+  float light;     // luminance that its rays brought; 0 where it is not known
+};
+
 /// What the pixels of a frame found, row by row from the top. 32 bytes a pixel.
 struct NearMemory {
   CameraView camera;
   std::vector<vec3> positions, normals; // world space, m; unit vectors; infinitely far: no surface
   std::vector<float> near;              // share of a pixel's rays that brought light
-  std::vector<float> light;             // that they brought, luminance of the irradiance: a mean over frames
+  std::vector<float> light;             // luminance of the irradiance that they brought: a moving mean over about 16
+                                        // frames, from 0
 
   void forget() { positions.clear(); }
   void fit(const CameraView& seenBy);
+  /// Keeps what a pixel was expected to find and found: of `cast` rays `brought` brought light, together irradiance of
+  /// luminance `found`. Counts of what is no number only what was there before.
+  void keep(size_t pixel, const NearExpected& before, uint32_t cast, uint32_t brought, float found);
 };
 
 class NearRates {
@@ -30,13 +43,7 @@ class NearRates {
   /// `surfaces`: some that the frame sees, spread over the image; pixels like them cast `budget` rays on the mean.
   NearRates(const NearMemory& before, std::span<const SurfaceHit> surfaces, float budget);
 
-  struct Rate {
-    float rays;  // of the pixel, expected
-    float near;  // share that brought light before; a guess where it is not known
-    float known; // rays that this share is worth
-    float light; // luminance that its rays brought before; 0 where it is not known
-  };
-  Rate at(const SurfaceHit& surface) const;
+  NearExpected at(const SurfaceHit& surface) const;
 
  private:
   /// The pixel that saw the place; none: none did.

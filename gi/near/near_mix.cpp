@@ -12,12 +12,12 @@ namespace lambent {
 
 namespace {
 
-/// Which surfaces near light goes over between. Symmetric: what one gives the other takes.
-struct Bounds {
+/// Between which pixels near light may pass. Symmetric: what one gives the other takes.
+struct EdgeStop {
   float reach, flatReach; // in cells: between the surfaces seen; between those in one plane
   float slope;            // sine: how far a neighbour may be off the plane, over its distance
 
-  bool hold(const NeighbourSurfaces& seen, size_t a, size_t b) const {
+  bool passes(const NeighbourSurfaces& seen, size_t a, size_t b) const {
     constexpr float kAlike = 0.3f; // cosine between normals
     constexpr float kFlat = 0.05f; // slope of what lies in the plane
     const vec3 d = seen.positions[b] - seen.positions[a];
@@ -32,7 +32,7 @@ struct Bounds {
 /// Which neighbours a pixel's light is mixed with.
 struct Mixture {
   std::array<std::array<float, 3>, 3> weights; // by how many columns and rows apart
-  Bounds bounds;
+  EdgeStop edge;
   float whole; // of the weights, the pixel's own filling up; 0: those that count are all
 };
 
@@ -66,7 +66,7 @@ void mix(std::vector<vec3>& light, const NeighbourSurfaces& seen, const Mixture&
     float weights = 0;
     aroundPixel(x, y, 2, width, height, [&](int u, int v, size_t other) {
       const float weight = mixture.weights[std::abs(u - x)][std::abs(v - y)];
-      if (weight == 0 || !mixture.bounds.hold(seen, at, other)) return;
+      if (weight == 0 || !mixture.edge.passes(seen, at, other)) return;
       sum += weight * traced[other];
       weights += weight;
     });
@@ -81,11 +81,12 @@ void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(
 
 void mixBlocks(std::vector<vec3>& light, const NeighbourSurfaces& seen) { mix(light, seen, kTent); }
 
-void spreadOutliers(std::vector<vec3>& light, std::span<const float> known, const NeighbourSurfaces& seen) {
-  constexpr int kAround = 3;       // pixels
-  constexpr float kOutlier = 8;    // times what its neighbours have on the mean
-  constexpr float kAboveKnown = 4; // and times what it is known to have
-  constexpr Bounds kBounds{0.4f, 0.4f, 0.4f};
+void spreadOutliers(std::vector<vec3>& light, std::span<const float> before, const NeighbourSurfaces& seen) {
+  constexpr int kAround = 3;        // pixels
+  constexpr float kOutlier = 8;     // times what its neighbours have on the mean
+  constexpr float kAboveBefore = 4; // and times what it had before
+  constexpr EdgeStop kEdge{0.4f, 0.4f, 0.4f};
+  static_assert((2 * kAround + 1) * (2 * kAround + 1) <= 64, "a bit for each");
   struct Outlier {
     int x, y;
     uint64_t takers;  // of the pixels around, in their order
@@ -95,18 +96,18 @@ void spreadOutliers(std::vector<vec3>& light, std::span<const float> known, cons
   std::vector<std::vector<Outlier>> found(light.size() / size_t(width)); // by rows
   forPixels(seen, height, [&](int x, int y, size_t at) {
     const float own = luminance(light[at]);
-    if (!(own > kAboveKnown * known[at])) return;
+    if (!(own > kAboveBefore * before[at])) return;
     float sum = 0;
     uint64_t takers = 0, bit = 1;
     aroundPixel(x, y, kAround, width, height, [&](int, int, size_t other) {
-      if (other != at && kBounds.hold(seen, at, other)) {
+      if (other != at && kEdge.passes(seen, at, other)) {
         sum += luminance(light[other]);
         takers |= bit;
       }
       bit <<= 1;
     });
     const float neighbours = float(std::popcount(takers));
-    const float most = std::max(kOutlier * sum / std::max(neighbours, 1.0f), kAboveKnown * known[at]);
+    const float most = std::max(kOutlier * sum / std::max(neighbours, 1.0f), kAboveBefore * before[at]);
     if (takers == 0 || !(own > most) || !std::isfinite(own)) return;
     const vec3 kept = light[at] * (most / own);
     found[size_t(y)].push_back({x, y, takers, kept, (light[at] - kept) / (neighbours + 1)});

@@ -21,11 +21,11 @@ struct NeighbourSurfaces {
 /// 0.045; bias of living-room-2 -2.9 and -2.2 %.)
 void mixPatterns(std::vector<vec3>& light, const NeighbourSurfaces& seen);
 
-/// Takes from a pixel what it has above 8 times the mean of its neighbours and 4 times what it is known to have, and
-/// shares it equally among the pixel and these: pixels of 7×7 whose surfaces are near and alike. Keeps the sum over the
-/// image, not each pixel's mean. `known`: luminance of a pixel in frames before; 0: none is known. What it brings:
-/// docs/decisions.md, 2026-11-27, outliers of near light.
-void spreadOutliers(std::vector<vec3>& light, std::span<const float> known, const NeighbourSurfaces& seen);
+/// Takes from a pixel what it has above 8 times the mean of its neighbours and 4 times what it had before, and shares
+/// it equally among the pixel and these: pixels of 7×7 whose surfaces are near (0.4 cells) and alike. Keeps the sum
+/// over the image, not each pixel's mean. `light`: irradiance; `before`: its luminance as NearMemory::light, 0 where
+/// nothing is known. Of irradiance alone: lobes keep their outliers. What it brings: docs/decisions.md, 2026-11-27.
+void spreadOutliers(std::vector<vec3>& light, std::span<const float> before, const NeighbourSurfaces& seen);
 
 /// Mixes 5×5 pixels, so that each of the 16 parts of a block's one pattern weighs alike. The filter over the subsets,
 /// which separates normals, finds too few pixels to mix on mouldings and leaves.

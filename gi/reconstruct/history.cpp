@@ -82,7 +82,7 @@ void HistoryPass::find(const HistoryInputs& in, const Kept& before, const gl::Fr
   const int most = frames_ == 0 ? 0 : in.settings.frames - 1;
   program.set("mostFrames", float(changes ? std::min(most, kFewFrames) : most));
   program.set("mostKnown", in.otherNoise ? 0.0f : kKnownFrames);
-  program.set("whole", in.whole);
+  program.set("cycleFrames", in.cycleFrames);
   program.set("smoothed", in.smooth.irradiance != nullptr);
   program.set("stands", frames_ > 0 && std::memcmp(&before_, &in.surfaces.block, sizeof before_) == 0);
   cameras_.write(sizeof before_, frames_ == 0 ? &in.surfaces.block : &before_).bindUniform(2);

@@ -43,7 +43,8 @@ struct HistoryInputs {
   SurfaceLighting smooth = {}; // the frame before, denoised, or null: what variance is about; its edges end means
   const LightChangeMap* change = nullptr; // what lights know of it, or null
   bool apart = false;      // the noise of pixels is each its own, so that a change of light is told from it
-  float whole = 0; // frames before this that hold all lights: of a mean of fewer each counts as its share; 0: as one
+  float cycleFrames = 0;   // of classes, in which every light comes once: a mean of fewer before this counts as its
+                           // share of them, squared; 0: as many as it holds
   bool otherNoise = false; // the noise of a frame is of another kind than the last's, so its variance is not known
   int glossyFrames = 0;    // earlier frames that a mean of glossy light holds at most while camera or light moves
 };

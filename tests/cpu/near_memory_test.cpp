@@ -22,6 +22,7 @@ TEST(NearRates, FollowWhatWasFound) {
       memory.positions[size_t(8 * y + x)] = placeOf(x, y).position;
       memory.normals[size_t(8 * y + x)] = {0, 0, 1};
       memory.near[size_t(8 * y + x)] = x < 4 ? 1.0f : y < 4 ? 0.25f : 0.0f;
+      memory.light[size_t(8 * y + x)] = float(x);
     }
   std::vector<SurfaceHit> seen;
   for (int y = 0; y < 8; ++y)
@@ -36,9 +37,11 @@ TEST(NearRates, FollowWhatWasFound) {
   EXPECT_NEAR(meanOfRays(rates), 2, 0.01);
   EXPECT_NEAR(rates.at(placeOf(6, 1)).rays, most / 2, 1e-5f) << "the root of a quarter; row 0 is the top";
   EXPECT_FLOAT_EQ(rates.at(placeOf(6, 6)).rays, 0.5f) << "never none: an eighth of the most would be less";
+  EXPECT_EQ(rates.at(placeOf(3, 6)).light, 3);
   SurfaceHit other = placeOf(1, 6);
   other.normal = {0, 1, 0};
   EXPECT_GT(rates.at(other).rays, most) << "came into sight";
+  EXPECT_EQ(rates.at(other).light, 0) << "and nothing is known of it";
   other = placeOf(1, 6);
   other.position.z += 2;
   EXPECT_GT(rates.at(other).rays, most) << "came into sight";
@@ -48,6 +51,24 @@ TEST(NearRates, FollowWhatWasFound) {
   memory.forget();
   EXPECT_NEAR(meanOfRays(NearRates(memory, seen, 4)), 4, 0.01);
   EXPECT_NEAR(meanOfRays(NearRates(memory, seen, 0.25f)), 0.25, 0.01);
+}
+
+TEST(NearMemory, KeepsAMeanOfLightAndNothingElse) {
+  NearMemory memory;
+  memory.fit(cameraAt(vec3(0, 0, 5), vec3(0), 1, 2, 1));
+  NearExpected before{.rays = 2, .near = 0.5f, .worthRays = 8, .light = 0};
+  for (int frame = 0; frame < 200; ++frame) {
+    memory.keep(0, before, 2, 2, frame % 2 ? 6.0f : 2.0f);
+    before.near = memory.near[0];
+    before.light = memory.light[0];
+  }
+  EXPECT_NEAR(memory.light[0], 4, 0.2);
+  EXPECT_NEAR(memory.near[0], 1, 1e-3) << "all brought light";
+  memory.keep(0, before, 1, 0, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(memory.light[0], before.light) << "what is no number does not stay";
+  memory.keep(1, {.rays = 1, .near = 0.5f, .worthRays = 1, .light = 0}, 3, 0, 16);
+  EXPECT_FLOAT_EQ(memory.near[1], 0.125f);
+  EXPECT_FLOAT_EQ(memory.light[1], 1) << "a sixteenth of the first";
 }
 
 } // namespace lambent::test::near_memory_test

@@ -282,7 +282,7 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--size", options.size, "WIDTHxHEIGHT");
   command.add_option("--technique", options.technique, "how indirect light is made: smc (default), " + techniques);
   command.add_option("--preset", options.preset,
-                     "low, medium or high (lambent inspect --presets); --set changes single settings");
+                     joined(presetNames()) + " (lambent inspect --presets); --set changes single settings");
   command.add_option("--set", options.set, "setting as name=value, repeatable (lambent settings lists them)")
       ->allow_extra_args(false);
   command.add_option("--bounces", options.bounces, "indirect bounces, same as --set smc.bounces");
