@@ -1,7 +1,7 @@
 #include "game/app.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/gl/state_guard.h"
 
 #include <epoxy/gl.h>

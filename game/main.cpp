@@ -58,11 +58,14 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
 int main(int argc, char** argv) {
   lambent::prepareStreams();
   try {
+    lambent::chooseShaders();
     if (const auto options = lambent::readOptions(argc, argv)) lambent::App(*options).run();
     return 0;
   } catch (const lambent::InputError& e) {
     std::cerr << "error: " << e.what() << "\n";
     return 2;
+  } catch (const lambent::CheckFailure&) {
+    throw; // ends the program, which says what
   } catch (const std::exception& e) {
     std::cerr << "error: " << e.what() << "\n";
     return 1;

@@ -1,11 +1,11 @@
-// Error policy. A bug stops the program through CHECK, printing both values. Bad input is an InputError, shown as one
-// line `error: FILE: what is wrong (what would be right)` and exit code 2. A failure at run time is a RunError, exit 1.
+// Error policy. A bug is a CheckFailure that says both values: programs let it end them (std::terminate prints it), the
+// library makes it a status. Bad input is an InputError, shown as one line `error: FILE: what is wrong (what would be
+// right)` and exit code 2. A failure at run time is a RunError, exit 1.
 #pragma once
 
 #include "engine/core/text.h"
 
-#include <cstdlib>
-#include <iostream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -22,10 +22,16 @@ struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A fault in this code. Who catches std::exception lets it through, or is at the border to a host.
+struct CheckFailure : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
 template <class A, class B>
 [[noreturn]] void checkFailed(const char* text, const A& a, const B& b, const char* file, int line) {
-  std::cerr << file << ":" << line << ": CHECK(" << text << ") failed: " << a << " against " << b << std::endl;
-  std::abort();
+  std::ostringstream out;
+  out << file << ":" << line << ": CHECK(" << text << ") failed: " << a << " against " << b;
+  throw CheckFailure(out.str());
 }
 
 } // namespace lambent

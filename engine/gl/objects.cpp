@@ -3,18 +3,10 @@
 #include "engine/core/error.h"
 
 #include <limits>
-#include <map>
-#include <mutex>
 
 namespace lambent::gl {
 
 namespace {
-
-std::mutex memoryMutex;
-std::map<std::string, uint64_t>& memory() {
-  static std::map<std::string, uint64_t> bytes;
-  return bytes;
-}
 
 constexpr GLenum kTargets[] = {GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP_ARRAY}; // by TextureKind
 
@@ -109,8 +101,10 @@ int texelBytes(GLenum format) {
 }
 
 std::vector<std::pair<std::string, uint64_t>> memoryByOwner() {
-  const std::lock_guard lock(memoryMutex);
-  return {memory().begin(), memory().end()};
+  std::vector<std::pair<std::string, uint64_t>> owners;
+  for (const MemoryAccount::Row& row : MemoryAccount::current().rows())
+    if (row.gpu) owners.emplace_back(row.owner, row.bytes);
+  return owners;
 }
 
 namespace detail {
@@ -119,16 +113,14 @@ Object::Object(GLenum kind, GLuint name, const std::string& label, uint64_t byte
     : kind_(kind), name_(name), bytes_(bytes), owner_(label.substr(0, label.find('/'))) {
   if (!label.empty()) glObjectLabel(kind, name, GLsizei(label.size()), label.c_str());
   if (bytes_ == 0) return;
-  const std::lock_guard lock(memoryMutex);
-  memory()[owner_] += bytes_;
+  account_ = &MemoryAccount::current();
+  account_->enter(owner_, true, int64_t(bytes_));
 }
 
 Object::~Object() {
   if (name_ == 0) return;
   if (kind_ != 0) deletionOf(kind_)(1, &name_); // else it is somebody else's
-  if (bytes_ == 0) return;
-  const std::lock_guard lock(memoryMutex);
-  if ((memory()[owner_] -= bytes_) == 0) memory().erase(owner_);
+  if (account_) account_->enter(owner_, true, -int64_t(bytes_));
 }
 
 void Object::swap(Object& other) noexcept {
@@ -136,6 +128,7 @@ void Object::swap(Object& other) noexcept {
   std::swap(name_, other.name_);
   std::swap(bytes_, other.bytes_);
   std::swap(owner_, other.owner_);
+  std::swap(account_, other.account_);
 }
 
 } // namespace detail
@@ -156,10 +149,11 @@ Texture Texture::borrowed(GLuint name) {
 }
 
 bool Texture::readsAsFlat() const {
-  GLint target = 0, compare = 0;
+  GLint target = 0, compare = 0, red = 0;
   glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
   glGetTextureParameteriv(name(), GL_TEXTURE_COMPARE_MODE, &compare);
-  return target == GL_TEXTURE_2D && compare == GL_NONE;
+  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_RED_TYPE, &red);
+  return target == GL_TEXTURE_2D && compare == GL_NONE && red != GL_INT && red != GL_UNSIGNED_INT;
 }
 
 bool Texture::holdsSinglePrecision() const {

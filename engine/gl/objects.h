@@ -2,6 +2,7 @@
 // its owner ("vpl maps/faces"), under which its memory is counted.
 #pragma once
 
+#include "engine/core/memory.h"
 #include "engine/gl/counts.h"
 
 #include <epoxy/gl.h>
@@ -24,7 +25,7 @@ inline constexpr int kTextureUnits = 13, kUniformBindings = 4, kStorageBindings 
 void bindTexture(int unit, GLuint texture);
 void bindSampler(int unit, GLuint sampler);
 
-/// Bytes of textures and buffers that are alive, by owner (the label up to '/'), ascending by name.
+/// Bytes of textures and buffers in the present account, by owner (the label up to '/'), ascending by name.
 std::vector<std::pair<std::string, uint64_t>> memoryByOwner();
 
 namespace detail {
@@ -52,6 +53,7 @@ class Object {
   GLuint name_ = 0;
   uint64_t bytes_ = 0;
   std::string owner_;
+  MemoryAccount* account_ = nullptr;
 };
 
 } // namespace detail
@@ -77,7 +79,7 @@ class Texture : public detail::Object {
   Texture(const std::string& label, const TextureDesc& desc);
   /// Wraps a texture that another owner keeps alive: never deleted, its memory not counted.
   static Texture borrowed(GLuint name);
-  /// Says whether a shader's sampler2D reads its values: two dimensions, no comparison of depths.
+  /// Says whether a shader's sampler2D reads its values: two dimensions, no integers, no comparison of depths.
   bool readsAsFlat() const;
   /// Says whether its depths, or its red, are numbers of 32 bits.
   bool holdsSinglePrecision() const;

@@ -3,8 +3,6 @@
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
 
-#include <spdlog/spdlog.h>
-
 #include <cstdlib>
 #include <fstream>
 
@@ -96,7 +94,8 @@ void ProgramCache::build(Program& program) const {
     if (!file->empty()) sources.emplace_back(stage, loadShader(folder_, *file, desc.defines));
   program.files_.clear();
   for (const auto& [stage, source] : sources)
-    for (const fs::path& file : source.files) program.files_.push_back({file, fs::last_write_time(file)});
+    for (const fs::path& file : source.files)
+      if (!folder_.empty()) program.files_.push_back({file, fs::last_write_time(file)});
   std::vector<GLuint> shaders;
   try {
     for (const auto& [stage, source] : sources) shaders.push_back(compile(stage, source));
@@ -159,7 +158,6 @@ std::vector<std::string> ProgramCache::reloadChanged() {
       messages.push_back(error.what());
     }
   }
-  for (const std::string& message : messages) spdlog::info("{}", message);
   return messages;
 }
 

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <unordered_map>
 
 namespace lambent::gl {
@@ -61,14 +63,21 @@ struct ShaderText {
   std::string text;
   std::vector<std::filesystem::path> files;
 };
-/// `#include "name"` is looked for next to the including file, then in `folder`. `defines` go below #version.
-/// Throws RunError naming file and line of an include that is not there.
+/// `#include "name"` is looked for next to the including file, then in `folder`; an empty folder means the shaders that
+/// this was built with. `defines` go below #version. Throws RunError naming file and line of an include that is not
+/// there.
 ShaderText loadShader(const std::filesystem::path& folder, const std::string& file,
                       const std::vector<std::string>& defines);
 
-/// LAMBENT_SHADERS, else ../share/lambent/shaders next to the executable, else shaders of the source tree. Throws
-/// RunError naming the places when none exists.
-std::filesystem::path findShaderFolder();
+/// A shader that this was built with: its path in the folder shaders/, and its text.
+struct BuiltInShader {
+  std::string_view file, text;
+};
+std::span<const BuiltInShader> builtInShaders(); // ascending by file
+
+/// Where new caches read shaders, for programs to choose when they start; empty, as at first: the built-in ones.
+void setShaderFolder(const std::filesystem::path& folder);
+const std::filesystem::path& shaderFolder();
 
 /// Programs of one context, compiled when first asked for. References stay valid for the life of the cache.
 /// LAMBENT_DUMP_SHADERS=FOLDER has every variant that compiles written there as the compiler got it, so that other
@@ -76,13 +85,13 @@ std::filesystem::path findShaderFolder();
 /// program.
 class ProgramCache {
  public:
-  explicit ProgramCache(std::filesystem::path folder = findShaderFolder()) : folder_(std::move(folder)) {}
+  explicit ProgramCache(std::filesystem::path folder = shaderFolder()) : folder_(std::move(folder)) {}
 
   /// Throws RunError with the compiler's log when the program has never compiled.
   const Program& get(const ProgramDesc& desc);
 
-  /// Recompiles what changed on disk. A program that fails keeps its last good version. Returns one message per
-  /// program touched: "reloaded gather.frag", or the file and the compiler's log.
+  /// Recompiles what changed on disk; nothing where shaders are built in. A program that fails keeps its last good
+  /// version. Returns one message per program touched: "reloaded gather.frag", or the file and the compiler's log.
   std::vector<std::string> reloadChanged();
 
   const std::filesystem::path& folder() const { return folder_; }

@@ -1,10 +1,10 @@
-// Expands #include and finds the shader folder.
+// Reads shaders, from a folder or built in, and expands #include.
 #include "engine/core/error.h"
 #include "engine/gl/program.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 namespace lambent::gl {
@@ -12,6 +12,23 @@ namespace lambent::gl {
 namespace fs = std::filesystem;
 
 namespace {
+
+fs::path& folderOfPrograms() {
+  static fs::path folder;
+  return folder;
+}
+
+/// The text of a built-in shader, or of a file; nothing where there is none.
+std::optional<std::string> textOf(const fs::path& file, bool builtIn) {
+  if (builtIn) {
+    const auto shaders = builtInShaders();
+    const auto found = std::ranges::find(shaders, file.generic_string(), &BuiltInShader::file);
+    return found != shaders.end() ? std::optional<std::string>(found->text) : std::nullopt;
+  }
+  std::ifstream in(file);
+  if (!in || fs::is_directory(file)) return {};
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
 
 struct Expansion {
   const fs::path& folder;
@@ -31,8 +48,10 @@ std::string includeName(const std::string& line) {
 void expand(Expansion& expansion, const fs::path& file, const std::vector<std::string>& defines) {
   const size_t index = expansion.files.size();
   expansion.files.push_back(file);
-  std::ifstream in(file);
-  if (!in) throw RunError("shader " + file.string() + " cannot be read");
+  const bool builtIn = expansion.folder.empty();
+  const std::optional<std::string> text = textOf(file, builtIn);
+  if (!text) throw RunError("shader " + file.string() + " cannot be read");
+  std::istringstream in(*text);
   std::string line;
   int cplusplusDepth = 0; // > 0 inside `#ifdef __cplusplus` of a shared header, whose includes are not for GLSL
   for (int number = 1; std::getline(in, line); ++number) {
@@ -53,10 +72,10 @@ void expand(Expansion& expansion, const fs::path& file, const std::vector<std::s
       continue;
     }
     fs::path target = (file.parent_path() / name).lexically_normal();
-    if (!fs::exists(target)) target = (expansion.folder / name).lexically_normal();
-    if (!fs::exists(target))
+    if (!textOf(target, builtIn)) target = (expansion.folder / name).lexically_normal();
+    if (!textOf(target, builtIn))
       throw RunError("shader " + file.string() + ":" + std::to_string(number) + ": no file \"" + name +
-                     "\" next to it or in " + expansion.folder.string());
+                     "\" next to it or in " + (builtIn ? "the built-in shaders" : expansion.folder.string()));
     // Each file goes in once: shared headers include one another, and GLSL has no use for a second copy.
     if (std::find(expansion.files.begin(), expansion.files.end(), target) == expansion.files.end()) {
       expansion.out << "#line 1 " << expansion.files.size() << '\n';
@@ -74,18 +93,7 @@ ShaderText loadShader(const fs::path& folder, const std::string& file, const std
   return {expansion.out.str(), std::move(expansion.files)};
 }
 
-fs::path findShaderFolder() {
-  if (const char* set = std::getenv("LAMBENT_SHADERS")) {
-    if (fs::is_directory(set)) return set;
-    throw InputError("LAMBENT_SHADERS", std::string("no folder ") + set + " (the folder that holds fullscreen.vert)");
-  }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = program.parent_path().parent_path() / "share/lambent/shaders";
-  if (!error && fs::is_directory(installed)) return installed;
-  const fs::path source = fs::path(LAMBENT_SOURCE_DIR) / "shaders";
-  if (fs::is_directory(source)) return source;
-  throw RunError("no shaders in " + installed.string() + " or " + source.string() + " (set LAMBENT_SHADERS)");
-}
+void setShaderFolder(const fs::path& folder) { folderOfPrograms() = folder; }
+const fs::path& shaderFolder() { return folderOfPrograms(); }
 
 } // namespace lambent::gl

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/ecs/registry.h"
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <optional>
 #include <string>

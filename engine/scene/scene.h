@@ -3,10 +3,10 @@
 #pragma once
 
 #include "engine/ecs/registry.h"
-#include "engine/scene/assets.h"
 #include "engine/scene/components.h"
 #include "engine/scene/deform.h"
-#include "engine/scene/view_changes.h"
+#include "engine/view/assets.h"
+#include "engine/view/view_changes.h"
 
 #include <filesystem>
 #include <functional>
@@ -71,13 +71,6 @@ std::vector<NamedCamera> sceneCameras(const Scene& scene);
 /// inside and level when the scene encloses its middle, through the open side when it has just one (see
 /// default_view.cpp for the rule). Looks at every triangle: up to about a second per million of them.
 CameraView defaultView(const Scene& scene);
-
-/// Camera at `eye` looking at `target`, +Y up (another up where the view is vertical).
-CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
-
-/// Rotation that turns -Z to `direction` and keeps +Y upwards as far as possible: for lights and cameras. Identity when
-/// the direction has no length.
-quat rotationTowards(const vec3& direction);
 
 /// Turns the registry into a SceneView; keeps what it needs to find what moved since its last call.
 /// Spans stay valid until the next call.

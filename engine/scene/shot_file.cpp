@@ -1,10 +1,10 @@
 // Shot files: strict JSON in, tidy JSON out. Every message says where in the file: "shot.json: camera.keys[2].fov: …".
 
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "engine/scene/json_text.h"
-#include "engine/scene/scene_view.h"
 #include "engine/scene/shot.h"
+#include "engine/view/scene_view.h"
 
 #include <cmath>
 #include <fstream>

@@ -1,6 +1,7 @@
 #include "engine/trace/embree_query.h"
 
 #include "engine/core/error.h"
+#include "engine/core/memory.h"
 #include "engine/trace/surface_hit.h"
 
 #if EMBREE_MAJOR >= 4
@@ -12,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <new>
 #include <utility>
 
 namespace lambent {
@@ -87,6 +89,21 @@ void fillRay(RTCRay& out, const Ray& r) {
   out.flags = 0;
 }
 
+bool noteMemory(void* account, ssize_t bytes, bool after) {
+  MemoryAccount& a = *static_cast<MemoryAccount*>(account);
+  if (!after && bytes > 0 && !a.mayGrow(bytes)) return false;
+  if (bytes < 0) a.mayGrow(bytes);
+  a.enter("rays", false, bytes);
+  return true;
+}
+
+/// Throws where Embree had no memory for what it was asked for.
+void requireMemory(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE) throw RunError("Embree: error " + std::to_string(int(error)));
+}
+
 void writeVertices(RTCBuffer vertices, const std::vector<vec3>& positions) {
   std::memcpy(rtcGetBufferData(vertices), positions.data(), positions.size() * sizeof(vec3));
 }
@@ -124,6 +141,9 @@ struct EmbreeQuery::State {
   mutable std::atomic<uint64_t> alphaTests{0}, textureLookups{0};
 
   explicit State(const SceneAssets& a) : assets(a) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
 
   void applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t primitive);
   void countAlphaTests() const {
@@ -170,8 +190,14 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
   }
   // Embree reads four floats per vertex, so one more follows the last: our own copies, shared by the primitives.
   RTCBuffer vertices = rtcNewBuffer(device, positions.size() * sizeof(vec3) + sizeof(float));
-  writeVertices(vertices, positions);
   RTCBuffer indices = rtcNewBuffer(device, mesh.triangles.size() * sizeof(uvec3));
+  if (!vertices || !indices) {
+    if (vertices) rtcReleaseBuffer(vertices);
+    if (indices) rtcReleaseBuffer(indices);
+    rtcReleaseScene(out.scene);
+    throw std::bad_alloc();
+  }
+  writeVertices(vertices, positions);
   std::memcpy(rtcGetBufferData(indices), mesh.triangles.data(), mesh.triangles.size() * sizeof(uvec3));
   for (uint32_t p = 0; p < mesh.primitives.size(); ++p) {
     const Primitive& primitive = mesh.primitives[p];
@@ -241,6 +267,7 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
   State& s = *state_;
   s.device = rtcNewDevice(nullptr);
   if (!s.device) throw RunError("Embree: no device (error " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
+  rtcSetDeviceMemoryMonitorFunction(s.device, noteMemory, &MemoryAccount::current());
   for (uint32_t m = 0; m < assets.meshes.size(); ++m) {
     std::vector<GeometryData>& data = s.geometryData.emplace_back();
     for (uint32_t p = 0; p < assets.meshes[m].primitives.size(); ++p) data.push_back({&assets, m, p});
@@ -249,15 +276,16 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
   s.top = rtcNewScene(s.device);
   rtcSetSceneFlags(s.top, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(s.top);
+  requireMemory(s.device);
 }
 
-EmbreeQuery::~EmbreeQuery() {
-  State& s = *state_;
-  for (uint32_t i = 0; i < s.instances.size(); ++i) s.remove(i);
-  rtcReleaseScene(s.top);
-  for (RTCScene m : s.meshes)
+EmbreeQuery::~EmbreeQuery() = default;
+EmbreeQuery::State::~State() {
+  for (uint32_t i = 0; i < instances.size(); ++i) remove(i);
+  if (top) rtcReleaseScene(top);
+  for (RTCScene m : meshes)
     if (m) rtcReleaseScene(m);
-  rtcReleaseDevice(s.device);
+  if (device) rtcReleaseDevice(device);
 }
 
 uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
@@ -275,7 +303,10 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
     s.place(i, in);
     ++placed;
   }
-  if (placed > 0 || before != now) rtcCommitScene(s.top);
+  if (placed > 0 || before != now) {
+    rtcCommitScene(s.top);
+    requireMemory(s.device);
+  }
   return placed;
 }
 

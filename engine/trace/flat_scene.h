@@ -1,8 +1,8 @@
 // The scene in two levels, instances above meshes, as arrays for ray tracers other than Embree.
 #pragma once
 
-#include "engine/scene/scene_view.h"
 #include "engine/trace/bvh.h"
+#include "engine/view/scene_view.h"
 
 namespace lambent {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/core/math.h"
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <span>
 

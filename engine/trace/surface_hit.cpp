@@ -1,6 +1,6 @@
 #include "engine/trace/surface_hit.h"
 
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 
 namespace lambent {
 

@@ -1,7 +1,7 @@
 #include "game/rules/goal.h"
 
 #include "engine/core/rng.h"
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 #include "gi/reference/path_tracer.h"
 
 #include <algorithm>

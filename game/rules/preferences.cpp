@@ -1,7 +1,7 @@
 #include "game/rules/preferences.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/scene/json_text.h"
 #include "gi/plan/presets.h"
 

@@ -1,7 +1,7 @@
 // What a frame made: light on surfaces, the surfaces, and what led to them, for viewers, hosts and tests.
 #pragma once
 
-#include "engine/scene/sky.h"
+#include "engine/view/sky.h"
 #include "gi/contract/light_provider.h"
 
 #include <optional>

@@ -28,8 +28,8 @@ struct FrameWorld {
   uint32_t seed = 1;
   bool settingsChanged = false; // of VPLs or effects
   bool gatherChanged = false;   // settings or shaders: pixels gather other light
-  /// What is accumulated over frames begins again: world, camera, or settings of light changed. Not for what shows the light
-  /// (exposure, tone mapping), nor because a host draws its surfaces again in every frame.
+  /// What is accumulated over frames begins again: world, camera, or settings of light changed. Not for what shows the
+  /// light (exposure, tone mapping), nor because a host draws its surfaces again in every frame.
   bool restart = true;
   const Progress& progress = kNoProgress;
 };

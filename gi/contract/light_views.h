@@ -2,7 +2,7 @@
 // how its light falls off.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 namespace lambent {
 

@@ -3,8 +3,7 @@
 
 #include "gi/contract/pass_context.h"
 
-#include <spdlog/fmt/fmt.h>
-
+#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
@@ -45,7 +44,10 @@ class MakerChoice {
   void compare(const MakerTimes& of) {
     gpuWins_ = 2 * of.gpuMs < of.cpuMs;
     const auto [best, other] = *gpuWins_ ? std::pair(of.gpuMs, of.cpuMs) : std::pair(of.cpuMs, of.gpuMs);
-    times_ = fmt::format(" ({:.2f} ms {}, {} {:.2f} ms)", best, of.unit, *gpuWins_ ? cpuName_ : gpuName_, other);
+    char text[80];
+    std::snprintf(text, sizeof text, " (%.2f ms %s, %s %.2f ms)", best, of.unit, *gpuWins_ ? cpuName_ : gpuName_,
+                  other);
+    times_ = text;
   }
 
   bool gpuByRule_, measures_;

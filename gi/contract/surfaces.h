@@ -1,6 +1,7 @@
 // Surfaces seen by a camera: drawn by gi/surfaces, or taken over from a host that has drawn them.
 #pragma once
 
+#include "engine/core/math.h"
 #include "shaders/shared/camera_block.h"
 
 #include <cstdint>
@@ -16,7 +17,7 @@ struct BufferSlice;
 struct GBuffer {
   const gl::Texture* depth = nullptr;    // DEPTH32F, reversed: 0 where nothing is seen
   const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer
-  const gl::Texture* albedo = nullptr;   // RGBA16F
+  const gl::Texture* albedo = nullptr;   // RGBA16F; null: a host's that has not told it
   const gl::Texture* emission = nullptr; // RGBA16F radiance emitted towards the viewer, W/(m² sr)
   const gl::Texture* roughnessMetalness =
       nullptr;                             // RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert
@@ -25,13 +26,34 @@ struct GBuffer {
   int width = 0, height = 0;
 };
 
-/// A host's own G-buffer of the view's camera and size, as names of textures in the current context. They hold what
-/// GBuffer says, in any format of floats that samplers read; rows from the bottom, depth as
+enum class HostDepth : int { Reversed, Forward, Linear }; // Linear: metres along the view direction, in red
+enum class HostNormals : int { Xyz, Unorm, Octahedral, OctahedralUnorm };
+
+/// How a host's textures are to be read, where they are not as ours.
+struct HostConventions {
+  HostDepth depth = HostDepth::Reversed;
+  bool depthMinusOne = false; // depth is stored as -1..1
+  float near = 0;             // planes of the host's projection, metres; near 0: depth is as clipFromView gives it
+  float far = kInfinity;
+  HostNormals normals = HostNormals::Xyz; // octahedral: shaders/shared/octahedral.h
+  bool viewSpace = false;                 // normals are of view space
+  bool originTop = false;                 // rows from the top
+  int x = 0, y = 0;                       // where the view's rectangle begins, in rows and columns as stored
+
+  /// Says whether textures can be read without being converted.
+  bool ours() const { return *this == HostConventions{}; }
+  bool operator==(const HostConventions&) const = default;
+};
+
+/// A host's own G-buffer of the view's camera, as names of textures in the current context, in any format that samplers
+/// read as floats. By default they have the view's size, hold what GBuffer says, rows from the bottom, and depth as
 /// clipFromView(camera, far) of the view's camera gives it.
 struct HostSurfaces {
-  uint32_t depth = 0, normal = 0, albedo = 0;
+  uint32_t depth = 0, normal = 0;
+  uint32_t albedo = 0;             // 0: who composes the image knows it; light does without
   uint32_t emission = 0;           // 0: nothing glows
-  uint32_t roughnessMetalness = 0; // 0: all is Lambert
+  uint32_t roughnessMetalness = 0; // 0: all is Lambert; of hosts with our conventions only
+  HostConventions conventions = {};
 };
 
 } // namespace lambent

@@ -1,7 +1,7 @@
 // The scene of one frame, placed for rays and for drawing.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 namespace lambent {
 

@@ -3,8 +3,8 @@
 #include "gi/cube/cube_file.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
-#include "engine/scene/scene_hash.h"
+#include "engine/core/files.h"
+#include "engine/view/scene_hash.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -6,6 +6,7 @@
 #include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
 #include "gi/frame/world_state.h"
+#include "gi/near/light_at_points.h"
 #include "gi/surfaces/surfaces.h"
 #include "gi/visibility/paraboloid_maps.h"
 
@@ -15,7 +16,8 @@ namespace lambent {
 
 namespace {
 using Clock = std::chrono::steady_clock;
-}
+namespace fs = std::filesystem;
+} // namespace
 
 /// What one stage keeps from frame to frame is its own.
 struct GiFrame::Kept {
@@ -35,24 +37,26 @@ struct GiFrame::Kept {
   FrameOutputs outputs;
   FrameStats stats;
 
-  Kept(const Settings& s, uint32_t seed_, Makers makers)
-      : settings(s), seed(seed_), context{programs, profiler, makers} {}
+  Kept(const Settings& s, uint32_t seed_, Makers makers, const fs::path& shaders)
+      : settings(s), seed(seed_), programs(shaders), context{programs, profiler, makers} {}
 
   LightProvider& technique();
   void begin(const SceneView& given);
   void end(Clock::time_point begin, const gl::Counts& before);
 };
 
-GiFrame::GiFrame(const Settings& settings, uint32_t seed, Makers makers)
-    : kept_((gl::requireContext(), std::make_unique<Kept>(settings, seed, makers))) {}
+GiFrame::GiFrame(const Settings& settings, uint32_t seed, Makers makers, const std::optional<fs::path>& shaders)
+    : kept_((gl::requireContext(),
+             std::make_unique<Kept>(settings, seed, makers, shaders.value_or(gl::shaderFolder())))) {}
 GiFrame::~GiFrame() = default;
 
 void GiFrame::restart() {
   const Settings settings = kept_->settings;
   const uint32_t seed = kept_->seed;
   const Makers makers = kept_->context.makers;
+  const fs::path shaders = kept_->programs.folder();
   kept_.reset(); // not both in memory
-  kept_ = std::make_unique<Kept>(settings, seed, makers);
+  kept_ = std::make_unique<Kept>(settings, seed, makers, shaders);
 }
 
 // The frame -----------------------------------------------------------------------------------------------------------
@@ -183,8 +187,30 @@ uint32_t nameOf(const gl::Texture* texture) { return texture ? texture->name() :
 
 uint32_t GiFrame::directIrradiance() const { return nameOf(kept_->outputs.direct.irradiance); }
 uint32_t GiFrame::indirectIrradiance() const { return nameOf(kept_->outputs.indirect.irradiance); }
+bool GiFrame::converged() const {
+  const Kept& k = *kept_;
+  if (!k.outputs.surfaces.depth || k.world.view().changes.any()) return false;
+  const bool gathers = k.indirect && k.stats.plan.on(EffectId::Indirect);
+  return !(gathers && !k.indirect->status().pending.empty()) && !(k.settings.direct.on && k.direct.pending());
+}
 const FrameOutputs& GiFrame::outputs() const { return kept_->outputs; }
 PassContext GiFrame::context() const { return kept_->context; }
+
+std::vector<vec3> GiFrame::indirectAt(std::span<const SurfaceHit> points) const {
+  const std::vector<VirtualLight> lights = lightsOf(vpls());
+  const World world = kept_->world.current();
+  if (lights.empty() && !kept_->stats.plan.on(EffectId::Indirect)) return std::vector<vec3>(points.size(), vec3(0));
+  if (lights.empty())
+    throw InputError("light at points", "the technique keeps no virtual lights on the CPU (smc, ir, mir and tcas do)");
+  return indirectAtPoints({world.view, world.rays, world.lights, lights, asGathered(kept_->settings), kept_->seed},
+                          points);
+}
+
+std::vector<vec3> GiFrame::directAt(std::span<const SurfaceHit> points) const {
+  kept_->indirect->wait();
+  const World world = kept_->world.current();
+  return directAtPoints({world.view, world.rays, world.lights, {}, kept_->settings, kept_->seed}, points);
+}
 
 ShadowAgreement GiFrame::compareShadowMaps(const SceneView& view, int slots, int points,
                                            const std::function<void(int, int)>& progress) {

@@ -3,8 +3,8 @@
 // To look at it (composite, exposure, tone mapping, debug views): gi/viewer.
 #pragma once
 
-#include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
+#include "engine/view/scene_view.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/makers.h"
 #include "gi/contract/surfaces.h"
@@ -13,8 +13,11 @@
 #include "gi/visibility/shadow_agreement.h"
 #include "gi/vpl/vpl_set.h"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 namespace lambent {
@@ -27,7 +30,9 @@ struct PassContext;
 /// measured.
 class GiFrame {
  public:
-  explicit GiFrame(const Settings& settings, uint32_t seed = 1, Makers makers = Makers::ByRule);
+  /// `shaders`: their folder, empty for the built-in ones; nothing: as gl::shaderFolder.
+  explicit GiFrame(const Settings& settings, uint32_t seed = 1, Makers makers = Makers::ByRule,
+                   const std::optional<std::filesystem::path>& shaders = {});
   ~GiFrame();
 
   /// Makes this as a new GiFrame with the present settings: nothing of earlier frames is kept.
@@ -49,8 +54,17 @@ class GiFrame {
   /// the view's size, rows from the bottom, valid until the next run. 0: there is no such light.
   uint32_t directIrradiance() const;
   uint32_t indirectIrradiance() const;
+  /// Says whether another frame of the same view, drawn alike, would bring nothing new.
+  bool converged() const;
   /// Returns all that the last frame made.
   const FrameOutputs& outputs() const;
+
+  /// Returns irradiance at points of the last frame's scene, W/m², by its lights: the virtual ones, all with a ray
+  /// each, and the scene's own. Each has a position (world space), a unit normal and the same as geometric normal.
+  /// Waits for an update of the VPLs that still runs. Throws InputError where the technique has no virtual lights on
+  /// the CPU.
+  std::vector<vec3> indirectAt(std::span<const SurfaceHit> points) const;
+  std::vector<vec3> directAt(std::span<const SurfaceHit> points) const;
 
   /// Compares the shadow maps of the present VPLs with each other and with rays, as `view` (the last one run) sees
   /// them.

@@ -1,8 +1,8 @@
 // The scene from frame to frame: taken over, placed for rays and for drawing as far as the plan goes; and the plan.
 #pragma once
 
-#include "engine/scene/view_copy.h"
 #include "engine/trace/embree_query.h"
+#include "engine/view/view_copy.h"
 #include "gi/contract/figures.h"
 #include "gi/contract/pass_context.h"
 #include "gi/contract/world.h"

@@ -10,7 +10,7 @@
 // one 75; 32 lamps alike; 1000 lamps 450 to 2900, one by one 7600 to 16000).
 #pragma once
 
-#include "engine/scene/assets.h"
+#include "engine/view/assets.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "gi/lighting/receivers.h"
 
 #include "engine/core/sampling.h"
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <cmath>

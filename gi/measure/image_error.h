@@ -1,7 +1,7 @@
 // How far one picture is from another, or from a truth that knows itself only so well.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "gi/reference/path_tracer.h"
 
 #include <optional>

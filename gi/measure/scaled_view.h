@@ -2,7 +2,7 @@
 // rest.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <functional>
 #include <vector>

@@ -1,7 +1,7 @@
 // Errors of a technique over time at tracked pixels (paper 1, 5.2 and eq. 10). Pure functions of recorded series.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 #include "gi/measure/watched.h"
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 // told (near_mix.h).
 #pragma once
 
-#include "engine/scene/scene_view.h"
 #include "engine/trace/ray_query.h"
+#include "engine/view/scene_view.h"
 
 #include <optional>
 #include <span>

@@ -3,7 +3,7 @@
 // all; settings force each on or off for comparison.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 #include "gi/plan/needs.h"
 #include "gi/plan/settings.h"
 

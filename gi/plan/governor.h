@@ -6,7 +6,7 @@
 // indirect light): it is chosen once, after a short calibration, and kept while frames run.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 #include "gi/plan/presets.h"
 
 namespace lambent {

@@ -3,7 +3,7 @@
 // not slowed down.
 #pragma once
 
-#include "engine/scene/view_copy.h"
+#include "engine/view/view_copy.h"
 #include "gi/reference/traced_image.h"
 
 #include <condition_variable>

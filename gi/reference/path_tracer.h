@@ -6,7 +6,7 @@
 // threads, on how a run is cut into passes, or on being continued later.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "gi/lighting/light_set.h"
 
 #include <atomic>

@@ -2,7 +2,8 @@
 #include "gi/reference/state_file.h"
 
 #include "engine/core/error.h"
-#include "engine/scene/scene_hash.h"
+#include "engine/core/files.h"
+#include "engine/view/scene_hash.h"
 
 #include <cstring>
 #include <fstream>

@@ -1,7 +1,7 @@
 // Sums of a reference on disk, so that a run can go on later. The file is bound to what it is an image of.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 #include "gi/reference/path_tracer.h"
 
 #include <filesystem>

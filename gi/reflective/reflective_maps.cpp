@@ -2,7 +2,7 @@
 // into positions and reflected flux. What did not change is not drawn again.
 #include "gi/reflective/reflective_maps.h"
 
-#include "engine/scene/scene.h"
+#include "engine/view/scene_view.h"
 #include "gi/contract/light_views.h"
 
 #include <glm/gtc/matrix_transform.hpp>

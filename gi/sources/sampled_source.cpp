@@ -1,7 +1,8 @@
 // When the set of VPLs is updated, and what the GPU gets of it.
 #include "gi/sources/sampled_source.h"
 
-#include "engine/scene/view_copy.h"
+#include "engine/core/parallel.h"
+#include "engine/view/view_copy.h"
 #include "gi/contract/figures.h"
 
 #include <algorithm>
@@ -78,9 +79,13 @@ VirtualLights SampledSource::run(const FrameWorld& in, const Needs& needs, Frame
   lights.alive = kept_.changes.alive;
   if (overlapped)
     running_ = std::async(std::launch::async, [work = std::move(kept_), task = taskOf(in), copy = ViewCopy(world.view),
-                                               rays = &world.rays, shining = world.lights]() mutable {
+                                               rays = &world.rays, shining = world.lights,
+                                               workers = Workers::current()]() mutable {
       shining.view = &copy.view();
-      return updated(std::move(work), task, copy.view(), *rays, shining, {});
+      VplWork done;
+      const auto update = [&] { done = updated(std::move(work), task, copy.view(), *rays, shining, {}); };
+      workers ? workers->run(update) : update();
+      return done;
     });
   return lights;
 }

@@ -40,8 +40,9 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
   camera_ = cameras_.write(sizeof block, &block);
   camera_.bindUniform(0);
-  if (!in.previous || in.host) before_ = {};
-  if (in.host) {
+  const bool theirs = in.host && in.host->conventions.ours(), converted = in.host && !theirs;
+  if (!in.previous || theirs) before_ = {};
+  if (theirs) {
     GBuffer adopted = adopt(in);
     adopted.block = block;
     return adopted;
@@ -52,28 +53,41 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   else if (in.previous)
     keepPrevious(fits);
   block_ = block;
-  if (!fits || in.glossy != bool(roughnessMetalness_)) {
+  const bool glossy = in.glossy && !converted;
+  if (!fits || glossy != bool(roughnessMetalness_) || converted == bool(albedo_)) {
     const auto make = [&](const char* label, GLenum format) {
       return gl::Texture(label, {.format = format, .width = width, .height = height});
     };
     depth_ = make("g-buffer/depth", GL_DEPTH_COMPONENT32F);
     normal_ = make("g-buffer/normal", GL_RGBA16F);
-    albedo_ = make("g-buffer/albedo", GL_RGBA16F);
+    albedo_ = converted ? gl::Texture() : make("g-buffer/albedo", GL_RGBA16F);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    roughnessMetalness_ = in.glossy ? make("g-buffer/roughness and metalness", GL_RG16) : gl::Texture();
-    framebuffer_ = in.glossy
+    roughnessMetalness_ = glossy ? make("g-buffer/roughness and metalness", GL_RG16) : gl::Texture();
+    framebuffer_ = converted ? gl::Framebuffer("g-buffer", {&normal_, &emission_}, &depth_)
+                   : glossy
                        ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
                        : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
   }
-  const GBuffer out{&depth_,  &normal_, &albedo_, &emission_, in.glossy ? &roughnessMetalness_ : nullptr,
-                    &camera_, block,    width,    height};
-  if (in.keep) return out;
+  const GBuffer out{&depth_,
+                    &normal_,
+                    converted ? nullptr : &albedo_,
+                    &emission_,
+                    glossy ? &roughnessMetalness_ : nullptr,
+                    &camera_,
+                    block,
+                    width,
+                    height};
+  if (in.keep && !converted) return out;
   framebuffer_.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = width, .height = height}.apply();
+  if (converted) {
+    convert(*in.host);
+    return out;
+  }
   const float zero[4] = {0, 0, 0, 0};
-  for (int i = 0; i < (in.glossy ? 4 : 3); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
+  for (int i = 0; i < (glossy ? 4 : 3); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
-  in.scene.draw(in.glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
+  in.scene.draw(glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
   return out;
 }
 
@@ -92,21 +106,62 @@ void SurfacePass::keepPrevious(bool any) {
   before_ = {.depth = &depthBefore_, .normal = &normalBefore_, .block = block_, .width = width, .height = height};
 }
 
+/// Draws the host's surfaces into the framebuffer that is bound, as ours.
+void SurfacePass::convert(const HostSurfaces& host) {
+  if (!plain_) {
+    plain_ = gl::Sampler("g-buffer/host");
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glSamplerParameteri(plain_.name(), filter, GL_NEAREST);
+  }
+  const HostConventions& c = host.conventions;
+  gl::PipelineState{
+      .depthTest = true, .depthWrite = true, .depthFunc = GL_ALWAYS, .width = depth_.width(), .height = depth_.height()}
+      .apply();
+  const gl::Program& program = context_.programs.get({.fragment = "adopt.frag"});
+  program.use();
+  program.set("corner", glm::ivec2(c.x, c.y));
+  program.set("originTop", int(c.originTop));
+  program.set("depthType", int(c.depth));
+  program.set("depthMinusOne", int(c.depthMinusOne));
+  program.set("hostNear", c.near);
+  program.set("nearOverFar", c.near / c.far);
+  program.set("hostFar", c.far);
+  program.set("normalType", int(c.normals));
+  program.set("viewSpace", int(c.viewSpace));
+  program.set("emits", int(host.emission != 0));
+  gl::bindTexture(0, host.depth);
+  gl::bindTexture(1, host.normal);
+  gl::bindTexture(2, host.emission != 0 ? host.emission : host.normal);
+  for (int unit = 0; unit < 3; ++unit) gl::bindSampler(unit, plain_.name());
+  gl::drawFullscreen();
+  for (int unit = 0; unit < 3; ++unit) gl::bindSampler(unit, 0);
+}
+
 void checkHost(const HostSurfaces& host, const CameraView& camera) {
+  const HostConventions& c = host.conventions;
+  if (c.x < 0 || c.y < 0) throw InputError("host's rectangle", "begins outside of its textures");
+  if (c.depth == HostDepth::Forward && !(c.near > 0))
+    throw InputError("host's planes", "near is not given, which forward depth needs");
+  if (c.depth != HostDepth::Linear && c.near > 0 && !(c.far > c.near))
+    throw InputError("host's planes", "far is not beyond near");
   const auto check = [&](const char* what, uint32_t name, bool needed) {
     const std::string which = std::string("host's ") + what + " texture " + std::to_string(name);
     if (name == 0 && !needed) return;
     const gl::Texture texture = gl::Texture::borrowed(name);
     if (texture.width() != 0 && !texture.readsAsFlat())
       throw InputError(which, "is not flat, or compares depths (GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE GL_NONE)");
-    if (texture.width() == camera.width && texture.height() == camera.height && name != 0) return;
-    throw InputError(which, "has " + std::to_string(texture.width()) + "x" + std::to_string(texture.height()) +
-                                " texels (" + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
-                                ", as the camera)");
+    const bool holds = c.ours() ? texture.width() == camera.width && texture.height() == camera.height
+                                : texture.width() - c.x >= camera.width && texture.height() - c.y >= camera.height;
+    if (holds && name != 0) return;
+    throw InputError(which,
+                     "has " + std::to_string(texture.width()) + "x" + std::to_string(texture.height()) + " texels (" +
+                         std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                         (c.ours() ? ", as the camera)"
+                                   : " from " + std::to_string(c.x) + "," + std::to_string(c.y) + " on are needed)"));
   };
   check("depth", host.depth, true);
   check("normal", host.normal, true);
-  check("albedo", host.albedo, true);
+  check("albedo", host.albedo, false);
   check("emission", host.emission, false);
   check("roughness and metalness", host.roughnessMetalness, false);
 }

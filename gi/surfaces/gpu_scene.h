@@ -4,7 +4,7 @@
 
 #include "engine/gl/objects.h"
 #include "engine/gl/ring.h"
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 #include "gi/contract/pass_context.h"
 #include "shaders/shared/material_block.h"
 

@@ -22,7 +22,7 @@ struct SurfaceInputs {
   bool previous = false;              // those of the last run stay too
 };
 
-/// Checks a host's surfaces. Throws InputError when a texture is missing or has not the camera's size.
+/// Checks a host's surfaces. Throws InputError when a texture is missing or does not hold the camera's image.
 void checkHost(const HostSurfaces& host, const CameraView& camera);
 
 class SurfacePass {
@@ -37,12 +37,14 @@ class SurfacePass {
 
  private:
   GBuffer adopt(const SurfaceInputs& in);
+  void convert(const HostSurfaces& host);
   void keepPrevious(bool any);
 
   PassContext context_;
   gl::Texture depth_, normal_, albedo_, emission_, roughnessMetalness_;
-  gl::Texture hosts_[5]; // a host's, as ours
+  gl::Texture hosts_[5]; // a host's, with our conventions
   gl::Texture black_;    // emission of a host that has none
+  gl::Sampler plain_;    // a host's texture may want mipmaps that it does not have
   gl::Framebuffer framebuffer_;
   gl::Ring cameras_{"g-buffer/camera"};
   gl::BufferSlice camera_; // of the last run

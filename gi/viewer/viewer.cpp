@@ -39,6 +39,8 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   FrameStats& stats = passes_->stats;
   const gl::Texture* const last = results.radiance;
   try {
+    if (host && (host->albedo == 0 || !host->conventions.ours()))
+      throw InputError("host's surfaces", "have no albedo, or conventions of their own (an image is composed of them)");
     stats = gi_.run(view, progress, host);
   } catch (...) { // the last frame stays where it was refused; what something is thrown out of in drawing is no frame
     results = gi_.outputs().surfaces.depth ? FrameResults{gi_.outputs(), last} : FrameResults{};

@@ -3,7 +3,7 @@
 // header.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "gi/frame/gi_frame.h"
 
 namespace lambent {

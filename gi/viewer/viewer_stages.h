@@ -1,8 +1,8 @@
 // The image, and looking at everything that led to it.
 #pragma once
 
-#include "engine/core/image.h"
-#include "engine/scene/sky.h"
+#include "engine/image/image.h"
+#include "engine/view/sky.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/contract/pass_context.h"
 #include "gi/plan/settings.h"

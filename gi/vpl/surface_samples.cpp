@@ -4,7 +4,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 #include "gi/vpl/sources.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // estimateRadiance).
 #include "gi/vpl/smc.h"
 
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 
 #include <algorithm>
 #include <cmath>

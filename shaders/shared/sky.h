@@ -1,5 +1,5 @@
 // Radiance of a clear sky by direction, one text for C++ and GLSL: Preetham, Shirley, Smits 1999, "A practical analytic
-// model for daylight". What does not depend on the direction is in the model (engine/scene/sky.cpp).
+// model for daylight". What does not depend on the direction is in the model (engine/view/sky.cpp).
 #pragma once
 #include "interop.h"
 SHARED_BEGIN

@@ -1,6 +1,6 @@
 // Deformed instances as rays, emitters and riders see them.
 #include "engine/core/rng.h"
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 #include "tests/support/hand_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,5 +1,5 @@
 // The layered depth cube: surfaces found along the axes, light put in and taken out, and the file that keeps it.
-#include "engine/scene/scene_hash.h"
+#include "engine/view/scene_hash.h"
 #include "gi/cube/cube_file.h"
 #include "gi/lighting/light_set.h"
 #include "gi/vpl/sources.h"

@@ -1,7 +1,7 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
 #include "engine/trace/analytic_query.h"

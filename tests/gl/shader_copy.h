@@ -6,10 +6,15 @@
 
 namespace lambent::test {
 
-/// A copy of the shader folder, removed at the end.
+/// A folder of the built-in shaders, removed at the end.
 class ShaderCopy {
  public:
-  ShaderCopy() { fs::copy(gl::findShaderFolder(), path, fs::copy_options::recursive); }
+  ShaderCopy() {
+    for (const gl::BuiltInShader& shader : gl::builtInShaders()) {
+      fs::create_directories((path / shader.file).parent_path());
+      writeBytes(path / shader.file, std::string(shader.text));
+    }
+  }
 
   std::string read(const std::string& file) const { return readBytes(path / file); }
   void write(const std::string& file, const std::string& text) const {

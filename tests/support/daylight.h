@@ -1,7 +1,7 @@
 // Daylight for tests, and integrals over directions in double precision.
 #pragma once
 
-#include "engine/scene/sky.h"
+#include "engine/view/sky.h"
 #include "tests/support/test.h"
 
 namespace lambent::test {

@@ -1,7 +1,7 @@
 // Comparison of images in tests: a failure leaves both images and their difference, and says how to look again.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "tests/support/test.h"
 
 namespace lambent::test {

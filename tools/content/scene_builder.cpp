@@ -1,7 +1,7 @@
 #include "tools/content/scene_builder.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/core/rng.h"
 
 #include <glm/gtc/quaternion.hpp>

@@ -1,6 +1,6 @@
 #include "tools/content/textures.h"
 
-#include "engine/core/image.h"
+#include "engine/core/color.h"
 #include "tools/content/scene_builder.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "tools/lambent/command_line.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 
 #include <CLI/CLI.hpp>
 
@@ -160,6 +160,7 @@ int runCommand(int argc, char** argv, const char* version, std::initializer_list
   for (const auto& declare : commands) declare(app);
   for (CLI::App* command : app.get_subcommands({})) refuseNotANumber(*command);
   try {
+    chooseShaders();
     checkCommand(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::Success& e) { // help, version
@@ -170,6 +171,8 @@ int runCommand(int argc, char** argv, const char* version, std::initializer_list
   } catch (const InputError& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
     return 2;
+  } catch (const CheckFailure&) {
+    throw; // ends the program, which says what
   } catch (const std::exception& e) {
     std::fprintf(stderr, "error: %s\n", e.what());
     return 1;

@@ -34,8 +34,9 @@ uint64_t hashOfNamedFiles(const fs::path& scene, uint64_t hash) {
 uint64_t hashOfProgram() {
   uint64_t hash = hashOf(readText("/proc/self/exe"));
   std::vector<fs::path> files;
-  for (const fs::directory_entry& e : fs::recursive_directory_iterator(gl::findShaderFolder()))
-    if (e.is_regular_file()) files.push_back(e.path());
+  if (!gl::shaderFolder().empty())
+    for (const fs::directory_entry& e : fs::recursive_directory_iterator(gl::shaderFolder()))
+      if (e.is_regular_file()) files.push_back(e.path());
   std::ranges::sort(files);
   for (const fs::path& file : files) hash = hashOf(readText(file), hash);
   return hash;
@@ -104,9 +105,9 @@ Value figuresOf(const FrameStats& s) {
 
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
   std::string text = more + '\n' + o.scene + '\n' + readText(o.scene) + readText(opened.scene.file);
-  for (const std::string& option : {o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
-                                    std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.sunSize.value_or(-1)),
-                                    std::to_string(o.seed)})
+  for (const std::string& option :
+       {o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName, std::to_string(o.fovDegrees.value_or(0)),
+        std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
     text += '\n' + option;
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})

@@ -1,6 +1,7 @@
 #include "tools/lambent/picture.h"
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "shaders/shared/tone_map.h"
 
 #include <stb/stb_easy_font.h>

@@ -1,7 +1,7 @@
 // Pictures: as files and as a display shows them, put together, with text and marks burnt in.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "gi/plan/settings.h"
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 // lambent record SHOT: every frame of a shot → images, frame log, video; two techniques side by side, a contact sheet.
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"

@@ -1,6 +1,7 @@
 #include "tools/lambent/report.h"
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/platform/gl_context.h"
 #include "tools/lambent/command_line.h"
 #include "tools/lambent/picture.h"

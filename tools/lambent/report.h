@@ -1,7 +1,7 @@
 // Text that reports are made of: tables in Markdown, CSV and HTML, and the files that hold them.
 #pragma once
 
-#include "engine/core/image.h"
+#include "engine/image/image.h"
 #include "tools/lambent/value.h"
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // lambent reference SCENE|SHOT: path-traced truth, progressive and resumable. lambent compare A B: RMSE, relative MSE,
 // bias and largest difference of two linear pictures.
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/progress.h"
 #include "gi/measure/image_error.h"
 #include "tools/lambent/commands.h"

@@ -1,7 +1,7 @@
 #include "tools/launch/frame_log.h"
 
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 
 #include <algorithm>
 #include <cstdio>

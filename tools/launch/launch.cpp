@@ -6,6 +6,7 @@
 #include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
 #include "engine/core/text.h"
+#include "engine/gl/program.h"
 #include "engine/trace/embree_query.h"
 #include "engine/trace/open_sky.h"
 #include "game/rules/props.h"
@@ -408,6 +409,21 @@ void needPunctualLight(LaunchContext& stage) {
     addSun(stage.scene, {}, 0);
     stage.notes.push_back("the scene has no punctual light: added a sun (--sun)");
   }
+}
+
+void chooseShaders() {
+  if (const char* named = std::getenv("LAMBENT_SHADERS")) {
+    if (!fs::is_directory(named))
+      throw InputError("LAMBENT_SHADERS",
+                       std::string("no folder ") + named + " (the folder that holds fullscreen.vert)");
+    return gl::setShaderFolder(named);
+  }
+  std::error_code failure;
+  const fs::path tree = fs::canonical(LAMBENT_SOURCE_DIR, failure),
+                 program = fs::read_symlink("/proc/self/exe", failure);
+  const auto [end, rest] = std::mismatch(tree.begin(), tree.end(), program.begin(), program.end());
+  if (!tree.empty() && end == tree.end() && fs::is_directory(tree / "shaders", failure))
+    gl::setShaderFolder(tree / "shaders");
 }
 
 fs::path findContentFolder() {

@@ -81,6 +81,10 @@ std::pair<int, int> sizeOf(const std::string& text);
 /// lights.
 void needPunctualLight(LaunchContext& stage);
 
+/// Has programs read their shaders from LAMBENT_SHADERS, or where they run in the tree that they were built from, from
+/// its folder, so that changes show; else from themselves. Throws InputError where there is no such folder.
+void chooseShaders();
+
 /// Folder of the bundled scenes: LAMBENT_CONTENT, else ../share/lambent/content beside the executable, else the source
 /// tree's. Throws InputError naming the places when none is there.
 std::filesystem::path findContentFolder();

@@ -1,6 +1,6 @@
 // Light of pixels from the layered depth cube.
 #include "engine/core/error.h"
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/gl/ring.h"
 #include "gi/cube/cube_file.h"
 #include "gi/cube/draw/hemicube_pass.h"

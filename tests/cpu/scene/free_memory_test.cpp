@@ -1,6 +1,6 @@
 #include "engine/core/free_memory.h"
 
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 
 #include "tests/support/files.h"
 

@@ -1,7 +1,8 @@
 // Pictures on disk, texture lookup, nearest names.
 
-#include "engine/core/image.h"
+#include "engine/core/files.h"
 #include "engine/core/text.h"
+#include "engine/image/image.h"
 #include "tests/cpu/scene/support.h"
 
 #include <bit>

@@ -55,11 +55,11 @@ TEST(Transforms, ChildrenFollowParentsInAnyOrderOfCreation) {
   expectNear(origin(child), {0, 3, 0});
 }
 
-TEST(TransformsDeathTest, CyclesAreCaught) {
+TEST(TransformsTest, CyclesAreCaught) {
   Scene scene;
   const Entity a = addNode(scene, {}), b = addNode(scene, {}, a);
   scene.registry.emplace<Parent>(a, b);
-  EXPECT_DEATH(updateWorldTransforms(scene), "CHECK");
+  EXPECT_THROW(updateWorldTransforms(scene), CheckFailure);
 }
 
 TEST_F(SmallScene, FirstExtractionReportsEverythingThenNothing) {

@@ -1,7 +1,7 @@
 // Texture lookup on the CPU. Matches what GL does with the base level of an sRGB texture: decode, then filter.
 
-#include "engine/core/image.h"
-#include "engine/scene/assets.h"
+#include "engine/core/color.h"
+#include "engine/view/assets.h"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // A view that outlives the scene's next extraction: for whoever keeps it, or works on it while frames run.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "engine/scene/surface_point.h"
+#include "engine/view/surface_point.h"
 
 #include "engine/core/error.h"
 

@@ -1,6 +1,6 @@
 // Preetham, Shirley, Smits 1999: coefficients are their tables 2 (Perez) and 1 (zenith), fitted for turbidities from 2
 // to 6 or so. Ours: the elevation stays at the horizon once the sun is below, with less and less light.
-#include "engine/scene/sky.h"
+#include "engine/view/sky.h"
 
 #include "engine/core/sampling.h"
 #include "shaders/shared/octahedral.h"

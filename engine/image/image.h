@@ -1,11 +1,10 @@
-// Images on disk. Outputs go to a temporary name next to the target and are renamed, so nothing is ever half-written.
+// Images on disk, written as engine/core/files.h says.
 #pragma once
 
+#include "engine/core/color.h"
 #include "engine/core/math.h"
 
 #include <filesystem>
-#include <functional>
-#include <string_view>
 #include <vector>
 
 namespace lambent {
@@ -33,9 +32,6 @@ struct Image8 {
 /// Resizes bilinearly, on the encoded values.
 Image8 resized(const Image8& image, int width, int height);
 
-float srgbFromLinear(float linear);
-float linearFromSrgb(float encoded);
-
 /// Writes 32-bit float RGB, ZIP-compressed.
 void writeExr(const std::filesystem::path& file, const Image& image);
 /// Reads R,G,B (or `layer`.R, …). Throws InputError naming what the file has instead.
@@ -44,19 +40,5 @@ Image readExr(const std::filesystem::path& file, const std::string& layer = {});
 /// byte order only.
 Image readPfm(const std::filesystem::path& file);
 void writePng(const std::filesystem::path& file, const Image8& image);
-
-/// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
-/// writable, a folder by its name.
-void checkWritable(const std::filesystem::path& file);
-
-/// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
-/// the folder cannot be written.
-void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
-/// The same for a file of these bytes.
-void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
-
-/// Removes temporaries of `file` left by a program that was killed while it wrote. Call it only where no other program
-/// writes the file, as when a run is resumed.
-void removeLeftovers(const std::filesystem::path& file);
 
 } // namespace lambent

@@ -1,4 +1,4 @@
-#include "engine/scene/view_copy.h"
+#include "engine/view/view_copy.h"
 
 namespace lambent {
 

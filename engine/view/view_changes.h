@@ -1,7 +1,7 @@
 // What a frame of a scene shows, and how it differs from the frame before.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Points that ride on a surface: a place on a triangle, where the scene has it now, and what is there.
 #pragma once
 
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 namespace lambent {
 

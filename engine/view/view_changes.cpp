@@ -1,4 +1,4 @@
-#include "engine/scene/view_changes.h"
+#include "engine/view/view_changes.h"
 
 #include <atomic>
 #include <unordered_map>

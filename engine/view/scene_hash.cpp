@@ -1,4 +1,4 @@
-#include "engine/scene/scene_hash.h"
+#include "engine/view/scene_hash.h"
 
 namespace lambent {
 

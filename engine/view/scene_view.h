@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/core/math.h"
-#include "engine/scene/assets.h"
-#include "engine/scene/sky.h"
+#include "engine/view/assets.h"
+#include "engine/view/sky.h"
 
 #include <memory>
 #include <span>
@@ -49,7 +49,7 @@ struct LightView {
   float range = kInfinity; // metres; glTF's smooth window, infinite when absent
   float innerConeCos = 1, outerConeCos = 0.70710678f;
   float angularRadius = 0; // of a directional light's disk, radians; 0: sharp shadows
-  bool changed = false; // anything of it differs from the previous extraction
+  bool changed = false;    // anything of it differs from the previous extraction
 };
 
 /// Places farther than this from the scene's origin (metres, along an axis) are left out, so that squares and cubes of
@@ -104,5 +104,12 @@ CameraRay cameraRay(const CameraView& camera, float u, float v);
 /// glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE). For an orthographic camera depth falls linearly from 1 to 0 over
 /// [near, orthoFar].
 mat4 clipFromView(const CameraView& camera, float orthoFar = 1000.0f);
+
+/// Camera at `eye` looking at `target`, +Y up (another up where the view is vertical).
+CameraView lookAt(const vec3& eye, const vec3& target, float fovY);
+
+/// Rotation that turns -Z to `direction` and keeps +Y upwards as far as possible: for lights and cameras. Identity when
+/// the direction has no length.
+quat rotationTowards(const vec3& direction);
 
 } // namespace lambent

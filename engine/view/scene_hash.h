@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/rng.h"
-#include "engine/scene/scene_view.h"
+#include "engine/view/scene_view.h"
 
 #include <cstring>
 #include <type_traits>

@@ -1,0 +1,313 @@
+/* Lambent: indirect and direct light for an engine's frames, in its own OpenGL 4.5 context. C99, C++11 and newer.
+ *
+ *   lambent_create            in the context that is current, on the thread that will draw
+ *   lambent_scene_create      meshes, materials, instances, lights, sky: told once, and again when they change
+ *   lambent_view_create       a camera's image of it; several per scene
+ *   lambent_render            every frame: camera and G-buffer in, light on its surfaces out, as textures
+ *   lambent_irradiance        light at any points: particles, forward-shaded things
+ *
+ * docs/embedding.md goes through it in this order. Conventions: right-handed, metres, radians; matrices column by
+ * column, as OpenGL's; colours linear Rec.709. Radiance in W/(m² sr), irradiance in W/m². Nothing here is scaled for a
+ * display.
+ *
+ * Descriptors: LAMBENT_DEFAULTS(kind, &desc) sets the size field and every default, then set what differs.
+ * Errors: each call says how it went; lambent_message() says it in words, with the cure. A call that fails changes
+ * nothing, but for LAMBENT_DEAD: a fault in the library itself, after which only lambent_destroy() does anything.
+ * Threads: a device is used by one thread at a time; calls that draw (marked GL) need the context in which it was
+ * created. Devices are independent of each other: two may run in two threads with two contexts. */
+#ifndef LAMBENT_H
+#define LAMBENT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define LAMBENT_VERSION_MAJOR 0
+#define LAMBENT_VERSION_MINOR 1
+#define LAMBENT_VERSION_PATCH 0
+#define LAMBENT_VERSION (LAMBENT_VERSION_MAJOR * 10000 + LAMBENT_VERSION_MINOR * 100 + LAMBENT_VERSION_PATCH)
+
+#if defined(__GNUC__)
+#define LAMBENT_API __attribute__((visibility("default")))
+#else
+#define LAMBENT_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of the library in use, as LAMBENT_VERSION; and as "0.1.0". Minor versions add to structs at their ends only: a host
+ * that was built with an older header of the same major version goes on as it was. */
+LAMBENT_API uint32_t lambent_version(void);
+LAMBENT_API const char* lambent_version_text(void);
+
+typedef enum lambent_status {
+  LAMBENT_OK = 0,
+  LAMBENT_INVALID_ARGUMENT = 1, /* a value, a size or an order of calls that cannot be: lambent_message() says which */
+  LAMBENT_INVALID_HANDLE = 2,   /* not of this device, or destroyed */
+  LAMBENT_NO_CONTEXT = 3,       /* no OpenGL 4.5 context is current, or not the device's */
+  LAMBENT_OUT_OF_MEMORY = 4,
+  LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile, a file that cannot be read */
+  LAMBENT_DEAD = 6    /* a fault in the library, now or before: destroy the device */
+} lambent_status;
+LAMBENT_API const char* lambent_status_text(lambent_status status);
+
+/* A device: everything of one host in one OpenGL context. The rest are numbers that belong to a device; 0 is none, and
+ * a number is never given twice. */
+typedef struct lambent_device lambent_device;
+typedef uint64_t lambent_scene;
+typedef uint64_t lambent_texture;  /* of a scene */
+typedef uint64_t lambent_material; /* of a scene */
+typedef uint64_t lambent_mesh;     /* of a scene */
+typedef uint64_t lambent_instance; /* a mesh placed in a scene */
+typedef uint64_t lambent_light;    /* of a scene */
+typedef uint64_t lambent_view;     /* of a scene */
+
+typedef enum lambent_kind { /* descriptors, for lambent_defaults() */
+  LAMBENT_DEVICE_DESC,
+  LAMBENT_TEXTURE_DESC,
+  LAMBENT_MATERIAL_DESC,
+  LAMBENT_MESH_DESC,
+  LAMBENT_LIGHT_DESC,
+  LAMBENT_SKY_DESC,
+  LAMBENT_VIEW_DESC,
+  LAMBENT_FRAME,
+  LAMBENT_OUTPUT
+} lambent_kind;
+/* Writes the defaults of a descriptor of `size` bytes, its size field included. */
+LAMBENT_API lambent_status lambent_defaults(lambent_kind kind, void* desc, size_t size);
+#define LAMBENT_DEFAULTS(kind, desc) lambent_defaults((kind), (desc), sizeof *(desc))
+
+/* Device ------------------------------------------------------------------------------------------------------------ */
+
+typedef enum lambent_level { LAMBENT_INFO, LAMBENT_WARNING, LAMBENT_ERROR } lambent_level;
+/* Called on the thread that called the library, with one line without its end. */
+typedef void (*lambent_log_function)(void* user, lambent_level level, const char* line);
+/* Called with the bytes by which memory for ray tracing grows (above 0, before it does) or has shrunk, from any thread.
+ * Returns 0 to refuse: the call that asked fails with LAMBENT_OUT_OF_MEMORY. */
+typedef int (*lambent_memory_function)(void* user, int64_t bytes);
+
+typedef struct lambent_device_desc {
+  size_t size;
+  uint32_t seed;                /* same seed, calls and driver: same light, to the bit, for any number of threads */
+  int threads;                  /* that compute, the caller included; 0: one for each core */
+  lambent_log_function log;     /* NULL: nothing is logged */
+  lambent_memory_function memory; /* NULL: nobody is asked */
+  void* user;                   /* handed to both */
+  const char* shader_folder;    /* NULL: the shaders in the library; for work on these: the folder shaders/ */
+} lambent_device_desc;
+
+/* GL. On failure *device is NULL and lambent_message(NULL) says why. `desc` may be NULL. */
+LAMBENT_API lambent_status lambent_create(const lambent_device_desc* desc, lambent_device** device);
+/* GL. With all that it holds; waits for what it still computes. NULL does nothing. */
+LAMBENT_API void lambent_destroy(lambent_device* device);
+/* What the last failed call said, one line; "" when none failed. Valid until the next call. NULL: of this thread's last
+ * call without a device. */
+LAMBENT_API const char* lambent_message(const lambent_device* device);
+
+typedef struct lambent_memory_row {
+  char owner[32]; /* "scene", "rays", "vpl maps", … */
+  int gpu;        /* 1: on the GPU, 0: for the CPU */
+  uint64_t bytes;
+} lambent_memory_row;
+/* Fills up to *count rows and sets *count to how many there are. `rows` may be NULL where *count is 0. */
+LAMBENT_API lambent_status lambent_memory(lambent_device* device, lambent_memory_row* rows, size_t* count);
+
+/* Scene ------------------------------------------------------------------------------------------------------------- */
+/* Textures, materials and meshes are meant to be made when a level is loaded: after a change of these the next frame
+ * begins its light anew (docs/embedding.md, what is not offered). Instances, lights and the sky may change in every
+ * frame; the library finds out what that means for the light. None of these calls needs the OpenGL context but
+ * lambent_texture_create of a texture's name, and none of them waits. */
+
+LAMBENT_API lambent_status lambent_scene_create(lambent_device* device, lambent_scene* scene);
+/* GL. With its views. */
+LAMBENT_API lambent_status lambent_scene_destroy(lambent_device* device, lambent_scene scene);
+
+typedef enum lambent_wrap { LAMBENT_REPEAT, LAMBENT_MIRRORED_REPEAT, LAMBENT_CLAMP_TO_EDGE } lambent_wrap;
+typedef struct lambent_texture_desc {
+  size_t size;
+  int width, height;
+  const uint8_t* rgba; /* width * height texels of four bytes; row 0 lies at v = 0 */
+  uint32_t gl_texture; /* GL. Instead of `rgba`: level 0 of a GL_TEXTURE_2D, copied now, which waits for the GPU */
+  int srgb;            /* colours are sRGB-encoded, alpha is not; default 1 */
+  lambent_wrap wrap_u, wrap_v;
+  int nearest; /* 1: no filter between texels */
+} lambent_texture_desc;
+LAMBENT_API lambent_status lambent_texture_create(lambent_device* device, lambent_scene scene,
+                                                  const lambent_texture_desc* desc, lambent_texture* texture);
+
+/* What light paths see of a surface: Lambert, albedo = base_color × texture × vertex colour; both sides reflect. */
+typedef struct lambent_material_desc {
+  size_t size;
+  float base_color[3];          /* default 0.8 */
+  lambent_texture base_texture; /* 0: none */
+  float emission[3];            /* radiance of the front side, or of both */
+  lambent_texture emission_texture;
+  int double_sided;  /* emits on both sides */
+  int masked;        /* 1: what has alpha (of base_texture × vertex colour) below alpha_cutoff is not there */
+  float alpha_cutoff; /* default 0.5 */
+} lambent_material_desc;
+LAMBENT_API lambent_status lambent_material_create(lambent_device* device, lambent_scene scene,
+                                                   const lambent_material_desc* desc, lambent_material* material);
+
+/* Triangles of a mesh that share a material: indices from 3 × first_triangle on. */
+typedef struct lambent_part {
+  uint32_t first_triangle, triangle_count;
+  lambent_material material;
+} lambent_part;
+/* Object space. All arrays are copied. */
+typedef struct lambent_mesh_desc {
+  size_t size;
+  uint32_t vertex_count, triangle_count;
+  const float* positions;  /* 3 a vertex */
+  const float* normals;    /* 3 a vertex, of any length; NULL: the triangles' own, means where they share vertices */
+  const float* uvs;        /* 2 a vertex; NULL: all 0 */
+  const float* colors;     /* linear RGBA, 4 a vertex; NULL: white */
+  const uint32_t* indices; /* 3 a triangle; the front is seen counter-clockwise */
+  const lambent_part* parts;
+  uint32_t part_count;       /* 0: all triangles are of `material` */
+  lambent_material material; /* 0: a grey one */
+  const char* name;          /* in messages; may be NULL */
+} lambent_mesh_desc;
+LAMBENT_API lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene,
+                                               const lambent_mesh_desc* desc, lambent_mesh* mesh);
+/* Not while an instance shows it. */
+LAMBENT_API lambent_status lambent_mesh_destroy(lambent_device* device, lambent_scene scene, lambent_mesh mesh);
+
+LAMBENT_API lambent_status lambent_instance_create(lambent_device* device, lambent_scene scene, lambent_mesh mesh,
+                                                   const float world_from_object[16], lambent_instance* instance);
+LAMBENT_API lambent_status lambent_instance_move(lambent_device* device, lambent_scene scene,
+                                                 lambent_instance instance, const float world_from_object[16]);
+/* Gives the instance positions of its own, object space, 3 for each vertex of its mesh, and normals; NULL normals: made
+ * from the triangles; NULL positions: the mesh's again. */
+LAMBENT_API lambent_status lambent_instance_deform(lambent_device* device, lambent_scene scene,
+                                                   lambent_instance instance, const float* positions,
+                                                   const float* normals, uint32_t vertex_count);
+LAMBENT_API lambent_status lambent_instance_destroy(lambent_device* device, lambent_scene scene,
+                                                    lambent_instance instance);
+
+typedef enum lambent_light_type { LAMBENT_POINT, LAMBENT_SPOT, LAMBENT_DIRECTIONAL } lambent_light_type;
+typedef struct lambent_light_desc {
+  size_t size;
+  lambent_light_type type;
+  float position[3];
+  float direction[3];    /* the way the light travels, of any length; default downwards */
+  float intensity[3];    /* W/sr; of a directional light irradiance, W/m², on what faces it */
+  float range;           /* metres, with glTF's smooth window; default infinite */
+  float inner_cone_angle, outer_cone_angle; /* of a spot, from its axis; between them glTF's falloff */
+  float angular_radius;  /* of a directional light's disk: soft shadows; 0: sharp ones */
+} lambent_light_desc;
+LAMBENT_API lambent_status lambent_light_create(lambent_device* device, lambent_scene scene,
+                                                const lambent_light_desc* desc, lambent_light* light);
+LAMBENT_API lambent_status lambent_light_set(lambent_device* device, lambent_scene scene, lambent_light light,
+                                             const lambent_light_desc* desc);
+LAMBENT_API lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene, lambent_light light);
+
+typedef enum lambent_sky_type { LAMBENT_CONSTANT_SKY, LAMBENT_CLEAR_SKY } lambent_sky_type;
+typedef struct lambent_sky_desc {
+  size_t size;
+  lambent_sky_type type;
+  float radiance[3];     /* of a constant sky; default black */
+  float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours */
+  float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
+} lambent_sky_desc;
+LAMBENT_API lambent_status lambent_scene_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* desc);
+
+/* View -------------------------------------------------------------------------------------------------------------- */
+
+typedef struct lambent_view_desc {
+  size_t size;
+  int width, height; /* of the image, pixels */
+} lambent_view_desc;
+LAMBENT_API lambent_status lambent_view_create(lambent_device* device, lambent_scene scene,
+                                               const lambent_view_desc* desc, lambent_view* view);
+/* GL. */
+LAMBENT_API lambent_status lambent_view_destroy(lambent_device* device, lambent_view view);
+LAMBENT_API lambent_status lambent_view_resize(lambent_device* device, lambent_view view, int width, int height);
+
+/* Sets what accuracy may cost: "low", "medium", "high" (docs/measurements/presets.md), or "default". */
+LAMBENT_API lambent_status lambent_view_preset(lambent_device* device, lambent_view view, const char* preset);
+/* Any setting by its name, "smc.vpls" to "4096" (the program `lambent settings` lists them), or "technique". Takes
+ * effect at the next frame. */
+LAMBENT_API lambent_status lambent_view_set(lambent_device* device, lambent_view view, const char* setting,
+                                            const char* value);
+/* Copies the present value to `value`, of `size` bytes with its end. */
+LAMBENT_API lambent_status lambent_view_get(lambent_device* device, lambent_view view, const char* setting, char* value,
+                                            size_t size);
+
+/* How a depth buffer tells how far something is. */
+typedef enum lambent_depth {
+  LAMBENT_DEPTH_FORWARD,  /* 0 at near, 1 at far; for a perspective of any far plane, infinite too */
+  LAMBENT_DEPTH_REVERSED, /* 1 at near, 0 at far */
+  LAMBENT_DEPTH_LINEAR    /* metres along the view direction, in red; what is 0 or less, or not finite, is nothing */
+} lambent_depth;
+typedef enum lambent_normals {
+  LAMBENT_NORMALS_XYZ,         /* in -1..1, of any length: floats, snorm */
+  LAMBENT_NORMALS_UNORM,       /* (n + 1) / 2 */
+  LAMBENT_NORMALS_OCTAHEDRAL,  /* two channels in -1..1 */
+  LAMBENT_NORMALS_OCTAHEDRAL_UNORM /* two channels in 0..1 */
+} lambent_normals;
+typedef enum lambent_space { LAMBENT_WORLD, LAMBENT_VIEW } lambent_space;
+
+/* A frame: what is seen, as the host has drawn it, and where its light goes. All textures are GL_TEXTURE_2D that
+ * samplers read as floats, without mipmaps. */
+typedef struct lambent_frame {
+  size_t size;
+  double time; /* seconds; for what moves by itself: nothing today */
+
+  float world_from_view[16]; /* rigid; the camera looks along -Z of view space */
+  float fov_y;               /* radians; of a symmetric perspective without jitter */
+  float ortho_half_height;   /* metres; above 0: parallel rays */
+  float near_plane, far_plane; /* metres, of the host's projection; far may be infinite, and is by default */
+
+  uint32_t depth, normal; /* names; 0 both: the library draws the surfaces itself */
+  uint32_t emission;      /* 0: none of what is seen glows */
+  lambent_depth depth_type;
+  int depth_minus_one; /* 1: depth is stored as -1..1 (0..1 is what a depth buffer holds, whatever clip space was) */
+  lambent_normals normal_type;
+  lambent_space normal_space;
+  int origin_top; /* 1: row 0 of all textures is the image's upper row, of those written too */
+  int x, y;       /* corner of the view's rectangle in all textures of the host, in their own rows and columns */
+
+  /* Where light goes, as RGB of any format that can be drawn to; 0: into textures of the library's. */
+  uint32_t indirect_out, direct_out;
+} lambent_frame;
+
+typedef struct lambent_output {
+  size_t size;
+  uint32_t indirect, direct;         /* names of the textures that hold irradiance now, W/m², valid until the next
+                                        lambent_render of this view; 0: there is no such light */
+  uint32_t depth, normal, albedo, emission; /* surfaces that the library drew: reversed infinite depth, world normals;
+                                        0 with a host's */
+  int converged;                     /* 1: nothing moves, and another frame would bring nothing new */
+  double milliseconds;               /* that the call took */
+} lambent_output;
+
+/* GL. Computes a frame of a view: with `frame` as described, into `output` (may be NULL). Leaves all OpenGL state as it
+ * found it (but for queries, see docs/embedding.md). The first frame of a view places its lights, which takes up to
+ * seconds; others do not wait for the GPU. */
+LAMBENT_API lambent_status lambent_render(lambent_device* device, lambent_view view, const lambent_frame* frame,
+                                          lambent_output* output);
+
+/* Irradiance at `count` points with normals (3 floats each, world space; a point stands a little off its surface), by
+ * the lights of the view's last frame: 3 floats each into `indirect` and `direct`, W/m²; either may be NULL. On the CPU;
+ * takes about a millisecond for ten points (docs/embedding.md). */
+LAMBENT_API lambent_status lambent_irradiance(lambent_device* device, lambent_view view, const float* points,
+                                              const float* normals, size_t count, float* indirect, float* direct);
+/* GL. The same as textures: RGBA32F, `width` texels a row, row by row; valid until the next call for this view. */
+LAMBENT_API lambent_status lambent_irradiance_texture(lambent_device* device, lambent_view view, const float* points,
+                                                      const float* normals, size_t count, int width,
+                                                      uint32_t* indirect, uint32_t* direct);
+
+/* Driver ------------------------------------------------------------------------------------------------------------ */
+
+/* GL. Runs every pass in the current context on small scenes whose light is known, and calls `report` (may be NULL) with
+ * one line for each: what was tried, whether it worked (ok 1 or 0), and in words what that means for a frame. Returns
+ * LAMBENT_OK where all work, LAMBENT_FAILED where one does not. Takes some seconds. */
+typedef void (*lambent_check_function)(void* user, int ok, const char* line);
+LAMBENT_API lambent_status lambent_check(lambent_check_function report, void* user);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

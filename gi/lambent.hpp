@@ -1,0 +1,93 @@
+// Lambent for C++11 and newer: lambent.h with owners and exceptions. Nothing here that a host could not write itself.
+#pragma once
+
+#include "lambent.h"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lambent_cpp {
+
+/// A call that failed: its status, and what the library said.
+struct Error : std::runtime_error {
+  lambent_status status;
+  Error(lambent_status s, const std::string& message)
+      : std::runtime_error(std::string(lambent_status_text(s)) + ": " + message), status(s) {}
+};
+
+/// A descriptor with its defaults: `auto mesh = defaults<lambent_mesh_desc>();`
+template <class Desc> struct KindOf;
+template <> struct KindOf<lambent_device_desc> { static constexpr lambent_kind kind = LAMBENT_DEVICE_DESC; };
+template <> struct KindOf<lambent_texture_desc> { static constexpr lambent_kind kind = LAMBENT_TEXTURE_DESC; };
+template <> struct KindOf<lambent_material_desc> { static constexpr lambent_kind kind = LAMBENT_MATERIAL_DESC; };
+template <> struct KindOf<lambent_mesh_desc> { static constexpr lambent_kind kind = LAMBENT_MESH_DESC; };
+template <> struct KindOf<lambent_light_desc> { static constexpr lambent_kind kind = LAMBENT_LIGHT_DESC; };
+template <> struct KindOf<lambent_sky_desc> { static constexpr lambent_kind kind = LAMBENT_SKY_DESC; };
+template <> struct KindOf<lambent_view_desc> { static constexpr lambent_kind kind = LAMBENT_VIEW_DESC; };
+template <> struct KindOf<lambent_frame> { static constexpr lambent_kind kind = LAMBENT_FRAME; };
+template <> struct KindOf<lambent_output> { static constexpr lambent_kind kind = LAMBENT_OUTPUT; };
+template <class Desc> Desc defaults() {
+  Desc desc;
+  lambent_defaults(KindOf<Desc>::kind, &desc, sizeof desc);
+  return desc;
+}
+
+/// Owns a device; its member calls throw Error. Everything else goes through get() and check().
+class Device {
+ public:
+  explicit Device(const lambent_device_desc& desc = defaults<lambent_device_desc>()) : device_(nullptr) {
+    const lambent_status status = lambent_create(&desc, &device_);
+    if (status != LAMBENT_OK) throw Error(status, lambent_message(nullptr));
+  }
+  ~Device() { lambent_destroy(device_); }
+  Device(Device&& from) noexcept : device_(from.device_) { from.device_ = nullptr; }
+  Device& operator=(Device&& from) noexcept {
+    std::swap(device_, from.device_);
+    return *this;
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  lambent_device* get() const { return device_; }
+  /// Throws what a call to this device said, where it failed: check(lambent_instance_move(device.get(), …)).
+  void check(lambent_status status) const {
+    if (status != LAMBENT_OK) throw Error(status, lambent_message(device_));
+  }
+
+  lambent_scene scene() const { return made<lambent_scene>(lambent_scene_create); }
+  lambent_texture texture(lambent_scene s, const lambent_texture_desc& d) const {
+    return made<lambent_texture>(lambent_texture_create, s, &d);
+  }
+  lambent_material material(lambent_scene s, const lambent_material_desc& d) const {
+    return made<lambent_material>(lambent_material_create, s, &d);
+  }
+  lambent_mesh mesh(lambent_scene s, const lambent_mesh_desc& d) const {
+    return made<lambent_mesh>(lambent_mesh_create, s, &d);
+  }
+  lambent_instance instance(lambent_scene s, lambent_mesh m, const float place[16]) const {
+    return made<lambent_instance>(lambent_instance_create, s, m, place);
+  }
+  lambent_light light(lambent_scene s, const lambent_light_desc& d) const {
+    return made<lambent_light>(lambent_light_create, s, &d);
+  }
+  lambent_view view(lambent_scene s, const lambent_view_desc& d) const {
+    return made<lambent_view>(lambent_view_create, s, &d);
+  }
+  lambent_output render(lambent_view v, const lambent_frame& frame) const {
+    lambent_output output = defaults<lambent_output>();
+    check(lambent_render(device_, v, &frame, &output));
+    return output;
+  }
+
+ private:
+  template <class Id, class Create, class... Args> Id made(Create create, Args... args) const {
+    Id id = 0;
+    check(create(device_, args..., &id));
+    return id;
+  }
+
+  lambent_device* device_;
+};
+
+} // namespace lambent_cpp

@@ -1,0 +1,64 @@
+// Light at points that no image shows, against light paths that know nothing of virtual lights.
+#include "engine/core/rng.h"
+#include "frames.h"
+#include "gi/vpl/smc.h"
+
+namespace lambent::test::points_test {
+
+using PointsTest = GlTest;
+
+/// Irradiance at points by `paths` light paths from each, of up to `bounces` reflections.
+std::vector<vec3> irradianceByPaths(const TracedScene& scene, std::span<const SurfaceHit> points, int paths,
+                                    int bounces) {
+  std::vector<Vpl> patches(points.size());
+  std::vector<Vpl*> all;
+  for (size_t i = 0; i < points.size(); ++i) {
+    patches[i].position = points[i].position;
+    patches[i].normal = patches[i].geometricNormal = points[i].normal;
+    patches[i].albedo = vec3(1);
+    patches[i].id = 1000000 + i; // other numbers than the library's
+    all.push_back(&patches[i]);
+  }
+  RayCounts counts;
+  estimateRadiance(all, scene.rays, scene.lights, paths, bounces + 1, 77, counts);
+  std::vector<vec3> irradiance;
+  for (const Vpl& p : patches) irradiance.push_back(kPi * p.radiance);
+  return irradiance;
+}
+
+TEST_F(PointsTest, AThousandPointsHaveTheLightOfPaths) {
+  Room room;
+  room.scene.size(48, 32);
+  room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
+  Settings settings;
+  settings.smc.vpls = 1024;
+  settings.smc.warmup = 20;
+  Viewer gi(settings);
+  gi.run(room.scene.view());
+  const TracedScene traced(room.scene);
+  // Anywhere in the room's air, facing anywhere: what is drawn forward does not stand on surfaces.
+  std::vector<SurfaceHit> points;
+  const Aabb box = traced.view.boundsWorld;
+  for (uint32_t i = 0; points.size() < 1000; ++i) {
+    Rng rng(5, Stream::NearLight, i);
+    SurfaceHit& h = points.emplace_back();
+    h.t = 0;
+    h.position = box.lo + (0.05f + 0.9f * rng.next3()) * box.size();
+    h.normal = h.geometricNormal = sampleSphere({rng.next(), rng.next()});
+  }
+  const auto meanOf = [](const std::vector<vec3>& values) {
+    double sum = 0;
+    for (const vec3& v : values) sum += double(luminance(v)) / double(values.size());
+    return sum;
+  };
+  const std::vector<vec3> total = irradianceByPaths(traced, points, 1024, settings.smc.bounces),
+                          direct = irradianceByPaths(traced, points, 1024, 0);
+  const double expected = meanOf(total) - meanOf(direct);
+  const double indirect = meanOf(gi.gi().indirectAt(points));
+  std::printf("1000 points: indirect %+.2f %% of paths, direct %+.2f %%\n", 100 * (indirect / expected - 1),
+              100 * (meanOf(gi.gi().directAt(points)) / meanOf(direct) - 1));
+  EXPECT_NEAR(indirect / expected, 1, 0.02);
+  EXPECT_NEAR(meanOf(gi.gi().directAt(points)) / meanOf(direct), 1, 0.02);
+}
+
+} // namespace lambent::test::points_test
