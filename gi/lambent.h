@@ -50,7 +50,7 @@ typedef enum lambent_status {
   LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile, a file that cannot be read */
   LAMBENT_DEAD = 6    /* a fault in the library, now or before: destroy the device */
 } lambent_status;
-LAMBENT_API const char* lambent_status_text(lambent_status status);
+LAMBENT_API const char* lambent_status_text(int status);
 
 /* A device: everything of one host in one OpenGL context. The rest are numbers that belong to a device; 0 is none, and
  * a number is never given twice. */
@@ -75,7 +75,7 @@ typedef enum lambent_kind { /* descriptors, for lambent_defaults() */
   LAMBENT_OUTPUT
 } lambent_kind;
 /* Writes the defaults of a descriptor of `size` bytes, its size field included. */
-LAMBENT_API lambent_status lambent_defaults(lambent_kind kind, void* desc, size_t size);
+LAMBENT_API lambent_status lambent_defaults(int kind, void* desc, size_t size);
 #define LAMBENT_DEFAULTS(kind, desc) lambent_defaults((kind), (desc), sizeof *(desc))
 
 /* Device ------------------------------------------------------------------------------------------------------------ */
@@ -130,7 +130,7 @@ typedef struct lambent_texture_desc {
   const uint8_t* rgba; /* width * height texels of four bytes; row 0 lies at v = 0 */
   uint32_t gl_texture; /* GL. Instead of `rgba`: level 0 of a GL_TEXTURE_2D, copied now, which waits for the GPU */
   int srgb;            /* colours are sRGB-encoded, alpha is not; default 1 */
-  lambent_wrap wrap_u, wrap_v;
+  int32_t wrap_u, wrap_v; /* lambent_wrap */
   int nearest; /* 1: no filter between texels */
 } lambent_texture_desc;
 LAMBENT_API lambent_status lambent_texture_create(lambent_device* device, lambent_scene scene,
@@ -189,7 +189,7 @@ LAMBENT_API lambent_status lambent_instance_destroy(lambent_device* device, lamb
 typedef enum lambent_light_type { LAMBENT_POINT, LAMBENT_SPOT, LAMBENT_DIRECTIONAL } lambent_light_type;
 typedef struct lambent_light_desc {
   size_t size;
-  lambent_light_type type;
+  int32_t type;          /* lambent_light_type */
   float position[3];
   float direction[3];    /* the way the light travels, of any length; default downwards */
   float intensity[3];    /* W/sr; of a directional light irradiance, W/m², on what faces it */
@@ -206,7 +206,7 @@ LAMBENT_API lambent_status lambent_light_destroy(lambent_device* device, lambent
 typedef enum lambent_sky_type { LAMBENT_CONSTANT_SKY, LAMBENT_CLEAR_SKY } lambent_sky_type;
 typedef struct lambent_sky_desc {
   size_t size;
-  lambent_sky_type type;
+  int32_t type;          /* lambent_sky_type */
   float radiance[3];     /* of a constant sky; default black */
   float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours */
   float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
@@ -262,10 +262,10 @@ typedef struct lambent_frame {
 
   uint32_t depth, normal; /* names; 0 both: the library draws the surfaces itself */
   uint32_t emission;      /* 0: none of what is seen glows */
-  lambent_depth depth_type;
+  int32_t depth_type; /* lambent_depth */
   int depth_minus_one; /* 1: depth is stored as -1..1 (0..1 is what a depth buffer holds, whatever clip space was) */
-  lambent_normals normal_type;
-  lambent_space normal_space;
+  int32_t normal_type; /* lambent_normals */
+  int32_t normal_space; /* lambent_space */
   int origin_top; /* 1: row 0 of all textures is the image's upper row, of those written too */
   int x, y;       /* corner of the view's rectangle in all textures of the host, in their own rows and columns */
 
@@ -291,7 +291,7 @@ LAMBENT_API lambent_status lambent_render(lambent_device* device, lambent_view v
 
 /* Irradiance at `count` points with normals (3 floats each, world space; a point stands a little off its surface), by
  * the lights of the view's last frame: 3 floats each into `indirect` and `direct`, W/m²; either may be NULL. On the CPU;
- * takes about a millisecond for ten points (docs/embedding.md). */
+ * takes about 0.3 ms a point with 2048 lights on two cores. */
 LAMBENT_API lambent_status lambent_irradiance(lambent_device* device, lambent_view view, const float* points,
                                               const float* normals, size_t count, float* indirect, float* direct);
 /* GL. The same as textures: RGBA32F, `width` texels a row, row by row; valid until the next call for this view. */

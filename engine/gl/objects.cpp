@@ -148,12 +148,30 @@ Texture Texture::borrowed(GLuint name) {
   return texture;
 }
 
+/// Mesa 22.3 does not tell the target in compatibility contexts (an error), so there all but rectangles and single
+/// faces and layers are told by what they have.
 bool Texture::readsAsFlat() const {
-  GLint target = 0, compare = 0, red = 0;
-  glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
+  const auto ofLevel = [&](GLenum what) {
+    GLint value = 0;
+    glGetTextureLevelParameteriv(name(), 0, what, &value);
+    return value;
+  };
+  const GLint red = ofLevel(GL_TEXTURE_RED_TYPE);
+  if (red == GL_INT || red == GL_UNSIGNED_INT) return false;
+  GLint profile = 0, target = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  if (profile & GL_CONTEXT_CORE_PROFILE_BIT) {
+    glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
+    return target == GL_TEXTURE_2D;
+  }
+  return ofLevel(GL_TEXTURE_DEPTH) <= 1 && ofLevel(GL_TEXTURE_SAMPLES) == 0 &&
+         ofLevel(GL_TEXTURE_BUFFER_DATA_STORE_BINDING) == 0;
+}
+
+bool Texture::comparesDepths() const {
+  GLint compare = 0;
   glGetTextureParameteriv(name(), GL_TEXTURE_COMPARE_MODE, &compare);
-  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_RED_TYPE, &red);
-  return target == GL_TEXTURE_2D && compare == GL_NONE && red != GL_INT && red != GL_UNSIGNED_INT;
+  return compare != GL_NONE;
 }
 
 bool Texture::holdsSinglePrecision() const {

@@ -79,8 +79,10 @@ class Texture : public detail::Object {
   Texture(const std::string& label, const TextureDesc& desc);
   /// Wraps a texture that another owner keeps alive: never deleted, its memory not counted.
   static Texture borrowed(GLuint name);
-  /// Says whether a shader's sampler2D reads its values: two dimensions, no integers, no comparison of depths.
+  /// Says whether a shader's sampler2D reads its values: two dimensions, no integers.
   bool readsAsFlat() const;
+  /// Says whether it compares depths, where no sampler is bound beside it.
+  bool comparesDepths() const;
   /// Says whether its depths, or its red, are numbers of 32 bits.
   bool holdsSinglePrecision() const;
   bool isDepth() const; // else depths are in its red channel

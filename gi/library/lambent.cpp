@@ -188,8 +188,8 @@ mat4 mat4Of(const float* m) {
 template <class T> std::span<const T> spanOf(const void* data, size_t count) {
   return data ? std::span(static_cast<const T*>(data), count) : std::span<const T>();
 }
-template <class Enum> void requireWithin(Enum value, int count, const char* what) {
-  if (int(value) < 0 || int(value) >= count) refuse(std::string(what) + " is none of its values");
+void requireWithin(int value, int count, const char* what) {
+  if (value < 0 || value >= count) refuse(std::string(what) + " is none of its values");
 }
 
 // Numbers of things --------------------------------------------------------------------------------------------------
@@ -356,7 +356,7 @@ const char* lambent_version_text(void) {
       LAMBENT_VERSION_PATCH);
 }
 
-const char* lambent_status_text(lambent_status status) {
+const char* lambent_status_text(int status) {
   switch (status) {
   case LAMBENT_OK:
     return "ok";
@@ -376,7 +376,7 @@ const char* lambent_status_text(lambent_status status) {
   return "no status";
 }
 
-lambent_status lambent_defaults(lambent_kind kind, void* desc, size_t size) {
+lambent_status lambent_defaults(int kind, void* desc, size_t size) {
   struct Row {
     size_t size;
     void (*write)(void*, size_t);

@@ -148,8 +148,9 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
     const std::string which = std::string("host's ") + what + " texture " + std::to_string(name);
     if (name == 0 && !needed) return;
     const gl::Texture texture = gl::Texture::borrowed(name);
-    if (texture.width() != 0 && !texture.readsAsFlat())
-      throw InputError(which, "is not flat, or compares depths (GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE GL_NONE)");
+    if (texture.width() != 0 && !texture.readsAsFlat()) throw InputError(which, "is not a GL_TEXTURE_2D of floats");
+    if (texture.width() != 0 && c.ours() && texture.comparesDepths())
+      throw InputError(which, "compares depths (GL_TEXTURE_COMPARE_MODE GL_NONE)");
     const bool holds = c.ours() ? texture.width() == camera.width && texture.height() == camera.height
                                 : texture.width() - c.x >= camera.width && texture.height() - c.y >= camera.height;
     if (holds && name != 0) return;

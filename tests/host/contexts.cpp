@@ -16,10 +16,10 @@ template <class Host> std::unique_ptr<HostContext> orNull(std::unique_ptr<Host> 
 class Egl : public HostContext {
  public:
   /// Null context where the display has none.
-  Egl(EGLDisplay display, EGLenum api, EGLContext shared) : display_(display), api_(api) {
+  Egl(EGLDisplay display, EGLenum api, EGLContext shared, EGLint profile = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT)
+      : display_(display), api_(api) {
     const EGLint core[] = {
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK, profile, EGL_NONE};
     const EGLint embedded[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
     eglBindAPI(api);
     context_ = eglCreateContext(display, EGL_NO_CONFIG_KHR, shared, api == EGL_OPENGL_API ? core : embedded);
@@ -46,10 +46,10 @@ class Egl : public HostContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-std::unique_ptr<HostContext> byEgl(EGLenum api) {
+std::unique_ptr<HostContext> byEgl(EGLenum api, EGLint profile = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT) {
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return nullptr;
-  return orNull(std::make_unique<Egl>(display, api, EGL_NO_CONTEXT));
+  return orNull(std::make_unique<Egl>(display, api, EGL_NO_CONTEXT, profile));
 }
 
 /// A window that is never shown, as a toolkit would make it.
@@ -97,6 +97,9 @@ class Glx : public HostContext {
 } // namespace
 
 std::unique_ptr<HostContext> eglHost() { return byEgl(EGL_OPENGL_API); }
+std::unique_ptr<HostContext> compatibilityHost() {
+  return byEgl(EGL_OPENGL_API, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT);
+}
 std::unique_ptr<HostContext> embeddedHost() { return byEgl(EGL_OPENGL_ES_API); }
 
 std::unique_ptr<HostContext> glxHost() {

@@ -18,6 +18,7 @@ class HostContext {
 std::unique_ptr<HostContext> eglHost();
 std::unique_ptr<HostContext> glxHost();
 /// OpenGL ES, which is too little.
+std::unique_ptr<HostContext> compatibilityHost();
 std::unique_ptr<HostContext> embeddedHost();
 
 } // namespace lambent::test

@@ -343,6 +343,51 @@ TEST_F(Library, EveryConventionOfAGBufferGivesTheSameLight) {
   EXPECT_GT(tried, 60);
 }
 
+/// OGRE's context is of the compatibility profile, and its textures are made by glTexImage2D and want mipmaps.
+TEST_F(Library, TexturesOfOldHostsAreReadToo) {
+  context->release();
+  const auto old = compatibilityHost();
+  if (!old) GTEST_SKIP() << "EGL offers no compatibility profile here";
+  old->makeCurrent();
+  {
+    constexpr int w = Room::kWidth, h = Room::kHeight;
+    Room room;
+    lambent_output out = room.render(room.view());
+    const std::vector<float> expected = Room::read(out.direct, GL_RGB), normals = Room::read(out.normal, GL_RGB);
+    std::vector<float> depth(size_t(w * h));
+    glGetTextureImage(out.depth, 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
+    GLuint textures[3];
+    glGenTextures(3, textures);
+    const auto fill = [&](GLuint texture, GLenum format, GLenum layout, const float* texels) {
+      glBindTexture(GL_TEXTURE_2D, texture);
+      glTexImage2D(GL_TEXTURE_2D, 0, GLint(format), w, h, 0, layout, GL_FLOAT, texels);
+    };
+    fill(textures[0], GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, depth.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    fill(textures[1], GL_RGB16F, GL_RGB, normals.data());
+    fill(textures[2], GL_RGBA16F, GL_RGB, nullptr);
+    lambent_frame f = Room::frame();
+    f.depth = textures[0];
+    f.normal = textures[1];
+    f.depth_type = LAMBENT_DEPTH_REVERSED;
+    f.direct_out = textures[2];
+    out = room.render(room.view(), f);
+    const std::vector<float> found = Room::read(textures[2], GL_RGB);
+    double off = 0;
+    for (size_t i = 0; i < found.size(); ++i) off += double(std::abs(found[i] - expected[i])) / double(found.size());
+    EXPECT_LT(off, 1e-3 * Room::mean(expected));
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+    GLuint cube = 0;
+    glGenTextures(1, &cube);
+    glBindTexture(GL_TEXTURE_3D, cube);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, w, h, 4, 0, GL_RED, GL_FLOAT, nullptr);
+    f.depth = cube;
+    EXPECT_EQ(lambent_render(room.device, room.view(), &f, nullptr), LAMBENT_INVALID_ARGUMENT);
+  }
+  old->release();
+  context->makeCurrent();
+}
+
 /// Normals of view space, under a camera that is turned.
 TEST_F(Library, NormalsOfViewSpaceAreTurnedWithTheCamera) {
   constexpr int w = Room::kWidth, h = Room::kHeight;

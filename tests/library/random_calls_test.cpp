@@ -36,7 +36,7 @@ class Caller {
       texels_.assign(size_t(std::clamp(t.width, 0, 64)) * size_t(std::clamp(t.height, 0, 64)) * 4, 200);
       t.rgba = t.width <= 64 && t.height <= 64 ? texels_.data() : nullptr;
       if (one(4)) t.gl_texture = below(50);
-      t.wrap_u = lambent_wrap(below(5) - 1);
+      t.wrap_u = below(5) - 1;
       lambent_texture made = 0;
       keep(lambent_texture_create(d, scene, maybe(&t), out(&made)), made, textures_);
       break;
@@ -100,7 +100,7 @@ class Caller {
     case 13:
     case 14: {
       lambent_light_desc l = desc<lambent_light_desc>(LAMBENT_LIGHT_DESC);
-      l.type = lambent_light_type(below(one(10) ? 9 : 3));
+      l.type = below(one(10) ? 9 : 3);
       for (int i = 0; i < 3; ++i) l.position[i] = value(), l.direction[i] = value(), l.intensity[i] = value();
       if (one(3)) l.range = value();
       if (one(3)) l.inner_cone_angle = value(), l.outer_cone_angle = value();
@@ -116,7 +116,7 @@ class Caller {
       break;
     case 16: {
       lambent_sky_desc s = desc<lambent_sky_desc>(LAMBENT_SKY_DESC);
-      s.type = lambent_sky_type(below(3));
+      s.type = below(3);
       for (int i = 0; i < 3; ++i) s.radiance[i] = value(), s.towards_sun[i] = value();
       s.turbidity = value();
       lambent_scene_sky(d, scene, maybe(&s));
@@ -157,7 +157,7 @@ class Caller {
       if (one(8)) f.fov_y = value();
       if (one(8)) f.ortho_half_height = value();
       if (one(8)) f.near_plane = value(), f.far_plane = value();
-      if (one(8)) f.depth_type = lambent_depth(below(5)), f.normal_type = lambent_normals(below(6));
+      if (one(8)) f.depth_type = below(5), f.normal_type = below(6);
       if (one(8)) f.x = below(9) - 1, f.y = below(9) - 1;
       if (one(3)) f.origin_top = 1;
       f.world_from_view[14] = 0.9f;
@@ -178,8 +178,8 @@ class Caller {
       lambent_memory_row rows[4];
       lambent_memory(d, maybe(rows), maybe(&count));
       unsigned char bytes[400];
-      lambent_defaults(lambent_kind(below(12) - 1), maybe(bytes), size_t(below(401)));
-      lambent_status_text(lambent_status(below(20) - 5));
+      lambent_defaults(below(12) - 1, maybe(bytes), size_t(below(401)));
+      lambent_status_text(below(20) - 5);
       break;
     }
     }
