@@ -284,8 +284,9 @@ typedef struct lambent_output {
 } lambent_output;
 
 /* GL. Computes a frame of a view: with `frame` as described, into `output` (may be NULL). Leaves all OpenGL state as it
- * found it (but for queries, see docs/embedding.md). The first frame of a view places its lights, which takes up to
- * seconds; others do not wait for the GPU. */
+ * found it (but for queries and the like, which engine/gl/state_guard.h names). The first frame of a view places its
+ * lights, which takes up to seconds, and compares the host's surfaces with the scene: the log hears where they differ.
+ * Other frames do not wait for the GPU. */
 LAMBENT_API lambent_status lambent_render(lambent_device* device, lambent_view view, const lambent_frame* frame,
                                           lambent_output* output);
 

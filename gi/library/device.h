@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <map>
+#include <optional>
 
 namespace lambent::library {
 
@@ -21,8 +22,9 @@ struct View {
   ViewChanges changes;
   GiFrame gi;
   Delivery delivery;
-  gl::Texture points[2]; // irradiance at points: indirect, direct
-  uint64_t rendered = 0; // HostScene::assetsVersion of the last frame; 0: none yet
+  gl::Texture points[2];                  // irradiance at points: indirect, direct
+  std::optional<HostConventions> checked; // those of the last surfaces that were compared with the scene
+  uint64_t rendered = 0;                  // HostScene::assetsVersion of the last frame; 0: none yet
 
   View(lambent_scene of, const lambent_view_desc& desc, uint32_t seed, const std::filesystem::path& shaders)
       : scene(of), width(desc.width), height(desc.height), gi({}, seed, Makers::ByRule, shaders),

@@ -5,6 +5,7 @@
 #include "gi/contract/frame_outputs.h"
 #include "gi/library/device.h"
 #include "gi/library/driver_check.h"
+#include "gi/library/surface_check.h"
 #include "gi/plan/presets.h"
 #include "gi/surfaces/surfaces.h"
 
@@ -752,6 +753,11 @@ lambent_status lambent_render(lambent_device* device, lambent_view view, const l
     }
     v.rendered = host.assetsVersion();
     if (const std::string& warning = v.gi.stats().warning; !warning.empty()) device->log(LAMBENT_WARNING, warning);
+    if (hosted && v.checked != surfaces.conventions) {
+      v.checked = surfaces.conventions;
+      const std::string wrong = library::checkSurfaces(v.gi.outputs().surfaces, camera, v.gi.rays());
+      if (!wrong.empty()) device->log(LAMBENT_WARNING, "frame: " + wrong);
+    }
     const auto deliver = [&](uint32_t light, uint32_t to, int index) {
       return v.delivery.run(light, v.width, v.height, targetOf(to), index);
     };

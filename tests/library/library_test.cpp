@@ -81,8 +81,7 @@ TEST_F(Library, TwoDevicesRunInTwoThreads) {
   EXPECT_EQ(light[0], light[1]);
 }
 
-// What a host may get wrong
-// --------------------------------------------------------------------------------------------
+// What a host may get wrong ---------------------------------------------------------------------------
 
 TEST_F(Library, WrongCallsAreStatusesThatChangeNothing) {
   EXPECT_EQ(lambent_create(nullptr, nullptr), LAMBENT_INVALID_ARGUMENT);
@@ -222,8 +221,7 @@ TEST_F(Library, DriverCheckPassesAndTells) {
   EXPECT_EQ(told.bad, 0);
 }
 
-// G-buffers of other conventions
-// ---------------------------------------------------------------------------------------
+// G-buffers of other conventions ----------------------------------------------------------------------
 
 struct Convention {
   lambent_depth depth;
@@ -419,8 +417,50 @@ TEST_F(Library, NormalsOfViewSpaceAreTurnedWithTheCamera) {
   EXPECT_GT(std::abs(Room::mean(Room::read(out.direct, GL_RGB)) / Room::mean(expected) - 1), 0.01) << "it matters";
 }
 
-// Light at points
-// ------------------------------------------------------------------------------------------------------
+/// A wrong convention is a dark or odd image, and no error: the log hears of it.
+TEST_F(Library, SurfacesThatAreNotTheScenesAreWarnedOf) {
+  std::string heard;
+  lambent_device_desc desc;
+  LAMBENT_DEFAULTS(LAMBENT_DEVICE_DESC, &desc);
+  desc.user = &heard;
+  desc.log = [](void* user, lambent_level, const char* line) { *static_cast<std::string*>(user) += line; };
+  constexpr int w = Room::kWidth, h = Room::kHeight;
+  Room room(&desc);
+  lambent_frame f = Room::frame();
+  const float c = std::cos(1.4f), s = std::sin(1.4f);
+  const float turned[3][3] = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}};
+  for (int i = 0; i < 3; ++i) std::copy(turned[i], turned[i] + 3, f.world_from_view + 4 * i);
+  const lambent_output out = room.render(room.view(), f);
+  const std::vector<float> normals = Room::read(out.normal, GL_RGB);
+  std::vector<float> depth(size_t(w * h));
+  glGetTextureImage(out.depth, 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
+  f.depth = textureOf(GL_R32F, w, h, 1, depth);
+  f.normal = textureOf(GL_RGB16F, w, h, 3, normals);
+  f.depth_type = LAMBENT_DEPTH_REVERSED;
+  const auto warningOf = [&](const lambent_frame& frame) {
+    heard.clear();
+    const lambent_view view = room.view();
+    room.render(view, frame);
+    const std::string first = heard;
+    heard.clear();
+    room.render(view, frame);
+    EXPECT_EQ(heard, "") << "once is enough";
+    return first;
+  };
+  EXPECT_EQ(warningOf(f), "");
+  lambent_frame wrong = f;
+  wrong.depth_type = LAMBENT_DEPTH_FORWARD;
+  EXPECT_NE(warningOf(wrong).find("depth_type"), std::string::npos);
+  wrong = f;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) wrong.world_from_view[4 * i + k] = f.world_from_view[4 * k + i];
+  EXPECT_NE(warningOf(wrong).find("world_from_view"), std::string::npos) << "row by row";
+  wrong = f;
+  wrong.normal_space = LAMBENT_VIEW;
+  EXPECT_NE(warningOf(wrong).find("normal_space"), std::string::npos);
+}
+
+// Light at points -------------------------------------------------------------------------------------
 
 TEST_F(Library, LightAtPointsIsThatOfTheImage) {
   Room room;
