@@ -36,8 +36,8 @@
 extern "C" {
 #endif
 
-/* Of the library in use, as LAMBENT_VERSION; and as "0.1.0". Minor versions add to structs at their ends only: a host
- * that was built with an older header of the same major version goes on as it was. */
+/* Of the library in use, as LAMBENT_VERSION; and as "0.1.0". Minor versions will add to structs at their ends
+ * only, and go on taking the sizes of this one. */
 LAMBENT_API uint32_t lambent_version(void);
 LAMBENT_API const char* lambent_version_text(void);
 
@@ -48,7 +48,8 @@ typedef enum lambent_status {
   LAMBENT_NO_CONTEXT = 3,       /* no OpenGL 4.5 context is current, or not the device's */
   LAMBENT_OUT_OF_MEMORY = 4,
   LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile, a file that cannot be read */
-  LAMBENT_DEAD = 6    /* a fault in the library, now or before: destroy the device */
+  LAMBENT_DEAD = 6,   /* a fault in the library, now or before: destroy the device */
+  LAMBENT_BUSY = 7    /* another call to the device is on its way, on another thread or around a callback */
 } lambent_status;
 LAMBENT_API const char* lambent_status_text(int status);
 
@@ -99,7 +100,7 @@ typedef struct lambent_device_desc {
 
 /* GL. On failure *device is NULL and lambent_message(NULL) says why. `desc` may be NULL. */
 LAMBENT_API lambent_status lambent_create(const lambent_device_desc* desc, lambent_device** device);
-/* GL. With all that it holds; waits for what it still computes. NULL does nothing. */
+/* GL. With all that it holds; waits for what it still computes. NULL does nothing, nor does a call from a callback. */
 LAMBENT_API void lambent_destroy(lambent_device* device);
 /* What the last failed call said, one line; "" when none failed. Valid until the next call. NULL: of this thread's last
  * call without a device. */
@@ -116,8 +117,8 @@ LAMBENT_API lambent_status lambent_memory(lambent_device* device, lambent_memory
 /* Scene ------------------------------------------------------------------------------------------------------------- */
 /* Textures, materials and meshes are meant to be made when a level is loaded: after a change of these the next frame
  * begins its light anew (docs/embedding.md, what is not offered). Instances, lights and the sky may change in every
- * frame; the library finds out what that means for the light. None of these calls needs the OpenGL context but
- * lambent_texture_create of a texture's name, and none of them waits. */
+ * frame; the library finds out what that means for the light. Calls that need the OpenGL context are marked GL. None
+ * waits, but that textures, materials and meshes wait for an update of lights beside the GPU (frame.overlap). */
 
 LAMBENT_API lambent_status lambent_scene_create(lambent_device* device, lambent_scene* scene);
 /* GL. With its views. */
@@ -128,7 +129,8 @@ typedef struct lambent_texture_desc {
   size_t size;
   int width, height;
   const uint8_t* rgba; /* width * height texels of four bytes; row 0 lies at v = 0 */
-  uint32_t gl_texture; /* GL. Instead of `rgba`: level 0 of a GL_TEXTURE_2D, copied now, which waits for the GPU */
+  uint32_t gl_texture; /* GL. Instead of `rgba`: level 0 of a GL_TEXTURE_2D, copied now as 8 bits a channel (values
+                          beyond 1 are 1), which waits for the GPU */
   int srgb;            /* colours are sRGB-encoded, alpha is not; default 1 */
   int32_t wrap_u, wrap_v; /* lambent_wrap */
   int nearest; /* 1: no filter between texels */
@@ -208,10 +210,19 @@ typedef struct lambent_sky_desc {
   size_t size;
   int32_t type;          /* lambent_sky_type */
   float radiance[3];     /* of a constant sky; default black */
-  float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours */
+  float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours: lambent_sky_sun */
   float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
 } lambent_sky_desc;
 LAMBENT_API lambent_status lambent_scene_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* desc);
+
+/* The sun that goes with a clear sky: irradiance on what faces it, W/m², and the radius of its disk. Tell it as a
+ * directional light that travels along -towards_sun. In these units a sun at noon is about 3 W/m²; scale both alike for
+ * others. Either may be NULL. */
+LAMBENT_API lambent_status lambent_sky_sun(const lambent_sky_desc* desc, float irradiance[3], float* angular_radius);
+/* Radiance of a sky from `count` directions (3 floats each, world space), 3 floats each: what a host draws where nothing
+ * is seen. */
+LAMBENT_API lambent_status lambent_sky_radiance(const lambent_sky_desc* desc, const float* directions, size_t count,
+                                                float* radiance);
 
 /* View -------------------------------------------------------------------------------------------------------------- */
 
@@ -219,6 +230,7 @@ typedef struct lambent_view_desc {
   size_t size;
   int width, height; /* of the image, pixels */
 } lambent_view_desc;
+/* GL. */
 LAMBENT_API lambent_status lambent_view_create(lambent_device* device, lambent_scene scene,
                                                const lambent_view_desc* desc, lambent_view* view);
 /* GL. */
@@ -256,20 +268,21 @@ typedef struct lambent_frame {
   double time; /* seconds; for what moves by itself: nothing today */
 
   float world_from_view[16]; /* rigid; the camera looks along -Z of view space */
-  float fov_y;               /* radians; of a symmetric perspective without jitter */
+  float fov_y;               /* radians, default 1; of a symmetric perspective without jitter */
   float ortho_half_height;   /* metres; above 0: parallel rays */
-  float near_plane, far_plane; /* metres, of the host's projection; far may be infinite, and is by default */
+  float near_plane, far_plane; /* metres, of the host's projection; default 0.05 and infinite */
 
   uint32_t depth, normal; /* names; 0 both: the library draws the surfaces itself */
   uint32_t emission;      /* 0: none of what is seen glows */
-  int32_t depth_type; /* lambent_depth */
+  int32_t depth_type; /* lambent_depth; default forward */
   int depth_minus_one; /* 1: depth is stored as -1..1 (0..1 is what a depth buffer holds, whatever clip space was) */
-  int32_t normal_type; /* lambent_normals */
-  int32_t normal_space; /* lambent_space */
+  int32_t normal_type; /* lambent_normals; default x, y, z */
+  int32_t normal_space; /* lambent_space; default world */
   int origin_top; /* 1: row 0 of all textures is the image's upper row, of those written too */
   int x, y;       /* corner of the view's rectangle in all textures of the host, in their own rows and columns */
 
-  /* Where light goes, as RGB of any format that can be drawn to; 0: into textures of the library's. */
+  /* Where light goes, as RGB of any format that can be drawn to (one that holds more than 1), into the same rectangle as
+   * that of the G-buffer; black where nothing is seen. 0: into textures of the library's, of the view's size. */
   uint32_t indirect_out, direct_out;
 } lambent_frame;
 
@@ -302,9 +315,9 @@ LAMBENT_API lambent_status lambent_irradiance_texture(lambent_device* device, la
 
 /* Driver ------------------------------------------------------------------------------------------------------------ */
 
-/* GL. Runs every pass in the current context on small scenes whose light is known, and calls `report` (may be NULL) with
- * one line for each: what was tried, whether it worked (ok 1 or 0), and in words what that means for a frame. Returns
- * LAMBENT_OK where all work, LAMBENT_FAILED where one does not. Takes some seconds. */
+/* GL. Draws a small room with every technique in the current context, compares its light with that of rays on the CPU,
+ * and calls `report` (may be NULL) with one line for each: what was tried and found, and whether it worked (ok 1 or 0).
+ * Returns LAMBENT_OK where all work, LAMBENT_FAILED where one does not. Takes seconds, on llvmpipe ten. */
 typedef void (*lambent_check_function)(void* user, int ok, const char* line);
 LAMBENT_API lambent_status lambent_check(lambent_check_function report, void* user);
 

@@ -156,16 +156,20 @@ bool Texture::readsAsFlat() const {
     glGetTextureLevelParameteriv(name(), 0, what, &value);
     return value;
   };
-  const GLint red = ofLevel(GL_TEXTURE_RED_TYPE);
-  if (red == GL_INT || red == GL_UNSIGNED_INT) return false;
-  GLint profile = 0, target = 0;
+  if (ofLevel(GL_TEXTURE_BUFFER_DATA_STORE_BINDING) != 0 || ofLevel(GL_TEXTURE_SAMPLES) != 0) return false;
+  GLint profile = 0, target = GL_TEXTURE_2D;
   glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
-  if (profile & GL_CONTEXT_CORE_PROFILE_BIT) {
-    glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
-    return target == GL_TEXTURE_2D;
-  }
-  return ofLevel(GL_TEXTURE_DEPTH) <= 1 && ofLevel(GL_TEXTURE_SAMPLES) == 0 &&
-         ofLevel(GL_TEXTURE_BUFFER_DATA_STORE_BINDING) == 0;
+  if (profile & GL_CONTEXT_CORE_PROFILE_BIT) glGetTextureParameteriv(name(), GL_TEXTURE_TARGET, &target);
+  if (target != GL_TEXTURE_2D || ofLevel(GL_TEXTURE_DEPTH) > 1) return false;
+  const GLint red = ofLevel(GL_TEXTURE_RED_TYPE);
+  return red != GL_INT && red != GL_UNSIGNED_INT;
+}
+
+bool Texture::readsOtherThanLevel0() const {
+  GLint base = 0, mode = GL_DEPTH_COMPONENT;
+  glGetTextureParameteriv(name(), GL_TEXTURE_BASE_LEVEL, &base);
+  glGetTextureParameteriv(name(), GL_DEPTH_STENCIL_TEXTURE_MODE, &mode);
+  return base != 0 || mode != GL_DEPTH_COMPONENT;
 }
 
 bool Texture::comparesDepths() const {

@@ -81,6 +81,8 @@ class Texture : public detail::Object {
   static Texture borrowed(GLuint name);
   /// Says whether a shader's sampler2D reads its values: two dimensions, no integers.
   bool readsAsFlat() const;
+  /// Says whether look-ups begin at another level than 0, or find stencils.
+  bool readsOtherThanLevel0() const;
   /// Says whether it compares depths, where no sampler is bound beside it.
   bool comparesDepths() const;
   /// Says whether its depths, or its red, are numbers of 32 bits.

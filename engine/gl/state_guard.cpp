@@ -48,6 +48,25 @@ constexpr Switch kSwitches[] = {
     {GL_CLIP_DISTANCE7, false},
 };
 
+/// Of the compatibility profile, which core contexts know as errors.
+constexpr Switch kOldSwitches[] = {
+    {GL_ALPHA_TEST, false}, {GL_POLYGON_STIPPLE, false}, {GL_VERTEX_PROGRAM_TWO_SIDE, false}, {GL_POINT_SPRITE, true}};
+constexpr GLenum kOldClamps[] = {GL_CLAMP_VERTEX_COLOR, GL_CLAMP_FRAGMENT_COLOR};
+struct PixelTransfer {
+  GLenum what;
+  GLfloat convention;
+};
+constexpr PixelTransfer kPixelTransfer[] = {{GL_MAP_COLOR, 0},   {GL_RED_SCALE, 1},   {GL_RED_BIAS, 0},
+                                            {GL_GREEN_SCALE, 1}, {GL_GREEN_BIAS, 0},  {GL_BLUE_SCALE, 1},
+                                            {GL_BLUE_BIAS, 0},   {GL_ALPHA_SCALE, 1}, {GL_ALPHA_BIAS, 0},
+                                            {GL_DEPTH_SCALE, 1}, {GL_DEPTH_BIAS, 0}};
+
+bool hasOldState() {
+  GLint profile = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  return (profile & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
+}
+
 struct PixelStore {
   GLenum what;
   GLint convention;
@@ -183,6 +202,10 @@ void setStencil(GLenum face, const Face& s) {
 
 struct StateGuard::Saved {
   std::array<bool, std::size(kSwitches)> switches;
+  bool old = hasOldState();
+  std::array<bool, std::size(kOldSwitches)> oldSwitches;
+  std::array<GLint, std::size(kOldClamps)> oldClamps;
+  std::array<GLfloat, std::size(kPixelTransfer)> pixelTransfer;
   std::array<GLint, std::size(kPixelStore)> pixelStore;
   std::array<GLint, std::size(kValues)> values;
   std::array<Viewport, kMostViewports> viewports;
@@ -206,6 +229,9 @@ struct StateGuard::Saved {
 
 StateGuard::Saved::Saved() {
   for (size_t i = 0; i < switches.size(); ++i) switches[i] = glIsEnabled(kSwitches[i].what);
+  for (size_t i = 0; old && i < oldSwitches.size(); ++i) oldSwitches[i] = glIsEnabled(kOldSwitches[i].what);
+  for (size_t i = 0; old && i < oldClamps.size(); ++i) oldClamps[i] = get(kOldClamps[i]);
+  for (size_t i = 0; old && i < pixelTransfer.size(); ++i) glGetFloatv(kPixelTransfer[i].what, &pixelTransfer[i]);
   for (size_t i = 0; i < pixelStore.size(); ++i) pixelStore[i] = get(kPixelStore[i].what);
   for (size_t i = 0; i < values.size(); ++i) values[i] = get(kValues[i].what);
   viewportCount = std::min(get(GL_MAX_VIEWPORTS), kMostViewports);
@@ -263,6 +289,9 @@ void StateGuard::Saved::endWhatWasBegun() const {
 void StateGuard::Saved::restore() const {
   if (std::uncaught_exceptions() > exceptions) endWhatWasBegun();
   for (size_t i = 0; i < switches.size(); ++i) set(kSwitches[i].what, switches[i]);
+  for (size_t i = 0; old && i < oldSwitches.size(); ++i) set(kOldSwitches[i].what, oldSwitches[i]);
+  for (size_t i = 0; old && i < oldClamps.size(); ++i) glClampColor(kOldClamps[i], GLenum(oldClamps[i]));
+  for (size_t i = 0; old && i < pixelTransfer.size(); ++i) glPixelTransferf(kPixelTransfer[i].what, pixelTransfer[i]);
   for (size_t i = 0; i < pixelStore.size(); ++i) glPixelStorei(kPixelStore[i].what, pixelStore[i]);
   for (int i = 0; i < viewportCount; ++i) {
     const Viewport& v = viewports[size_t(i)];
@@ -302,6 +331,11 @@ void StateGuard::Saved::restore() const {
 
 void setConventions() {
   for (const Switch& s : kSwitches) set(s.what, s.convention);
+  if (hasOldState()) {
+    for (const Switch& s : kOldSwitches) set(s.what, s.convention);
+    for (const GLenum clamp : kOldClamps) glClampColor(clamp, GL_FALSE);
+    for (const PixelTransfer& t : kPixelTransfer) glPixelTransferf(t.what, t.convention);
+  }
   for (const PixelStore& p : kPixelStore) glPixelStorei(p.what, p.convention);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

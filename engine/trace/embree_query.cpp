@@ -223,13 +223,14 @@ EmbreeQuery::State::BottomLevel EmbreeQuery::State::build(uint32_t meshIndex, co
 
 /// Takes over the vertices of a deformed instance.
 void EmbreeQuery::State::reshape(Instance& out, const DeformedMesh& deformed) {
-  out.revision = deformed.revision;
   out.positions = deformed.positions;
   out.normals = deformed.normals;
   if (!out.own.scene) {
     out.own = build(out.mesh, deformed.positions, true);
+    out.revision = deformed.revision;
     return;
   }
+  out.revision = deformed.revision;
   writeVertices(out.own.vertices, deformed.positions);
   change(out.own.scene, out.mesh,
          [](RTCGeometry g, uint32_t) { rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0); });

@@ -80,6 +80,7 @@ EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
 }
 
 World WorldState::place(const EffectPlan& plan, FrameStats& stats) {
+  const uint64_t opened = std::exchange(opened_, 0); // what fails half-way is opened anew by the next frame
   CpuScope scope(stats.stages, key(StageId::Scene));
   using enum EffectId;
   const SceneView& view = view_.view();
@@ -99,6 +100,7 @@ World WorldState::place(const EffectPlan& plan, FrameStats& stats) {
   }
   if (!plan.on(Sky)) lights_.sky = {};
   if (plan.on(Redraw)) farDistance_ = farDistanceOf(view, farDistance_);
+  opened_ = opened;
   return current();
 }
 

@@ -211,8 +211,9 @@ void HostScene::setLight(uint32_t light, const LightView& as) {
     refuse("light", "intensity is below 0, or not finite");
   if (!isNear(as.position)) refuse("light", "stands at no place within 1e12 m");
   if (!(as.range > 0)) refuse("light", "range is not above 0");
-  const vec3 direction = unitOrZero(as.direction);
-  if (direction == vec3(0)) refuse("light", "direction has no length");
+  vec3 direction = unitOrZero(as.direction);
+  if (direction == vec3(0) && as.type != LightType::Point) refuse("light", "direction has no length");
+  if (direction == vec3(0)) direction = {0, -1, 0};
   if (!(as.outerConeCos <= as.innerConeCos) || !(as.outerConeCos >= -1 && as.innerConeCos <= 1))
     refuse("light", "inner_cone_angle is not within 0 and outer_cone_angle, or that beyond π");
   if (!(as.angularRadius >= 0 && as.angularRadius <= 0.5f)) refuse("light", "angular_radius is not within 0 and 0.5");

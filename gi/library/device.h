@@ -26,8 +26,14 @@ struct View {
   std::optional<HostConventions> checked; // those of the last surfaces that were compared with the scene
   uint64_t rendered = 0;                  // HostScene::assetsVersion of the last frame; 0: none yet
 
+  /// Soft direct light begins at the image's surfaces, which are the host's, not at those that rays find in the scene.
+  static Settings settings() {
+    Settings s;
+    s.direct.surfaces = SoftSurfaces::Image;
+    return s;
+  }
   View(lambent_scene of, const lambent_view_desc& desc, uint32_t seed, const std::filesystem::path& shaders)
-      : scene(of), width(desc.width), height(desc.height), gi({}, seed, Makers::ByRule, shaders),
+      : scene(of), width(desc.width), height(desc.height), gi(settings(), seed, Makers::ByRule, shaders),
         delivery(gi.context()) {}
 };
 
@@ -43,7 +49,7 @@ struct lambent_device {
   std::string shaders; // folder; empty: built in
   lambent::Workers workers;
   lambent::MemoryAccount account; // below all that is entered in it
-  lambent::gl::Buffer mark;       // by its label a context is known again
+  lambent::gl::VertexArray mark;  // by its label a context is known again: contexts do not share these
   std::string markLabel;
   std::map<uint64_t, lambent::library::Scene> scenes;
   std::map<uint64_t, std::unique_ptr<lambent::library::View>> views;

@@ -140,6 +140,33 @@ struct Checks {
       tell(false, name + ": OpenGL error " + std::to_string(error));
   }
 
+  /// The same from a host's textures, with a block that moves: light that follows is what the first run had.
+  void host() {
+    try {
+      const Settings s = settings(techniqueTable().front());
+      GiFrame drawn(s), hosted(s);
+      ViewChanges changes, hostChanges;
+      for (int frame = 0; frame < kFrames; ++frame) {
+        const float x = frame < kFrames / 2 ? 0.02f * float(frame) : 0;
+        scene.moveInstance(1, mat4(vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(x, 0, 0, 1)));
+        drawn.run(scene.view(changes, camera, 0));
+        const GBuffer& own = drawn.outputs().surfaces;
+        const HostSurfaces surfaces{.depth = own.depth->name(),
+                                    .normal = own.normal->name(),
+                                    .emission = own.emission->name(),
+                                    .conventions = {.near = camera.near}};
+        hosted.run(scene.view(hostChanges, camera, 0), {}, &surfaces);
+      }
+      bool finite = true;
+      light("a host's G-buffer, direct light", hosted.outputs().direct.irradiance,
+            meanOf(drawn.outputs().direct.irradiance, finite), 0.02);
+      light("a host's G-buffer, indirect light", hosted.outputs().indirect.irradiance,
+            meanOf(drawn.outputs().indirect.irradiance, finite), 0.05);
+    } catch (const std::exception& e) {
+      tell(false, std::string("a host's G-buffer: ") + e.what());
+    }
+  }
+
   /// `expected` 0: not known, but there is some.
   void light(const std::string& name, const gl::Texture* texture, double expected, double tolerance) {
     bool finite = true;
@@ -177,6 +204,7 @@ bool checkDriver(const std::function<void(bool, const std::string&)>& report) {
     applySetting(s, "shadow.maker", maker);
     checks.run(std::string("indirect light, shadow.maker=") + maker, s, false);
   }
+  checks.host();
   return checks.works;
 }
 

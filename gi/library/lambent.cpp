@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -84,7 +85,8 @@ void requireOwnContext(const lambent_device& device) {
     refuse(LAMBENT_NO_CONTEXT, e.what());
   }
   char label[64] = "";
-  if (glIsBuffer(device.mark.name())) glGetObjectLabel(GL_BUFFER, device.mark.name(), sizeof label, nullptr, label);
+  if (glIsVertexArray(device.mark.name()))
+    glGetObjectLabel(GL_VERTEX_ARRAY, device.mark.name(), sizeof label, nullptr, label);
   if (label != device.markLabel)
     refuse(LAMBENT_NO_CONTEXT, "another OpenGL context is current than the one in which the device was created");
 }
@@ -95,8 +97,10 @@ template <class Work> lambent_status call(lambent_device* device, Gl needs, cons
     guarded(messageWithoutDevice, [] { refuse("no such device"); });
     return LAMBENT_INVALID_HANDLE;
   }
-  if (device->busy.exchange(true))
-    return LAMBENT_INVALID_ARGUMENT; // by another thread, or from a callback: its message stays
+  if (device->busy.exchange(true)) {
+    guarded(messageWithoutDevice, [] { refuse("the device is busy with another call"); });
+    return LAMBENT_BUSY;
+  }
   lambent_status status = LAMBENT_DEAD;
   if (!device->dead) {
     status = guarded(device->message, [&] {
@@ -251,11 +255,26 @@ LightView lightOf(const lambent_light_desc* given) {
   return light;
 }
 
+Sky skyOf(const lambent_sky_desc* given) {
+  const lambent_sky_desc d = read(given, "sky");
+  requireWithin(d.type, 2, "sky: type");
+  const vec3 radiance = vec3Of(d.radiance), sun = vec3Of(d.towards_sun);
+  if (d.type == LAMBENT_CONSTANT_SKY) {
+    require(isFinite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0 && maxComponent(radiance) < 1e30f,
+            "sky: radiance is below 0, or not finite");
+    return Sky(radiance);
+  }
+  const float length = glm::length(sun);
+  require(length > 0 && std::isfinite(length), "sky: towards_sun has no length");
+  require(std::isfinite(d.turbidity), "sky: turbidity is not a number");
+  return Sky::daylight(sun / length, d.turbidity);
+}
+
 /// A copy of level 0 of a host's texture.
 std::vector<u8vec4> texelsOf(uint32_t name, int& width, int& height) {
   const gl::Texture texture = gl::Texture::borrowed(name);
-  if (texture.width() == 0 || !texture.readsAsFlat())
-    refuse("texture " + std::to_string(name) + " is none (a GL_TEXTURE_2D with texels)");
+  if (texture.width() == 0 || !texture.readsAsFlat() || texture.isDepth())
+    refuse("texture " + std::to_string(name) + " is none (a GL_TEXTURE_2D of colours)");
   const gl::StateGuard guard;
   width = texture.width();
   height = texture.height();
@@ -272,7 +291,9 @@ CameraView cameraOf(const lambent_frame& f, const View& view) {
   float most = 0;
   for (int i = 0; i < 3; ++i) most = std::max(most, maxComponent(glm::abs(off[i])));
   constexpr float kRigid = 1e-3f;
-  require(isFinite(camera.worldFromView) && most <= kRigid && glm::determinant(rotation) > 0,
+  const mat4& m = camera.worldFromView;
+  require(isFinite(m) && most <= kRigid && glm::determinant(rotation) > 0 && m[0][3] == 0 && m[1][3] == 0 &&
+              m[2][3] == 0 && m[3][3] == 1,
           "frame: world_from_view is not rigid (columns one after the other; no scale, no mirroring)");
   require(isNear(camera.position()), "frame: the camera is farther than 1e12 m");
   camera.fovY = f.fov_y;
@@ -280,7 +301,7 @@ CameraView cameraOf(const lambent_frame& f, const View& view) {
   camera.near = f.near_plane;
   require(f.ortho_half_height >= 0 && f.ortho_half_height < 1e12f, "frame: ortho_half_height is not a length");
   require(f.ortho_half_height > 0 || (f.fov_y > 1e-3f && f.fov_y < 3.14f), "frame: fov_y is not within 0.001 and 3.14");
-  require(f.near_plane > 0 && f.near_plane < 1e12f, "frame: near_plane is not above 0");
+  require(f.near_plane >= 1e-9f && f.near_plane < 1e12f, "frame: near_plane is not within 1e-9 and 1e12");
   require(f.far_plane > f.near_plane, "frame: far_plane is not beyond near_plane");
   require(f.ortho_half_height == 0 || std::isfinite(f.far_plane) || f.depth_type == LAMBENT_DEPTH_LINEAR ||
               f.depth == 0,
@@ -308,6 +329,14 @@ HostSurfaces surfacesOf(const lambent_frame& f) {
   c.x = f.x;
   c.y = f.y;
   return host;
+}
+
+/// For tests of what a fault in the library does to a host: LAMBENT_FAULT=call or worker has the next frames meet one.
+void provokeFault() {
+  const char* const where = std::getenv("LAMBENT_FAULT");
+  if (!where) return;
+  if (std::string(where) == "call") CHECK(where == nullptr);
+  if (std::string(where) == "worker") parallelFor(64, 1, [](size_t begin, size_t) { CHECK_LT(begin, size_t(60)); });
 }
 
 /// The points of a query as surfaces.
@@ -338,10 +367,9 @@ lambent_device::lambent_device(const lambent_device_desc& from)
       account(from.memory ? [d = from](int64_t bytes) { return d.memory(d.user, bytes) != 0; }
                           : std::function<bool(int64_t)>()) {
   const MemoryAccount::Scope scope(account);
-  mark = gl::Buffer("lambent/mark", 4, nullptr);
   static std::atomic<uint64_t> last = 0;
   markLabel = "lambent/mark " + std::to_string(++last) + " " + std::to_string(uintptr_t(this));
-  glObjectLabel(GL_BUFFER, mark.name(), GLsizei(markLabel.size()), markLabel.c_str());
+  mark = gl::VertexArray(markLabel);
 }
 
 // The interface ------------------------------------------------------------------------------------------------------
@@ -373,6 +401,8 @@ const char* lambent_status_text(int status) {
     return "failed";
   case LAMBENT_DEAD:
     return "dead device";
+  case LAMBENT_BUSY:
+    return "busy device";
   }
   return "no status";
 }
@@ -633,22 +663,35 @@ lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene
   });
 }
 
+lambent_status lambent_sky_sun(const lambent_sky_desc* given, float irradiance[3], float* angular_radius) {
+  return guarded(messageWithoutDevice, [&] {
+    const Sky sky = skyOf(given);
+    require(given->type == LAMBENT_CLEAR_SKY, "sky: only a clear one has a sun");
+    const vec3 sun = daylightSun(glm::normalize(vec3Of(given->towards_sun)), given->turbidity);
+    if (irradiance) std::copy(&sun.x, &sun.x + 3, irradiance);
+    if (angular_radius) *angular_radius = kSunRadius;
+  });
+}
+
+lambent_status lambent_sky_radiance(const lambent_sky_desc* given, const float* directions, size_t count,
+                                    float* radiance) {
+  return guarded(messageWithoutDevice, [&] {
+    const Sky sky = skyOf(given);
+    require(count == 0 || (directions && radiance), "directions or radiance is NULL");
+    for (size_t i = 0; i < count; ++i) {
+      const vec3 direction = vec3Of(directions + 3 * i);
+      const float length = glm::length(direction);
+      require(length > 0 && std::isfinite(length), "sky: a direction has no length");
+      const vec3 found = sky.radiance(direction / length);
+      std::copy(&found.x, &found.x + 3, radiance + 3 * i);
+    }
+  });
+}
+
 lambent_status lambent_scene_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* given) {
   return call(device, Gl::NotNeeded, [&] {
     HostScene& host = sceneOf(*device, scene).host;
-    const lambent_sky_desc d = read(given, "sky");
-    requireWithin(d.type, 2, "sky: type");
-    const vec3 radiance = vec3Of(d.radiance), sun = vec3Of(d.towards_sun);
-    if (d.type == LAMBENT_CONSTANT_SKY) {
-      require(isFinite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0 &&
-                  maxComponent(radiance) < 1e30f,
-              "sky: radiance is below 0, or not finite");
-      return host.setSky(Sky(radiance));
-    }
-    const float length = glm::length(sun);
-    require(length > 0 && std::isfinite(length), "sky: towards_sun has no length");
-    require(std::isfinite(d.turbidity), "sky: turbidity is not a number");
-    host.setSky(Sky::daylight(sun / length, d.turbidity));
+    host.setSky(skyOf(given));
   });
 }
 
@@ -742,7 +785,13 @@ lambent_status lambent_render(lambent_device* device, lambent_view view, const l
     if (hosted) checkHost(surfaces, camera); // before the view is taken: a call that fails changes nothing
 
     const auto targetOf = [&](uint32_t texture) { return DeliveryTarget{texture, f.x, f.y, f.origin_top != 0}; };
+    for (const uint32_t texture : {f.indirect_out, f.direct_out})
+      for (const uint32_t other : {f.depth, f.normal, f.emission, v.gi.indirectIrradiance(), v.gi.directIrradiance()})
+        require(texture == 0 || texture != other, "frame: light cannot go into a texture that it is read from");
+    require(f.indirect_out == 0 || f.indirect_out != f.direct_out,
+            "frame: indirect_out and direct_out are one texture");
     const gl::StateGuard guard;
+    provokeFault();
     for (const uint32_t texture : {f.indirect_out, f.direct_out}) Delivery::check(v.width, v.height, targetOf(texture));
     v.rendered = 0;
     try {

@@ -149,6 +149,9 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
     if (name == 0 && !needed) return;
     const gl::Texture texture = gl::Texture::borrowed(name);
     if (texture.width() != 0 && !texture.readsAsFlat()) throw InputError(which, "is not a GL_TEXTURE_2D of floats");
+    if (texture.width() != 0 && texture.readsOtherThanLevel0())
+      throw InputError(which, "is read from another level than 0, or as stencil (GL_TEXTURE_BASE_LEVEL 0, "
+                              "GL_DEPTH_STENCIL_TEXTURE_MODE GL_DEPTH_COMPONENT)");
     if (texture.width() != 0 && c.ours() && texture.comparesDepths())
       throw InputError(which, "compares depths (GL_TEXTURE_COMPARE_MODE GL_NONE)");
     const bool holds = c.ours() ? texture.width() == camera.width && texture.height() == camera.height

@@ -10,6 +10,16 @@
 
 namespace lambent::test {
 
+/// A texture of floats; `channels` a texel.
+GLuint textureOf(GLenum format, int width, int height, int channels, const std::vector<float>& texels) {
+  GLuint texture = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+  glTextureStorage2D(texture, 1, format, width, height);
+  const GLenum layout = channels == 1 ? GL_RED : channels == 2 ? GL_RG : GL_RGB;
+  glTextureSubImage2D(texture, 0, 0, 0, width, height, layout, GL_FLOAT, texels.data());
+  return texture;
+}
+
 class Library : public testing::Test {
  protected:
   void SetUp() override {
@@ -128,8 +138,44 @@ TEST_F(Library, WrongCallsAreStatusesThatChangeNothing) {
   ASSERT_EQ(lambent_scene_create(room.device, &scene), LAMBENT_OK);
   lambent_instance instance = 0;
   EXPECT_EQ(lambent_instance_create(room.device, scene, room.walls, kIdentity, &instance), LAMBENT_INVALID_HANDLE);
+  f = Room::frame();
+  f.indirect_out = f.direct_out = textureOf(GL_RGBA16F, 32, 24, 3, std::vector<float>(32 * 24 * 3));
+  EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_INVALID_ARGUMENT) << "one texture for two";
+  f.indirect_out = room.render(view).direct;
+  f.direct_out = 0;
+  EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_INVALID_ARGUMENT) << "the library's own";
+  GLuint odd[5]; // none of which can be a G-buffer
+  glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &odd[0]);
+  glTextureStorage2DMultisample(odd[0], 4, GL_RGBA16F, 32, 24, GL_TRUE);
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &odd[1]);
+  glTextureStorage3D(odd[1], 1, GL_RGBA16F, 32, 24, 1);
+  glCreateTextures(GL_TEXTURE_2D, 1, &odd[2]);
+  glTextureStorage2D(odd[2], 1, GL_RGBA16UI, 32, 24);
+  glCreateTextures(GL_TEXTURE_BUFFER, 1, &odd[3]);
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  glNamedBufferStorage(buffer, 32 * 24 * 4, nullptr, 0);
+  glTextureBuffer(odd[3], GL_R32F, buffer);
+  glCreateTextures(GL_TEXTURE_2D, 1, &odd[4]);
+  glTextureStorage2D(odd[4], 3, GL_RGBA16F, 32, 24);
+  glTextureParameteri(odd[4], GL_TEXTURE_BASE_LEVEL, 1);
+  for (const GLuint texture : odd) {
+    f = Room::frame();
+    f.depth = f.normal = texture;
+    EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_INVALID_ARGUMENT) << texture;
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << texture;
+  }
+  f = Room::frame();
+  std::fill(f.world_from_view, f.world_from_view + 16, 0.0f);
+  for (int i = 0; i < 4; ++i) f.world_from_view[5 * i] = 1;
+  f.world_from_view[11] = 0.9f; // a translation in the last row
+  EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_INVALID_ARGUMENT) << "row by row";
   context->release();
-  EXPECT_EQ(lambent_render(room.device, view, &(f = Room::frame()), nullptr), LAMBENT_NO_CONTEXT);
+  const auto sharing = context->sharing();
+  sharing->makeCurrent();
+  EXPECT_EQ(lambent_render(room.device, view, &(f = Room::frame()), nullptr), LAMBENT_NO_CONTEXT) << "shares objects";
+  sharing->release();
+  EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_NO_CONTEXT);
   const auto other = eglHost();
   other->makeCurrent();
   EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_NO_CONTEXT) << "another context's";
@@ -137,6 +183,60 @@ TEST_F(Library, WrongCallsAreStatusesThatChangeNothing) {
   context->makeCurrent();
   EXPECT_NE(before, std::vector<float>());
   room.render(view);
+}
+
+TEST_F(Library, AFaultInsideIsAStatusAndTheDeviceIsDead) {
+  for (const char* where : {"call", "worker"}) {
+    Room room;
+    const lambent_view view = room.view();
+    room.render(view);
+    setenv("LAMBENT_FAULT", where, 1);
+    const lambent_frame f = Room::frame();
+    EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_DEAD) << where;
+    unsetenv("LAMBENT_FAULT");
+    EXPECT_NE(std::string(lambent_message(room.device)).find("CHECK"), std::string::npos);
+    EXPECT_EQ(lambent_render(room.device, view, &f, nullptr), LAMBENT_DEAD) << "from then on";
+    lambent_scene scene = 0;
+    EXPECT_EQ(lambent_scene_create(room.device, &scene), LAMBENT_DEAD);
+  }
+  Room next; // others live
+  next.render(next.view());
+}
+
+TEST_F(Library, CallsFromCallbacksAreBusy) {
+  struct Host {
+    lambent_device* device = nullptr;
+    lambent_status status = LAMBENT_OK;
+  } host;
+  lambent_device_desc desc;
+  LAMBENT_DEFAULTS(LAMBENT_DEVICE_DESC, &desc);
+  desc.user = &host;
+  desc.log = [](void* user, lambent_level, const char*) {
+    Host& h = *static_cast<Host*>(user);
+    lambent_scene scene = 0;
+    h.status = lambent_scene_create(h.device, &scene);
+    lambent_destroy(h.device);
+  };
+  Room room(&desc);
+  host.device = room.device;
+  EXPECT_EQ(lambent_view_destroy(room.device, 3), LAMBENT_INVALID_HANDLE); // is logged
+  EXPECT_EQ(host.status, LAMBENT_BUSY);
+  EXPECT_NE(std::string(lambent_message(nullptr)).find("busy"), std::string::npos);
+  room.render(room.view());
+}
+
+TEST_F(Library, ASkyTellsItsSunAndItsRadiance) {
+  lambent_sky_desc sky;
+  LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &sky);
+  float sun[3], radius = 0, radiance[6];
+  EXPECT_EQ(lambent_sky_sun(&sky, sun, &radius), LAMBENT_INVALID_ARGUMENT) << "a constant one has none";
+  sky.type = LAMBENT_CLEAR_SKY;
+  ASSERT_EQ(lambent_sky_sun(&sky, sun, &radius), LAMBENT_OK);
+  EXPECT_NEAR(sun[1], 2.6, 0.6);
+  EXPECT_NEAR(radius, 0.0046, 0.0002);
+  const float directions[6] = {0, 1, 0, 5, 1, 0};
+  ASSERT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_OK);
+  EXPECT_GT(radiance[2], radiance[0]) << "blue";
 }
 
 TEST_F(Library, ADestroyedDeviceIsNone) {
@@ -202,6 +302,61 @@ TEST_F(Library, MemoryIsToldAndMayBeRefused) {
   EXPECT_EQ(host.held, 0) << "all is given back";
 }
 
+/// Whichever request is refused, the next frame is whole, deformed instances too.
+TEST_F(Library, WhatWasRefusedOnceIsThereInTheNextFrame) {
+  struct Host {
+    int left = -1; // requests up to the one that is refused; below 0: none is
+    int asked = 0;
+  } host;
+  lambent_device_desc desc;
+  LAMBENT_DEFAULTS(LAMBENT_DEVICE_DESC, &desc);
+  desc.user = &host;
+  desc.memory = [](void* user, int64_t bytes) -> int {
+    Host& h = *static_cast<Host*>(user);
+    return bytes <= 0 || (++h.asked, h.left < 0 || h.left-- != 0);
+  };
+  const float points[6] = {-0.4f, -0.999f, 0, 0.4f, -0.999f, 0.2f},
+              up[6] = {0, 1, 0, 0, 1, 0}; // below the block; beside
+  const auto lightAfter = [&](int refused, bool deformsLater, lambent_status& status) {
+    Room room(&desc);
+    const lambent_view view = room.view(8, 6);
+    const lambent_frame f = Room::frame();
+    if (deformsLater) room.render(view, f);
+    std::vector<float> positions; // the block's vertices, made larger: as Room::box gives them
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side)
+        for (int corner = 0; corner < 4; ++corner) {
+          float p[3];
+          p[axis] = side ? 0.32f : -0.32f;
+          p[(axis + 1) % 3] = corner == 1 || corner == 2 ? 0.32f : -0.32f;
+          p[(axis + 2) % 3] = corner >= 2 ? 0.32f : -0.32f;
+          positions.insert(positions.end(), p, p + 3);
+        }
+    room.ok(lambent_instance_deform(room.device, room.scene, room.block, positions.data(), nullptr, 24));
+    host.asked = 0;
+    host.left = refused;
+    status = lambent_render(room.device, view, &f, nullptr);
+    host.left = -1;
+    room.render(view, f);
+    std::vector<float> direct(6);
+    room.ok(lambent_irradiance(room.device, view, points, up, 2, nullptr, direct.data()));
+    return direct;
+  };
+  for (const bool deformsLater : {false, true}) {
+    lambent_status status = LAMBENT_OK;
+    const std::vector<float> expected = lightAfter(-1, deformsLater, status);
+    const int requests = host.asked;
+    EXPECT_EQ(status, LAMBENT_OK);
+    EXPECT_GT(requests, 3);
+    EXPECT_LT(expected[0], 0.5f * expected[3]) << "the block's shadow";
+    for (int k = 0; k < requests; ++k) {
+      const std::vector<float> found = lightAfter(k, deformsLater, status);
+      EXPECT_EQ(status, LAMBENT_OUT_OF_MEMORY) << k;
+      EXPECT_EQ(found, expected) << k << (deformsLater ? ", deformed later" : "");
+    }
+  }
+}
+
 TEST_F(Library, DriverCheckPassesAndTells) {
   struct Told {
     int lines = 0, bad = 0;
@@ -230,16 +385,6 @@ struct Convention {
   lambent_space space;
   bool top, rectangle;
 };
-
-/// A texture of floats; `channels` a texel.
-GLuint textureOf(GLenum format, int width, int height, int channels, const std::vector<float>& texels) {
-  GLuint texture = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-  glTextureStorage2D(texture, 1, format, width, height);
-  const GLenum layout = channels == 1 ? GL_RED : channels == 2 ? GL_RG : GL_RGB;
-  glTextureSubImage2D(texture, 0, 0, 0, width, height, layout, GL_FLOAT, texels.data());
-  return texture;
-}
 
 TEST_F(Library, EveryConventionOfAGBufferGivesTheSameLight) {
   constexpr int w = Room::kWidth, h = Room::kHeight, x0 = 5, y0 = 3;
@@ -369,7 +514,18 @@ TEST_F(Library, TexturesOfOldHostsAreReadToo) {
     f.normal = textures[1];
     f.depth_type = LAMBENT_DEPTH_REVERSED;
     f.direct_out = textures[2];
+    glEnable(GL_ALPHA_TEST); // that none of ours passes
+    glAlphaFunc(GL_GREATER, 2);
+    glEnable(GL_POLYGON_STIPPLE);
+    const GLubyte none[128] = {};
+    glPolygonStipple(none);
+    glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_TRUE);
+    glPixelTransferf(GL_RED_SCALE, 2);
     out = room.render(room.view(), f);
+    GLfloat scale = 0;
+    glGetFloatv(GL_RED_SCALE, &scale);
+    EXPECT_TRUE(glIsEnabled(GL_ALPHA_TEST) && glIsEnabled(GL_POLYGON_STIPPLE) && scale == 2) << "left as found";
+    glPixelTransferf(GL_RED_SCALE, 1);
     const std::vector<float> found = Room::read(textures[2], GL_RGB);
     double off = 0;
     for (size_t i = 0; i < found.size(); ++i) off += double(std::abs(found[i] - expected[i])) / double(found.size());
@@ -415,6 +571,43 @@ TEST_F(Library, NormalsOfViewSpaceAreTurnedWithTheCamera) {
   f.normal_space = LAMBENT_WORLD;
   out = room.render(view, f);
   EXPECT_GT(std::abs(Room::mean(Room::read(out.direct, GL_RGB)) / Room::mean(expected) - 1), 0.01) << "it matters";
+}
+
+/// Soft light begins at the host's surfaces too, though rays know those of the scene.
+TEST_F(Library, SoftLightFallsOnTheHostsSurfaces) {
+  constexpr int w = Room::kWidth, h = Room::kHeight;
+  Room room;
+  lambent_material_desc glow;
+  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &glow);
+  for (float& c : glow.emission) c = 20;
+  lambent_material material = 0;
+  room.ok(lambent_material_create(room.device, room.scene, &glow, &material));
+  lambent_instance instance = 0;
+  float place[16];
+  std::copy(kIdentity, kIdentity + 16, place);
+  place[12] = 0.5f, place[13] = 0.5f, place[14] = -0.3f;
+  room.ok(lambent_instance_create(room.device, room.scene, room.box(0.1f, false, material), place, &instance));
+  room.ok(lambent_light_destroy(room.device, room.scene, room.lamp));
+  lambent_output out = room.render(room.view());
+  std::vector<float> normals = Room::read(out.normal, GL_RGB), depth(size_t(w * h));
+  glGetTextureImage(out.depth, 0, GL_DEPTH_COMPONENT, GL_FLOAT, GLsizei(depth.size() * 4), depth.data());
+  lambent_frame f = Room::frame();
+  f.depth_type = LAMBENT_DEPTH_REVERSED;
+  f.depth = textureOf(GL_R32F, w, h, 1, depth);
+  const auto directBy = [&](const std::vector<float>& seen) {
+    f.normal = textureOf(GL_RGB16F, w, h, 3, seen);
+    const lambent_view view = room.view();
+    for (int i = 0; i < 8; ++i) out = room.render(view, f);
+    return Room::mean(Room::read(out.direct, GL_RGB));
+  };
+  const double lit = directBy(normals);
+  for (size_t i = 0; i < normals.size(); i += 3) { // all towards the viewer, as of a normal map gone wild
+    normals[i] = normals[i + 1] = 0;
+    normals[i + 2] = 1;
+  }
+  const double other = directBy(normals);
+  EXPECT_GT(lit, 0.01);
+  EXPECT_GT(std::abs(other / lit - 1), 0.1) << lit << " and " << other;
 }
 
 /// A wrong convention is a dark or odd image, and no error: the log hears of it.

@@ -13,7 +13,7 @@ namespace lambent::test {
 
 inline const float kIdentity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/// A device with one scene: a closed box of 2 m with a block in it, a lamp, and a patch that glows.
+/// A device with one scene: a closed box of 2 m with a block and a lamp in it.
 class Room {
  public:
   static constexpr int kWidth = 32, kHeight = 24;
