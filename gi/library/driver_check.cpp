@@ -15,7 +15,7 @@ namespace lambent::library {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
-constexpr int kFrames = 24; // that are averaged
+constexpr int kFrames = 10; // that are averaged
 
 std::string number(double v) {
   char text[32];
