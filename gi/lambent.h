@@ -103,7 +103,7 @@ LAMBENT_API lambent_status lambent_create(const lambent_device_desc* desc, lambe
 /* GL. With all that it holds; waits for what it still computes. NULL does nothing, nor does a call from a callback. */
 LAMBENT_API void lambent_destroy(lambent_device* device);
 /* What the last failed call said, one line; "" when none failed. Valid until the next call. NULL: of this thread's last
- * call without a device. */
+ * call without a device, or to one that was busy. */
 LAMBENT_API const char* lambent_message(const lambent_device* device);
 
 typedef struct lambent_memory_row {

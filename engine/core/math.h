@@ -64,5 +64,11 @@ inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite
 inline bool isFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
 inline bool isFinite(const mat4& m) { return isFinite(m[0]) && isFinite(m[1]) && isFinite(m[2]) && isFinite(m[3]); }
 inline float maxComponent(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
+/// Unit vector along v, `otherwise` where it has no direction.
+inline vec3 unitOr(const vec3& v, const vec3& otherwise) {
+  const float largest = maxComponent(glm::abs(v)); // scaled first: products of tiny or huge components leave float
+  if (!(largest > 0) || !std::isfinite(largest)) return otherwise;
+  return glm::normalize(v / largest);
+}
 
 } // namespace lambent

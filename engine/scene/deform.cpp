@@ -44,12 +44,6 @@ mat3 normalMatrix(const mat3& m) {
   return glm::dot(m[0], cofactor[0]) < 0 ? -cofactor : cofactor;
 }
 
-vec3 unitOr(const vec3& v, const vec3& otherwise) {
-  const float largest = maxComponent(glm::abs(v)); // scaled first: products of tiny or huge components leave float
-  if (!(largest > 0) || !std::isfinite(largest)) return otherwise;
-  return glm::normalize(v / largest);
-}
-
 void morph(const Mesh& mesh, std::span<const float> weights, size_t begin, size_t end, DeformedMesh& out) {
   std::copy(mesh.positions.begin() + long(begin), mesh.positions.begin() + long(end),
             out.positions.begin() + long(begin));

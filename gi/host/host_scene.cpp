@@ -22,19 +22,13 @@ void requireFinite(const std::string& what, std::span<const vec3> values, float 
       refuse(what, "number " + std::to_string(i) + " is not finite, or beyond " + std::to_string(most));
 }
 
-/// Unit, without leaving floats on the way; zero where there is no direction.
-vec3 unitOrZero(const vec3& v) {
-  const float largest = maxComponent(glm::abs(v));
-  return largest > 0 && std::isfinite(largest) ? glm::normalize(v / largest) : vec3(0);
-}
-
 /// One unit normal a vertex: those given, where they have a length, else the mean of the triangles around, by area.
 std::vector<vec3> normalsOf(std::span<const vec3> positions, std::span<const uvec3> triangles,
                             std::span<const vec3> given) {
   std::vector<vec3> normals(positions.size(), vec3(0));
   bool all = given.size() == positions.size();
   for (size_t i = 0; i < given.size(); ++i) {
-    normals[i] = unitOrZero(given[i]);
+    normals[i] = unitOr(given[i], vec3(0));
     all = all && normals[i] != vec3(0);
   }
   if (all) return normals;
@@ -45,8 +39,7 @@ std::vector<vec3> normalsOf(std::span<const vec3> positions, std::span<const uve
     for (int c = 0; c < 3; ++c) sums[t[c]] += cross;
   }
   for (size_t i = 0; i < normals.size(); ++i) {
-    if (normals[i] == vec3(0)) normals[i] = unitOrZero(sums[i]);
-    if (normals[i] == vec3(0)) normals[i] = {0, 1, 0};
+    if (normals[i] == vec3(0)) normals[i] = unitOr(sums[i], {0, 1, 0});
   }
   return normals;
 }
@@ -211,7 +204,7 @@ void HostScene::setLight(uint32_t light, const LightView& as) {
     refuse("light", "intensity is below 0, or not finite");
   if (!isNear(as.position)) refuse("light", "stands at no place within 1e12 m");
   if (!(as.range > 0)) refuse("light", "range is not above 0");
-  vec3 direction = unitOrZero(as.direction);
+  vec3 direction = unitOr(as.direction, vec3(0));
   if (direction == vec3(0) && as.type != LightType::Point) refuse("light", "direction has no length");
   if (direction == vec3(0)) direction = {0, -1, 0};
   if (!(as.outerConeCos <= as.innerConeCos) || !(as.outerConeCos >= -1 && as.innerConeCos <= 1))

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "gi/lambent.h"
+#include "tests/host/contexts.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace lambent::test {
@@ -115,6 +117,28 @@ class Room {
     for (const float v : values) sum += double(v) / double(values.size());
     return sum;
   }
+};
+
+/// A texture of floats; `channels` a texel.
+inline GLuint textureOf(GLenum format, int width, int height, int channels, const std::vector<float>& texels) {
+  GLuint texture = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+  glTextureStorage2D(texture, 1, format, width, height);
+  const GLenum layout = channels == 1 ? GL_RED : channels == 2 ? GL_RG : GL_RGB;
+  glTextureSubImage2D(texture, 0, 0, 0, width, height, layout, GL_FLOAT, texels.data());
+  return texture;
+}
+
+/// In a context of its own, of the core profile.
+class Library : public testing::Test {
+ protected:
+  void SetUp() override {
+    context = eglHost();
+    if (!context) GTEST_SKIP() << "EGL offers no OpenGL 4.5 here";
+    context->makeCurrent();
+  }
+  void TearDown() override { EXPECT_TRUE(!context || glGetError() == GL_NO_ERROR); }
+  std::unique_ptr<HostContext> context;
 };
 
 } // namespace lambent::test

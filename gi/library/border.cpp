@@ -1,0 +1,91 @@
+#include "gi/library/border.h"
+
+#include "engine/gl/context.h"
+
+#include <mutex>
+#include <set>
+
+namespace lambent::library {
+
+namespace {
+
+std::mutex devicesMutex;
+std::set<const lambent_device*>& devices() {
+  static std::set<const lambent_device*> live;
+  return live;
+}
+
+[[noreturn]] void unknown(const char* what) { refuse(LAMBENT_INVALID_HANDLE, std::string("no such ") + what); }
+
+} // namespace
+
+void LiveDevices::add(const lambent_device* device) {
+  const std::lock_guard lock(devicesMutex);
+  devices().insert(device);
+}
+void LiveDevices::remove(const lambent_device* device) {
+  const std::lock_guard lock(devicesMutex);
+  devices().erase(device);
+}
+bool LiveDevices::has(const lambent_device* device) {
+  const std::lock_guard lock(devicesMutex);
+  return devices().contains(device);
+}
+
+std::string& messageWithoutDevice() {
+  thread_local std::string message;
+  return message;
+}
+
+void requireContext() {
+  try {
+    gl::requireContext();
+  } catch (const RunError& e) {
+    refuse(LAMBENT_NO_CONTEXT, e.what());
+  }
+}
+
+void requireContext(const lambent_device& device) {
+  requireContext();
+  char label[64] = "";
+  if (glIsVertexArray(device.mark.name()))
+    glGetObjectLabel(GL_VERTEX_ARRAY, device.mark.name(), sizeof label, nullptr, label);
+  if (label != device.markLabel)
+    refuse(LAMBENT_NO_CONTEXT, "another OpenGL context is current than the one in which the device was created");
+}
+
+mat4 mat4Of(const float* m) {
+  require(m != nullptr, "a matrix is NULL");
+  mat4 out;
+  for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
+  return out;
+}
+
+void requireWithin(int value, int count, const char* what) {
+  if (value < 0 || value >= count) refuse(std::string(what) + " is none of its values");
+}
+
+uint64_t nextSerial(lambent_device& device) {
+  if (device.given >= kMostGiven) refuse(LAMBENT_FAILED, "a device gives 16 million scenes and views at most");
+  return ++device.given;
+}
+
+Scene& sceneOf(lambent_device& device, lambent_scene id) {
+  const auto found = device.scenes.find(id);
+  if (found == device.scenes.end()) unknown("scene");
+  return found->second;
+}
+View& viewOf(lambent_device& device, lambent_view id) {
+  const auto found = device.views.find(id);
+  if (found == device.views.end()) unknown("view");
+  return *found->second;
+}
+uint32_t numberOf(Kind kind, lambent_scene scene, uint64_t id, const char* what, const HostScene& in,
+                  bool (HostScene::*has)(uint32_t) const) {
+  const uint32_t number = uint32_t(id) - 1;
+  if (id >> 56 != uint64_t(kind) || serialOf(id) != serialOf(scene) || uint32_t(id) == 0 || !(in.*has)(number))
+    unknown(what);
+  return number;
+}
+
+} // namespace lambent::library
