@@ -47,7 +47,7 @@ typedef enum lambent_status {
   LAMBENT_INVALID_HANDLE = 2,   /* not of this device, or destroyed */
   LAMBENT_NO_CONTEXT = 3,       /* no OpenGL 4.5 context is current, or not the device's */
   LAMBENT_OUT_OF_MEMORY = 4,
-  LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile, a file that cannot be read */
+  LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile */
   LAMBENT_DEAD = 6,   /* a fault in the library, now or before: destroy the device */
   LAMBENT_BUSY = 7    /* another call to the device is on its way, on another thread or around a callback */
 } lambent_status;
@@ -115,10 +115,10 @@ typedef struct lambent_memory_row {
 LAMBENT_API lambent_status lambent_memory(lambent_device* device, lambent_memory_row* rows, size_t* count);
 
 /* Scene ------------------------------------------------------------------------------------------------------------- */
-/* Textures, materials and meshes are meant to be made when a level is loaded: after a change of these the next frame
- * begins its light anew (docs/embedding.md, what is not offered). Instances, lights and the sky may change in every
- * frame; the library finds out what that means for the light. Calls that need the OpenGL context are marked GL. None
- * waits, but that textures, materials and meshes wait for an update of lights beside the GPU (frame.overlap). */
+/* All may come and go while frames run; the library finds out what that means for the light. Only a material that is
+ * changed (lambent_material_set) has the next frame begin its light anew. Calls that need the OpenGL context are marked
+ * GL. None waits, but that textures, materials and meshes wait for an update of lights beside the GPU (frame.overlap),
+ * and have the next frame build and upload what came. */
 
 LAMBENT_API lambent_status lambent_scene_create(lambent_device* device, lambent_scene* scene);
 /* GL. With its views. */
@@ -138,6 +138,10 @@ typedef struct lambent_texture_desc {
 LAMBENT_API lambent_status lambent_texture_create(lambent_device* device, lambent_scene scene,
                                                   const lambent_texture_desc* desc, lambent_texture* texture);
 
+/* Not while a material uses it. */
+LAMBENT_API lambent_status lambent_texture_destroy(lambent_device* device, lambent_scene scene,
+                                                   lambent_texture texture);
+
 /* What light paths see of a surface: Lambert, albedo = base_color × texture × vertex colour; both sides reflect. */
 typedef struct lambent_material_desc {
   size_t size;
@@ -146,11 +150,19 @@ typedef struct lambent_material_desc {
   float emission[3];            /* radiance of the front side, or of both */
   lambent_texture emission_texture;
   int double_sided;  /* emits on both sides */
-  int masked;        /* 1: what has alpha (of base_texture × vertex colour) below alpha_cutoff is not there */
-  float alpha_cutoff; /* default 0.5 */
+  int masked;        /* 1: what has alpha (alpha × base_texture × vertex colour) below alpha_cutoff is not there */
+  float alpha, alpha_cutoff; /* default 1, 0.5 */
+  int32_t base_uv_set, emission_uv_set; /* 0: uvs of the mesh, 1: uvs1 */
+  float base_uv[6], emission_uv[6]; /* m: a texture is read at (m0 u + m1 v + m2, m3 u + m4 v + m5); default u, v */
 } lambent_material_desc;
 LAMBENT_API lambent_status lambent_material_create(lambent_device* device, lambent_scene scene,
                                                    const lambent_material_desc* desc, lambent_material* material);
+/* Makes it another one on all meshes that have it; the next frame of each view then places its lights anew. */
+LAMBENT_API lambent_status lambent_material_set(lambent_device* device, lambent_scene scene,
+                                                lambent_material material, const lambent_material_desc* desc);
+/* Not while a mesh has it. */
+LAMBENT_API lambent_status lambent_material_destroy(lambent_device* device, lambent_scene scene,
+                                                    lambent_material material);
 
 /* Triangles of a mesh that share a material: indices from 3 × first_triangle on. */
 typedef struct lambent_part {
@@ -163,7 +175,7 @@ typedef struct lambent_mesh_desc {
   uint32_t vertex_count, triangle_count;
   const float* positions;  /* 3 a vertex */
   const float* normals;    /* 3 a vertex, of any length; NULL: the triangles' own, means where they share vertices */
-  const float* uvs;        /* 2 a vertex; NULL: all 0 */
+  const float *uvs, *uvs1; /* 2 a vertex; NULL: all 0 */
   const float* colors;     /* linear RGBA, 4 a vertex; NULL: white */
   const uint32_t* indices; /* 3 a triangle; the front is seen counter-clockwise */
   const lambent_part* parts;
@@ -320,6 +332,10 @@ LAMBENT_API lambent_status lambent_irradiance_texture(lambent_device* device, la
  * Returns LAMBENT_OK where all work, LAMBENT_FAILED where one does not. Takes seconds, on llvmpipe ten. */
 typedef void (*lambent_check_function)(void* user, int ok, const char* line);
 LAMBENT_API lambent_status lambent_check(lambent_check_function report, void* user);
+
+/* GL. For work on shaders, with a shader_folder: compiles again what changed there since it was read. The log hears of
+ * each program. One that does not compile keeps its last good version, and the call fails, saying where. */
+LAMBENT_API lambent_status lambent_reload_shaders(lambent_device* device);
 
 #ifdef __cplusplus
 }

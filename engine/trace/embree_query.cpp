@@ -269,14 +269,25 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
   s.device = rtcNewDevice(nullptr);
   if (!s.device) throw RunError("Embree: no device (error " + std::to_string(int(rtcGetDeviceError(nullptr))) + ")");
   rtcSetDeviceMemoryMonitorFunction(s.device, noteMemory, &MemoryAccount::current());
-  for (uint32_t m = 0; m < assets.meshes.size(); ++m) {
-    std::vector<GeometryData>& data = s.geometryData.emplace_back();
-    for (uint32_t p = 0; p < assets.meshes[m].primitives.size(); ++p) data.push_back({&assets, m, p});
-    s.meshes.push_back(s.build(m, assets.meshes[m].positions, false).scene);
-  }
+  takeAssets();
   s.top = rtcNewScene(s.device);
   rtcSetSceneFlags(s.top, RTC_SCENE_FLAG_ROBUST);
   rtcCommitScene(s.top);
+  requireMemory(s.device);
+}
+
+void EmbreeQuery::takeAssets() {
+  State& s = *state_;
+  for (uint32_t m = 0; m < s.assets.meshes.size(); ++m) {
+    const Mesh& mesh = s.assets.meshes[m];
+    if (m < s.meshes.size()) {
+      if (RTCScene& gone = s.meshes[m]; gone && mesh.triangles.empty()) rtcReleaseScene(std::exchange(gone, nullptr));
+      continue;
+    }
+    std::vector<GeometryData>& data = s.geometryData.emplace_back();
+    for (uint32_t p = 0; p < mesh.primitives.size(); ++p) data.push_back({&s.assets, m, p});
+    s.meshes.push_back(s.build(m, mesh.positions, false).scene);
+  }
   requireMemory(s.device);
 }
 

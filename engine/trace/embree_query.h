@@ -12,6 +12,9 @@ class EmbreeQuery final : public RayQuery {
   explicit EmbreeQuery(const SceneAssets& assets);
   ~EmbreeQuery() override;
 
+  /// Builds the bottom level of meshes that came to the assets, and gives up those of meshes that went. To be followed
+  /// by an update before any ray.
+  void takeAssets();
   /// Takes over instances and transforms; rebuilds the top level only if something moved, came or went, and refits the
   /// bottom level of what was reshaped. With `all` every instance is placed again. Returns how many were.
   uint32_t update(const SceneView& view, bool all = false);

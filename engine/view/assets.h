@@ -1,4 +1,4 @@
-// What a scene is made of and never changes while it runs: meshes, materials, textures. Filled by the importer.
+// What a scene is made of: meshes, materials, textures. Filled by the importer, or by a host call by call.
 #pragma once
 
 #include "engine/core/math.h"
@@ -120,8 +120,11 @@ class Identity {
   uint64_t value_ = next();
 };
 
+/// What is in use never changes under the same identity. What nothing uses may come and go: `revision` then grows, and
+/// numbers stay. What has gone has no triangles, or one texel.
 struct SceneAssets {
   Identity identity;
+  uint64_t revision = 0;
   std::vector<Mesh> meshes;
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;

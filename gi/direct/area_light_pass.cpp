@@ -90,8 +90,9 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
 }
 
 const RayQuery& AreaLightPass::gpuRays(const World& world) {
-  if (!gpuRays_ || world.view.changes.first)
+  if (!gpuRays_ || world.view.changes.first || traced_ != world.view.assets->revision)
     gpuRays_ = std::make_unique<GpuRays>(context_.programs, *world.view.assets);
+  traced_ = world.view.assets->revision;
   gpuRays_->update(world.view);
   return *gpuRays_;
 }

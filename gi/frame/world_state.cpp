@@ -19,17 +19,25 @@ float farDistanceOf(const SceneView& view, float before) {
 } // namespace
 
 bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
-  if (opened_ == assets.identity.value()) return false;
+  const bool same = opened_ == assets.identity.value();
+  if (same && revision_ == assets.revision) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  opened_ = 0; // until it is: a pulse may throw
-  gpu_ = std::make_unique<GpuScene>(context_, assets);
-  rays_ = std::make_unique<EmbreeQuery>(assets);
-  view_ = {};
-  frozen_ = false;
-  lightingStale_ = surfacesStale_ = true;
-  testedDraws_ = 0;
+  const bool another = !same || frozen_; // frozen instances may show what has gone
+  opened_ = 0;                           // until it is: a pulse may throw
+  if (another) {
+    gpu_ = std::make_unique<GpuScene>(context_, assets);
+    rays_ = std::make_unique<EmbreeQuery>(assets);
+    view_ = {};
+    frozen_ = false;
+    lightingStale_ = surfacesStale_ = true;
+    testedDraws_ = 0;
+  } else {
+    gpu_->takeAssets(assets);
+    rays_->takeAssets();
+  }
   opened_ = assets.identity.value();
-  return true;
+  revision_ = assets.revision;
+  return another;
 }
 
 void WorldState::take(const SceneView& given, const Settings& settings) {

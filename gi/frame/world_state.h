@@ -26,7 +26,7 @@ class WorldState {
  public:
   explicit WorldState(const PassContext& context) : context_(context) {}
 
-  /// Prepares for a scene. Returns whether it is another one.
+  /// Prepares for a scene. Returns whether it is another one; what came to the last one, or went, is only taken over.
   bool open(const SceneAssets& assets, FrameStats& stats);
   /// Takes the view over.
   void take(const SceneView& given, const Settings& settings);
@@ -46,7 +46,7 @@ class WorldState {
 
  private:
   PassContext context_;
-  uint64_t opened_ = 0; // identity of its assets
+  uint64_t opened_ = 0, revision_ = 0; // identity and revision of its assets
   std::unique_ptr<GpuScene> gpu_;
   std::unique_ptr<EmbreeQuery> rays_;
   ViewCopy view_;

@@ -58,6 +58,7 @@ HostScene::HostScene() {
   Material& grey = assets_.materials.emplace_back(); // of meshes that name none
   grey.name = "grey";
   grey.baseColor = vec3(0.8f);
+  materials_.push_back(true);
 }
 
 uint32_t HostScene::addTexture(TextureImage image) {
@@ -69,11 +70,27 @@ uint32_t HostScene::addTexture(TextureImage image) {
   for (const u8vec4& t : image.texels) sum += glm::dvec4(decodeTexel(t, image.srgb));
   image.averageLinear = vec4(sum / double(image.texels.size()));
   assets_.images.push_back(std::move(image));
-  assetsChanged();
+  textures_.push_back(true);
+  assetsCameOrWent();
   return uint32_t(assets_.images.size() - 1);
 }
 
-uint32_t HostScene::addMaterial(const Material& material) {
+void HostScene::removeTexture(uint32_t texture) {
+  if (!hasTexture(texture)) refuse("texture", "is not there");
+  for (size_t i = 0; i < materials_.size(); ++i) {
+    const Material& m = assets_.materials[i];
+    if (materials_[i] && (m.baseColorTexture.image == texture || m.emissiveTexture.image == texture))
+      refuse("texture", "is used by a material (destroy that first, or set another)");
+  }
+  TextureImage& image = assets_.images[texture];
+  image = {};
+  image.width = image.height = 1;
+  image.texels = {u8vec4(255)};
+  textures_[texture] = false;
+  assetsCameOrWent();
+}
+
+void HostScene::require(const Material& material) const {
   for (const TextureRef* t : {&material.baseColorTexture, &material.emissiveTexture})
     if (t->image != kNone && !hasTexture(t->image)) refuse("material", "names a texture that is not there");
   const auto within = [](const vec3& v, float most) {
@@ -82,9 +99,36 @@ uint32_t HostScene::addMaterial(const Material& material) {
   if (!within(material.baseColor, 1)) refuse("material", "base_color is not within 0 and 1");
   if (!within(material.emission, kMostIntensity)) refuse("material", "emission is below 0, or not finite");
   if (!(material.alphaCutoff >= 0)) refuse("material", "alpha_cutoff is not a number above 0");
+  if (!(material.alpha >= 0 && material.alpha <= 1)) refuse("material", "alpha is not within 0 and 1");
+  for (const TextureRef* t : {&material.baseColorTexture, &material.emissiveTexture})
+    for (int column = 0; column < 3; ++column)
+      if (t->uvSet > 1 || !isFinite(t->uvTransform[column]))
+        refuse("material", "base_uv or emission_uv is not finite, or names a set beyond 1");
+}
+
+uint32_t HostScene::addMaterial(const Material& material) {
+  require(material);
   assets_.materials.push_back(material);
-  assetsChanged();
+  materials_.push_back(true);
+  assetsCameOrWent();
   return uint32_t(assets_.materials.size() - 1);
+}
+
+void HostScene::setMaterial(uint32_t material, const Material& as) {
+  if (!hasMaterial(material)) refuse("material", "is not there");
+  require(as);
+  assets_.materials[material] = as;
+  assetsChanged();
+}
+
+void HostScene::removeMaterial(uint32_t material) {
+  if (!hasMaterial(material)) refuse("material", "is not there");
+  for (const Mesh& mesh : assets_.meshes)
+    for (const Primitive& p : mesh.primitives)
+      if (p.material == material) refuse("material", "is that of a mesh (destroy that first)");
+  assets_.materials[material] = {};
+  materials_[material] = false;
+  assetsCameOrWent();
 }
 
 uint32_t HostScene::addMesh(const HostMesh& in) {
@@ -101,6 +145,7 @@ uint32_t HostScene::addMesh(const HostMesh& in) {
   mesh.triangles.assign(in.triangles.begin(), in.triangles.end());
   mesh.normals = normalsOf(in.positions, in.triangles, in.normals);
   mesh.uv0.assign(in.uvs.begin(), in.uvs.end());
+  mesh.uv1.assign(in.uvs1.begin(), in.uvs1.end());
   mesh.colors.assign(in.colors.begin(), in.colors.end());
   for (const vec4& c : mesh.colors)
     if (!isFinite(vec3(c)) || !(std::min({c.x, c.y, c.z, c.w}) >= 0) || !(maxComponent(vec3(c)) <= 1))
@@ -122,8 +167,8 @@ uint32_t HostScene::addMesh(const HostMesh& in) {
   }
   if (covered != in.triangles.size()) refuse(which, "has triangles that are of no part");
   assets_.meshes.push_back(std::move(mesh));
-  removed_.push_back(false);
-  assetsChanged();
+  meshes_.push_back(true);
+  assetsCameOrWent();
   return uint32_t(assets_.meshes.size() - 1);
 }
 
@@ -131,9 +176,9 @@ void HostScene::removeMesh(uint32_t mesh) {
   for (const auto& [id, instance] : instances_)
     if (instance.mesh == mesh)
       refuse("mesh " + assets_.meshes[mesh].name, "is shown by an instance (destroy that first)");
-  assets_.meshes[mesh] = {}; // its number stays taken
-  removed_[mesh] = true;
-  assetsChanged();
+  assets_.meshes[mesh] = {};
+  meshes_[mesh] = false;
+  assetsCameOrWent();
 }
 
 uint32_t HostScene::addInstance(uint32_t mesh, const mat4& worldFromObject) {
@@ -233,8 +278,9 @@ SceneView HostScene::view(ViewChanges& changes, const CameraView& camera, double
 uint64_t HostScene::bytes() const {
   uint64_t sum = 0;
   for (const Mesh& m : assets_.meshes)
-    sum += m.positions.size() * sizeof(vec3) + m.normals.size() * sizeof(vec3) + m.uv0.size() * sizeof(vec2) +
-           m.colors.size() * sizeof(vec4) + m.triangles.size() * sizeof(uvec3);
+    sum += m.positions.size() * sizeof(vec3) + m.normals.size() * sizeof(vec3) +
+           (m.uv0.size() + m.uv1.size()) * sizeof(vec2) + m.colors.size() * sizeof(vec4) +
+           m.triangles.size() * sizeof(uvec3);
   for (const TextureImage& i : assets_.images) sum += i.texels.size() * sizeof(u8vec4);
   for (const auto& [id, v] : instances_) {
     sum += sizeof(InstanceView);

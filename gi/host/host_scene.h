@@ -15,7 +15,7 @@ namespace lambent {
 struct HostMesh {
   std::string name = {};
   std::span<const vec3> positions = {}, normals = {}; // normals: empty or one a vertex, of any length
-  std::span<const vec2> uvs = {};                     // empty or one a vertex
+  std::span<const vec2> uvs = {}, uvs1 = {};          // empty or one a vertex
   std::span<const vec4> colors = {};                  // likewise
   std::span<const uvec3> triangles = {};
   struct Part {
@@ -32,7 +32,10 @@ class HostScene {
   HostScene();
 
   uint32_t addTexture(TextureImage image);
+  void removeTexture(uint32_t texture);           // that no material uses
   uint32_t addMaterial(const Material& material); // its textures by number
+  void setMaterial(uint32_t material, const Material& as);
+  void removeMaterial(uint32_t material); // that no mesh has
   uint32_t addMesh(const HostMesh& mesh);
   void removeMesh(uint32_t mesh); // that no instance shows
 
@@ -53,19 +56,23 @@ class HostScene {
 
   uint64_t bytes() const; // of meshes, textures and shapes
   /// Another number after each change of textures, materials and meshes; never 0.
-  uint64_t assetsVersion() const { return assets_.identity.value(); }
-  bool hasMesh(uint32_t mesh) const { return mesh < assets_.meshes.size() && !removed_[mesh]; }
-  bool hasMaterial(uint32_t material) const { return material < assets_.materials.size(); }
-  bool hasTexture(uint32_t texture) const { return texture < assets_.images.size(); }
+  uint64_t assetsVersion() const { return version_; }
+  bool hasMesh(uint32_t mesh) const { return is(meshes_, mesh); }
+  bool hasMaterial(uint32_t material) const { return is(materials_, material); }
+  bool hasTexture(uint32_t texture) const { return is(textures_, texture); }
   bool hasInstance(uint32_t instance) const { return instances_.contains(instance); }
   bool hasLight(uint32_t light) const { return lights_.contains(light); }
 
  private:
   InstanceView& at(uint32_t instance);
-  void assetsChanged() { assets_.identity = Identity(); }
+  void require(const Material& material) const;
+  void assetsCameOrWent() { ++assets_.revision, ++version_; } // that nothing shows
+  void assetsChanged() { assets_.identity = Identity(), ++version_; }
+  static bool is(const std::vector<bool>& there, uint32_t number) { return number < there.size() && there[number]; }
 
   SceneAssets assets_;
-  std::vector<bool> removed_; // meshes
+  uint64_t version_ = 1;
+  std::vector<bool> textures_, materials_, meshes_; // by number: whether it is there; what is not keeps its number
   std::map<uint32_t, InstanceView> instances_;
   std::map<uint32_t, LightView> lights_;
   Sky sky_;

@@ -2,35 +2,13 @@
 
 #include "engine/gl/context.h"
 
-#include <mutex>
-#include <set>
-
 namespace lambent::library {
 
 namespace {
 
-std::mutex devicesMutex;
-std::set<const lambent_device*>& devices() {
-  static std::set<const lambent_device*> live;
-  return live;
-}
-
 [[noreturn]] void unknown(const char* what) { refuse(LAMBENT_INVALID_HANDLE, std::string("no such ") + what); }
 
 } // namespace
-
-void LiveDevices::add(const lambent_device* device) {
-  const std::lock_guard lock(devicesMutex);
-  devices().insert(device);
-}
-void LiveDevices::remove(const lambent_device* device) {
-  const std::lock_guard lock(devicesMutex);
-  devices().erase(device);
-}
-bool LiveDevices::has(const lambent_device* device) {
-  const std::lock_guard lock(devicesMutex);
-  return devices().contains(device);
-}
 
 std::string& messageWithoutDevice() {
   thread_local std::string message;
@@ -52,17 +30,6 @@ void requireContext(const lambent_device& device) {
     glGetObjectLabel(GL_VERTEX_ARRAY, device.mark.name(), sizeof label, nullptr, label);
   if (label != device.markLabel)
     refuse(LAMBENT_NO_CONTEXT, "another OpenGL context is current than the one in which the device was created");
-}
-
-mat4 mat4Of(const float* m) {
-  require(m != nullptr, "a matrix is NULL");
-  mat4 out;
-  for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
-  return out;
-}
-
-void requireWithin(int value, int count, const char* what) {
-  if (value < 0 || value >= count) refuse(std::string(what) + " is none of its values");
 }
 
 uint64_t nextSerial(lambent_device& device) {

@@ -21,7 +21,9 @@ template <> lambent_texture_desc standard() {
 template <> lambent_material_desc standard() {
   lambent_material_desc d{};
   for (float& c : d.base_color) c = 0.8f;
+  d.alpha = 1;
   d.alpha_cutoff = 0.5f;
+  for (float* m : {d.base_uv, d.emission_uv}) m[0] = m[4] = 1;
   return d;
 }
 template <> lambent_mesh_desc standard() { return {}; }
@@ -141,15 +143,15 @@ lambent_status lambent_create(const lambent_device_desc* given, lambent_device**
     require(desc.threads >= 0 && desc.threads <= 1024, "device: threads is not within 0 and 1024");
     requireContext();
     auto made = std::make_unique<lambent_device>(desc);
-    LiveDevices::add(made.get());
+    Live<lambent_device>::add(made.get());
     *device = made.release();
   });
 }
 
 void lambent_destroy(lambent_device* device) {
-  if (!device || !LiveDevices::has(device) || device->busy.exchange(true)) return;
+  if (!device || !Live<lambent_device>::has(device) || device->busy.exchange(true)) return;
   const lambent_status context = guarded(messageWithoutDevice(), [&] { requireContext(*device); });
-  LiveDevices::remove(device);
+  Live<lambent_device>::remove(device);
   if (context != LAMBENT_OK) { // without its context nothing of it can be given back
     guarded(messageWithoutDevice(),
             [&] { device->log(LAMBENT_ERROR, "destroyed without its OpenGL context: its memory stays"); });
@@ -165,7 +167,7 @@ void lambent_destroy(lambent_device* device) {
 }
 
 const char* lambent_message(const lambent_device* device) {
-  return device && LiveDevices::has(device) ? device->message.c_str() : messageWithoutDevice().c_str();
+  return device && Live<lambent_device>::has(device) ? device->message.c_str() : messageWithoutDevice().c_str();
 }
 
 lambent_status lambent_memory(lambent_device* device, lambent_memory_row* rows, size_t* count) {
@@ -182,6 +184,21 @@ lambent_status lambent_memory(lambent_device* device, lambent_memory_row* rows, 
       rows[i].bytes = held[i].bytes;
     }
     *count = held.size();
+  });
+}
+
+lambent_status lambent_reload_shaders(lambent_device* device) {
+  return call(device, Gl::Needed, [&] {
+    require(!device->shaders.empty(), "the device has no shader_folder: its shaders are those in the library");
+    const gl::StateGuard guard;
+    std::string failed;
+    for (const auto& [id, view] : device->views)
+      for (const std::string& message : view->gi.reloadShaders()) {
+        const bool compiled = message.starts_with("reloaded "); // else the compiler's log
+        device->log(compiled ? LAMBENT_INFO : LAMBENT_WARNING, message);
+        if (!compiled) failed = message;
+      }
+    if (!failed.empty()) refuse(LAMBENT_FAILED, failed);
   });
 }
 

@@ -7,6 +7,7 @@
 #include "gi/host/host_scene.h"
 #include "gi/vpl/smc.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -23,31 +24,38 @@ std::string number(double v) {
   return text;
 }
 
+/// Adds a box of which the outside is seen, or the inside; `open`: without its upper side.
+void addBox(HostScene& scene, const vec3& lo, const vec3& hi, bool inward, uint32_t material = 0, bool open = false) {
+  std::vector<vec3> positions;
+  std::vector<vec2> uvs;
+  std::vector<uvec3> triangles;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      if (open && axis == 1 && side == 1) continue;
+      const uint32_t first = uint32_t(positions.size());
+      for (int corner = 0; corner < 4; ++corner) {
+        vec3 p;
+        p[axis] = side ? hi[axis] : lo[axis];
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        p[u] = corner == 1 || corner == 2 ? hi[u] : lo[u];
+        p[v] = corner >= 2 ? hi[v] : lo[v];
+        positions.push_back(p);
+        uvs.emplace_back(p[u], p[v]);
+      }
+      const bool turned = (side == 0) != inward; // counter-clockwise from where it is seen
+      for (const uvec3& t : {uvec3(0, 1, 2), uvec3(0, 2, 3)})
+        triangles.push_back(first + (turned ? uvec3(t.x, t.z, t.y) : t));
+    }
+  scene.addInstance(
+      scene.addMesh({.name = "box", .positions = positions, .uvs = uvs, .triangles = triangles, .material = material}),
+      mat4(1));
+}
+
 /// A grey room with a block, a lamp, and a patch of its ceiling that glows.
 HostScene room() {
   HostScene scene;
-  const auto box = [&](const vec3& lo, const vec3& hi, bool inward) {
-    std::vector<vec3> positions;
-    std::vector<uvec3> triangles;
-    for (int axis = 0; axis < 3; ++axis)
-      for (int side = 0; side < 2; ++side) {
-        const uint32_t first = uint32_t(positions.size());
-        for (int corner = 0; corner < 4; ++corner) {
-          vec3 p;
-          p[axis] = side ? hi[axis] : lo[axis];
-          const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-          p[u] = corner == 1 || corner == 2 ? hi[u] : lo[u];
-          p[v] = corner >= 2 ? hi[v] : lo[v];
-          positions.push_back(p);
-        }
-        const bool turned = (side == 0) != inward; // counter-clockwise from where it is seen
-        for (const uvec3& t : {uvec3(0, 1, 2), uvec3(0, 2, 3)})
-          triangles.push_back(first + (turned ? uvec3(t.x, t.z, t.y) : t));
-      }
-    scene.addInstance(scene.addMesh({.name = "box", .positions = positions, .triangles = triangles}), mat4(1));
-  };
-  box(vec3(-1), vec3(1), true);
-  box({-0.6f, -1, -0.7f}, {0, -0.2f, -0.1f}, false);
+  addBox(scene, vec3(-1), vec3(1), true);
+  addBox(scene, {-0.6f, -1, -0.7f}, {0, -0.2f, -0.1f}, false);
   Material glow;
   glow.emission = vec3(3);
   const uint32_t material = scene.addMaterial(glow);
@@ -62,11 +70,52 @@ HostScene room() {
   return scene;
 }
 
+/// A court under a clear sky with its sun and a spot: walls of a checkered texture, and a grating, whose texture cuts
+/// it out.
+HostScene court() {
+  HostScene scene;
+  const auto textured = [&](const auto& texelAt, bool masked) {
+    TextureImage image;
+    image.width = image.height = 8;
+    for (int i = 0; i < 64; ++i) image.texels.push_back(texelAt(i % 8, i / 8));
+    Material m;
+    m.baseColor = vec3(0.9f);
+    m.baseColorTexture = {.image = scene.addTexture(std::move(image)), .nearest = true};
+    m.alphaMode = masked ? AlphaMode::Mask : AlphaMode::Opaque;
+    m.doubleSided = masked;
+    return scene.addMaterial(m);
+  };
+  addBox(scene, vec3(-1), vec3(1), true,
+         textured(
+             [](int x, int y) { return (x / 4 + y / 4) % 2 ? u8vec4(230, 180, 120, 255) : u8vec4(90, 110, 160, 255); },
+             false),
+         true);
+  addBox(scene, {-0.5f, -0.99f, -0.6f}, {0.3f, -0.1f, -0.55f}, false,
+         textured([](int x, int) { return u8vec4(200, 200, 200, x % 4 < 2 ? 255 : 0); }, true));
+  const vec3 towardsSun = glm::normalize(vec3(0.4f, 0.8f, 0.3f));
+  LightView sun;
+  sun.type = LightType::Directional;
+  sun.direction = -towardsSun;
+  sun.intensity = vec3(2);
+  scene.addLight(sun);
+  LightView spot;
+  spot.type = LightType::Spot;
+  spot.position = {-0.6f, 0.6f, 0.6f};
+  spot.direction = glm::normalize(vec3(0.4f, -1, -0.6f));
+  spot.intensity = vec3(2);
+  spot.outerConeCos = 0.8f;
+  spot.innerConeCos = 0.9f;
+  scene.addLight(spot);
+  scene.setSky(Sky::daylight(towardsSun, 3));
+  return scene;
+}
+
 struct Checks {
   const std::function<void(bool, const std::string&)>& report;
-  HostScene scene = room();
-  CameraView camera = {};
-  std::vector<SurfaceHit> seen = {}; // by the pixels
+  HostScene scene;
+  CameraView camera;
+  std::string where;                 // in what is reported; empty: the room
+  std::vector<SurfaceHit> seen = {}; // by the pixels; not valid: nothing
   bool works = true;
 
   void tell(bool ok, const std::string& line) {
@@ -94,9 +143,12 @@ struct Checks {
     }
     return sum;
   }
-  static double meanOf(const std::vector<vec3>& values) {
+  /// Of all pixels, by light at what is seen there.
+  double meanAtSeen(const GiFrame& gi, std::vector<vec3> (GiFrame::*light)(std::span<const SurfaceHit>) const) const {
+    std::vector<SurfaceHit> hits;
+    std::ranges::copy_if(seen, std::back_inserter(hits), &SurfaceHit::valid);
     double sum = 0;
-    for (const vec3& v : values) sum += double(luminance(v)) / double(values.size());
+    for (const vec3& v : (gi.*light)(hits)) sum += double(luminance(v)) / double(seen.size());
     return sum;
   }
 
@@ -111,9 +163,10 @@ struct Checks {
         const SurfaceHit& h = seen[size_t(y) * kWidth + size_t(x)];
         const float distance = glm::dot(h.position - camera.position(), -vec3(camera.worldFromView[2]));
         const float stored = depth[size_t(kHeight - 1 - y) * kWidth + size_t(x)];
-        off += !(std::abs(camera.near / stored - distance) < 0.01f * distance);
+        off += h.valid() ? !(std::abs(camera.near / stored - distance) < 0.01f * distance) : stored > 0;
       }
-    tell(off * 50 < depth.size(), "surfaces: " + std::to_string(off) + " of " + std::to_string(depth.size()) +
+    tell(off * 50 < depth.size(), "surfaces" + where + ": " + std::to_string(off) + " of " +
+                                      std::to_string(depth.size()) +
                                       " pixels lie elsewhere than rays say (edges: a few)");
   }
 
@@ -127,12 +180,12 @@ struct Checks {
         for (int y = 0; y < kHeight; ++y)
           for (int x = 0; x < kWidth; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(kWidth, kHeight));
         seen = surfacesAt(gi.rays(), camera, centres);
-        surfaces(gi);
-        light("direct light", gi.outputs().direct.irradiance, meanOf(gi.directAt(seen)), 0.1);
+        if (camera.orthoHalfHeight == 0) surfaces(gi); // else light tells
+        light("direct light" + where, gi.outputs().direct.irradiance, meanAtSeen(gi, &GiFrame::directAt), 0.1);
       }
       const Needs needs = needsOf(s); // what is looked up in a store over the scene comes near only
-      light(name, gi.outputs().indirect.irradiance, gi.vpls().slots.empty() ? 0 : meanOf(gi.indirectAt(seen)),
-            needs.nearRays ? 0.1 : 0.5);
+      light(name + where, gi.outputs().indirect.irradiance,
+            gi.vpls().slots.empty() ? 0 : meanAtSeen(gi, &GiFrame::indirectAt), needs.nearRays ? 0.1 : 0.5);
     } catch (const std::exception& e) {
       tell(false, name + ": " + e.what());
     }
@@ -182,10 +235,10 @@ struct Checks {
 
 bool checkDriver(const std::function<void(bool, const std::string&)>& report) {
   const gl::StateGuard guard;
-  Checks checks{report};
-  checks.camera = lookAt({0, 0, 0.95f}, {0, -0.1f, 0}, 1.3f);
-  checks.camera.width = kWidth;
-  checks.camera.height = kHeight;
+  CameraView camera = lookAt({0, 0, 0.95f}, {0, -0.1f, 0}, 1.3f);
+  camera.width = kWidth;
+  camera.height = kHeight;
+  Checks checks{report, room(), camera, ""};
   const auto text = [](GLenum what) { return std::string(reinterpret_cast<const char*>(glGetString(what))); };
   report(true, "OpenGL " + text(GL_VERSION) + ", " + text(GL_RENDERER));
   bool first = true;
@@ -193,19 +246,32 @@ bool checkDriver(const std::function<void(bool, const std::string&)>& report) {
     checks.run(std::string("indirect light, ") + technique.name, checks.settings(technique),
                std::exchange(first, false));
   }
+  // Every other way to the same light.
   const Technique& smc = techniqueTable().front();
-  for (const char* mode : {"interleaved", "full", "multires", "multires-interleaved"}) {
+  for (const auto& [setting, value] : {std::pair("gather.mode", "interleaved"),
+                                       {"gather.mode", "full"},
+                                       {"gather.mode", "multires"},
+                                       {"gather.mode", "multires-interleaved"},
+                                       {"shadow.maker", "raster"},
+                                       {"shadow.maker", "rays"}}) {
     Settings s = checks.settings(smc);
-    applySetting(s, "gather.mode", mode);
-    checks.run(std::string("indirect light, gather.mode=") + mode, s, false);
-  }
-  for (const char* maker : {"raster", "rays"}) {
-    Settings s = checks.settings(smc);
-    applySetting(s, "shadow.maker", maker);
-    checks.run(std::string("indirect light, shadow.maker=") + maker, s, false);
+    applySetting(s, setting, value);
+    checks.run(std::string("indirect light, ") + setting + "=" + value, s, false);
   }
   checks.host();
-  return checks.works;
+
+  Checks open{report, court(), camera, " of a court (textures, masks, spot, sun and sky)"};
+  open.run("indirect light", open.settings(smc), true);
+  camera.orthoHalfHeight = 0.9f;
+  Checks parallel{report, court(), camera, " of the court, seen in parallel"};
+  parallel.run("indirect light", parallel.settings(smc), true);
+  camera.orthoHalfHeight = 0;
+  Checks patches{report, room(), camera, ", with lamps at patches, traced on the GPU"};
+  Settings s = patches.settings(smc);
+  applySetting(s, "shadow.emitters", "patches");
+  applySetting(s, "area.tracer", "gpu");
+  patches.run("indirect light", s, true);
+  return checks.works && open.works && parallel.works && patches.works;
 }
 
 } // namespace lambent::library

@@ -15,38 +15,26 @@ void settle(lambent_device& device, lambent_scene scene) {
     if (view->scene == scene) view->gi.vpls();
 }
 
-LightView lightOf(const lambent_light_desc* given) {
-  const lambent_light_desc d = read(given, "light");
-  requireWithin(d.type, 3, "light: type");
-  LightView light;
-  light.type = d.type == LAMBENT_POINT  ? LightType::Point
-               : d.type == LAMBENT_SPOT ? LightType::Spot
-                                        : LightType::Directional;
-  light.position = vec3Of(d.position);
-  light.direction = vec3Of(d.direction);
-  light.intensity = vec3Of(d.intensity);
-  light.range = d.range;
-  require(d.inner_cone_angle >= 0 && d.outer_cone_angle >= d.inner_cone_angle && d.outer_cone_angle <= kPi,
-          "light: cone angles are not 0 <= inner <= outer <= pi");
-  light.innerConeCos = std::cos(d.inner_cone_angle);
-  light.outerConeCos = std::cos(d.outer_cone_angle);
-  light.angularRadius = d.angular_radius;
-  return light;
-}
-
-Sky skyOf(const lambent_sky_desc* given) {
-  const lambent_sky_desc d = read(given, "sky");
-  requireWithin(d.type, 2, "sky: type");
-  const vec3 radiance = vec3Of(d.radiance), sun = vec3Of(d.towards_sun);
-  if (d.type == LAMBENT_CONSTANT_SKY) {
-    require(isFinite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0 && maxComponent(radiance) < 1e30f,
-            "sky: radiance is below 0, or not finite");
-    return Sky(radiance);
-  }
-  const float length = glm::length(sun);
-  require(length > 0 && std::isfinite(length), "sky: towards_sun has no length");
-  require(std::isfinite(d.turbidity), "sky: turbidity is not a number");
-  return Sky::daylight(sun / length, d.turbidity);
+Material materialOf(const Scene& s, lambent_scene scene, const lambent_material_desc* given) {
+  const lambent_material_desc d = read(given, "material");
+  const auto textureOf = [&](lambent_texture id, int32_t set, const float* m) -> TextureRef {
+    if (id == 0) return {};
+    requireWithin(set, 2, "material: base_uv_set or emission_uv_set");
+    TextureRef t = s.textures[numberOf(Kind::Texture, scene, id, "texture", s.host, &HostScene::hasTexture)];
+    t.uvSet = uint32_t(set);
+    t.uvTransform = {m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1};
+    return t;
+  };
+  Material m;
+  m.baseColor = vec3Of(d.base_color);
+  m.baseColorTexture = textureOf(d.base_texture, d.base_uv_set, d.base_uv);
+  m.emission = vec3Of(d.emission);
+  m.emissiveTexture = textureOf(d.emission_texture, d.emission_uv_set, d.emission_uv);
+  m.doubleSided = d.double_sided != 0;
+  m.alphaMode = d.masked ? AlphaMode::Mask : AlphaMode::Opaque;
+  m.alpha = d.alpha;
+  m.alphaCutoff = d.alpha_cutoff;
+  return m;
 }
 
 /// A copy of level 0 of a host's texture.
@@ -115,26 +103,43 @@ lambent_status lambent_texture_create(lambent_device* device, lambent_scene scen
   });
 }
 
-lambent_status lambent_material_create(lambent_device* device, lambent_scene scene, const lambent_material_desc* given,
+lambent_status lambent_texture_destroy(lambent_device* device, lambent_scene scene, lambent_texture texture) {
+  return call(device, Gl::NotNeeded, [&] {
+    HostScene& host = sceneOf(*device, scene).host;
+    const uint32_t number = numberOf(Kind::Texture, scene, texture, "texture", host, &HostScene::hasTexture);
+    settle(*device, scene);
+    host.removeTexture(number);
+  });
+}
+
+lambent_status lambent_material_create(lambent_device* device, lambent_scene scene, const lambent_material_desc* desc,
                                        lambent_material* material) {
   return call(device, Gl::NotNeeded, [&] {
     Scene& s = sceneOf(*device, scene);
-    const lambent_material_desc d = read(given, "material");
+    const Material m = materialOf(s, scene, desc);
     require(material != nullptr, "material is NULL");
-    const auto textureOf = [&](lambent_texture id) -> TextureRef {
-      if (id == 0) return {};
-      return s.textures[numberOf(Kind::Texture, scene, id, "texture", s.host, &HostScene::hasTexture)];
-    };
-    Material m;
-    m.baseColor = vec3Of(d.base_color);
-    m.baseColorTexture = textureOf(d.base_texture);
-    m.emission = vec3Of(d.emission);
-    m.emissiveTexture = textureOf(d.emission_texture);
-    m.doubleSided = d.double_sided != 0;
-    m.alphaMode = d.masked ? AlphaMode::Mask : AlphaMode::Opaque;
-    m.alphaCutoff = d.alpha_cutoff;
     settle(*device, scene);
     *material = idOf(Kind::Material, serialOf(scene), s.host.addMaterial(m));
+  });
+}
+
+lambent_status lambent_material_set(lambent_device* device, lambent_scene scene, lambent_material material,
+                                    const lambent_material_desc* desc) {
+  return call(device, Gl::NotNeeded, [&] {
+    Scene& s = sceneOf(*device, scene);
+    const uint32_t number = numberOf(Kind::Material, scene, material, "material", s.host, &HostScene::hasMaterial);
+    const Material m = materialOf(s, scene, desc);
+    settle(*device, scene);
+    s.host.setMaterial(number, m);
+  });
+}
+
+lambent_status lambent_material_destroy(lambent_device* device, lambent_scene scene, lambent_material material) {
+  return call(device, Gl::NotNeeded, [&] {
+    HostScene& host = sceneOf(*device, scene).host;
+    const uint32_t number = numberOf(Kind::Material, scene, material, "material", host, &HostScene::hasMaterial);
+    settle(*device, scene);
+    host.removeMaterial(number);
   });
 }
 
@@ -157,6 +162,7 @@ lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene, 
                                             .positions = spanOf<vec3>(d.positions, d.vertex_count),
                                             .normals = spanOf<vec3>(d.normals, d.vertex_count),
                                             .uvs = spanOf<vec2>(d.uvs, d.vertex_count),
+                                            .uvs1 = spanOf<vec2>(d.uvs1, d.vertex_count),
                                             .colors = spanOf<vec4>(d.colors, d.vertex_count),
                                             .triangles = spanOf<uvec3>(d.indices, d.triangle_count),
                                             .parts = parts,

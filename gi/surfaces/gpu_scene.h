@@ -37,6 +37,8 @@ class GpuScene {
   /// Uploads meshes, materials and textures (mipmapped). `assets` is read only here.
   GpuScene(const PassContext& context, const SceneAssets& assets);
 
+  /// Takes over what came to the assets, and gives up what went. To be followed by place().
+  void takeAssets(const SceneAssets& assets);
   /// Takes over this frame's instances; uploads transforms when any moved, and the vertices of what was reshaped.
   void place(std::span<const InstanceView> instances);
 

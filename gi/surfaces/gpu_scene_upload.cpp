@@ -73,6 +73,16 @@ GpuScene::GpuScene(const PassContext& context, const SceneAssets& assets) : cont
   uploadMaterials(assets);
 }
 
+void GpuScene::takeAssets(const SceneAssets& assets) {
+  meshes_.clear();
+  materialDraws_.clear();
+  deformed_ = {};
+  placed_.clear(); // all are placed anew
+  items_.clear();
+  uploadMeshes(assets);
+  uploadMaterials(assets);
+}
+
 void GpuScene::uploadMeshes(const SceneAssets& assets) {
   std::vector<vec3> positions;
   std::vector<uint64_t> normals, colors; // four 16-bit values each
@@ -100,6 +110,8 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
         range.primitives.push_back(
             {i, (baseTriangle + p.firstTriangle) * 3, p.triangleCount * 3, baseVertex, p.material, p.boundsObject});
   }
+  uvs_ = {};
+  colors_ = {};
   if (positions.empty()) {
     vertexArray_ = gl::VertexArray("scene/vertices"); // nothing to draw, but bound all the same
     return;
@@ -146,7 +158,11 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 }
 
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
-  for (const TextureImage& image : assets.images) textures_.push_back(uploadImage(image));
+  for (size_t i = 0; i < assets.images.size(); ++i) {
+    const TextureImage& image = assets.images[i];
+    if (i == textures_.size()) textures_.push_back(uploadImage(image));
+    if (textures_[i].width() != image.width) textures_[i] = uploadImage(image); // it has gone
+  }
   const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };
   const auto samplerOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : samplerFor(ref); };
 

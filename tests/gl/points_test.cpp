@@ -1,32 +1,14 @@
-// Light at points that no image shows, against light paths that know nothing of virtual lights.
+// Light at points that no image shows, against the path tracer.
 #include "engine/core/rng.h"
 #include "frames.h"
-#include "gi/vpl/smc.h"
+#include "gi/reference/path_tracer.h"
 
 namespace lambent::test::points_test {
 
 using PointsTest = GlTest;
+constexpr uint32_t kSamples = 512; // paths from each point
 
-/// Irradiance at points by `paths` light paths from each, of up to `bounces` reflections.
-std::vector<vec3> irradianceByPaths(const TracedScene& scene, std::span<const SurfaceHit> points, int paths,
-                                    int bounces) {
-  std::vector<Vpl> patches(points.size());
-  std::vector<Vpl*> all;
-  for (size_t i = 0; i < points.size(); ++i) {
-    patches[i].position = points[i].position;
-    patches[i].normal = patches[i].geometricNormal = points[i].normal;
-    patches[i].albedo = vec3(1);
-    patches[i].id = 1000000 + i; // other numbers than the library's
-    all.push_back(&patches[i]);
-  }
-  RayCounts counts;
-  estimateRadiance(all, scene.rays, scene.lights, paths, bounces + 1, 77, counts);
-  std::vector<vec3> irradiance;
-  for (const Vpl& p : patches) irradiance.push_back(kPi * p.radiance);
-  return irradiance;
-}
-
-TEST_F(PointsTest, AThousandPointsHaveTheLightOfPaths) {
+TEST_F(PointsTest, AThousandPointsHaveTheLightOfThePathTracer) {
   Room room;
   room.scene.size(48, 32);
   room.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
@@ -51,18 +33,26 @@ TEST_F(PointsTest, AThousandPointsHaveTheLightOfPaths) {
     for (const vec3& v : values) sum += double(luminance(v)) / double(values.size());
     return sum;
   };
-  const std::vector<vec3> total = irradianceByPaths(traced, points, 1024, settings.smc.bounces),
-                          direct = irradianceByPaths(traced, points, 1024, 0);
-  const double expected = meanOf(total) - meanOf(direct);
+  // gi/reference, as at the pixels of an image.
+  const CameraView camera;
+  RayCounts counts;
+  std::vector<vec3> truth, direct;
+  for (const PixelSums& s : sampleSurfaces(
+           points, {.rays = traced.rays, .lights = traced.lights, .camera = camera, .bounces = settings.smc.bounces},
+           kSamples, counts)) {
+    truth.push_back(kPi * vec3(s.indirect / double(kSamples)));
+    direct.push_back(kPi * vec3(s.direct / double(kSamples)));
+  }
+  const double expected = meanOf(truth);
   const double indirect = meanOf(gi.gi().indirectAt(points));
   std::printf("1000 points: indirect %+.2f %% of paths, direct %+.2f %%\n", 100 * (indirect / expected - 1),
               100 * (meanOf(gi.gi().directAt(points)) / meanOf(direct) - 1));
   EXPECT_NEAR(indirect / expected, 1, 0.02);
-  // Of single points: against the mean of all, as dark ones have large ratios. Half of it is the paths' own noise.
+  // Of single points: against the mean of all, as dark ones have large ratios. A part of it is the paths' own noise.
   std::vector<double> off;
   const std::vector<vec3> found = gi.gi().indirectAt(points);
   for (size_t i = 0; i < points.size(); ++i)
-    off.push_back(std::abs(double(luminance(found[i]) - luminance(total[i]) + luminance(direct[i]))) / expected);
+    off.push_back(std::abs(double(luminance(found[i]) - luminance(truth[i]))) / expected);
   std::ranges::sort(off);
   std::printf("off by %.3f of the mean at the median point, %.3f at the 95th of 100\n", off[500], off[950]);
   EXPECT_LT(off[500], 0.05);

@@ -2,9 +2,15 @@
 #include "room.h"
 #include "tests/host/contexts.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -336,6 +342,107 @@ TEST_F(Library, WhatWasRefusedOnceIsThereInTheNextFrame) {
   }
 }
 
+TEST_F(Library, TexturesAndMaterialsChangeAndEnd) {
+  Room room;
+  const uint8_t texels[8] = {255, 0, 0, 255, 0, 255, 0, 0}; // red; green, and cut out
+  lambent_texture_desc t;
+  LAMBENT_DEFAULTS(LAMBENT_TEXTURE_DESC, &t);
+  t.width = 2;
+  t.height = 1;
+  t.rgba = texels;
+  t.nearest = 1;
+  lambent_texture texture = 0;
+  room.ok(lambent_texture_create(room.device, room.scene, &t, &texture));
+  lambent_material_desc m;
+  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &m);
+  for (float& c : m.base_color) c = 1;
+  m.base_texture = texture;
+  m.base_uv[0] = 0; // all of the first texel
+  m.base_uv[2] = 0.25f;
+  lambent_material material = 0;
+  room.ok(lambent_material_create(room.device, room.scene, &m, &material));
+  EXPECT_EQ(lambent_texture_destroy(room.device, room.scene, texture), LAMBENT_INVALID_ARGUMENT) << "it is used";
+  const lambent_mesh mesh = room.box(0.4f, false, material);
+  EXPECT_EQ(lambent_material_destroy(room.device, room.scene, material), LAMBENT_INVALID_ARGUMENT) << "a mesh has it";
+  lambent_instance instance = 0;
+  float place[16];
+  std::copy(kIdentity, kIdentity + 16, place);
+  place[14] = -0.5f;
+  room.ok(lambent_instance_create(room.device, room.scene, mesh, place, &instance));
+  const lambent_view view = room.view();
+  const auto seen = [&](int channel) {
+    const std::vector<float> albedo = Room::read(room.render(view).albedo, GL_RGB);
+    return albedo[3 * size_t((Room::kHeight / 2) * Room::kWidth + Room::kWidth / 2) + size_t(channel)];
+  };
+  EXPECT_NEAR(seen(0), 1, 0.01);
+  EXPECT_NEAR(seen(1), 0, 0.01);
+  m.base_uv[2] = 0.75f;
+  room.ok(lambent_material_set(room.device, room.scene, material, &m));
+  EXPECT_NEAR(seen(0), 0, 0.01);
+  EXPECT_NEAR(seen(1), 1, 0.01);
+  m.masked = 1;
+  room.ok(lambent_material_set(room.device, room.scene, material, &m));
+  EXPECT_NEAR(seen(0), 0.8, 0.01) << "the wall behind";
+  m.base_uv_set = 2;
+  EXPECT_EQ(lambent_material_set(room.device, room.scene, material, &m), LAMBENT_INVALID_ARGUMENT);
+  m.base_uv_set = 1; // which the mesh lacks: coordinates are 0
+  m.base_uv[2] = 0.25f;
+  room.ok(lambent_material_set(room.device, room.scene, material, &m));
+  EXPECT_NEAR(seen(0), 1, 0.01);
+  m.base_texture = 0;
+  room.ok(lambent_material_set(room.device, room.scene, material, &m));
+  room.ok(lambent_texture_destroy(room.device, room.scene, texture));
+  EXPECT_EQ(lambent_texture_destroy(room.device, room.scene, texture), LAMBENT_INVALID_HANDLE);
+  room.render(view);
+  room.ok(lambent_instance_destroy(room.device, room.scene, instance));
+  room.ok(lambent_mesh_destroy(room.device, room.scene, mesh));
+  room.ok(lambent_material_destroy(room.device, room.scene, material));
+  EXPECT_EQ(lambent_material_set(room.device, room.scene, material, &m), LAMBENT_INVALID_HANDLE);
+  m.base_texture = texture;
+  EXPECT_EQ(lambent_material_create(room.device, room.scene, &m, &material), LAMBENT_INVALID_HANDLE);
+  EXPECT_NEAR(seen(0), 0.8, 0.01);
+}
+
+TEST_F(Library, ShadersAreReadAgainWhileAHostRuns) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("lambent-reload-" + std::to_string(getpid()));
+  fs::copy("shaders", folder, fs::copy_options::recursive);
+  const std::string name = folder;
+  std::string heard;
+  lambent_device_desc desc;
+  LAMBENT_DEFAULTS(LAMBENT_DEVICE_DESC, &desc);
+  desc.shader_folder = name.c_str();
+  desc.user = &heard;
+  desc.log = [](void* user, lambent_level, const char* line) { *static_cast<std::string*>(user) += line; };
+  {
+    Room room(&desc);
+    const lambent_view view = room.view();
+    const double before = Room::mean(Room::read(room.render(view).direct, GL_RGB));
+    const auto write = [&](const std::string& text) {
+      std::ofstream(folder / "direct.frag") << text;
+      fs::last_write_time(folder / "direct.frag", fs::file_time_type::clock::now() + std::chrono::seconds(2));
+    };
+    std::stringstream shader;
+    shader << std::ifstream(folder / "direct.frag").rdbuf();
+    room.ok(lambent_reload_shaders(room.device));
+    EXPECT_EQ(heard, "") << "nothing changed";
+    write("#version 450\nno shader\n");
+    EXPECT_EQ(lambent_reload_shaders(room.device), LAMBENT_FAILED);
+    EXPECT_NE(std::string(lambent_message(room.device)).find("direct.frag"), std::string::npos);
+    EXPECT_NEAR(Room::mean(Room::read(room.render(view).direct, GL_RGB)) / before, 1, 1e-6) << "the last good one";
+    std::string dark = shader.str();
+    dark.insert(dark.find_last_of('}'), "outIrradiance = vec4(0);\n");
+    write(dark);
+    heard.clear();
+    room.ok(lambent_reload_shaders(room.device));
+    EXPECT_NE(heard.find("reloaded direct.frag"), std::string::npos) << heard;
+    EXPECT_EQ(Room::mean(Room::read(room.render(view).direct, GL_RGB)), 0);
+  }
+  fs::remove_all(folder);
+  Room room;
+  EXPECT_EQ(lambent_reload_shaders(room.device), LAMBENT_INVALID_ARGUMENT) << "built in";
+}
+
 TEST_F(Library, DriverCheckPassesAndTells) {
   struct Told {
     int lines = 0, bad = 0;
@@ -351,7 +458,7 @@ TEST_F(Library, DriverCheckPassesAndTells) {
                 &told),
             LAMBENT_OK)
       << told.text;
-  EXPECT_GT(told.lines, 15);
+  EXPECT_GT(told.lines, 26);
   EXPECT_EQ(told.bad, 0);
 }
 

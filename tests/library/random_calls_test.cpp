@@ -47,8 +47,15 @@ class Caller {
       for (float& v : m.emission) v = one(3) ? value() : 0;
       m.base_texture = one(3) ? any(textures_) : 0;
       m.masked = below(2);
+      if (one(4)) m.alpha = value(), m.alpha_cutoff = value();
+      if (one(4)) m.base_uv_set = below(4) - 1, m.base_uv[below(6)] = value();
       lambent_material made = 0;
-      keep(lambent_material_create(d, scene, maybe(&m), out(&made)), made, materials_);
+      if (one(3))
+        lambent_material_set(d, scene, any(materials_), maybe(&m));
+      else
+        keep(lambent_material_create(d, scene, maybe(&m), out(&made)), made, materials_);
+      if (one(6)) lambent_material_destroy(d, scene, any(materials_));
+      if (one(6)) lambent_texture_destroy(d, scene, any(textures_));
       break;
     }
     case 4:
@@ -64,6 +71,7 @@ class Caller {
       m.indices = maybe(indices_.data());
       m.normals = one(2) ? positions_.data() : nullptr;
       m.uvs = one(2) ? positions_.data() : nullptr;
+      m.uvs1 = one(4) ? positions_.data() : nullptr;
       m.material = one(2) ? any(materials_) : 0;
       const lambent_part parts[2] = {{0, uint32_t(below(20)), any(materials_)},
                                      {uint32_t(below(20)), 3, any(materials_)}};
@@ -180,6 +188,7 @@ class Caller {
       unsigned char bytes[400];
       lambent_defaults(below(12) - 1, maybe(bytes), size_t(below(401)));
       lambent_status_text(below(20) - 5);
+      lambent_reload_shaders(d);
       break;
     }
     }

@@ -5,6 +5,7 @@
 #include "engine/core/rng.h"
 
 #include <glm/gtc/quaternion.hpp>
+#include <nlohmann/json.hpp>
 #include <stb/stb_image_write.h>
 
 #include <algorithm>
@@ -66,6 +67,15 @@ glm::dquat facing(const dvec3& direction) {
 
 } // namespace
 
+struct SceneBuilder::Lists {
+  json accessors = json::array(), views = json::array(), materials = json::array(), meshes = json::array();
+  json nodes = json::array(), cameras = json::array(), lights = json::array();
+  json channels = json::array(), samplers = json::array();
+};
+
+SceneBuilder::SceneBuilder(const Order& order) : order_(order), lists_(std::make_unique<Lists>()) {}
+SceneBuilder::~SceneBuilder() = default;
+
 template <class T>
 Index SceneBuilder::accessor(const std::vector<T>& values, size_t components, uint32_t target, bool bounds) {
   const size_t bytes = values.size() * sizeof(T);
@@ -73,7 +83,7 @@ Index SceneBuilder::accessor(const std::vector<T>& values, size_t components, ui
   if (target) view["target"] = target;
   buffer_.append(reinterpret_cast<const char*>(values.data()), bytes);
   buffer_.resize((buffer_.size() + 3) & ~size_t(3)); // accessors start at multiples of their component size
-  json accessor{{"bufferView", added(views_, std::move(view))},
+  json accessor{{"bufferView", added(lists_->views, std::move(view))},
                 {"componentType", kComponentType<T>},
                 {"count", values.size() / components},
                 {"type", kTypes[components]}};
@@ -86,7 +96,7 @@ Index SceneBuilder::accessor(const std::vector<T>& values, size_t components, ui
     accessor["min"] = lo;
     accessor["max"] = hi;
   }
-  return added(accessors_, std::move(accessor));
+  return added(lists_->accessors, std::move(accessor));
 }
 
 Index SceneBuilder::texture(Texture texture) {
@@ -111,7 +121,7 @@ Index SceneBuilder::material(const MaterialSpec& m) {
     material["emissiveFactor"] = array(m.emissionColor);
     material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = rounded(m.emissionRadiance);
   }
-  return added(materials_, std::move(material));
+  return added(lists_->materials, std::move(material));
 }
 
 Index SceneBuilder::mesh(const std::string& name, const Geometry& geometry, Index material) {
@@ -125,22 +135,22 @@ Index SceneBuilder::mesh(const std::string& name, const Geometry& geometry, Inde
              : accessor(geometry.indices, 1, kIndexBuffer);
   json primitive{{"attributes", std::move(attributes)}, {"indices", indices}, {"material", material}};
   meshTriangles_.push_back(geometry.indices.size() / 3);
-  return added(meshes_, {{"name", name}, {"primitives", json::array({std::move(primitive)})}});
+  return added(lists_->meshes, {{"name", name}, {"primitives", json::array({std::move(primitive)})}});
 }
 
 Index SceneBuilder::variant(const std::string& name, Index mesh, Index material) {
-  json copy = meshes_.at(mesh);
+  json copy = lists_->meshes.at(mesh);
   copy["name"] = name;
   copy["primitives"][0]["material"] = material;
   meshTriangles_.push_back(meshTriangles_[mesh]);
-  return added(meshes_, std::move(copy));
+  return added(lists_->meshes, std::move(copy));
 }
 
 Index SceneBuilder::addNode(const std::string& name, const dvec3& at, const glm::dquat& rotation, json what) {
   what["name"] = name;
   if (at != dvec3(0)) what["translation"] = array(at);
   if (rotation != kUpright) what["rotation"] = array(rotation);
-  return added(nodes_, std::move(what));
+  return added(lists_->nodes, std::move(what));
 }
 
 Index SceneBuilder::place(const std::string& name, Index mesh, const dvec3& at, double turn) {
@@ -155,8 +165,8 @@ Index SceneBuilder::place(const std::string& name, const Geometry& geometry, Ind
 
 Index SceneBuilder::addLight(const std::string& name, const char* type, const dvec3& color, double intensity,
                              const dvec3& at, const glm::dquat& rotation) {
-  const Index light =
-      added(lights_, {{"name", name}, {"type", type}, {"color", array(color)}, {"intensity", rounded(intensity)}});
+  const Index light = added(
+      lists_->lights, {{"name", name}, {"type", type}, {"color", array(color)}, {"intensity", rounded(intensity)}});
   return addNode(name, at, rotation, {{"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
 }
 
@@ -167,8 +177,8 @@ Index SceneBuilder::lamp(const std::string& name, const dvec3& color, double int
 Index SceneBuilder::spot(const std::string& name, const dvec3& color, double intensity, const dvec3& at,
                          const dvec3& direction, double innerDegrees, double outerDegrees) {
   const Index node = addLight(name, "spot", color, intensity, at, facing(direction));
-  lights_.back()["spot"] = {{"innerConeAngle", rounded(glm::radians(innerDegrees))},
-                            {"outerConeAngle", rounded(glm::radians(outerDegrees))}};
+  lists_->lights.back()["spot"] = {{"innerConeAngle", rounded(glm::radians(innerDegrees))},
+                                   {"outerConeAngle", rounded(glm::radians(outerDegrees))}};
   return node;
 }
 
@@ -179,9 +189,9 @@ void SceneBuilder::sun(const dvec3& direction, const dvec3& color, double irradi
 
 void SceneBuilder::camera(const std::string& name, const dvec3& eye, const dvec3& target, double fovYDegrees) {
   const Index camera =
-      added(cameras_, {{"name", name},
-                       {"type", "perspective"},
-                       {"perspective", {{"yfov", rounded(glm::radians(fovYDegrees))}, {"znear", 0.05}}}});
+      added(lists_->cameras, {{"name", name},
+                              {"type", "perspective"},
+                              {"perspective", {{"yfov", rounded(glm::radians(fovYDegrees))}, {"znear", 0.05}}}});
   addNode(name, eye, facing(target - eye), {{"camera", camera}});
 }
 
@@ -193,36 +203,37 @@ void SceneBuilder::animate(Index node, double seconds, const std::function<dvec3
     times.push_back(float(rounded(seconds * i / kKeys)));
     places.push_back(path(2 * glm::pi<double>() * i / kKeys));
   }
-  const Index sampler = added(samplers_, {{"input", accessor(times, 1, 0, true)},
-                                          {"output", accessor(flattened(places), 3)},
-                                          {"interpolation", "LINEAR"}});
-  channels_.push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", "translation"}}}});
+  const Index sampler = added(lists_->samplers, {{"input", accessor(times, 1, 0, true)},
+                                                 {"output", accessor(flattened(places), 3)},
+                                                 {"interpolation", "LINEAR"}});
+  lists_->channels.push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", "translation"}}}});
 }
 
 GeneratedScene SceneBuilder::write() const {
   const auto& [folder, stem, size] = order_;
   json gltf{{"asset", {{"version", "2.0"}, {"generator", "lambent content"}}},
             {"scene", 0},
-            {"accessors", accessors_},
-            {"bufferViews", views_},
+            {"accessors", lists_->accessors},
+            {"bufferViews", lists_->views},
             {"buffers", json::array({{{"uri", stem + ".bin"}, {"byteLength", buffer_.size()}}})},
-            {"materials", materials_},
-            {"meshes", meshes_},
-            {"nodes", nodes_}};
-  std::vector<Index> roots(nodes_.size());
+            {"materials", lists_->materials},
+            {"meshes", lists_->meshes},
+            {"nodes", lists_->nodes}};
+  std::vector<Index> roots(lists_->nodes.size());
   for (Index i = 0; i < roots.size(); ++i) roots[i] = i;
   gltf["scenes"] = json::array({{{"name", stem}, {"nodes", roots}}});
 
   std::vector<std::string> extensions;
   if (emissiveStrength_) extensions.push_back("KHR_materials_emissive_strength");
-  if (!lights_.empty()) {
+  if (!lists_->lights.empty()) {
     extensions.push_back("KHR_lights_punctual");
-    gltf["extensions"]["KHR_lights_punctual"]["lights"] = lights_;
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] = lists_->lights;
   }
   if (!extensions.empty()) gltf["extensionsUsed"] = extensions;
-  if (!cameras_.empty()) gltf["cameras"] = cameras_;
-  if (!channels_.empty())
-    gltf["animations"] = json::array({{{"name", stem}, {"channels", channels_}, {"samplers", samplers_}}});
+  if (!lists_->cameras.empty()) gltf["cameras"] = lists_->cameras;
+  if (!lists_->channels.empty())
+    gltf["animations"] =
+        json::array({{{"name", stem}, {"channels", lists_->channels}, {"samplers", lists_->samplers}}});
   if (!textures_.empty()) {
     gltf["samplers"] = json::array({{{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}}});
     gltf["images"] = gltf["textures"] = json::array();

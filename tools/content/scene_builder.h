@@ -5,7 +5,7 @@
 #include "tools/content/content.h"
 #include "tools/content/shapes.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp> // all of it takes seconds to compile
 
 namespace lambent::content {
 
@@ -45,7 +45,8 @@ struct Order {
 
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const Order& order) : order_(order) {}
+  explicit SceneBuilder(const Order& order);
+  ~SceneBuilder();
 
   Index texture(Texture texture);
   Index material(const MaterialSpec& material);
@@ -90,18 +91,16 @@ class SceneBuilder {
   GeneratedScene write() const;
 
  private:
-  using json = nlohmann::json;
+  struct Lists;
   /// Appends values to the buffer and describes them; gives the accessor.
   template <class T>
   Index accessor(const std::vector<T>& values, size_t components, uint32_t target = 0, bool bounds = false);
-  Index addNode(const std::string& name, const dvec3& at, const glm::dquat& rotation, json what);
+  Index addNode(const std::string& name, const dvec3& at, const glm::dquat& rotation, nlohmann::json what);
   Index addLight(const std::string& name, const char* type, const dvec3& color, double intensity, const dvec3& at,
                  const glm::dquat& rotation);
 
   Order order_;
-  json accessors_ = json::array(), views_ = json::array(), materials_ = json::array(), meshes_ = json::array();
-  json nodes_ = json::array(), cameras_ = json::array(), lights_ = json::array();
-  json channels_ = json::array(), samplers_ = json::array();
+  std::unique_ptr<Lists> lists_; // what the file will hold
   std::vector<Texture> textures_;
   std::vector<uint64_t> meshTriangles_;
   std::string buffer_;

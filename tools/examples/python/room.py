@@ -67,14 +67,16 @@ class Material(Struct):
     kind = 2
     _fields_ = [("size", c.c_size_t), ("base_color", vec3), ("base_texture", c.c_uint64), ("emission", vec3),
                 ("emission_texture", c.c_uint64), ("double_sided", c.c_int), ("masked", c.c_int),
-                ("alpha_cutoff", c.c_float)]
+                ("alpha", c.c_float), ("alpha_cutoff", c.c_float), ("base_uv_set", c.c_int32),
+                ("emission_uv_set", c.c_int32), ("base_uv", c.c_float * 6), ("emission_uv", c.c_float * 6)]
 
 
 class Mesh(Struct):
     kind = 3
     _fields_ = [("size", c.c_size_t), ("vertex_count", c.c_uint32), ("triangle_count", c.c_uint32),
-                ("positions", floats), ("normals", floats), ("uvs", floats), ("colors", floats), ("indices", uints),
-                ("parts", c.c_void_p), ("part_count", c.c_uint32), ("material", c.c_uint64), ("name", c.c_char_p)]
+                ("positions", floats), ("normals", floats), ("uvs", floats), ("uvs1", floats), ("colors", floats),
+                ("indices", uints), ("parts", c.c_void_p), ("part_count", c.c_uint32), ("material", c.c_uint64),
+                ("name", c.c_char_p)]
 
 
 class Light(Struct):

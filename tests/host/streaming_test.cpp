@@ -1,0 +1,217 @@
+// Meshes, materials and textures that come and go while frames run: light goes on, and is that of the scene as it is.
+#include "contexts.h"
+#include "gi/contract/frame_outputs.h"
+#include "gi/frame/gi_frame.h"
+#include "gi/host/host_scene.h"
+#include "tests/support/test.h"
+
+#include <epoxy/gl.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <set>
+
+namespace lambent::test {
+
+namespace {
+
+constexpr int kWidth = 48, kHeight = 32;
+
+uint32_t addBox(HostScene& scene, float half, bool inward, uint32_t material = 0) {
+  std::vector<vec3> positions;
+  std::vector<vec2> uvs;
+  std::vector<uvec3> triangles;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-half, half}) {
+      const uint32_t first = uint32_t(positions.size());
+      for (int corner = 0; corner < 4; ++corner) {
+        vec3 p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = corner == 1 || corner == 2 ? half : -half;
+        p[(axis + 2) % 3] = corner >= 2 ? half : -half;
+        positions.push_back(p);
+        uvs.emplace_back(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+      }
+      const bool turned = (side < 0) != inward;
+      for (const uvec3& t : {uvec3(0, 1, 2), uvec3(0, 2, 3)})
+        triangles.push_back(first + (turned ? uvec3(t.x, t.z, t.y) : t));
+    }
+  return scene.addMesh({.positions = positions, .uvs = uvs, .triangles = triangles, .material = material});
+}
+
+struct World {
+  HostScene scene;
+  ViewChanges changes;
+  GiFrame gi;
+
+  explicit World(const Settings& settings) : gi(settings) {
+    scene.addInstance(addBox(scene, 1, true), mat4(1));
+    LightView lamp;
+    lamp.position = {0.4f, 0.6f, 0.2f};
+    scene.addLight(lamp);
+  }
+  static Settings settings() {
+    Settings s;
+    s.smc.vpls = s.smc.points = 256;
+    s.smc.warmup = 8;
+    return s;
+  }
+  void run(int frames = 1) {
+    CameraView camera = lookAt({0, 0.1f, 0.9f}, {0, 0, 0}, 1.2f);
+    camera.width = kWidth;
+    camera.height = kHeight;
+    for (int i = 0; i < frames; ++i) gi.run(scene.view(changes, camera, 0));
+  }
+  std::vector<vec3> read(uint32_t texture) const {
+    std::vector<vec3> texels(size_t(kWidth * kHeight));
+    glGetTextureImage(texture, 0, GL_RGB, GL_FLOAT, GLsizei(texels.size() * sizeof(vec3)), texels.data());
+    return texels;
+  }
+  static double mean(const std::vector<vec3>& values) {
+    double sum = 0;
+    for (const vec3& v : values) sum += double(luminance(v)) / double(values.size());
+    return sum;
+  }
+  std::set<uint64_t> ids() const {
+    std::set<uint64_t> all;
+    for (const Vpl& v : gi.vpls().slots)
+      if (v.alive) all.insert(v.id);
+    return all;
+  }
+};
+
+double shared(const std::set<uint64_t>& before, const std::set<uint64_t>& now) {
+  size_t same = 0;
+  for (const uint64_t id : now) same += before.contains(id);
+  return double(same) / double(before.size());
+}
+
+class Streaming : public testing::Test {
+ protected:
+  void SetUp() override {
+    context = eglHost();
+    if (!context) GTEST_SKIP() << "EGL offers no OpenGL 4.5 here";
+    context->makeCurrent();
+  }
+  void TearDown() override {
+    if (!context) return;
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+    context->release();
+  }
+  std::unique_ptr<HostContext> context;
+};
+
+} // namespace
+
+TEST_F(Streaming, LightGoesOnWhereMeshesComeAndGo) {
+  World world(World::settings());
+  world.run(8);
+  const std::vector<vec3> empty = world.read(world.gi.directIrradiance());
+  const std::set<uint64_t> before = world.ids();
+
+  // What nothing shows changes no light at all.
+  TextureImage image;
+  image.width = image.height = 2;
+  image.texels = {u8vec4(255), u8vec4(128), u8vec4(128), u8vec4(255)};
+  Material material;
+  material.baseColorTexture = {.image = world.scene.addTexture(image)};
+  const uint32_t textured = world.scene.addMaterial(material);
+  const uint32_t mesh = addBox(world.scene, 0.25f, false, textured);
+  world.run();
+  EXPECT_GT(shared(before, world.ids()), 0.95);
+  EXPECT_EQ(world.read(world.gi.directIrradiance()), empty);
+
+  const uint32_t block = world.scene.addInstance(mesh, glm::translate(mat4(1), vec3(-0.3f, -0.7f, -0.2f)));
+  world.run();
+  EXPECT_GT(shared(before, world.ids()), 0.6) << "a block does not take all lights";
+  const std::vector<vec3> filled = world.read(world.gi.directIrradiance());
+  world.run(8);
+  {
+    World fresh(World::settings()); // of the same things from the start
+    TextureImage other = image;
+    material.baseColorTexture.image = fresh.scene.addTexture(other);
+    fresh.scene.addInstance(addBox(fresh.scene, 0.25f, false, fresh.scene.addMaterial(material)),
+                            glm::translate(mat4(1), vec3(-0.3f, -0.7f, -0.2f)));
+    fresh.run(9);
+    double off = 0;
+    const std::vector<vec3> expected = fresh.read(fresh.gi.directIrradiance());
+    for (size_t i = 0; i < expected.size(); ++i) off += double(glm::length(expected[i] - filled[i]));
+    EXPECT_LT(off / double(expected.size()), 0.01 * World::mean(expected)) << "shadows in the first frame";
+    const auto indirect = [](const World& w) { return World::mean(w.read(w.gi.indirectIrradiance())); };
+    EXPECT_NEAR(indirect(world) / indirect(fresh), 1, 0.05);
+    const std::vector<vec3> albedo = world.read(world.gi.outputs().surfaces.albedo->name()),
+                            same = fresh.read(fresh.gi.outputs().surfaces.albedo->name());
+    EXPECT_EQ(albedo, same);
+  }
+
+  world.scene.removeInstance(block);
+  world.scene.removeMesh(mesh);
+  world.scene.removeMaterial(textured);
+  world.scene.removeTexture(material.baseColorTexture.image);
+  const std::set<uint64_t> with = world.ids();
+  world.run();
+  EXPECT_GT(shared(with, world.ids()), 0.6);
+  EXPECT_EQ(world.read(world.gi.directIrradiance()), empty);
+  world.run(4);
+  // And again, under other numbers, deformed.
+  const uint32_t second = addBox(world.scene, 0.2f, false);
+  const uint32_t shown = world.scene.addInstance(second, mat4(1));
+  std::vector<vec3> positions(24, vec3(0));
+  for (size_t i = 0; i < positions.size(); ++i)
+    positions[i] = 0.3f * vec3(i % 2 ? 1 : -1, i / 2 % 2 ? 1 : -1, i / 4 % 2 ? 1 : -1);
+  world.scene.deformInstance(shown, positions, {});
+  addBox(world.scene, 0.1f, false);
+  world.run(2);
+  EXPECT_NE(world.read(world.gi.directIrradiance()), empty);
+}
+
+/// With objects that are kept where they stood, what they show may have gone.
+TEST_F(Streaming, FrozenObjectsDoNotShowWhatHasGone) {
+  Settings settings = World::settings();
+  World world(settings);
+  const uint32_t mesh = addBox(world.scene, 0.25f, false), block = world.scene.addInstance(mesh, mat4(1));
+  world.run(2);
+  world.gi.settings().effects[EffectId::Motion] = EffectMode::Off;
+  world.run(2);
+  world.scene.removeInstance(block);
+  world.scene.removeMesh(mesh);
+  world.run(2);
+  EXPECT_GT(World::mean(world.read(world.gi.directIrradiance())), 0.1);
+}
+
+/// Lamps traced on the GPU know what came too.
+TEST_F(Streaming, RaysOnTheGpuMeetWhatCame) {
+  Settings settings = World::settings();
+  applySetting(settings, "shadow.emitters", "patches");
+  applySetting(settings, "area.tracer", "gpu");
+  World world(settings), fresh(settings);
+  Material glow;
+  glow.emission = vec3(5);
+  glow.doubleSided = true;
+  const auto addLamp = [&](World& w) {
+    w.scene.addInstance(addBox(w.scene, 0.15f, false, w.scene.addMaterial(glow)),
+                        glm::translate(mat4(1), vec3(0, 0.8f, -0.3f)));
+  };
+  const auto addShade = [](World& w) {
+    w.scene.addInstance(addBox(w.scene, 0.3f, false), glm::translate(mat4(1), vec3(0, 0.3f, -0.3f)));
+  };
+  addLamp(world);
+  world.run(3);
+  const std::vector<vec3> before = world.read(world.gi.directIrradiance());
+  addShade(world);
+  world.run();
+  addLamp(fresh);
+  addShade(fresh);
+  fresh.run();
+  const std::vector<vec3> now = world.read(world.gi.directIrradiance()),
+                          expected = fresh.read(fresh.gi.directIrradiance());
+  const auto apart = [](const std::vector<vec3>& a, const std::vector<vec3>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += double(glm::length(a[i] - b[i])) / double(a.size());
+    return sum / World::mean(b);
+  };
+  EXPECT_LT(apart(now, expected), 0.01);
+  EXPECT_GT(apart(before, expected), 0.1);
+}
+
+} // namespace lambent::test
