@@ -1,6 +1,6 @@
 # The library for glTF scenes and their entities: a host of lambent.h itself. Installed where asked for:
 # cmake --install build --component world
-add_library(lambent_world SHARED gi/world/world.cpp $<TARGET_OBJECTS:lambent_core> $<TARGET_OBJECTS:lambent_view>
+add_library(lambent_world SHARED gi/world/sync.cpp gi/world/world.cpp $<TARGET_OBJECTS:lambent_core> $<TARGET_OBJECTS:lambent_view>
             $<TARGET_OBJECTS:lambent_image> $<TARGET_OBJECTS:lambent_scene>)
 set_target_properties(lambent_world PROPERTIES EXPORT_NAME world VERSION ${PROJECT_VERSION}
                       SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib UNITY_BUILD OFF

@@ -12,7 +12,7 @@
  *
  * Descriptors: LAMBENT_DEFAULTS(kind, &desc) sets the size field and every default, then set what differs.
  * Errors: each call says how it went; lambent_message() says it in words, with the cure. A call that fails changes
- * nothing, but for LAMBENT_DEAD: a fault in the library itself, after which only lambent_destroy() does anything.
+ * nothing, but for LAMBENT_DEVICE_LOST: a fault in the library itself, after which only lambent_destroy() does anything.
  * Threads: a device is used by one thread at a time; calls that draw (marked GL) need the context in which it was
  * created. Devices are independent of each other: two may run in two threads with two contexts. */
 #ifndef LAMBENT_H
@@ -48,13 +48,13 @@ typedef enum lambent_status {
   LAMBENT_NO_CONTEXT = 3,       /* no OpenGL 4.5 context is current, or not the device's */
   LAMBENT_OUT_OF_MEMORY = 4,
   LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile */
-  LAMBENT_DEAD = 6,   /* a fault in the library, now or before: destroy the device */
+  LAMBENT_DEVICE_LOST = 6,   /* a fault in the library, now or before: destroy the device */
   LAMBENT_BUSY = 7    /* another call to the device is on its way, on another thread or around a callback */
 } lambent_status;
 LAMBENT_API const char* lambent_status_text(int status);
 
 /* A device: everything of one host in one OpenGL context. The rest are numbers that belong to a device; 0 is none, and
- * a number is never given twice. */
+ * a number is never given twice, by any device of the process. */
 typedef struct lambent_device lambent_device;
 typedef uint64_t lambent_scene;
 typedef uint64_t lambent_texture;  /* of a scene */
@@ -81,7 +81,7 @@ LAMBENT_API lambent_status lambent_defaults(int kind, void* desc, size_t size);
 
 /* Device ------------------------------------------------------------------------------------------------------------ */
 
-typedef enum lambent_level { LAMBENT_INFO, LAMBENT_WARNING, LAMBENT_ERROR } lambent_level;
+typedef enum lambent_level { LAMBENT_LOG_INFO, LAMBENT_LOG_WARNING, LAMBENT_LOG_ERROR } lambent_level;
 /* Called on the thread that called the library, with one line without its end. */
 typedef void (*lambent_log_function)(void* user, lambent_level level, const char* line);
 /* Called with the bytes by which memory for ray tracing grows (above 0, before it does) or has shrunk, from any thread.
@@ -121,10 +121,12 @@ LAMBENT_API lambent_status lambent_memory(lambent_device* device, lambent_memory
  * and have the next frame build and upload what came. */
 
 LAMBENT_API lambent_status lambent_scene_create(lambent_device* device, lambent_scene* scene);
+/* LAMBENT_OK where the device has this scene. */
+LAMBENT_API lambent_status lambent_scene_exists(lambent_device* device, lambent_scene scene);
 /* GL. With its views. */
 LAMBENT_API lambent_status lambent_scene_destroy(lambent_device* device, lambent_scene scene);
 
-typedef enum lambent_wrap { LAMBENT_REPEAT, LAMBENT_MIRRORED_REPEAT, LAMBENT_CLAMP_TO_EDGE } lambent_wrap;
+typedef enum lambent_wrap { LAMBENT_WRAP_REPEAT, LAMBENT_WRAP_MIRRORED_REPEAT, LAMBENT_WRAP_CLAMP_TO_EDGE } lambent_wrap;
 typedef struct lambent_texture_desc {
   size_t size;
   int width, height;
@@ -165,10 +167,10 @@ LAMBENT_API lambent_status lambent_material_destroy(lambent_device* device, lamb
                                                     lambent_material material);
 
 /* Triangles of a mesh that share a material: indices from 3 × first_triangle on. */
-typedef struct lambent_part {
+typedef struct lambent_submesh {
   uint32_t first_triangle, triangle_count;
   lambent_material material;
-} lambent_part;
+} lambent_submesh;
 /* Object space. All arrays are copied. */
 typedef struct lambent_mesh_desc {
   size_t size;
@@ -178,8 +180,8 @@ typedef struct lambent_mesh_desc {
   const float *uvs, *uvs1; /* 2 a vertex; NULL: all 0 */
   const float* colors;     /* linear RGBA, 4 a vertex; NULL: white */
   const uint32_t* indices; /* 3 a triangle; the front is seen counter-clockwise */
-  const lambent_part* parts;
-  uint32_t part_count;       /* 0: all triangles are of `material` */
+  const lambent_submesh* submeshes;
+  uint32_t submesh_count;    /* 0: all triangles are of `material` */
   lambent_material material; /* 0: a grey one */
   const char* name;          /* in messages; may be NULL */
 } lambent_mesh_desc;
@@ -200,7 +202,7 @@ LAMBENT_API lambent_status lambent_instance_deform(lambent_device* device, lambe
 LAMBENT_API lambent_status lambent_instance_destroy(lambent_device* device, lambent_scene scene,
                                                     lambent_instance instance);
 
-typedef enum lambent_light_type { LAMBENT_POINT, LAMBENT_SPOT, LAMBENT_DIRECTIONAL } lambent_light_type;
+typedef enum lambent_light_type { LAMBENT_LIGHT_POINT, LAMBENT_LIGHT_SPOT, LAMBENT_LIGHT_DIRECTIONAL } lambent_light_type;
 typedef struct lambent_light_desc {
   size_t size;
   int32_t type;          /* lambent_light_type */
@@ -217,7 +219,7 @@ LAMBENT_API lambent_status lambent_light_set(lambent_device* device, lambent_sce
                                              const lambent_light_desc* desc);
 LAMBENT_API lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene, lambent_light light);
 
-typedef enum lambent_sky_type { LAMBENT_CONSTANT_SKY, LAMBENT_CLEAR_SKY } lambent_sky_type;
+typedef enum lambent_sky_type { LAMBENT_SKY_CONSTANT, LAMBENT_SKY_CLEAR } lambent_sky_type;
 typedef struct lambent_sky_desc {
   size_t size;
   int32_t type;          /* lambent_sky_type */
@@ -225,7 +227,7 @@ typedef struct lambent_sky_desc {
   float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours: lambent_sky_sun */
   float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
 } lambent_sky_desc;
-LAMBENT_API lambent_status lambent_scene_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* desc);
+LAMBENT_API lambent_status lambent_scene_set_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* desc);
 
 /* The sun that goes with a clear sky: irradiance on what faces it, W/m², and the radius of its disk. Tell it as a
  * directional light that travels along -towards_sun. In these units a sun at noon is about 3 W/m²; scale both alike for
@@ -271,7 +273,7 @@ typedef enum lambent_normals {
   LAMBENT_NORMALS_OCTAHEDRAL,  /* two channels in -1..1 */
   LAMBENT_NORMALS_OCTAHEDRAL_UNORM /* two channels in 0..1 */
 } lambent_normals;
-typedef enum lambent_space { LAMBENT_WORLD, LAMBENT_VIEW } lambent_space;
+typedef enum lambent_space { LAMBENT_SPACE_WORLD, LAMBENT_SPACE_VIEW } lambent_space;
 
 /* A frame: what is seen, as the host has drawn it, and where its light goes. All textures are GL_TEXTURE_2D that
  * samplers read as floats, without mipmaps. */
@@ -317,7 +319,8 @@ LAMBENT_API lambent_status lambent_render(lambent_device* device, lambent_view v
 
 /* Irradiance at `count` points with normals (3 floats each, world space; a point stands a little off its surface), by
  * the lights of the view's last frame: 3 floats each into `indirect` and `direct`, W/m²; either may be NULL. On the CPU;
- * takes about 0.3 ms a point with 2048 lights on two cores. */
+ * takes about 0.3 ms a point with 2048 lights on two cores. After a material changed, or meshes, materials or textures
+ * were destroyed, the view is to be rendered first. */
 LAMBENT_API lambent_status lambent_irradiance(lambent_device* device, lambent_view view, const float* points,
                                               const float* normals, size_t count, float* indirect, float* direct);
 /* GL. The same as textures: RGBA32F, `width` texels a row, row by row; valid until the next call for this view. */

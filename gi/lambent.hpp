@@ -34,7 +34,7 @@ template <class Desc> Desc defaults() {
   return desc;
 }
 
-/// Owns a device. Member calls are those of lambent.h and throw Error.
+/// Owns a device. Member calls are those of lambent.h that are about one, and throw Error.
 class Device {
  public:
   explicit Device(const lambent_device_desc& desc = defaults<lambent_device_desc>()) : device_(nullptr) {
@@ -53,7 +53,7 @@ class Device {
   lambent_device* get() const { return device_; }
   /// Throws what a call to this device said, where it failed: check(lambent_instance_move(device.get(), …)).
   void check(lambent_status status) const {
-    if (status != LAMBENT_OK) throw Error(status, lambent_message(device_));
+    if (status != LAMBENT_OK) throw Error(status, lambent_message(status == LAMBENT_BUSY ? nullptr : device_));
   }
 
   // What is made, and ended; `s` is its scene.
@@ -92,7 +92,7 @@ class Device {
     check(lambent_light_set(device_, s, l, &d));
   }
   void destroyLight(lambent_scene s, lambent_light l) const { check(lambent_light_destroy(device_, s, l)); }
-  void setSky(lambent_scene s, const lambent_sky_desc& d) const { check(lambent_scene_sky(device_, s, &d)); }
+  void setSky(lambent_scene s, const lambent_sky_desc& d) const { check(lambent_scene_set_sky(device_, s, &d)); }
 
   lambent_view view(lambent_scene s, const lambent_view_desc& d) const {
     return made<lambent_view>(lambent_view_create, s, &d);

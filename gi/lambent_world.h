@@ -1,14 +1,15 @@
 /* Lambent's worlds: scenes of glTF 2.0 files (or made by calls), kept as entities with components, and told to a
  * lambent_scene. Optional: what has a scene of its own needs lambent.h alone. C99, C++11 and newer.
  *
- *   lambent_world_load        a .gltf or .glb, with its animation, skins, morph targets, lights and cameras
- *   lambent_world_pose        animation at some time; lambent_world_place, lambent_world_light: changes of the host's
- *   lambent_world_tell        what there is now, and what has changed since it was last told, to a scene
+ *   lambent_world_load           a .gltf or .glb, with its animation, skins, morph targets, lights and cameras
+ *   lambent_world_animate        its animation at some time
+ *   lambent_world_set_transform  and others: changes of the host's
+ *   lambent_world_sync           tells a scene what there is, and later what has changed
  *
  * Conventions are those of lambent.h. Coordinates count from lambent_world_origin(), which is zero but for files that
  * lie far from their own; "local" matrices are in the parent's space. Errors are those of lambent.h; the last message
- * is lambent_world_message(). A world is used by one thread at a time; nothing here needs OpenGL but
- * lambent_world_tell(), as the calls that it makes. */
+ * is lambent_world_message(). A world is used by one thread at a time; nothing here needs OpenGL. Loading, posing of
+ * skins and the camera of a file without one use all cores. */
 #ifndef LAMBENT_WORLD_H
 #define LAMBENT_WORLD_H
 
@@ -47,37 +48,41 @@ LAMBENT_API lambent_status lambent_world_create(lambent_world* world, const char
 LAMBENT_API lambent_status lambent_world_remove(lambent_world* world, lambent_entity entity);
 
 /* Takes the place of what animation says of the entity, which is then left out. */
-LAMBENT_API lambent_status lambent_world_place(lambent_world* world, lambent_entity entity, const float local[16]);
+LAMBENT_API lambent_status lambent_world_set_transform(lambent_world* world, lambent_entity entity,
+                                                       const float local[16]);
 /* Either may be NULL. */
-LAMBENT_API lambent_status lambent_world_placement(lambent_world* world, lambent_entity entity, float local[16],
-                                                   float world_from_node[16]);
+LAMBENT_API lambent_status lambent_world_get_transform(lambent_world* world, lambent_entity entity, float local[16],
+                                                       float world_from_node[16]);
 /* Poses all clips of the file, looped, at some time. Seconds. */
-LAMBENT_API lambent_status lambent_world_pose(lambent_world* world, double seconds);
+LAMBENT_API lambent_status lambent_world_animate(lambent_world* world, double seconds);
 
 /* Gives the entity a light, or changes or takes (NULL) that it has. It stands at the entity and shines along its -Z:
  * `position` and `direction` are not read. */
-LAMBENT_API lambent_status lambent_world_light(lambent_world* world, lambent_entity entity,
-                                               const lambent_light_desc* light);
+LAMBENT_API lambent_status lambent_world_set_light(lambent_world* world, lambent_entity entity,
+                                                   const lambent_light_desc* light);
 /* LAMBENT_INVALID_ARGUMENT where it has none. */
-LAMBENT_API lambent_status lambent_world_light_of(lambent_world* world, lambent_entity entity,
-                                                  lambent_light_desc* light);
-LAMBENT_API lambent_status lambent_world_sky(lambent_world* world, const lambent_sky_desc* sky);
+LAMBENT_API lambent_status lambent_world_get_light(lambent_world* world, lambent_entity entity,
+                                                   lambent_light_desc* light);
+LAMBENT_API lambent_status lambent_world_set_sky(lambent_world* world, const lambent_sky_desc* sky);
 
 /* Shows a mesh of the world at the entity, in place of what it shows. By number: those of the file in its order. */
-LAMBENT_API lambent_status lambent_world_show(lambent_world* world, lambent_entity entity, uint32_t mesh);
+LAMBENT_API lambent_status lambent_world_set_mesh(lambent_world* world, lambent_entity entity, uint32_t mesh);
 /* LAMBENT_INVALID_ARGUMENT where the entity shows none. */
-LAMBENT_API lambent_status lambent_world_mesh_of(lambent_world* world, lambent_entity entity, uint32_t* mesh);
-/* The arrays of a mesh, for a host's own drawing: vertex_count to uvs1, valid as long as the world; its parts and
- * materials are 0. LAMBENT_INVALID_ARGUMENT beyond the last. */
-LAMBENT_API lambent_status lambent_world_mesh(lambent_world* world, uint32_t mesh, lambent_mesh_desc* desc);
+LAMBENT_API lambent_status lambent_world_get_mesh(lambent_world* world, lambent_entity entity, uint32_t* mesh);
+/* The arrays of a mesh, for a host's own drawing: vertex_count to uvs1, valid as long as the world; its submeshes
+ * and materials are 0. LAMBENT_INVALID_ARGUMENT beyond the last. */
+LAMBENT_API lambent_status lambent_world_mesh_data(lambent_world* world, uint32_t mesh, lambent_mesh_desc* desc);
 
-/* Camera `index` of the file, posed, into `frame`: world_from_view, fov_y or ortho_half_height, near_plane. Beyond the
- * last, or where there is none: for index 0 one that shows the whole scene, else LAMBENT_INVALID_ARGUMENT. */
+/* Camera `index` of the file, posed, into `frame`: world_from_view, fov_y or ortho_half_height, near_plane.
+ * LAMBENT_INVALID_ARGUMENT beyond the last. Where there is none, index 0 is one that shows the scene, for which all its
+ * triangles are looked at: ask once. */
 LAMBENT_API lambent_status lambent_world_camera(lambent_world* world, size_t index, lambent_frame* frame);
 
 /* Tells a scene of `device` all that there is, and from the second call on what has changed. What else is in the scene
- * stays. What the scene does not take is left out, with a warning. Roughness and metalness are not told. */
-LAMBENT_API lambent_status lambent_world_tell(lambent_world* world, lambent_device* device, lambent_scene scene);
+ * stays; what the host destroyed of it is made again when it changes. What the scene does not take is left out, with a
+ * warning. Roughness and metalness are not told. The world gets the failures of the calls that it makes of lambent.h,
+ * LAMBENT_DEVICE_LOST too, and lives on. */
+LAMBENT_API lambent_status lambent_world_sync(lambent_world* world, lambent_device* device, lambent_scene scene);
 /* The instance, or 0, that the entity is in a scene that was told. */
 LAMBENT_API lambent_instance lambent_world_instance(const lambent_world* world, lambent_entity entity,
                                                     lambent_device* device, lambent_scene scene);

@@ -39,23 +39,30 @@ std::vector<InstanceView> SceneExtractor::placeInstances(const Scene& scene) {
   return instances;
 }
 
+std::optional<LightView> lightOf(const Scene& scene, Entity entity) {
+  const auto* l = scene.registry.tryGet<PunctualLight>(entity);
+  const auto* w = scene.registry.tryGet<WorldTransform>(entity);
+  if (!l || !w) return {};
+  LightView v;
+  v.id = entity.id();
+  v.type = l->type;
+  v.position = scene.fromOrigin(dvec3(w->worldFromNode[3]));
+  const dvec3 forward = -dvec3(w->worldFromNode[2]); // of a node as large as single precision goes
+  const double length = glm::length(forward);
+  if (!isNear(v.position) || !std::isfinite(length)) return {};
+  v.direction = length > 0 ? vec3(forward / length) : vec3(0, 0, -1);
+  v.intensity = l->intensity;
+  v.range = l->range;
+  v.innerConeCos = l->innerConeCos;
+  v.outerConeCos = l->outerConeCos;
+  v.angularRadius = l->angularRadius;
+  return v;
+}
+
 SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, double time) {
   std::vector<LightView> lights;
-  scene.registry.each<PunctualLight, WorldTransform>([&](Entity e, const PunctualLight& l, const WorldTransform& w) {
-    LightView v;
-    v.id = e.id();
-    v.type = l.type;
-    v.position = scene.fromOrigin(dvec3(w.worldFromNode[3]));
-    const dvec3 forward = -dvec3(w.worldFromNode[2]); // of a node as large as single precision goes
-    const double length = glm::length(forward);
-    if (!isNear(v.position) || !std::isfinite(length)) return;
-    v.direction = length > 0 ? vec3(forward / length) : vec3(0, 0, -1);
-    v.intensity = l.intensity;
-    v.range = l.range;
-    v.innerConeCos = l.innerConeCos;
-    v.outerConeCos = l.outerConeCos;
-    v.angularRadius = l.angularRadius;
-    lights.push_back(v);
+  scene.registry.each<PunctualLight, WorldTransform>([&](Entity e, const PunctualLight&, const WorldTransform&) {
+    if (const std::optional<LightView> light = lightOf(scene, e)) lights.push_back(*light);
   });
   return changes_.take(scene.assets, placeInstances(scene), std::move(lights), scene.sky, camera, time);
 }

@@ -57,6 +57,9 @@ Entity addLight(Scene& scene, const LightView& light, const std::string& name);
 /// Finds the node called `name`; nothing if there is none.
 std::optional<Entity> findByName(const Scene& scene, const std::string& name);
 
+/// The light of an entity as it stands at the present transforms; nothing where it has none, or is not near (isNear).
+std::optional<LightView> lightOf(const Scene& scene, Entity entity);
+
 /// Box around all mesh instances at their present transforms, from the scene's origin.
 Aabb worldBounds(const Scene& scene);
 

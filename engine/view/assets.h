@@ -120,11 +120,11 @@ class Identity {
   uint64_t value_ = next();
 };
 
-/// What is in use never changes under the same identity. What nothing uses may come and go: `revision` then grows, and
-/// numbers stay. What has gone has no triangles, or one texel.
+/// What is in use never changes under the same identity. What nothing uses may come and go: `revision` then grows,
+/// `meshRevision` with meshes, and numbers stay. What has gone has no triangles, or no texels.
 struct SceneAssets {
   Identity identity;
-  uint64_t revision = 0;
+  uint64_t revision = 0, meshRevision = 0;
   std::vector<Mesh> meshes;
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;

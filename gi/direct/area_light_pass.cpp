@@ -90,9 +90,9 @@ const RayQuery& AreaLightPass::tracerFor(const World& world, const FrameSurfaces
 }
 
 const RayQuery& AreaLightPass::gpuRays(const World& world) {
-  if (!gpuRays_ || world.view.changes.first || traced_ != world.view.assets->revision)
+  if (!gpuRays_ || world.view.changes.first || traced_ != world.view.assets->meshRevision)
     gpuRays_ = std::make_unique<GpuRays>(context_.programs, *world.view.assets);
-  traced_ = world.view.assets->revision;
+  traced_ = world.view.assets->meshRevision;
   gpuRays_->update(world.view);
   return *gpuRays_;
 }

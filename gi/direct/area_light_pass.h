@@ -45,7 +45,7 @@ class AreaLightPass {
   AreaLights lights_;
   std::vector<EmitterTriangle> triangles_; // that they are of
   std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
-  uint64_t traced_ = 0;                    // revision of the assets that they know
+  uint64_t traced_ = 0;                    // meshRevision of the assets that they know
   MakerChoice tracer_{context_, "cpu", "gpu"};
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};

@@ -161,7 +161,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
       profiler.choose(settings.debug.timing == TimingMode::Queries ? gl::Timing::Queries : gl::Timing::Finish);
   }
   stats.timing = profiler.timing() == gl::Timing::Finish ? "finish" : "queries";
-  if (!world.open(*given.assets, stats)) return;
+  if (!world.open(*given.assets, settings, stats)) return;
   indirect->forget();
   direct.forget();
   surfaces.forget();

@@ -18,11 +18,12 @@ float farDistanceOf(const SceneView& view, float before) {
 
 } // namespace
 
-bool WorldState::open(const SceneAssets& assets, FrameStats& stats) {
+bool WorldState::open(const SceneAssets& assets, const Settings& settings, FrameStats& stats) {
   const bool same = opened_ == assets.identity.value();
   if (same && revision_ == assets.revision) return false;
   CpuScope scope(stats.stages, key(StageId::Scene));
-  const bool another = !same || frozen_; // frozen instances may show what has gone
+  const bool freezes = frozen_ || settings.effects[EffectId::Motion] == EffectMode::Off;
+  const bool another = !same || freezes; // frozen instances may show what has gone
   opened_ = 0;                           // until it is: a pulse may throw
   if (another) {
     gpu_ = std::make_unique<GpuScene>(context_, assets);

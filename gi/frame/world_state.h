@@ -27,7 +27,7 @@ class WorldState {
   explicit WorldState(const PassContext& context) : context_(context) {}
 
   /// Prepares for a scene. Returns whether it is another one; what came to the last one, or went, is only taken over.
-  bool open(const SceneAssets& assets, FrameStats& stats);
+  bool open(const SceneAssets& assets, const Settings& settings, FrameStats& stats);
   /// Takes the view over.
   void take(const SceneView& given, const Settings& settings);
   const SceneView& view() const { return view_.view(); }

@@ -71,7 +71,7 @@ uint32_t HostScene::addTexture(TextureImage image) {
   image.averageLinear = vec4(sum / double(image.texels.size()));
   assets_.images.push_back(std::move(image));
   textures_.push_back(true);
-  assetsCameOrWent();
+  ++assets_.revision;
   return uint32_t(assets_.images.size() - 1);
 }
 
@@ -82,12 +82,10 @@ void HostScene::removeTexture(uint32_t texture) {
     if (materials_[i] && (m.baseColorTexture.image == texture || m.emissiveTexture.image == texture))
       refuse("texture", "is used by a material (destroy that first, or set another)");
   }
-  TextureImage& image = assets_.images[texture];
-  image = {};
-  image.width = image.height = 1;
-  image.texels = {u8vec4(255)};
+  assets_.images[texture] = {};
   textures_[texture] = false;
-  assetsCameOrWent();
+  ++assets_.revision;
+  ++version_;
 }
 
 void HostScene::require(const Material& material) const {
@@ -110,7 +108,7 @@ uint32_t HostScene::addMaterial(const Material& material) {
   require(material);
   assets_.materials.push_back(material);
   materials_.push_back(true);
-  assetsCameOrWent();
+  ++assets_.revision;
   return uint32_t(assets_.materials.size() - 1);
 }
 
@@ -128,7 +126,8 @@ void HostScene::removeMaterial(uint32_t material) {
       if (p.material == material) refuse("material", "is that of a mesh (destroy that first)");
   assets_.materials[material] = {};
   materials_[material] = false;
-  assetsCameOrWent();
+  ++assets_.revision;
+  ++version_;
 }
 
 uint32_t HostScene::addMesh(const HostMesh& in) {
@@ -168,17 +167,19 @@ uint32_t HostScene::addMesh(const HostMesh& in) {
   if (covered != in.triangles.size()) refuse(which, "has triangles that are of no part");
   assets_.meshes.push_back(std::move(mesh));
   meshes_.push_back(true);
-  assetsCameOrWent();
+  meshesCameOrWent();
   return uint32_t(assets_.meshes.size() - 1);
 }
 
 void HostScene::removeMesh(uint32_t mesh) {
+  if (!hasMesh(mesh)) refuse("mesh", "is not there");
   for (const auto& [id, instance] : instances_)
     if (instance.mesh == mesh)
       refuse("mesh " + assets_.meshes[mesh].name, "is shown by an instance (destroy that first)");
   assets_.meshes[mesh] = {};
   meshes_[mesh] = false;
-  assetsCameOrWent();
+  meshesCameOrWent();
+  ++version_;
 }
 
 uint32_t HostScene::addInstance(uint32_t mesh, const mat4& worldFromObject) {

@@ -55,7 +55,7 @@ class HostScene {
   SceneView view(ViewChanges& changes, const CameraView& camera, double time) const;
 
   uint64_t bytes() const; // of meshes, textures and shapes
-  /// Another number after each change of textures, materials and meshes; never 0.
+  /// Another number after each change of a material, and where textures, materials or meshes went; never 0.
   uint64_t assetsVersion() const { return version_; }
   bool hasMesh(uint32_t mesh) const { return is(meshes_, mesh); }
   bool hasMaterial(uint32_t material) const { return is(materials_, material); }
@@ -66,7 +66,7 @@ class HostScene {
  private:
   InstanceView& at(uint32_t instance);
   void require(const Material& material) const;
-  void assetsCameOrWent() { ++assets_.revision, ++version_; } // that nothing shows
+  void meshesCameOrWent() { ++assets_.revision, ++assets_.meshRevision; }
   void assetsChanged() { assets_.identity = Identity(), ++version_; }
   static bool is(const std::vector<bool>& there, uint32_t number) { return number < there.size() && there[number]; }
 

@@ -32,9 +32,11 @@ void requireContext(const lambent_device& device) {
     refuse(LAMBENT_NO_CONTEXT, "another OpenGL context is current than the one in which the device was created");
 }
 
-uint64_t nextSerial(lambent_device& device) {
-  if (device.given >= kMostGiven) refuse(LAMBENT_FAILED, "a device gives 16 million scenes and views at most");
-  return ++device.given;
+uint64_t nextSerial() {
+  static std::atomic<uint64_t> given = 0;
+  const uint64_t serial = ++given;
+  if (serial > kMostGiven) refuse(LAMBENT_FAILED, "a process gives 16 million scenes and views at most");
+  return serial;
 }
 
 Scene& sceneOf(lambent_device& device, lambent_scene id) {

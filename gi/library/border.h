@@ -27,15 +27,15 @@ template <class Work> lambent_status call(lambent_device* device, Gl needs, cons
     guarded(messageWithoutDevice(), [] { refuse("the device is busy with another call"); });
     return LAMBENT_BUSY;
   }
-  lambent_status status = LAMBENT_DEAD;
+  lambent_status status = LAMBENT_DEVICE_LOST;
   if (!device->dead) {
     status = guarded(device->message, [&] {
       if (needs == Gl::Needed) requireContext(*device);
       const MemoryAccount::Scope account(device->account);
       device->workers.run(work);
     });
-    device->dead = status == LAMBENT_DEAD;
-    if (status != LAMBENT_OK) guarded(device->message, [&] { device->log(LAMBENT_ERROR, device->message); });
+    device->dead = status == LAMBENT_DEVICE_LOST;
+    if (status != LAMBENT_OK) guarded(device->message, [&] { device->log(LAMBENT_LOG_ERROR, device->message); });
   }
   device->busy = false;
   return status;
@@ -49,7 +49,7 @@ template <class T> std::span<const T> spanOf(const void* data, size_t count) {
   return data ? std::span(static_cast<const T*>(data), count) : std::span<const T>();
 }
 
-// Numbers of things, from the top: 8 bits what it is, 24 bits which scene or view of the device, 32 bits its number
+// Numbers of things, from the top: 8 bits what it is, 24 bits which scene or view of the process, 32 bits its number
 // there, from 1.
 enum class Kind : uint64_t { Scene = 1, View, Texture, Material, Mesh, Instance, Light };
 constexpr uint64_t kMostGiven = (1u << 24) - 1;
@@ -58,7 +58,7 @@ inline uint64_t idOf(Kind kind, uint64_t scene, uint64_t number) {
   return uint64_t(kind) << 56 | scene << 32 | (number + 1);
 }
 inline uint64_t serialOf(uint64_t id) { return id >> 32 & kMostGiven; }
-uint64_t nextSerial(lambent_device& device);
+uint64_t nextSerial();
 
 Scene& sceneOf(lambent_device& device, lambent_scene id);
 View& viewOf(lambent_device& device, lambent_view id);

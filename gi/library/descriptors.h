@@ -36,9 +36,9 @@ inline LightView lightOf(const lambent_light_desc* given) {
   const lambent_light_desc d = read(given, "light");
   requireWithin(d.type, 3, "light: type");
   LightView light;
-  light.type = d.type == LAMBENT_POINT  ? LightType::Point
-               : d.type == LAMBENT_SPOT ? LightType::Spot
-                                        : LightType::Directional;
+  light.type = d.type == LAMBENT_LIGHT_POINT  ? LightType::Point
+               : d.type == LAMBENT_LIGHT_SPOT ? LightType::Spot
+                                              : LightType::Directional;
   light.position = vec3Of(d.position);
   light.direction = vec3Of(d.direction);
   light.intensity = vec3Of(d.intensity);
@@ -55,7 +55,7 @@ inline Sky skyOf(const lambent_sky_desc* given) {
   const lambent_sky_desc d = read(given, "sky");
   requireWithin(d.type, 2, "sky: type");
   const vec3 radiance = vec3Of(d.radiance), sun = vec3Of(d.towards_sun);
-  if (d.type == LAMBENT_CONSTANT_SKY) {
+  if (d.type == LAMBENT_SKY_CONSTANT) {
     require(isFinite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0 && maxComponent(radiance) < 1e30f,
             "sky: radiance is below 0, or not finite");
     return Sky(radiance);

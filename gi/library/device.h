@@ -53,7 +53,6 @@ struct lambent_device {
   std::string markLabel;
   std::map<uint64_t, lambent::library::Scene> scenes;
   std::map<uint64_t, std::unique_ptr<lambent::library::View>> views;
-  uint64_t given = 0;  // numbers of scenes and views so far
   std::string message; // of the last failed call
   bool dead = false;
   std::atomic<bool> busy = false; // a call is on its way

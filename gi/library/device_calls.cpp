@@ -102,7 +102,7 @@ const char* lambent_status_text(int status) {
     return "out of memory";
   case LAMBENT_FAILED:
     return "failed";
-  case LAMBENT_DEAD:
+  case LAMBENT_DEVICE_LOST:
     return "dead device";
   case LAMBENT_BUSY:
     return "busy device";
@@ -154,7 +154,7 @@ void lambent_destroy(lambent_device* device) {
   Live<lambent_device>::remove(device);
   if (context != LAMBENT_OK) { // without its context nothing of it can be given back
     guarded(messageWithoutDevice(),
-            [&] { device->log(LAMBENT_ERROR, "destroyed without its OpenGL context: its memory stays"); });
+            [&] { device->log(LAMBENT_LOG_ERROR, "destroyed without its OpenGL context: its memory stays"); });
     return;
   }
   guarded(messageWithoutDevice(), [&] {
@@ -195,7 +195,7 @@ lambent_status lambent_reload_shaders(lambent_device* device) {
     for (const auto& [id, view] : device->views)
       for (const std::string& message : view->gi.reloadShaders()) {
         const bool compiled = message.starts_with("reloaded "); // else the compiler's log
-        device->log(compiled ? LAMBENT_INFO : LAMBENT_WARNING, message);
+        device->log(compiled ? LAMBENT_LOG_INFO : LAMBENT_LOG_WARNING, message);
         if (!compiled) failed = message;
       }
     if (!failed.empty()) refuse(LAMBENT_FAILED, failed);
@@ -211,7 +211,7 @@ lambent_status lambent_check(lambent_check_function report, void* user) {
     });
     if (!works) refuse(LAMBENT_FAILED, "something does not work with this driver (see the report)");
   });
-  return status == LAMBENT_DEAD ? LAMBENT_FAILED : status;
+  return status == LAMBENT_DEVICE_LOST ? LAMBENT_FAILED : status;
 }
 
 } // extern "C"

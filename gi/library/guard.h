@@ -64,7 +64,7 @@ template <class Work> lambent_status guarded(std::string& message, const Work& w
       return LAMBENT_INVALID_ARGUMENT;
     } catch (const CheckFailure& e) {
       message = std::string("a fault in the library, please report it: ") + e.what();
-      return LAMBENT_DEAD;
+      return LAMBENT_DEVICE_LOST;
     } catch (const std::bad_alloc&) {
       message = "out of memory";
       return LAMBENT_OUT_OF_MEMORY;

@@ -57,10 +57,14 @@ extern "C" {
 lambent_status lambent_scene_create(lambent_device* device, lambent_scene* scene) {
   return call(device, Gl::NotNeeded, [&] {
     require(scene != nullptr, "scene is NULL");
-    const uint64_t id = idOf(Kind::Scene, nextSerial(*device), 0);
+    const uint64_t id = idOf(Kind::Scene, nextSerial(), 0);
     device->scenes.emplace(std::piecewise_construct, std::forward_as_tuple(id), std::forward_as_tuple());
     *scene = id;
   });
+}
+
+lambent_status lambent_scene_exists(lambent_device* device, lambent_scene scene) {
+  return call(device, Gl::NotNeeded, [&] { sceneOf(*device, scene); });
 }
 
 lambent_status lambent_scene_destroy(lambent_device* device, lambent_scene scene) {
@@ -150,12 +154,12 @@ lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene, 
     const lambent_mesh_desc d = read(given, "mesh");
     require(mesh != nullptr, "mesh is NULL");
     require(d.positions && d.indices, "mesh: positions or indices are NULL");
-    require(d.parts || d.part_count == 0, "mesh: parts is NULL");
+    require(d.submeshes || d.submesh_count == 0, "mesh: submeshes is NULL");
     const auto materialOf = [&](lambent_material id) -> uint32_t {
       return id == 0 ? 0 : numberOf(Kind::Material, scene, id, "material", s.host, &HostScene::hasMaterial);
     };
     std::vector<HostMesh::Part> parts;
-    for (const lambent_part& part : std::span(d.parts, d.part_count))
+    for (const lambent_submesh& part : std::span(d.submeshes, d.submesh_count))
       parts.push_back({part.first_triangle, part.triangle_count, materialOf(part.material)});
     settle(*device, scene);
     const uint32_t number = s.host.addMesh({.name = d.name ? std::string(d.name).substr(0, 200) : std::string(),
@@ -243,7 +247,7 @@ lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene
 lambent_status lambent_sky_sun(const lambent_sky_desc* given, float irradiance[3], float* angular_radius) {
   return guarded(messageWithoutDevice(), [&] {
     const Sky sky = skyOf(given);
-    require(given->type == LAMBENT_CLEAR_SKY, "sky: only a clear one has a sun");
+    require(given->type == LAMBENT_SKY_CLEAR, "sky: only a clear one has a sun");
     const vec3 sun = daylightSun(glm::normalize(vec3Of(given->towards_sun)), given->turbidity);
     if (irradiance) std::copy(&sun.x, &sun.x + 3, irradiance);
     if (angular_radius) *angular_radius = kSunRadius;
@@ -265,7 +269,7 @@ lambent_status lambent_sky_radiance(const lambent_sky_desc* given, const float* 
   });
 }
 
-lambent_status lambent_scene_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* given) {
+lambent_status lambent_scene_set_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* given) {
   return call(device, Gl::NotNeeded, [&] {
     HostScene& host = sceneOf(*device, scene).host;
     host.setSky(skyOf(given));

@@ -61,7 +61,7 @@ HostSurfaces surfacesOf(const lambent_frame& f) {
   c.near = f.near_plane;
   c.far = f.far_plane;
   c.normals = HostNormals(int(f.normal_type));
-  c.viewSpace = f.normal_space == LAMBENT_VIEW;
+  c.viewSpace = f.normal_space == LAMBENT_SPACE_VIEW;
   c.originTop = f.origin_top != 0;
   c.x = f.x;
   c.y = f.y;
@@ -94,7 +94,8 @@ std::vector<SurfaceHit> pointsOf(const float* points, const float* normals, size
 
 void requireRendered(lambent_device& device, const View& view) {
   if (view.rendered != sceneOf(device, view.scene).host.assetsVersion())
-    refuse("the view has not been rendered since meshes, materials or textures changed (lambent_render first)");
+    refuse("the view has not been rendered since a material changed, or meshes, materials or textures went "
+           "(lambent_render first)");
 }
 
 } // namespace
@@ -110,7 +111,7 @@ lambent_status lambent_view_create(lambent_device* device, lambent_scene scene, 
     requireSize(d.width, d.height);
     const gl::StateGuard guard;
     auto made = std::make_unique<View>(scene, d, device->desc.seed, device->shaders);
-    const uint64_t id = idOf(Kind::View, nextSerial(*device), 0);
+    const uint64_t id = idOf(Kind::View, nextSerial(), 0);
     device->views.emplace(id, std::move(made));
     *view = id;
   });
@@ -137,9 +138,10 @@ lambent_status lambent_view_preset(lambent_device* device, lambent_view view, co
   return call(device, Gl::NotNeeded, [&] {
     View& v = viewOf(*device, view);
     require(preset != nullptr, "preset is NULL");
-    if (std::string(preset) != "default") return applyPreset(v.gi.settings(), preset);
-    for (const auto& [setting, value] : presetTable().front().set) // what presets are about
-      applySetting(v.gi.settings(), setting, settingText({}, setting));
+    Settings changed = v.gi.settings();
+    applyPreset(changed, preset);
+    if (const std::string reason = whyNot(changed); !reason.empty()) refuse(std::string(preset) + ": " + reason);
+    v.gi.settings() = changed;
   });
 }
 
@@ -202,11 +204,11 @@ lambent_status lambent_render(lambent_device* device, lambent_view view, const l
       throw;
     }
     v.rendered = host.assetsVersion();
-    if (const std::string& warning = v.gi.stats().warning; !warning.empty()) device->log(LAMBENT_WARNING, warning);
+    if (const std::string& warning = v.gi.stats().warning; !warning.empty()) device->log(LAMBENT_LOG_WARNING, warning);
     if (hosted && v.checked != surfaces.conventions) {
       v.checked = surfaces.conventions;
       const std::string wrong = checkSurfaces(v.gi.outputs().surfaces, camera, v.gi.rays());
-      if (!wrong.empty()) device->log(LAMBENT_WARNING, "frame: " + wrong);
+      if (!wrong.empty()) device->log(LAMBENT_LOG_WARNING, "frame: " + wrong);
     }
     const auto deliver = [&](uint32_t light, uint32_t to, int index) {
       return v.delivery.run(light, v.width, v.height, targetOf(to), index);

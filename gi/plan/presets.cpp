@@ -33,10 +33,17 @@ const std::vector<std::string>& presetNames() {
 }
 
 void applyPreset(Settings& settings, const std::string& name) {
-  const auto found = std::ranges::find(presetTable(), name, &Preset::name);
-  if (found == presetTable().end())
-    throw InputError("preset " + name, "no such preset (" + joined(presetNames()) + ")");
-  for (const auto& [setting, value] : found->set) // techniques from reflective maps have a gather of their own
+  Assignments set;
+  if (name == "default") {
+    for (const auto& [setting, value] : presetTable().front().set) // what presets are about
+      set.emplace_back(setting, settingText({}, setting));
+  } else {
+    const auto found = std::ranges::find(presetTable(), name, &Preset::name);
+    if (found == presetTable().end())
+      throw InputError("preset " + name, "no such preset (" + joined(presetNames()) + ", default)");
+    set = found->set;
+  }
+  for (const auto& [setting, value] : set) // techniques from reflective maps have a gather of their own
     if (setting != "gather.mode" || needsOf(settings).freeGather) applySetting(settings, setting, value);
 }
 

@@ -33,7 +33,8 @@ class LiveReference::Tracing {
   void begin(std::unique_ptr<Task> task) {
     task_ = std::move(task);
     const SceneView& view = task_->view.view();
-    if (const uint64_t given = view.assets->identity.value(); given != opened_) {
+    const std::pair given(view.assets->identity.value(), view.assets->meshRevision);
+    if (given != opened_) {
       rays_ = std::make_unique<EmbreeQuery>(*view.assets);
       opened_ = given;
     }
@@ -79,7 +80,7 @@ class LiveReference::Tracing {
   const uint32_t seed_;
   const std::atomic<bool>& stopped_;
   std::unique_ptr<Task> task_;
-  uint64_t opened_ = 0; // identity of its assets
+  std::pair<uint64_t, uint64_t> opened_; // identity and revision of its meshes
   std::unique_ptr<EmbreeQuery> rays_;
   LightSet lights_;
   ReferenceSums sums_;

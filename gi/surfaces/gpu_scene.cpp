@@ -2,6 +2,7 @@
 #include "gi/surfaces/gpu_scene.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace lambent {
 
@@ -18,6 +19,11 @@ bool Frustum::mayShow(const Aabb& box) const {
     if (glm::dot(n, farthest) + plane.w < 0) return false;
   }
   return true;
+}
+
+uint64_t GpuScene::nextVersion() {
+  static std::atomic<uint64_t> last = 0;
+  return ++last;
 }
 
 void GpuScene::place(std::span<const InstanceView> instances) {
@@ -69,14 +75,16 @@ void GpuScene::place(std::span<const InstanceView> instances) {
 void GpuScene::noteMoves(const std::vector<Placed>& placed) {
   if (placed.size() != placed_.size()) {
     rest_.assign(placed.size(), kRested);
-    ++stillVersion_;
+    stillVersion_ = nextVersion();
     return;
   }
+  bool others = false;
   for (size_t i = 0; i < placed.size(); ++i) {
     const bool stood = rest_[i] == kRested;
     rest_[i] = placed[i] == placed_[i] ? uint8_t(std::min<int>(rest_[i] + 1, kRested)) : uint8_t(0);
-    stillVersion_ += stood != (rest_[i] == kRested);
+    others |= stood != (rest_[i] == kRested);
   }
+  if (others) stillVersion_ = nextVersion();
 }
 
 namespace {

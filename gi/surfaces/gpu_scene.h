@@ -51,8 +51,11 @@ class GpuScene {
                 Instances which = Instances::All) const;
 
   /// Sets which alpha test draws use; AlphaTest::Masked at the start.
-  void setAlphaTest(AlphaTest test) { stillVersion_ += std::exchange(alphaTest_, test) != test; }
-  /// Returns a number that stays the same as long as what Instances::Still draws does.
+  void setAlphaTest(AlphaTest test) {
+    if (std::exchange(alphaTest_, test) != test) stillVersion_ = nextVersion();
+  }
+  /// Returns a number that stays the same as long as what Instances::Still draws does, and that no other scene of this
+  /// process has.
   uint64_t stillVersion() const { return stillVersion_; }
 
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
@@ -98,6 +101,7 @@ class GpuScene {
     std::vector<uint32_t> baseVertex; // by instance; kNone: rigid
   };
 
+  static uint64_t nextVersion();
   void uploadMeshes(const SceneAssets& assets);
   gl::VertexArray vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
                                 const gl::Buffer& uvs, const gl::Buffer& colors) const;
@@ -120,12 +124,13 @@ class GpuScene {
   std::vector<gl::Texture> textures_;
   std::map<uint32_t, gl::Sampler> samplers_; // by packed wrap and filter modes
   std::vector<MeshRange> meshes_;
+  uint64_t meshRevision_; // of the assets
   DeformedVertices deformed_;
   std::vector<MaterialDraw> materialDraws_;
   size_t materialStride_ = 256;
   std::vector<Placed> placed_;
   std::vector<uint8_t> rest_; // by instance: placements since it moved, at most kRested
-  uint64_t stillVersion_ = 0;
+  uint64_t stillVersion_ = nextVersion();
   std::vector<Item> items_; // sorted by material
   Aabb bounds_;
   uint32_t triangleCount_ = 0;

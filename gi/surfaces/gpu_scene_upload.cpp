@@ -68,19 +68,21 @@ void attribute(const gl::VertexArray& array, GLuint location, const gl::Buffer& 
 
 } // namespace
 
-GpuScene::GpuScene(const PassContext& context, const SceneAssets& assets) : context_(context) {
+GpuScene::GpuScene(const PassContext& context, const SceneAssets& assets)
+    : context_(context), meshRevision_(assets.meshRevision) {
   uploadMeshes(assets);
   uploadMaterials(assets);
 }
 
 void GpuScene::takeAssets(const SceneAssets& assets) {
-  meshes_.clear();
   materialDraws_.clear();
+  uploadMaterials(assets);
+  if (std::exchange(meshRevision_, assets.meshRevision) == assets.meshRevision) return;
+  meshes_.clear();
   deformed_ = {};
   placed_.clear(); // all are placed anew
   items_.clear();
   uploadMeshes(assets);
-  uploadMaterials(assets);
 }
 
 void GpuScene::uploadMeshes(const SceneAssets& assets) {
@@ -160,8 +162,9 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
   for (size_t i = 0; i < assets.images.size(); ++i) {
     const TextureImage& image = assets.images[i];
-    if (i == textures_.size()) textures_.push_back(uploadImage(image));
-    if (textures_[i].width() != image.width) textures_[i] = uploadImage(image); // it has gone
+    const bool gone = image.texels.empty();
+    if (i == textures_.size()) textures_.push_back(gone ? gl::Texture() : uploadImage(image));
+    if (gone) textures_[i] = {};
   }
   const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };
   const auto samplerOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : samplerFor(ref); };

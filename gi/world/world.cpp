@@ -1,55 +1,10 @@
-// The calls of lambent_world.h: a scene of the engine, kept and told through lambent.h alone.
-#include "gi/lambent_world.h"
-
-#include "engine/scene/scene.h"
-#include "gi/library/descriptors.h"
+// The calls of lambent_world.h.
+#include "gi/world/world.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 using namespace lambent;
 using namespace lambent::library;
-
-namespace {
-
-/// What one scene has been told; true after each call of lambent.h, so that a call that fails can be made again.
-struct Told {
-  struct Placed {
-    lambent_instance instance = 0; // 0: it was refused
-    uint32_t mesh = kNone;
-    mat4 place{0};
-    uint64_t shape = 0;
-  };
-  struct Lit {
-    lambent_light light = 0; // 0: it was refused
-    lambent_light_desc as;
-    bool told = false;
-  };
-  SceneExtractor extractor;
-  // By number, as far as a call got; 0: refused, or a mesh without triangles.
-  std::map<std::tuple<uint32_t, Wrap, Wrap, bool>, lambent_texture> textures;
-  std::vector<lambent_material> materials;
-  std::vector<lambent_mesh> meshes;
-  std::map<uint32_t, Placed> instances;
-  std::map<uint32_t, Lit> lights; // by entity
-  std::optional<Sky> sky;
-};
-using TellingKey = std::pair<lambent_device*, lambent_scene>;
-
-} // namespace
-
-struct lambent_world {
-  Scene scene;
-  lambent_sky_desc sky; // as given
-  std::map<TellingKey, Told> told;
-  std::string message;
-  bool dead = false; // after a fault of this code
-
-  void warn(const std::string& line) {
-    if (std::ranges::find(scene.warnings, line) == scene.warnings.end()) scene.warnings.push_back(line);
-  }
-};
 
 namespace {
 
@@ -63,9 +18,19 @@ template <class Work> lambent_status call(lambent_world* world, const Work& work
     guarded(messageWithoutWorld(), [] { refuse("no such world"); });
     return LAMBENT_INVALID_HANDLE;
   }
-  if (world->dead) return LAMBENT_DEAD;
-  const lambent_status status = guarded(world->message, work);
-  world->dead = status == LAMBENT_DEAD;
+  if (world->busy.exchange(true)) {
+    guarded(messageWithoutWorld(), [] { refuse("the world is busy with another call"); });
+    return LAMBENT_BUSY;
+  }
+  const lambent_status status = world->dead ? LAMBENT_DEVICE_LOST : guarded(world->message, [&] {
+    try {
+      work();
+    } catch (const CheckFailure&) { // and no device's
+      world->dead = true;
+      throw;
+    }
+  });
+  world->busy = false;
   return status;
 }
 
@@ -93,196 +58,6 @@ void requireMesh(const lambent_world& world, uint32_t mesh) {
     refuse("no mesh " + std::to_string(mesh) + " (there are " + std::to_string(world.scene.assets.meshes.size()) + ")");
 }
 
-/// A view of the mesh's arrays; parts are left out.
-lambent_mesh_desc describe(const Mesh& mesh) {
-  lambent_mesh_desc d;
-  LAMBENT_DEFAULTS(LAMBENT_MESH_DESC, &d);
-  d.vertex_count = uint32_t(mesh.positions.size());
-  d.triangle_count = uint32_t(mesh.triangles.size());
-  d.positions = mesh.positions.empty() ? nullptr : &mesh.positions[0].x;
-  d.normals = mesh.normals.empty() ? nullptr : &mesh.normals[0].x;
-  d.uvs = mesh.uv0.empty() ? nullptr : &mesh.uv0[0].x;
-  d.uvs1 = mesh.uv1.empty() ? nullptr : &mesh.uv1[0].x;
-  d.colors = mesh.colors.empty() ? nullptr : &mesh.colors[0].x;
-  d.indices = mesh.triangles.empty() ? nullptr : &mesh.triangles[0].x;
-  d.name = mesh.name.c_str();
-  return d;
-}
-
-lambent_light_desc describe(const LightView& light) {
-  lambent_light_desc d{}; // with its padding: descriptors are compared
-  LAMBENT_DEFAULTS(LAMBENT_LIGHT_DESC, &d);
-  d.type = light.type == LightType::Point  ? LAMBENT_POINT
-           : light.type == LightType::Spot ? LAMBENT_SPOT
-                                           : LAMBENT_DIRECTIONAL;
-  std::copy_n(&light.position.x, 3, d.position);
-  std::copy_n(&light.direction.x, 3, d.direction);
-  std::copy_n(&light.intensity.x, 3, d.intensity);
-  d.range = light.range;
-  d.inner_cone_angle = std::acos(std::clamp(light.innerConeCos, -1.0f, 1.0f));
-  d.outer_cone_angle = std::max(d.inner_cone_angle, std::acos(std::clamp(light.outerConeCos, -1.0f, 1.0f)));
-  d.angular_radius = light.angularRadius;
-  return d;
-}
-
-/// Tells one scene: each thing where it differs from what was told.
-class Telling {
- public:
-  Telling(lambent_world& world, lambent_device* device, lambent_scene scene, Told& told)
-      : world_(world), device_(device), scene_(scene), told_(told) {}
-
-  void run() {
-    for (const auto& [id, told] : told_.instances) {
-      if (!told.instance) continue; // says whether the scene is the one that was told
-      need(lambent_instance_move(device_, scene_, told.instance, &told.place[0][0]));
-      break;
-    }
-    tellAssets();
-    updateWorldTransforms(world_.scene);
-    const SceneView view = told_.extractor.extract(world_.scene, CameraView(), 0);
-    tellInstances(view);
-    tellLights(view);
-    if (told_.sky != view.sky) {
-      need(lambent_scene_sky(device_, scene_, &world_.sky));
-      told_.sky = view.sky;
-    }
-  }
-
- private:
-  /// What the library refuses is left out; all else that fails ends the call.
-  bool taken(lambent_status status, const std::string& what) {
-    if (status == LAMBENT_OK) return true;
-    if (status != LAMBENT_INVALID_ARGUMENT) need(status);
-    world_.warn(what + " is left out: " + lambent_message(device_));
-    return false;
-  }
-  void need(lambent_status status) const {
-    if (status != LAMBENT_OK) refuse(status, lambent_message(status == LAMBENT_BUSY ? nullptr : device_));
-  }
-
-  lambent_texture textureOf(const TextureRef& ref) {
-    if (ref.image == kNone) return 0;
-    const auto key = std::tuple(ref.image, ref.wrapU, ref.wrapV, ref.nearest);
-    if (const auto found = told_.textures.find(key); found != told_.textures.end()) return found->second;
-    const TextureImage& image = world_.scene.assets.images[ref.image];
-    lambent_texture_desc d;
-    LAMBENT_DEFAULTS(LAMBENT_TEXTURE_DESC, &d);
-    d.width = image.width;
-    d.height = image.height;
-    d.rgba = image.texels.empty() ? nullptr : &image.texels[0].x;
-    d.srgb = image.srgb;
-    d.wrap_u = int32_t(ref.wrapU);
-    d.wrap_v = int32_t(ref.wrapV);
-    d.nearest = ref.nearest;
-    lambent_texture made = 0;
-    taken(lambent_texture_create(device_, scene_, &d, &made), "texture " + image.name);
-    return told_.textures[key] = made;
-  }
-
-  void tellAssets() {
-    const SceneAssets& assets = world_.scene.assets;
-    while (told_.materials.size() < assets.materials.size()) {
-      const Material& m = assets.materials[told_.materials.size()];
-      lambent_material_desc d;
-      LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &d);
-      const auto uses = [&](const TextureRef& ref, lambent_texture& texture, int32_t& set, float* uv) {
-        texture = textureOf(ref);
-        set = int32_t(ref.uvSet);
-        for (int row = 0; row < 2; ++row)
-          for (int column = 0; column < 3; ++column) uv[3 * row + column] = ref.uvTransform[column][row];
-      };
-      std::copy_n(&m.baseColor.x, 3, d.base_color);
-      std::copy_n(&m.emission.x, 3, d.emission);
-      uses(m.baseColorTexture, d.base_texture, d.base_uv_set, d.base_uv);
-      uses(m.emissiveTexture, d.emission_texture, d.emission_uv_set, d.emission_uv);
-      d.double_sided = m.doubleSided;
-      d.masked = m.alphaMode == AlphaMode::Mask;
-      d.alpha = m.alpha;
-      d.alpha_cutoff = m.alphaCutoff;
-      lambent_material made = 0;
-      taken(lambent_material_create(device_, scene_, &d, &made), "material " + m.name);
-      told_.materials.push_back(made);
-    }
-    while (told_.meshes.size() < assets.meshes.size()) {
-      const Mesh& mesh = assets.meshes[told_.meshes.size()];
-      lambent_mesh_desc d = describe(mesh);
-      std::vector<lambent_part> parts;
-      for (const Primitive& p : mesh.primitives)
-        parts.push_back({p.firstTriangle, p.triangleCount, told_.materials[p.material]});
-      d.parts = parts.data();
-      d.part_count = uint32_t(parts.size());
-      lambent_mesh made = 0;
-      if (!mesh.triangles.empty()) // else points and lines
-        taken(lambent_mesh_create(device_, scene_, &d, &made), "mesh " + mesh.name);
-      told_.meshes.push_back(made);
-    }
-  }
-
-  std::string named(uint32_t entity) const {
-    const char* const name = lambent_world_name(&world_, entity);
-    return name && *name ? name : "node " + std::to_string(entity & Entity::kMaxIndex);
-  }
-
-  void tellInstances(const SceneView& view) {
-    std::set<uint32_t> there;
-    for (const InstanceView& v : view.instances) {
-      there.insert(v.id);
-      Told::Placed& told = told_.instances[v.id];
-      if (told.instance && told.mesh != v.mesh) end(told);
-      const uint64_t shape = v.deformed ? v.deformed->revision : 0;
-      if (told.mesh == v.mesh && told.place == v.worldFromObject && told.shape == shape) continue;
-      const float* const place = &v.worldFromObject[0][0];
-      if (told.instance) {
-        if (told.place != v.worldFromObject)
-          taken(lambent_instance_move(device_, scene_, told.instance, place), named(v.id) + ", moved,");
-      } else if (told_.meshes[v.mesh]) {
-        taken(lambent_instance_create(device_, scene_, told_.meshes[v.mesh], place, &told.instance), named(v.id));
-      }
-      told.mesh = v.mesh;
-      told.place = v.worldFromObject;
-      if (!told.instance) continue;
-      if (told.shape != shape) {
-        const DeformedMesh* const d = v.deformed.get();
-        taken(lambent_instance_deform(device_, scene_, told.instance, d ? &d->positions[0].x : nullptr,
-                                      d ? &d->normals[0].x : nullptr, d ? uint32_t(d->positions.size()) : 0),
-              named(v.id) + ", posed,");
-      }
-      told.shape = shape;
-    }
-    for (auto& [id, told] : told_.instances)
-      if (!there.contains(id)) end(told);
-    std::erase_if(told_.instances, [&](const auto& told) { return !there.contains(told.first); });
-  }
-  void end(Told::Placed& told) const {
-    if (told.instance) need(lambent_instance_destroy(device_, scene_, told.instance));
-    told = {};
-  }
-
-  void tellLights(const SceneView& view) {
-    std::set<uint32_t> there;
-    for (const LightView& v : view.lights) {
-      there.insert(v.id);
-      Told::Lit& told = told_.lights[v.id];
-      const lambent_light_desc d = describe(v);
-      if (told.told && std::memcmp(&d, &told.as, sizeof d) == 0) continue;
-      if (told.light)
-        taken(lambent_light_set(device_, scene_, told.light, &d), named(v.id) + ", changed,");
-      else
-        taken(lambent_light_create(device_, scene_, &d, &told.light), named(v.id));
-      told.as = d;
-      told.told = true;
-    }
-    for (auto& [id, told] : told_.lights)
-      if (told.light && !there.contains(id)) need(lambent_light_destroy(device_, scene_, std::exchange(told.light, 0)));
-    std::erase_if(told_.lights, [&](const auto& told) { return !there.contains(told.first); });
-  }
-
-  lambent_world& world_;
-  lambent_device* device_;
-  lambent_scene scene_;
-  Told& told_;
-};
-
 } // namespace
 
 extern "C" {
@@ -303,7 +78,7 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
 }
 
 void lambent_world_destroy(lambent_world* world) {
-  if (!Live<lambent_world>::has(world)) return;
+  if (!Live<lambent_world>::has(world) || world->busy.exchange(true)) return;
   Live<lambent_world>::remove(world);
   delete world;
 }
@@ -385,7 +160,7 @@ lambent_status lambent_world_remove(lambent_world* world, lambent_entity entity)
   });
 }
 
-lambent_status lambent_world_place(lambent_world* world, lambent_entity entity, const float local[16]) {
+lambent_status lambent_world_set_transform(lambent_world* world, lambent_entity entity, const float local[16]) {
   return call(world, [&] {
     Registry& registry = world->scene.registry;
     const Entity e = entityOf(*world, entity);
@@ -395,8 +170,8 @@ lambent_status lambent_world_place(lambent_world* world, lambent_entity entity, 
   });
 }
 
-lambent_status lambent_world_placement(lambent_world* world, lambent_entity entity, float local[16],
-                                       float world_from_node[16]) {
+lambent_status lambent_world_get_transform(lambent_world* world, lambent_entity entity, float local[16],
+                                           float world_from_node[16]) {
   return call(world, [&] {
     const Entity e = entityOf(*world, entity);
     updateWorldTransforms(world->scene);
@@ -405,14 +180,14 @@ lambent_status lambent_world_placement(lambent_world* world, lambent_entity enti
   });
 }
 
-lambent_status lambent_world_pose(lambent_world* world, double seconds) {
+lambent_status lambent_world_animate(lambent_world* world, double seconds) {
   return call(world, [&] {
     require(std::isfinite(seconds), "seconds is not finite");
     animate(world->scene, seconds);
   });
 }
 
-lambent_status lambent_world_light(lambent_world* world, lambent_entity entity, const lambent_light_desc* light) {
+lambent_status lambent_world_set_light(lambent_world* world, lambent_entity entity, const lambent_light_desc* light) {
   return call(world, [&] {
     const Entity e = entityOf(*world, entity);
     if (!light) return world->scene.registry.remove<PunctualLight>(e);
@@ -422,27 +197,25 @@ lambent_status lambent_world_light(lambent_world* world, lambent_entity entity, 
   });
 }
 
-lambent_status lambent_world_light_of(lambent_world* world, lambent_entity entity, lambent_light_desc* light) {
+lambent_status lambent_world_get_light(lambent_world* world, lambent_entity entity, lambent_light_desc* light) {
   return call(world, [&] {
     const Entity e = entityOf(*world, entity);
     require(light != nullptr, "light is NULL");
     updateWorldTransforms(world->scene);
-    bool found = false;
-    SceneExtractor extractor;
-    for (const LightView& v : extractor.extract(world->scene, CameraView(), 0).lights)
-      if (v.id == e.id()) *light = describe(v), found = true;
-    require(found, "the entity has no light");
+    const std::optional<LightView> found = lightOf(world->scene, e);
+    require(found.has_value(), "the entity has no light, or stands at no place within 1e12 m");
+    *light = describe(*found);
   });
 }
 
-lambent_status lambent_world_sky(lambent_world* world, const lambent_sky_desc* sky) {
+lambent_status lambent_world_set_sky(lambent_world* world, const lambent_sky_desc* sky) {
   return call(world, [&] {
     world->scene.sky = skyOf(sky);
     world->sky = *sky;
   });
 }
 
-lambent_status lambent_world_show(lambent_world* world, lambent_entity entity, uint32_t mesh) {
+lambent_status lambent_world_set_mesh(lambent_world* world, lambent_entity entity, uint32_t mesh) {
   return call(world, [&] {
     const Entity e = entityOf(*world, entity);
     requireMesh(*world, mesh);
@@ -454,7 +227,7 @@ lambent_status lambent_world_show(lambent_world* world, lambent_entity entity, u
   });
 }
 
-lambent_status lambent_world_mesh_of(lambent_world* world, lambent_entity entity, uint32_t* mesh) {
+lambent_status lambent_world_get_mesh(lambent_world* world, lambent_entity entity, uint32_t* mesh) {
   return call(world, [&] {
     const MeshInstance* const shown = world->scene.registry.tryGet<MeshInstance>(entityOf(*world, entity));
     require(mesh != nullptr, "mesh is NULL");
@@ -463,7 +236,7 @@ lambent_status lambent_world_mesh_of(lambent_world* world, lambent_entity entity
   });
 }
 
-lambent_status lambent_world_mesh(lambent_world* world, uint32_t mesh, lambent_mesh_desc* desc) {
+lambent_status lambent_world_mesh_data(lambent_world* world, uint32_t mesh, lambent_mesh_desc* desc) {
   return call(world, [&] {
     requireMesh(*world, mesh);
     require(desc != nullptr, "desc is NULL");
@@ -486,23 +259,17 @@ lambent_status lambent_world_camera(lambent_world* world, size_t index, lambent_
   });
 }
 
-lambent_status lambent_world_tell(lambent_world* world, lambent_device* device, lambent_scene scene) {
-  const auto tell = [&] {
-    return call(world, [&] { Telling(*world, device, scene, world->told[{device, scene}]).run(); });
-  };
-  const lambent_status status = tell();
-  if (status != LAMBENT_INVALID_HANDLE || !Live<lambent_world>::has(world)) return status;
-  world->told.erase({device, scene}); // of a device that has ended, and had the same name
-  return tell();
+lambent_status lambent_world_sync(lambent_world* world, lambent_device* device, lambent_scene scene) {
+  return call(world, [&] { sync(*world, device, scene); });
 }
 
 lambent_instance lambent_world_instance(const lambent_world* world, lambent_entity entity, lambent_device* device,
                                         lambent_scene scene) {
   if (!Live<lambent_world>::has(world)) return 0;
-  const auto told = world->told.find({device, scene});
-  if (told == world->told.end()) return 0;
-  const auto placed = told->second.instances.find(entity);
-  return placed == told->second.instances.end() ? 0 : placed->second.instance;
+  const auto synced = world->synced.find({device, scene});
+  if (synced == world->synced.end()) return 0;
+  const auto placed = synced->second.instances.find(entity);
+  return placed == synced->second.instances.end() ? 0 : placed->second.instance;
 }
 
 } // extern "C"

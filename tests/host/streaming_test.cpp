@@ -86,6 +86,17 @@ double shared(const std::set<uint64_t>& before, const std::set<uint64_t>& now) {
   return double(same) / double(before.size());
 }
 
+/// Mean difference over the mean.
+double apart(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += double(glm::length(a[i] - b[i])) / double(a.size());
+  return sum / World::mean(b);
+}
+/// Of direct light.
+double apart(const World& a, const World& b) {
+  return apart(a.read(a.gi.directIrradiance()), b.read(b.gi.directIrradiance()));
+}
+
 class Streaming : public testing::Test {
  protected:
   void SetUp() override {
@@ -133,10 +144,7 @@ TEST_F(Streaming, LightGoesOnWhereMeshesComeAndGo) {
     fresh.scene.addInstance(addBox(fresh.scene, 0.25f, false, fresh.scene.addMaterial(material)),
                             glm::translate(mat4(1), vec3(-0.3f, -0.7f, -0.2f)));
     fresh.run(9);
-    double off = 0;
-    const std::vector<vec3> expected = fresh.read(fresh.gi.directIrradiance());
-    for (size_t i = 0; i < expected.size(); ++i) off += double(glm::length(expected[i] - filled[i]));
-    EXPECT_LT(off / double(expected.size()), 0.01 * World::mean(expected)) << "shadows in the first frame";
+    EXPECT_LT(apart(filled, fresh.read(fresh.gi.directIrradiance())), 0.01) << "shadows in the first frame";
     const auto indirect = [](const World& w) { return World::mean(w.read(w.gi.indirectIrradiance())); };
     EXPECT_NEAR(indirect(world) / indirect(fresh), 1, 0.05);
     const std::vector<vec3> albedo = world.read(world.gi.outputs().surfaces.albedo->name()),
@@ -162,7 +170,43 @@ TEST_F(Streaming, LightGoesOnWhereMeshesComeAndGo) {
   world.scene.deformInstance(shown, positions, {});
   addBox(world.scene, 0.1f, false);
   world.run(2);
+  World fresh(World::settings());
+  fresh.scene.deformInstance(fresh.scene.addInstance(addBox(fresh.scene, 0.2f, false), mat4(1)), positions, {});
+  fresh.run(2);
+  EXPECT_LT(apart(world, fresh), 0.01);
   EXPECT_NE(world.read(world.gi.directIrradiance()), empty);
+}
+
+/// Maps of what stands still are of the scene as it is, while something moves.
+TEST_F(Streaming, AMaterialThatChangesIsSeenByEveryMap) {
+  Settings settings = World::settings();
+  settings.shadow.rays = false;
+  World world(settings), fresh(settings);
+  Material mask;
+  mask.alpha = 0;
+  std::vector<uint32_t> materials, movers;
+  for (World* w : {&world, &fresh}) {
+    materials.push_back(w->scene.addMaterial(mask));
+    w->scene.addInstance(addBox(w->scene, 0.25f, false, materials.back()),
+                         glm::translate(mat4(1), vec3(0.2f, 0.1f, 0)));
+    movers.push_back(w->scene.addInstance(addBox(w->scene, 0.05f, false), mat4(1)));
+  }
+  const auto move = [&](int frame) {
+    for (int i = 0; i < 2; ++i)
+      (i ? fresh : world)
+          .scene.moveInstance(movers[size_t(i)],
+                              glm::translate(mat4(1), vec3(-0.6f + 0.01f * float(frame), -0.5f, 0.3f)));
+  };
+  for (int i = 0; i < 4; ++i) move(i), world.run();
+  mask.alphaMode = AlphaMode::Mask; // it is not there
+  world.scene.setMaterial(materials[0], mask);
+  fresh.scene.setMaterial(materials[1], mask);
+  for (int i = 4; i < 10; ++i) {
+    move(i);
+    world.run();
+    fresh.run();
+    EXPECT_LT(apart(world, fresh), 0.005) << i;
+  }
 }
 
 /// With objects that are kept where they stood, what they show may have gone.
@@ -176,7 +220,18 @@ TEST_F(Streaming, FrozenObjectsDoNotShowWhatHasGone) {
   world.scene.removeInstance(block);
   world.scene.removeMesh(mesh);
   world.run(2);
-  EXPECT_GT(World::mean(world.read(world.gi.directIrradiance())), 0.1);
+  World empty(settings);
+  empty.run(2);
+  EXPECT_LT(apart(world, empty), 0.01);
+  // They freeze in the frame in which it has gone.
+  World other(settings);
+  const uint32_t gone = addBox(other.scene, 0.25f, false), shown = other.scene.addInstance(gone, mat4(1));
+  other.run(2);
+  other.gi.settings().effects[EffectId::Motion] = EffectMode::Off;
+  other.scene.removeInstance(shown);
+  other.scene.removeMesh(gone);
+  other.run(2);
+  EXPECT_LT(apart(other, empty), 0.01);
 }
 
 /// Lamps traced on the GPU know what came too.
@@ -205,11 +260,6 @@ TEST_F(Streaming, RaysOnTheGpuMeetWhatCame) {
   fresh.run();
   const std::vector<vec3> now = world.read(world.gi.directIrradiance()),
                           expected = fresh.read(fresh.gi.directIrradiance());
-  const auto apart = [](const std::vector<vec3>& a, const std::vector<vec3>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += double(glm::length(a[i] - b[i])) / double(a.size());
-    return sum / World::mean(b);
-  };
   EXPECT_LT(apart(now, expected), 0.01);
   EXPECT_GT(apart(before, expected), 0.1);
 }

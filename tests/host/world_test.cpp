@@ -7,8 +7,8 @@
 
 #include <epoxy/gl.h>
 
-#include <cstring>
-#include <fstream>
+#include <algorithm>
+#include <cstdlib>
 
 namespace lambent::test {
 
@@ -34,6 +34,11 @@ struct Told {
 
   explicit Told(const char* file) {
     EXPECT_EQ(lambent_world_load(file, nullptr, &world), LAMBENT_OK) << lambent_world_message(nullptr);
+    LAMBENT_DEFAULTS(LAMBENT_FRAME, &frame);
+    EXPECT_EQ(lambent_world_camera(world, 0, &frame), LAMBENT_OK);
+    open();
+  }
+  void open() {
     EXPECT_EQ(lambent_create(nullptr, &device), LAMBENT_OK);
     EXPECT_EQ(lambent_scene_create(device, &scene), LAMBENT_OK);
     lambent_view_desc d;
@@ -43,8 +48,6 @@ struct Told {
     EXPECT_EQ(lambent_view_create(device, scene, &d, &view), LAMBENT_OK);
     for (const auto& [setting, value] : {std::pair("smc.vpls", "128"), {"smc.points", "128"}, {"smc.warmup", "4"}})
       EXPECT_EQ(lambent_view_set(device, view, setting, value), LAMBENT_OK);
-    LAMBENT_DEFAULTS(LAMBENT_FRAME, &frame);
-    EXPECT_EQ(lambent_world_camera(world, 0, &frame), LAMBENT_OK);
   }
   ~Told() {
     lambent_destroy(device);
@@ -53,7 +56,7 @@ struct Told {
   Told(const Told&) = delete;
 
   lambent_output draw() const {
-    EXPECT_EQ(lambent_world_tell(world, device, scene), LAMBENT_OK) << lambent_world_message(world);
+    EXPECT_EQ(lambent_world_sync(world, device, scene), LAMBENT_OK) << lambent_world_message(world);
     lambent_output out;
     LAMBENT_DEFAULTS(LAMBENT_OUTPUT, &out);
     EXPECT_EQ(lambent_render(device, view, &frame, &out), LAMBENT_OK) << lambent_message(device);
@@ -105,7 +108,7 @@ TEST_F(Worlds, AFileHasTheLightThatTheFrameGivesIt) {
     for (int i = 0; i < 4; ++i) {
       animate(scene, 0.1 * i);
       gi.run(extractor.extract(scene, seen, 0));
-      ASSERT_EQ(lambent_world_pose(told.world, 0.1 * i), LAMBENT_OK);
+      ASSERT_EQ(lambent_world_animate(told.world, 0.1 * i), LAMBENT_OK);
       const lambent_output out = told.draw();
       EXPECT_NEAR(meanOf(out.direct) / meanOf(gi.directIrradiance()), 1, 1e-3) << i;
       EXPECT_NEAR(meanOf(out.indirect) / meanOf(gi.indirectIrradiance()), 1, 0.01) << i;
@@ -125,16 +128,16 @@ TEST_F(Worlds, WhatChangesIsTold) {
   ASSERT_EQ(lambent_world_create(told.world, "lamp", LAMBENT_NO_ENTITY, place, &lamp), LAMBENT_OK);
   lambent_light_desc light;
   LAMBENT_DEFAULTS(LAMBENT_LIGHT_DESC, &light);
-  ASSERT_EQ(lambent_world_light(told.world, lamp, &light), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_set_light(told.world, lamp, &light), LAMBENT_OK);
   const double lit = meanOf(told.draw().direct);
   EXPECT_GT(lit, 1.02 * before);
   place[13] = 0.4f;
-  ASSERT_EQ(lambent_world_place(told.world, lamp, place), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_set_transform(told.world, lamp, place), LAMBENT_OK);
   const double moved = meanOf(told.draw().direct);
   EXPECT_GT(std::abs(moved / lit - 1), 0.01);
   lambent_light_desc read;
   LAMBENT_DEFAULTS(LAMBENT_LIGHT_DESC, &read);
-  ASSERT_EQ(lambent_world_light_of(told.world, lamp, &read), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_get_light(told.world, lamp, &read), LAMBENT_OK);
   EXPECT_EQ(read.position[1], 0.4f);
   EXPECT_EQ(read.intensity[0], 1);
   // A child that shows a mesh of the file goes with its parent.
@@ -143,23 +146,24 @@ TEST_F(Worlds, WhatChangesIsTold) {
   std::vector<lambent_entity> all(count);
   ASSERT_EQ(lambent_world_entities(told.world, all.data(), &count), LAMBENT_OK);
   uint32_t mesh = 0;
-  const auto shows = [&](lambent_entity e) { return lambent_world_mesh_of(told.world, e, &mesh) == LAMBENT_OK; };
+  const auto shows = [&](lambent_entity e) { return lambent_world_get_mesh(told.world, e, &mesh) == LAMBENT_OK; };
   ASSERT_TRUE(std::ranges::any_of(all, shows));
   lambent_entity child = LAMBENT_NO_ENTITY;
   const float small[16] = {0.2f, 0, 0, 0, 0, 0.2f, 0, 0, 0, 0, 0.2f, 0, 0, 0, 0, 1};
   ASSERT_EQ(lambent_world_create(told.world, "child", lamp, small, &child), LAMBENT_OK);
-  ASSERT_EQ(lambent_world_show(told.world, child, mesh), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_set_mesh(told.world, child, mesh), LAMBENT_OK);
   told.draw();
   const lambent_instance shown = lambent_world_instance(told.world, child, told.device, told.scene);
   EXPECT_NE(shown, 0u);
-  ASSERT_EQ(lambent_world_show(told.world, child, mesh == 0 ? 1 : 0), LAMBENT_OK) << lambent_world_message(told.world);
+  ASSERT_EQ(lambent_world_set_mesh(told.world, child, mesh == 0 ? 1 : 0), LAMBENT_OK)
+      << lambent_world_message(told.world);
   told.draw();
   EXPECT_NE(lambent_world_instance(told.world, child, told.device, told.scene), shown) << "another mesh";
   float world[16];
-  ASSERT_EQ(lambent_world_placement(told.world, child, nullptr, world), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_get_transform(told.world, child, nullptr, world), LAMBENT_OK);
   EXPECT_EQ(world[13], 0.4f);
   lambent_mesh_desc arrays;
-  ASSERT_EQ(lambent_world_mesh(told.world, mesh, &arrays), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_mesh_data(told.world, mesh, &arrays), LAMBENT_OK);
   EXPECT_TRUE(arrays.vertex_count > 0 && arrays.positions && arrays.normals && arrays.indices);
   ASSERT_EQ(lambent_world_remove(told.world, lamp), LAMBENT_OK);
   EXPECT_EQ(lambent_world_name(told.world, child), nullptr) << "descendants go too";
@@ -169,21 +173,83 @@ TEST_F(Worlds, WhatChangesIsTold) {
   lambent_sky_desc above;
   LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &above);
   for (float& c : above.radiance) c = 5;
-  ASSERT_EQ(lambent_world_sky(told.world, &above), LAMBENT_OK);
+  ASSERT_EQ(lambent_world_set_sky(told.world, &above), LAMBENT_OK);
   EXPECT_GT(meanOf(told.draw().direct), 1.1 * before);
 }
 
-/// A second scene of the same world, and a device that took the place of one that ended.
 TEST_F(Worlds, AnyNumberOfScenesIsTold) {
   Told told("content/cornell/cornell.gltf");
   const double direct = meanOf(told.draw().direct);
   lambent_scene other = 0;
   ASSERT_EQ(lambent_scene_create(told.device, &other), LAMBENT_OK);
-  EXPECT_EQ(lambent_world_tell(told.world, told.device, other), LAMBENT_OK);
+  EXPECT_EQ(lambent_world_sync(told.world, told.device, other), LAMBENT_OK);
   ASSERT_EQ(lambent_scene_destroy(told.device, other), LAMBENT_OK);
-  EXPECT_EQ(lambent_world_tell(told.world, told.device, other), LAMBENT_INVALID_HANDLE);
+  EXPECT_EQ(lambent_world_sync(told.world, told.device, other), LAMBENT_INVALID_HANDLE);
   EXPECT_NE(std::string(lambent_world_message(told.world)), "");
   EXPECT_NEAR(meanOf(told.draw().direct) / direct, 1, 1e-3);
+}
+
+/// Devices that took the place of one that ended, some with instances of the host's own; and one that is lost.
+TEST_F(Worlds, ANewDeviceIsToldAll) {
+  Told told("content/cornell/cornell.gltf");
+  const double direct = meanOf(told.draw().direct);
+  for (int i = 0; i < 4; ++i) {
+    if (i == 2) {
+      setenv("LAMBENT_FAULT", "call", 1);
+      EXPECT_EQ(lambent_render(told.device, told.view, &told.frame, nullptr), LAMBENT_DEVICE_LOST);
+      unsetenv("LAMBENT_FAULT");
+      EXPECT_EQ(lambent_world_sync(told.world, told.device, told.scene), LAMBENT_DEVICE_LOST);
+      EXPECT_EQ(lambent_world_animate(told.world, 0), LAMBENT_OK) << "the world lives on";
+    }
+    lambent_destroy(told.device);
+    told.open();
+    if (i == 1) { // a far triangle, under the first numbers
+      const float corners[9] = {50, 0, 0, 51, 0, 0, 50, 1, 0};
+      const uint32_t indices[3] = {0, 1, 2};
+      lambent_mesh_desc d;
+      LAMBENT_DEFAULTS(LAMBENT_MESH_DESC, &d);
+      d.vertex_count = 3, d.triangle_count = 1, d.positions = corners, d.indices = indices;
+      lambent_mesh mesh = 0;
+      lambent_instance instance = 0;
+      const float place[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+      ASSERT_EQ(lambent_mesh_create(told.device, told.scene, &d, &mesh), LAMBENT_OK);
+      ASSERT_EQ(lambent_instance_create(told.device, told.scene, mesh, place, &instance), LAMBENT_OK);
+    }
+    EXPECT_NEAR(meanOf(told.draw().direct) / direct, 1, 0.02) << i;
+  }
+}
+
+/// What the host destroys of a world is not made twice.
+TEST_F(Worlds, AnInstanceThatTheHostDestroyedComesAgainAlone) {
+  Told told("content/cornell/cornell.gltf");
+  told.draw();
+  const auto bytes = [&] {
+    size_t count = 64;
+    lambent_memory_row rows[64];
+    EXPECT_EQ(lambent_memory(told.device, rows, &count), LAMBENT_OK);
+    for (size_t i = 0; i < count; ++i)
+      if (std::string(rows[i].owner) == "scenes") return rows[i].bytes;
+    return uint64_t(0);
+  };
+  const uint64_t before = bytes();
+  size_t count = 0;
+  lambent_world_entities(told.world, nullptr, &count);
+  std::vector<lambent_entity> all(count);
+  lambent_world_entities(told.world, all.data(), &count);
+  const auto instanceOf = [&](lambent_entity e) {
+    return lambent_world_instance(told.world, e, told.device, told.scene);
+  };
+  const auto shown = std::ranges::find_if(all, [&](lambent_entity e) { return instanceOf(e) != 0; });
+  ASSERT_NE(shown, all.end());
+  const lambent_instance first = instanceOf(*shown);
+  ASSERT_EQ(lambent_instance_destroy(told.device, told.scene, first), LAMBENT_OK);
+  float place[16];
+  ASSERT_EQ(lambent_world_get_transform(told.world, *shown, place, nullptr), LAMBENT_OK);
+  place[13] += 0.01f;
+  ASSERT_EQ(lambent_world_set_transform(told.world, *shown, place), LAMBENT_OK);
+  told.draw();
+  EXPECT_NE(instanceOf(*shown), first);
+  EXPECT_EQ(bytes(), before);
 }
 
 TEST_F(Worlds, WrongCallsAreStatuses) {
@@ -198,24 +264,24 @@ TEST_F(Worlds, WrongCallsAreStatuses) {
   LAMBENT_DEFAULTS(LAMBENT_FRAME, &frame);
   EXPECT_EQ(lambent_world_camera(world, 0, &frame), LAMBENT_OK) << "of nothing";
   EXPECT_EQ(lambent_world_camera(world, 1, &frame), LAMBENT_INVALID_ARGUMENT);
-  EXPECT_EQ(lambent_world_place(world, 7, frame.world_from_view), LAMBENT_INVALID_HANDLE);
-  EXPECT_EQ(lambent_world_place(world, LAMBENT_NO_ENTITY, frame.world_from_view), LAMBENT_INVALID_HANDLE);
+  EXPECT_EQ(lambent_world_set_transform(world, 7, frame.world_from_view), LAMBENT_INVALID_HANDLE);
+  EXPECT_EQ(lambent_world_set_transform(world, LAMBENT_NO_ENTITY, frame.world_from_view), LAMBENT_INVALID_HANDLE);
   lambent_entity e = LAMBENT_NO_ENTITY;
   ASSERT_EQ(lambent_world_create(world, nullptr, LAMBENT_NO_ENTITY, nullptr, &e), LAMBENT_OK);
-  EXPECT_EQ(lambent_world_show(world, e, 0), LAMBENT_INVALID_ARGUMENT);
-  EXPECT_EQ(lambent_world_place(world, e, nullptr), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_set_mesh(world, e, 0), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_set_transform(world, e, nullptr), LAMBENT_INVALID_ARGUMENT);
   frame.world_from_view[3] = 1;
-  EXPECT_EQ(lambent_world_place(world, e, frame.world_from_view), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_set_transform(world, e, frame.world_from_view), LAMBENT_INVALID_ARGUMENT);
   lambent_light_desc light{};
-  EXPECT_EQ(lambent_world_light(world, e, &light), LAMBENT_INVALID_ARGUMENT);
-  EXPECT_EQ(lambent_world_light_of(world, e, &light), LAMBENT_INVALID_ARGUMENT);
-  EXPECT_EQ(lambent_world_pose(world, NAN), LAMBENT_INVALID_ARGUMENT);
-  EXPECT_EQ(lambent_world_tell(world, nullptr, 0), LAMBENT_INVALID_HANDLE);
+  EXPECT_EQ(lambent_world_set_light(world, e, &light), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_get_light(world, e, &light), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_animate(world, NAN), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_EQ(lambent_world_sync(world, nullptr, 0), LAMBENT_INVALID_HANDLE);
   EXPECT_EQ(lambent_world_remove(world, e), LAMBENT_OK);
   EXPECT_EQ(lambent_world_remove(world, e), LAMBENT_INVALID_HANDLE);
   lambent_world_destroy(world);
   lambent_world_destroy(world);
-  EXPECT_EQ(lambent_world_pose(world, 0), LAMBENT_INVALID_HANDLE);
+  EXPECT_EQ(lambent_world_animate(world, 0), LAMBENT_INVALID_HANDLE);
   EXPECT_EQ(lambent_world_name(world, e), nullptr);
 }
 

@@ -191,14 +191,14 @@ TEST_F(Library, NormalsOfViewSpaceAreTurnedWithTheCamera) {
   f.depth = textureOf(GL_R32F, w, h, 1, depth);
   f.normal = textureOf(GL_RGB16F, w, h, 3, seen);
   f.depth_type = LAMBENT_DEPTH_REVERSED;
-  f.normal_space = LAMBENT_VIEW;
+  f.normal_space = LAMBENT_SPACE_VIEW;
   view = room.view();
   out = room.render(view, f);
   const std::vector<float> found = Room::read(out.direct, GL_RGB);
   double off = 0;
   for (size_t i = 0; i < found.size(); ++i) off += double(std::abs(found[i] - expected[i])) / double(found.size());
   EXPECT_LT(off, 1e-3 * Room::mean(expected));
-  f.normal_space = LAMBENT_WORLD;
+  f.normal_space = LAMBENT_SPACE_WORLD;
   out = room.render(view, f);
   EXPECT_GT(std::abs(Room::mean(Room::read(out.direct, GL_RGB)) / Room::mean(expected) - 1), 0.01) << "it matters";
 }
@@ -342,7 +342,7 @@ TEST_F(Library, SurfacesThatAreNotTheScenesAreWarnedOf) {
     for (int k = 0; k < 3; ++k) wrong.world_from_view[4 * i + k] = f.world_from_view[4 * k + i];
   EXPECT_NE(warningOf(wrong).find("world_from_view"), std::string::npos) << "row by row";
   wrong = f;
-  wrong.normal_space = LAMBENT_VIEW;
+  wrong.normal_space = LAMBENT_SPACE_VIEW;
   EXPECT_NE(warningOf(wrong).find("normal_space"), std::string::npos);
 }
 

@@ -73,9 +73,9 @@ class Caller {
       m.uvs = one(2) ? positions_.data() : nullptr;
       m.uvs1 = one(4) ? positions_.data() : nullptr;
       m.material = one(2) ? any(materials_) : 0;
-      const lambent_part parts[2] = {{0, uint32_t(below(20)), any(materials_)},
-                                     {uint32_t(below(20)), 3, any(materials_)}};
-      if (one(3)) m.parts = parts, m.part_count = uint32_t(below(3));
+      const lambent_submesh parts[2] = {{0, uint32_t(below(20)), any(materials_)},
+                                        {uint32_t(below(20)), 3, any(materials_)}};
+      if (one(3)) m.submeshes = parts, m.submesh_count = uint32_t(below(3));
       lambent_mesh made = 0;
       keep(lambent_mesh_create(d, scene, maybe(&m), out(&made)), made, meshes_);
       break;
@@ -127,7 +127,7 @@ class Caller {
       s.type = below(3);
       for (int i = 0; i < 3; ++i) s.radiance[i] = value(), s.towards_sun[i] = value();
       s.turbidity = value();
-      lambent_scene_sky(d, scene, maybe(&s));
+      lambent_scene_set_sky(d, scene, maybe(&s));
       break;
     }
     case 17: {
@@ -213,7 +213,7 @@ class Caller {
   }
   void keep(lambent_status status, uint64_t made, std::vector<uint64_t>& in) {
     if (status == LAMBENT_OK && made != 0) in.push_back(made);
-    EXPECT_NE(status, LAMBENT_DEAD) << lambent_message(room_.device);
+    EXPECT_NE(status, LAMBENT_DEVICE_LOST) << lambent_message(room_.device);
   }
   void place() {
     std::memcpy(matrix_, kIdentity, sizeof matrix_);

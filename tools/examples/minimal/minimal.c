@@ -261,7 +261,7 @@ static void check(lambent_status status) {
 }
 static void say(void* user, lambent_level level, const char* line) {
   (void)user;
-  if (level != LAMBENT_INFO) fprintf(stderr, "lambent: %s\n", line);
+  if (level != LAMBENT_LOG_INFO) fprintf(stderr, "lambent: %s\n", line);
 }
 
 /* Tells the scene once. Strided vertices are copied into plain arrays: these are what the library takes. */
@@ -410,7 +410,7 @@ int main(int argc, char** argv) {
     given.depth_type = LAMBENT_DEPTH_FORWARD;
     given.normal = renderer.normal;
     given.normal_type = LAMBENT_NORMALS_OCTAHEDRAL;
-    given.normal_space = LAMBENT_VIEW;
+    given.normal_space = LAMBENT_SPACE_VIEW;
     given.emission = renderer.emission;
     LAMBENT_DEFAULTS(LAMBENT_OUTPUT, &light_on_surfaces);
     check(lambent_render(device, view, &given, &light_on_surfaces));

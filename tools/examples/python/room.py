@@ -75,7 +75,7 @@ class Mesh(Struct):
     kind = 3
     _fields_ = [("size", c.c_size_t), ("vertex_count", c.c_uint32), ("triangle_count", c.c_uint32),
                 ("positions", floats), ("normals", floats), ("uvs", floats), ("uvs1", floats), ("colors", floats),
-                ("indices", uints), ("parts", c.c_void_p), ("part_count", c.c_uint32), ("material", c.c_uint64),
+                ("indices", uints), ("submeshes", c.c_void_p), ("submesh_count", c.c_uint32), ("material", c.c_uint64),
                 ("name", c.c_char_p)]
 
 
