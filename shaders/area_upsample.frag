@@ -1,8 +1,9 @@
 #version 450
 // The share of area lights' light that reaches each pixel, from that of fragments of all sizes, in one pass (paper 4,
-// section 3.1.5): those of at most 4 × 4 pixels are copied; within larger ones three Gaussian radial basis functions, around
-// the samples nearest to the pixel, are fitted to what these hold. Beyond the paper: only samples of the same surface; where
-// the fit is ill-conditioned, the mean by weights; never beyond the samples' range, so that a constant stays one. Variants:
+// section 3.1.5): those of at most 4 × 4 pixels are copied; within larger ones three Gaussian radial basis functions, as wide
+// as the fragment and around the samples nearest to the pixel, are fitted to what these hold. Beyond the paper: only samples
+// of the same surface; where the fit is ill-conditioned, the mean by weights; never beyond the samples' range, so that a
+// constant stays one. Variants:
 // none copies, MARK keeps the pixels that lie between samples that differ (for the stencil), BETWEEN interpolates there.
 #include "lib/gbuffer.glsl"
 #include "shared/patches.h"
@@ -12,6 +13,7 @@ uniform ivec2 base;          // of the atlas's level 0
 uniform int coarsest;        // level
 uniform float normalPower;   // as in upsample.frag
 uniform float distanceSigma;
+uniform bool compared; // fragments with what lies across their borders (area.refinement=counts)
 layout(location = 0) out vec4 outShare;
 
 /// Level of the fragment that a pixel belongs to; −1: none. From the coarsest on, where most are.
@@ -23,20 +25,20 @@ int levelAt(ivec2 pixel) {
 }
 
 #ifdef BETWEEN
-const float kVariance = 2.0;          // C of equation 2b
+const float kVariance = 2.0;           // C of equation 2b
 const float kLeastDeterminant = 0.02; // of the fit's matrix, whose diagonal is 1
 
 struct Sample {
   vec2 at; // pixels
-  float width;
   vec3 share;
-  float nearness; // squared distance to the pixel over width²
+  float distance2; // to the pixel
 };
 Sample nearest[3];
 int found = 0;
 vec3 position, normal;
 vec2 here;
 float inverseSigma;
+float inverseWidth; // of the fragment
 
 bool sameSurface(ivec2 pixel) {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
@@ -46,17 +48,11 @@ bool sameSurface(ivec2 pixel) {
   return exp2(normalPower * log2(alignment) - 0.7213475 * height * height) > 0.25;
 }
 
-void consider(ivec2 texel, int level) {
-  vec3 share = texelFetch(atlas, atlasOrigin(base, level) + texel, 0).rgb;
-  ivec2 pixel = patchPixel(texel, level, 1, ivec2(0), ivec2(camera.size.xy));
-  if (!sameSurface(pixel)) return;
-  float width = float(1 << level);
-  vec2 at = vec2(texel) * width + 0.5 * (width - 1.0), way = (at - here) / width;
-  Sample s = Sample(at, width, share, dot(way, way));
+void keep(Sample s) {
   for (int i = 0; i < found; ++i)
     if (nearest[i].at == s.at) return;
   for (int i = 0; i < 3; ++i) {
-    if (i < found && nearest[i].nearness <= s.nearness) continue;
+    if (i < found && nearest[i].distance2 <= s.distance2) continue;
     Sample next = nearest[i];
     nearest[i] = s;
     s = next;
@@ -65,31 +61,53 @@ void consider(ivec2 texel, int level) {
   found = min(found + 1, 3);
 }
 
-/// The fragment around a pixel, and where it is large its single pixels (area_fragments.cpp).
-void considerAround(ivec2 pixel) {
+Sample nearestHere; // of one fragment
+
+void consider(ivec2 texel, int level, bool each) {
+  ivec2 pixel = patchPixel(texel, level, 1, ivec2(0), ivec2(camera.size.xy));
+  if (!sameSurface(pixel)) return;
+  float width = float(1 << level);
+  vec2 middle = vec2(texel) * width + 0.5 * (width - 1.0);
+  vec3 share = texelFetch(atlas, atlasOrigin(base, level) + texel, 0).rgb;
+  // Quarters that all see the whole lamp, or nothing, and that were compared with what is around them: so does all between
+  // their middles (the paper's stable region, figure 3a).
+  bool stable = compared && level >= 3 && (share == vec3(0.0) || share == vec3(1.0));
+  vec2 at = stable ? clamp(here, middle - 0.25 * width, middle + 0.25 * width) : middle, way = at - here;
+  Sample s = Sample(at, share, dot(way, way));
+  if (each)
+    keep(s);
+  else if (s.distance2 < nearestHere.distance2)
+    nearestHere = s;
+}
+
+/// The fragment around a pixel, and where it is large its single pixels (area_fragments.cpp): each of them, or the nearest
+/// alone, as many on one side say little of what lies between sides.
+void considerAround(ivec2 pixel, bool each) {
   if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(camera.size.xy)))) return;
   int level = levelAt(pixel);
   if (level < 0) return;
-  consider(pixel >> level, level);
+  nearestHere = Sample(vec2(0.0), vec3(0.0), 1e30);
+  consider(pixel >> level, level, each);
   int coarse = level;
   if (level == 0) { // maybe one of those
     for (coarse = 3; coarse <= coarsest; ++coarse)
       if (texelFetch(atlas, atlasOrigin(base, coarse) + (pixel >> coarse), 0).a > 0.0) break;
-    if (coarse > coarsest) return;
-    consider(pixel >> coarse, coarse);
+    if (coarse <= coarsest) consider(pixel >> coarse, coarse, each);
   }
-  if (coarse < 3) return;
-  int side = 1 << coarse;
-  ivec2 origin = (pixel >> coarse) * side;
-  ivec2 within[3] = ivec2[3](ivec2(side / 2, side - 1), ivec2(0, side - 1), ivec2(0, side / 2));
-  for (int i = 0; i < 3; ++i) {
-    ivec2 single = origin + within[i];
-    if (all(lessThan(single, ivec2(camera.size.xy))) && texelFetch(atlas, single, 0).a > 0.0) consider(single, 0);
+  if (coarse >= 3 && coarse <= coarsest) {
+    int side = 1 << coarse;
+    ivec2 origin = (pixel >> coarse) * side;
+    ivec2 within[3] = ivec2[3](ivec2(side / 2, side - 1), ivec2(0, side - 1), ivec2(0, side / 2));
+    for (int i = 0; i < 3; ++i) {
+      ivec2 single = origin + within[i];
+      if (all(lessThan(single, ivec2(camera.size.xy))) && texelFetch(atlas, single, 0).a > 0.0) consider(single, 0, each);
+    }
   }
+  if (nearestHere.distance2 < 1e30) keep(nearestHere);
 }
 
 float basis(vec2 at, Sample s) {
-  vec2 way = (at - s.at) / s.width;
+  vec2 way = (at - s.at) * inverseWidth;
   return exp(-dot(way, way) / kVariance);
 }
 
@@ -99,12 +117,13 @@ vec3 interpolated(ivec2 pixel, int level, float depth, vec3 own) {
   normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   inverseSigma = 1.0 / max(distanceSigma * viewDistanceFromDepth(camera, depth), 1e-20);
   int side = 1 << level;
+  inverseWidth = 1.0 / float(side);
   ivec2 lo = (pixel >> level) * side, hi = lo + side;
-  considerAround(pixel);
-  considerAround(ivec2(lo.x - 1, pixel.y));
-  considerAround(ivec2(hi.x, pixel.y));
-  considerAround(ivec2(pixel.x, lo.y - 1));
-  considerAround(ivec2(pixel.x, hi.y));
+  considerAround(pixel, true);
+  considerAround(ivec2(lo.x - 1, pixel.y), false);
+  considerAround(ivec2(hi.x, pixel.y), false);
+  considerAround(ivec2(pixel.x, lo.y - 1), false);
+  considerAround(ivec2(pixel.x, hi.y), false);
   if (found == 0) return own;
 
   vec3 weights = vec3(0.0), least = nearest[0].share, most = least;

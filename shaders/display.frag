@@ -1,9 +1,10 @@
 #version 450
 // One buffer as a display shows it. MODE 0: radiance (exposure, tone mapper, sRGB, dither); 1: colour in [0,1]
 // (sRGB); 2: unit vector; 3: depth. MODE 0 variants: REFLECTED (source is irradiance: times albedo/π), EMITTED (plus emission,
-// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the
-// patch that gathered, with its outline), GLOSSY (REFLECTED: with the receivers' lobes), DAYLIGHT (EMITTED: of
-// the sky), LUMA (alpha: see antialias.frag), ERROR (how far the value is from a truth, mean of the channels).
+// and the sky as background), DEINTERLEAVED (source lies in 4×4 tiles), GREY, PATCHES (tinted by the size of the patch that
+// gathered, with its outline), FRAGMENTS (by that of the fragment that asked lamps), GLOSSY (REFLECTED: with the receivers'
+// lobes), DAYLIGHT (EMITTED: of the sky), LUMA (alpha: see antialias.frag), ERROR (how far the value is from a truth, mean
+// of the channels).
 #include "shared/error_color.h"
 #include "shared/tone_map.h"
 #include "lib/background.glsl"
@@ -21,8 +22,8 @@ uniform int toneMapper;
 uniform int markNan;
 layout(location = 0) out vec4 outColor;
 
-#ifdef PATCHES
-layout(binding = 5) uniform sampler2D patchNormals; // PatchPyramid::normalLo
+#if defined(PATCHES) || defined(FRAGMENTS)
+layout(binding = 5) uniform sampler2D patchNormals; // PatchPyramid::normalLo; FRAGMENTS: SurfaceLighting::fragments
 uniform int patchLevels;
 uniform int finestPatch; // level
 #endif
@@ -84,15 +85,19 @@ void main() {
 #endif
   value = max(value * factor, 0.0);
   value = toneMapped(value, toneMapper);
+#if defined(PATCHES) || defined(FRAGMENTS)
 #ifdef PATCHES
   int level = finestPatch;
   for (int i = finestPatch + 1; i <= patchLevels; ++i)
     if (texelFetch(patchNormals, pixel >> i, i - 1).a < 0.5) level = i;
+#else
+  int level = int(255.0 * texelFetch(patchNormals, pixel, 0).r + 0.5) - 1;
+#endif
   float coarse = float(level - finestPatch) / float(max(1, patchLevels - finestPatch));
   vec3 tint = mix(mix(vec3(1.0, 0.1, 0.1), vec3(0.2, 1.0, 0.2), min(2.0 * coarse, 1.0)), vec3(0.2, 0.3, 1.0),
                   max(2.0 * coarse - 1.0, 0.0));
   bool outline = level > finestPatch && any(equal(pixel & ((1 << level) - 1), ivec2(0)));
-  if (depth > 0.0) value = outline ? tint * 0.7 : mix(value, tint, 0.25);
+  if (depth > 0.0 && level >= 0) value = outline ? tint * 0.7 : mix(value, tint, 0.25);
 #endif
 #ifdef GREY
   value = vec3(dot(value, vec3(0.2126, 0.7152, 0.0722)));

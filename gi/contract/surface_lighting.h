@@ -13,7 +13,8 @@ struct SurfaceLighting {
   const gl::Texture* irradiance = nullptr; // RGBA32F
   const gl::Texture* glossy = nullptr;     // RGBA32F W/(m² sr) over glossyTint (shaders/shared/ggx.h)
   bool deinterleaved = false;
-  bool subsets = deinterleaved; // pixels side by side were lit by other classes
+  bool subsets = deinterleaved;           // pixels side by side were lit by other classes
+  const gl::Texture* fragments = nullptr; // R8: 1 + level of the smallest fragment that asked lamps (paper 4); 0: none
 };
 
 /// A stage's own textures for SurfaceLighting, and the framebuffer that draws into them.

@@ -154,7 +154,9 @@ class Fragments {
  public:
   Fragments(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, const AreaSettings& settings,
             std::span<FragmentLevel> levels)
-      : visibility_(rays, lights, surfaces, settings.rays), surfaces_(surfaces), settings_(settings), levels_(levels),
+      : visibility_(rays, lights, surfaces, settings.rays,
+                    settings.refinement == AreaRefinement::SubFragments ? AreaAims::Same : AreaAims::Own),
+        surfaces_(surfaces), settings_(settings), levels_(levels),
         neighbours_(settings.refinement == AreaRefinement::Neighbours),
         byCounts_(settings.refinement == AreaRefinement::Counts), states_(levels.size()), open_(levels.size()) {
     for (size_t l = 0; l < levels.size(); ++l) {
@@ -244,7 +246,7 @@ class Fragments {
       std::vector<glm::ivec2> texels;
       for (const Fragment& f : fragments) texels.push_back(f.texel);
       const std::vector<AreaSeen> seen =
-          level == 0 ? visibility_.ofPixels(texels, neighbours_) : visibility_.ofPatches(texels, level);
+          level == 0 ? visibility_.ofPixels(texels, !byCounts_) : visibility_.ofPatches(texels, level);
       for (size_t i = 0; i < fragments.size(); ++i) fragments[i].seen = seen[i];
       for (const Fragment& f : fragments) counts_.rays.occlusion += f.seen.rays;
     }

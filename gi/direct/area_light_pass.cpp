@@ -37,6 +37,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
     collect(world);
   }
+  fragments_ = {};
   if (lights_.lights.empty()) return;
   const PatchPyramid& pyramid = patches.pyramid();
   GBuffer plain = surfaces; // shares have no lobes
@@ -52,6 +53,8 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
     groups = groupsOf(lights_, rays, seen, stats.raysArea);
   }
   blocks_.reserve((lights_.pieces.size() + 2 * groups.size() * kPiecesPerBlock) * sizeof(AreaPiece));
+  const glm::ivec2 size(surfaces.width, surfaces.height);
+  std::vector<uint8_t> smallest(size_t(size.x) * size_t(size.y), 0);
   for (const AreaLights& group : groups) {
     FragmentCounts counts;
     {
@@ -60,10 +63,29 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
     }
     stats.areaFragments += counts.fragments;
     stats.raysArea += counts.rays;
+    noteFragments(size, smallest);
     if (counts.dark == counts.fragments) continue; // nothing of it arrives
     const gl::PassScope scope = context_.scope(StageId::AreaLight);
     for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
     shade(surfaces, group.pieces, upsample(plain, settings), target);
+  }
+  fragments_ = gl::Texture("area lights/fragments", {.format = GL_R8, .width = size.x, .height = size.y});
+  glTextureSubImage2D(fragments_.name(), 0, 0, 0, size.x, size.y, GL_RED, GL_UNSIGNED_BYTE, smallest.data());
+}
+
+void AreaLightPass::noteFragments(const glm::ivec2& size, std::vector<uint8_t>& smallest) const {
+  for (int level = int(levels_.size()) - 1; level >= 0; --level) {
+    const FragmentLevel& at = levels_[size_t(level)];
+    const int side = 1 << level;
+    for (int i = 0; i < int(at.visible.size()); ++i) {
+      if (at.visible[size_t(i)].w == 0) continue;
+      const glm::ivec2 lo = glm::ivec2(i % at.size.x, i / at.size.x) * side, hi = glm::min(lo + side, size);
+      for (int y = lo.y; y < hi.y; ++y)
+        for (int x = lo.x; x < hi.x; ++x) {
+          uint8_t& here = smallest[size_t(y) * size_t(size.x) + size_t(x)];
+          here = here == 0 ? uint8_t(level + 1) : std::min(here, uint8_t(level + 1));
+        }
+    }
   }
 }
 
@@ -164,6 +186,7 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
     program.set("coarsest", atlas_.shape().coarsest);
     program.set("normalPower", settings.filter.normalPower);
     program.set("distanceSigma", settings.filter.distance);
+    program.set("compared", int(settings.area.refinement == AreaRefinement::Counts));
     state.width = size.x;
     state.height = size.y;
     state.apply();

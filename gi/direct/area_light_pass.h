@@ -24,16 +24,20 @@ class AreaLightPass {
   /// Adds the light to the target, which is as large as the image.
   void add(const World& world, const GBuffer& surfaces, SurfaceReader& reader, Patches& patches,
            const Settings& settings, const LightTarget& target, FrameStats& stats);
+  /// R8: 1 + level of the smallest fragment at each pixel of the last image, over all lights; 0: none.
+  const gl::Texture* fragments() const { return fragments_ ? &fragments_ : nullptr; }
   /// Drops the collected lights. Call it when the pass is not run for a while: changes of lights are then not reported.
   void forget() {
     lights_ = {};
     gpuRays_.reset();
+    fragments_ = {};
   }
 
  private:
   const RayQuery& tracerFor(const World& world, const FrameSurfaces& surfaces, const AreaSettings& settings);
   const RayQuery& gpuRays(const World& world);
   std::optional<MakerTimes> timesOf(const World& world, const FrameSurfaces& surfaces);
+  void noteFragments(const glm::ivec2& size, std::vector<uint8_t>& smallest) const;
   void readLevels(const FrameSurfaces& seen, const PatchPyramid& pyramid);
   const gl::Texture& upsample(const GBuffer& surfaces, const Settings& settings);
   void collect(const World& world);
@@ -49,7 +53,7 @@ class AreaLightPass {
   MakerChoice tracer_{context_, "cpu", "gpu"};
   std::vector<FragmentLevel> levels_;
   PatchAtlas atlas_{context_};
-  gl::Texture share_, stencil_, lobes_;
+  gl::Texture share_, stencil_, lobes_, fragments_;
   gl::Framebuffer framebuffer_; // of both
   gl::Ring blocks_{"area lights/pieces"};
 };

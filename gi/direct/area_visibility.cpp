@@ -11,6 +11,7 @@ namespace {
 /// whose rays follow each other in turn, is spread over the lights as evenly as all.
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
+constexpr int kCommon = 2;                  // quarter whose samples all ask where they ask the same
 constexpr int kMostAll = 4 * kMostAreaRays;
 
 } // namespace
@@ -60,11 +61,11 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle,
   return from;
 }
 
-void AreaVisibility::choose(Question& q) const {
+void AreaVisibility::choose(Question& q, bool alike) const {
   float below = 0; // light before `l`, share of all
   size_t l = 0;
   for (int k = 0; k < all(); ++k) {
-    const float u = (float(k) + 0.5f) / float(all());
+    const float u = (float(alike ? k / 4 * 4 + kCommon : k) + 0.5f) / float(all());
     const auto share = [&] { return luminance(q.from.light[l]) / q.from.total; };
     while (l + 1 < q.from.light.size() && below + share() <= u) {
       below += share();
@@ -205,7 +206,7 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
         const std::array<Place, 4> parts = partsOf(texels[i], level);
         q.from = unshadowedAround(placeAt(middleOf(texels[i], level)), parts);
         if (!(q.from.total > 0)) return false;
-        choose(q);
+        choose(q, aims_ == AreaAims::Same);
         for (int k = 0; k < all(); ++k) aim(q, k, parts[size_t(kPartOf[k % 4])]);
         q.quarters.fill(true);
         return true;
@@ -265,7 +266,7 @@ std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels
         }
         if (!(q.from.total > 0)) return false;
         for (int k = 0; k < all(); ++k) aim(q, k, parts[s]);
-        const int known = kQuarterOf[s];
+        const int known = aims_ == AreaAims::Same ? kCommon : kQuarterOf[s];
         for (int k = 0; k < all(); ++k)
           if (k % 4 == known) q.open[size_t(k)] = patches[i / 4].bits[s] >> (k / 4) & 1;
         q.quarters.fill(true);

@@ -31,11 +31,16 @@ struct AreaSeen {
   }
 };
 
+/// Where the four sub-fragments of a patch send their rays: each to samples of its own, so that together they know most
+/// of the lights; or all to the same, so that answers can be compared one by one (paper 4, 3.1.2).
+enum class AreaAims { Own, Same };
+
 /// Asks the rays of many fragments: from all threads, or where the query belongs to one, in long lists.
 class AreaVisibility {
  public:
-  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, int raysPerPart)
-      : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart) {}
+  AreaVisibility(const RayQuery& rays, const AreaLights& lights, const FrameSurfaces& surfaces, int raysPerPart,
+                 AreaAims aims = AreaAims::Own)
+      : rays_(rays), lights_(lights), surfaces_(surfaces), count_(raysPerPart), aims_(aims) {}
 
   /// Asks for patches of 2^level pixels, level ≥ 1, of which `texels` are the numbers.
   std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
@@ -73,7 +78,8 @@ class AreaVisibility {
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
-  void choose(Question& q) const;
+  /// Draws the samples that rays go to. `alike`: ray k goes where the others of k / 4 go.
+  void choose(Question& q, bool alike = false) const;
   void aim(Question& q, int k, const Place& place) const;
   void addUp(const Question& q, AreaSeen& to) const;
   /// `begin(i, q)` aims the rays of question i; `asked(i, q)` takes the answers and says whether there is more to
@@ -86,6 +92,7 @@ class AreaVisibility {
   const AreaLights& lights_;
   const FrameSurfaces& surfaces_;
   int count_; // of a quarter
+  AreaAims aims_;
 };
 
 } // namespace lambent

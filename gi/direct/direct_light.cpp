@@ -99,6 +99,7 @@ SurfaceLighting DirectLight::run(const Frame& in, FrameStats& stats) {
   } else {
     soft_.forget();
   }
+  light_.fragments = emitters == Emitters::Patches ? areas_.fragments() : nullptr;
   stale_ = unfinished_ = false;
   return light_;
 }

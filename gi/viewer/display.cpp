@@ -44,6 +44,9 @@ View viewOf(Buffer buffer, const FrameResults& frame, float exposure) {
   case Buffer::Patches:
     if (!frame.patches || !frame.patches->normalLo) return {{"MODE 0"}, frame.indirect.irradiance, exposure / kPi};
     return {{"MODE 0", "PATCHES"}, frame.indirect.irradiance, exposure / kPi};
+  case Buffer::Fragments:
+    if (!frame.direct.fragments) return {{"MODE 0"}, frame.direct.irradiance, exposure / kPi};
+    return {{"MODE 0", "FRAGMENTS"}, frame.direct.irradiance, exposure / kPi};
   case Buffer::Nan:
     return {{"MODE 0", "GREY"}, frame.radiance, exposure};
   case Buffer::Beauty:
@@ -143,6 +146,11 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     program.set("patchLevels", frame.patches->levels);
     program.set("finestPatch", frame.inside.gathered.deinterleaved ? 2 : 0);
     frame.patches->normalLo->bind(5);
+  }
+  if (buffer == Buffer::Fragments && frame.direct.fragments) {
+    program.set("patchLevels", 5);
+    program.set("finestPatch", 0);
+    frame.direct.fragments->bind(5);
   }
   if (error.truth) {
     program.set("fullError", error.full);

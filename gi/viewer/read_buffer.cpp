@@ -113,6 +113,7 @@ Image readBuffer(Buffer buffer, const FrameResults& frame) {
   case Buffer::Vpls:
   case Buffer::ShadowMaps:
   case Buffer::Patches:
+  case Buffer::Fragments:
   case Buffer::Nan:
     break;
   }

@@ -73,12 +73,12 @@ const FrameStats& Viewer::stats() const { return passes_->stats; }
 // Looking at it -------------------------------------------------------------------------------------------------------
 
 namespace {
-const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect", "irradiance", "albedo",
-                                               "normal",      "depth",   "emission", "unfiltered", "vpls",
-                                               "shadow-maps", "patches", "nan"};
+const std::vector<std::string> kBufferNames = {"beauty",      "direct",  "indirect",  "irradiance", "albedo",
+                                               "normal",      "depth",   "emission",  "unfiltered", "vpls",
+                                               "shadow-maps", "patches", "fragments", "nan"};
 }
 
-static_assert(size_t(Buffer::Nan) + 1 == 13, "a name for each");
+static_assert(size_t(Buffer::Nan) + 1 == 14, "a name for each");
 const std::vector<std::string>& bufferNames() { return kBufferNames; }
 
 Buffer bufferByName(const std::string& name) {

@@ -23,8 +23,9 @@ enum class Buffer : int {
   Unfiltered, // irradiance before the cross-bilateral filter: shows the 4×4 subsets
   Vpls,       // beauty with the VPLs drawn in: colour = intensity, ring = age
   ShadowMaps, // the first paraboloid maps as a contact sheet
-  Patches, // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
-  Nan,     // NaN magenta, infinity cyan, else grey beauty
+  Patches,   // irradiance with the patches of the multiresolution buffer: their size as a colour, blue coarse, red fine
+  Fragments, // direct irradiance with the fragments of area lights (paper 4), coloured as patches
+  Nan,       // NaN magenta, infinity cyan, else grey beauty
 };
 /// Finds a buffer. Throws InputError with the nearest name.
 Buffer bufferByName(const std::string& name);

@@ -16,9 +16,11 @@ inline Image firstFrame(const Settings& settings, const SceneView& view, Buffer 
   return nextFrame(viewer, view, buffer);
 }
 
-/// Irradiance by direct light, or radiance where gather.glossy is on; row 0 at the top.
+/// Irradiance by direct light, or radiance where gather.glossy is on; row 0 at the top. `levels`: of the fragments that
+/// asked lamps, by pixel, or −1.
 inline Image directOf(PassContext passes, const HandScene& scene, const LightSet& lights, const Settings& settings,
-                      FrameStats& stats, uint32_t mostDoubts = ShadowRayPass::kMost) {
+                      FrameStats& stats, uint32_t mostDoubts = ShadowRayPass::kMost,
+                      std::vector<int>* levels = nullptr) {
   PlacedScene placed(passes, scene);
   const World world = placed.world(lights);
   const bool glossy = settings.gather.glossy;
@@ -30,7 +32,16 @@ inline Image directOf(PassContext passes, const HandScene& scene, const LightSet
   results.surfaces = surfacePass.run({world.gpu, world.view.camera, glossy});
   Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
   // Without gloss as if it were indirect, which reads as irradiance, without albedo.
-  (glossy ? results.direct : results.indirect) = lightOf(direct, world, results.surfaces, patches, settings, stats);
+  SurfaceLighting& light = glossy ? results.direct : results.indirect;
+  light = lightOf(direct, world, results.surfaces, patches, settings, stats);
+  if (levels && light.fragments) {
+    const int width = light.fragments->width(), height = light.fragments->height();
+    std::vector<uint8_t> texels(size_t(width) * size_t(height));
+    light.fragments->read(std::span(texels), GL_RED, GL_UNSIGNED_BYTE);
+    levels->clear();
+    for (int y = height - 1; y >= 0; --y)
+      for (int x = 0; x < width; ++x) levels->push_back(int(texels[size_t(y * width + x)]) - 1);
+  }
   return readBuffer(glossy ? Buffer::Direct : Buffer::Irradiance, results);
 }
 
