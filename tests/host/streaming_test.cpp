@@ -43,6 +43,7 @@ struct World {
   HostScene scene;
   ViewChanges changes;
   GiFrame gi;
+  int starts = 0; // times that its lights were placed anew
 
   explicit World(const Settings& settings) : gi(settings) {
     scene.addInstance(addBox(scene, 1, true), mat4(1));
@@ -60,7 +61,8 @@ struct World {
     CameraView camera = lookAt({0, 0.1f, 0.9f}, {0, 0, 0}, 1.2f);
     camera.width = kWidth;
     camera.height = kHeight;
-    for (int i = 0; i < frames; ++i) gi.run(scene.view(changes, camera, 0));
+    for (int i = 0; i < frames; ++i)
+      gi.run(scene.view(changes, camera, 0), [&](int done, int) { starts += done == 1; });
   }
   std::vector<vec3> read(uint32_t texture) const {
     std::vector<vec3> texels(size_t(kWidth * kHeight));
@@ -131,6 +133,16 @@ TEST_F(Streaming, LightGoesOnWhereMeshesComeAndGo) {
   world.run();
   EXPECT_GT(shared(before, world.ids()), 0.95);
   EXPECT_EQ(world.read(world.gi.directIrradiance()), empty);
+  addBox(world.scene, 0.5f, false);
+  LightView lamp;
+  lamp.position = {0.3f, 0.6f, 0.2f};
+  world.scene.setLight(0, lamp); // all is drawn again, though all stands as before
+  world.run();
+  EXPECT_LT(std::abs(World::mean(world.read(world.gi.directIrradiance())) / World::mean(empty) - 1), 0.1);
+  lamp.position.x = 0.4f;
+  world.scene.setLight(0, lamp);
+  world.run();
+  EXPECT_EQ(world.read(world.gi.directIrradiance()), empty);
 
   const uint32_t block = world.scene.addInstance(mesh, glm::translate(mat4(1), vec3(-0.3f, -0.7f, -0.2f)));
   world.run();
@@ -175,6 +187,7 @@ TEST_F(Streaming, LightGoesOnWhereMeshesComeAndGo) {
   fresh.run(2);
   EXPECT_LT(apart(world, fresh), 0.01);
   EXPECT_NE(world.read(world.gi.directIrradiance()), empty);
+  EXPECT_EQ(world.starts, 1);
 }
 
 /// Maps of what stands still are of the scene as it is, while something moves.
