@@ -236,7 +236,7 @@ void declareBench(CLI::App& app) {
                {"vpls", "pixels", "lights", "instances", "triangles"});
   command.number("--seeds", &o->seeds, 1, 1000, "--equal-error: so many (default 3)");
   command.number("--spp", &o->samples, 2, 1 << 24,
-                 "--equal-error, --area, --cube: paths per pixel of the truth (2048; 1024)");
+                 "--equal-error, --cube: paths, --area: rays to the lamps per pixel of the truth (2048; 256; 1024)");
   command.number("--frame", &o->frame, 1, 1000000, "--equal-error: of a shot in motion (default 30, or the last)");
   command.flag("--quick", o->quick, "a few small frames, to try whether it runs");
   command.run([o] { bench(*o); });
