@@ -57,6 +57,43 @@ TEST_F(TechniqueTest, EveryRowHasItsAxesAndDraws) {
   }
 }
 
+/// Nothing of a lamp stays in the frame in which it is switched off: alone it leaves the dark, beside a dim one what
+/// that brings.
+TEST_F(TechniqueTest, ALampThatIsSwitchedOffIsDarkAtOnce) {
+  for (const Technique& t : techniqueTable())
+    for (const bool another : {false, true}) {
+      Settings s = settings;
+      applyTechnique(s, t);
+      std::vector<LightView>& lights = room.scene.lights;
+      lights.resize(1);
+      lights[0].intensity = vec3(4);
+      if (another)
+        lights.push_back(
+            {.id = 7, .type = LightType::Point, .position = {-0.6f, -0.3f, 0.4f}, .intensity = vec3(0.5f)});
+      Viewer gi(s);
+      gi.run(room.scene.view());
+      for (int frame = 0; frame < 12; ++frame) gi.run(still());
+      const double lit = meanLuminance(gi.read(Buffer::Irradiance));
+      lights[0].intensity = vec3(0);
+      const auto without = [&](bool changed) {
+        SceneView view = still();
+        view.changes.lights = changed;
+        lights[0].changed = changed;
+        gi.run(view);
+        lights[0].changed = false;
+        return meanLuminance(gi.read(Buffer::Irradiance));
+      };
+      const double first = without(true);
+      double later = 0;
+      for (int frame = 0; frame < 20; ++frame) later = without(false);
+      EXPECT_LT(later, 0.5 * lit) << t.name;
+      if (another)
+        EXPECT_NEAR(first / later, 1, 0.08) << t.name;
+      else
+        EXPECT_LT(first, 1e-4 * lit) << t.name;
+    }
+}
+
 TEST_F(TechniqueTest, ATechniqueOfOnesOwnIsAFileAndARow) {
   applyTechnique(settings, kAmbient);
   EXPECT_EQ(&techniqueOf(settings), &kAmbient);
