@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,10 +23,10 @@ inline std::string testName(std::string name) {
 /// More than some 30 000 triangles: each ray against all of them takes too long for every run of the tests.
 inline bool tooLarge(const ContentRecipe& r) {
   return !r.bundled && !r.name.ends_with("-small") && r.name != "museum-15k" && r.name != "museum-26k" &&
-         !std::getenv("LAMBENT_TEST_LARGE");
+         !test::isLong();
 }
 #define SKIP_WHERE_TOO_LARGE(recipe)                                                                                   \
-  if (tooLarge(recipe)) GTEST_SKIP() << "takes seconds: set LAMBENT_TEST_LARGE"
+  if (tooLarge(recipe)) GTEST_SKIP() << "takes minutes: LAMBENT_LONG=1 runs it (tools/test --long)"
 
 inline void PrintTo(const ContentRecipe& recipe, std::ostream* out) { *out << recipe.name; }
 

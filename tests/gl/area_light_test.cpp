@@ -295,8 +295,10 @@ TEST_F(AreaLightTest, TwoLevelsAtOnceAreTheSamePicture) {
   settings.area.gradient = 0;
   const Image one = irradianceOf(scene);
   EXPECT_LT(relativeRmse(gass, one), 0.01);
-  EXPECT_NE(rays, stats.raysArea.occlusion) << "or nothing was split twice";
-  EXPECT_NEAR(double(rays), double(stats.raysArea.occlusion), 0.1 * double(rays)) << "it saves steps, hardly rays";
+  std::printf("rays %llu, %llu level by level\n", (unsigned long long)rays,
+              (unsigned long long)stats.raysArea.occlusion);
+  EXPECT_GT(double(rays), 1.03 * double(stats.raysArea.occlusion)) << "steps are saved, rays are not";
+  EXPECT_LT(double(rays), 1.13 * double(stats.raysArea.occlusion));
 }
 
 /// A half plane before a square lamp: the floor sees a sample of it where it stands right of a line, so it is known
@@ -419,7 +421,7 @@ TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
   EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.7);
 }
 
-TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
+TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {
   LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   scene.size(384, 256);
@@ -432,10 +434,18 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePapersAndUpsampledBetter) {
   const double bilinear = relativeRmse(irradianceOf(scene), traced);
   std::printf("RMSE %.5f, bilinear %.5f\n", error, bilinear);
   EXPECT_GT(bilinear, error);
-  settings.area.refinement = AreaRefinement::Neighbours;
+  settings.area.refinement = AreaRefinement::SubFragments; // paper 4's own, with its extra samples
   settings.area.threshold = 1;
+  settings.area.upsample = AreaUpsample::Rbf;
   irradianceOf(scene);
+  const uint64_t papers = stats.areaFragments;
+  settings.area.upsample = AreaUpsample::Bilinear;
+  settings.area.refinement = AreaRefinement::Neighbours;
+  irradianceOf(scene);
+  std::printf("fragments %llu, of paper 4 %llu, of its predecessor %llu\n", (unsigned long long)fragments,
+              (unsigned long long)papers, (unsigned long long)stats.areaFragments);
   EXPECT_GT(stats.areaFragments, fragments);
+  EXPECT_LT(double(papers), 0.63 * double(stats.areaFragments)) << "0.53 is published";
   EXPECT_GT(2 * stats.raysArea.occlusion, 3 * rays)
       << "twice as many where fragments are not held to finer ones beside them";
   settings.multires.depth = 0; // every pixel asks all

@@ -105,9 +105,9 @@ TEST_F(LightVolumeTest, AFurnaceIsEven) {
     for (const vec4& e : texels) sum += e.y, least = std::min(least, e.y), most = std::max(most, e.y);
     const double mean = sum / double(texels.size());
     std::printf("furnace of 1 W/m2, %d cells: mean %.3f, %.3f to %.3f\n", cells, mean, double(least), double(most));
-    EXPECT_NEAR(mean, 1, 0.05);
-    EXPECT_GT(least, 0.6f);
-    EXPECT_LT(most, 1.4f);
+    EXPECT_NEAR(mean, 1, 0.02);
+    EXPECT_GT(least, 0.85f);
+    EXPECT_LT(most, 1.1f);
   }
 }
 
