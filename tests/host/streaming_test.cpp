@@ -1,14 +1,20 @@
 // Meshes, materials and textures that come and go while frames run: light goes on, and is that of the scene as it is.
 #include "contexts.h"
+#include "engine/core/error.h"
+#include "engine/core/rng.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/frame/gi_frame.h"
 #include "gi/host/host_scene.h"
+#include "gi/plan/needs.h"
+#include "gi/plan/presets.h"
+#include "tests/support/effort.h"
 #include "tests/support/test.h"
 
 #include <epoxy/gl.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <map>
 #include <set>
 
 namespace lambent::test {
@@ -45,7 +51,8 @@ struct World {
   GiFrame gi;
   int starts = 0; // times that its lights were placed anew
 
-  explicit World(const Settings& settings) : gi(settings) {
+  explicit World(const Settings& settings, bool furnished = true) : gi(settings) {
+    if (!furnished) return;
     scene.addInstance(addBox(scene, 1, true), mat4(1));
     LightView lamp;
     lamp.position = {0.4f, 0.6f, 0.2f};
@@ -92,7 +99,7 @@ double shared(const std::set<uint64_t>& before, const std::set<uint64_t>& now) {
 double apart(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   double sum = 0;
   for (size_t i = 0; i < a.size(); ++i) sum += double(glm::length(a[i] - b[i])) / double(a.size());
-  return sum / World::mean(b);
+  return sum > 0 ? sum / World::mean(b) : 0;
 }
 /// Of direct light.
 double apart(const World& a, const World& b) {
@@ -275,6 +282,168 @@ TEST_F(Streaming, RaysOnTheGpuMeetWhatCame) {
                           expected = fresh.read(fresh.gi.directIrradiance());
   EXPECT_LT(apart(now, expected), 0.01);
   EXPECT_GT(apart(before, expected), 0.1);
+}
+
+/// A room told call by call at random, and what of it is there, so that another can be told the same.
+class RandomRoom {
+ public:
+  RandomRoom(HostScene& scene, uint32_t seed, bool glows)
+      : scene_(scene), random_(seed, Stream::Test, 0), glows_(glows) {
+    walls_ = scene.addInstance(addBox(scene, 1, true), mat4(1));
+    LightView lamp;
+    lamp.position = {0.2f, 0.7f, 0.3f};
+    lights_[scene.addLight(lamp)] = lamp;
+  }
+  void change() {
+    switch (below(9)) {
+    case 0: {
+      TextureImage image;
+      image.width = image.height = 2;
+      for (int k = 0; k < 4; ++k) image.texels.push_back(u8vec4(80 + 40 * k, 200, 250 - 40 * k, k % 2 ? 255 : 0));
+      textures_[scene_.addTexture(image)] = image;
+      break;
+    }
+    case 1: {
+      Material m;
+      m.baseColor = vec3(0.3f + 0.6f * random_.next());
+      if (!textures_.empty() && below(2)) m.baseColorTexture = {.image = any(textures_), .nearest = true};
+      if (m.baseColorTexture.image != kNone && below(2)) m.alphaMode = AlphaMode::Mask;
+      if (glows_ && below(4) == 0) m.emission = vec3(2 * random_.next());
+      materials_[scene_.addMaterial(m)] = m;
+      break;
+    }
+    case 2:
+    case 3: {
+      const Shape shape{0.1f + 0.15f * random_.next(), materials_.empty() ? 0 : any(materials_)};
+      meshes_[addBox(scene_, shape.half, false, shape.material)] = shape;
+      break;
+    }
+    case 4:
+    case 5:
+      if (!meshes_.empty()) {
+        const uint32_t mesh = any(meshes_);
+        const mat4 place = somewhere();
+        instances_[scene_.addInstance(mesh, place)] = {mesh, place};
+      }
+      break;
+    case 6:
+      if (!instances_.empty()) {
+        const uint32_t which = any(instances_);
+        instances_[which].second = somewhere();
+        scene_.moveInstance(which, instances_[which].second);
+      }
+      break;
+    case 7: { // away with one of each, where nothing holds it
+      if (!instances_.empty() && below(2)) {
+        const uint32_t gone = any(instances_);
+        scene_.removeInstance(gone);
+        instances_.erase(gone);
+      }
+      drop(meshes_, [&](uint32_t mesh) { scene_.removeMesh(mesh); });
+      drop(materials_, [&](uint32_t material) { scene_.removeMaterial(material); });
+      drop(textures_, [&](uint32_t texture) { scene_.removeTexture(texture); });
+      break;
+    }
+    case 8: {
+      LightView lamp;
+      lamp.position = 1.6f * random_.next3() - 0.8f;
+      lamp.intensity = vec3(random_.next());
+      if (lights_.size() < 3)
+        lights_[scene_.addLight(lamp)] = lamp;
+      else
+        scene_.setLight(lights_.rbegin()->first, lights_.rbegin()->second = lamp);
+      break;
+    }
+    }
+  }
+  /// The same, told anew in order.
+  void tell(HostScene& to) const {
+    std::map<uint32_t, uint32_t> textures, materials, meshes;
+    to.addInstance(addBox(to, 1, true), mat4(1));
+    for (const auto& [n, image] : textures_) textures[n] = to.addTexture(image);
+    for (auto [n, m] : materials_) {
+      if (m.baseColorTexture.image != kNone) m.baseColorTexture.image = textures.at(m.baseColorTexture.image);
+      materials[n] = to.addMaterial(m);
+    }
+    for (const auto& [n, shape] : meshes_)
+      meshes[n] = addBox(to, shape.half, false, shape.material == 0 ? 0 : materials.at(shape.material));
+    for (const auto& [n, placed] : instances_) to.addInstance(meshes.at(placed.first), placed.second);
+    for (const auto& [n, light] : lights_) to.addLight(light);
+  }
+
+ private:
+  struct Shape {
+    float half;
+    uint32_t material;
+  };
+  uint32_t below(uint32_t n) { return std::min(uint32_t(random_.next() * float(n)), n - 1); }
+  template <class Map> uint32_t any(const Map& map) {
+    return std::next(map.begin(), below(uint32_t(map.size())))->first;
+  }
+  template <class Map, class Remove> void drop(Map& map, const Remove& remove) {
+    if (map.empty()) return;
+    const uint32_t which = any(map);
+    try {
+      remove(which);
+      map.erase(which);
+    } catch (const InputError&) { // something holds it
+    }
+  }
+  mat4 somewhere() { return glm::translate(mat4(1), 1.2f * random_.next3() - 0.6f); }
+
+  HostScene& scene_;
+  Rng random_;
+  bool glows_;
+  uint32_t walls_;
+  std::map<uint32_t, TextureImage> textures_;
+  std::map<uint32_t, Material> materials_;
+  std::map<uint32_t, Shape> meshes_;
+  std::map<uint32_t, std::pair<uint32_t, mat4>> instances_;
+  std::map<uint32_t, LightView> lights_;
+};
+
+/// Whatever came and went between frames, the light is that of a scene that was so from the start.
+TEST_F(Streaming, AnyChangesLeaveTheLightOfTheSceneAsItIs) {
+  const int changes = isLong() ? 120 : 20;
+  std::vector<Assignments> ways{{},
+                                {{"technique", "mir"}},
+                                {{"technique", "isr"}},
+                                {{"technique", "lpv"}},
+                                {{"technique", "ibrr"}},
+                                {{"gather.mode", "full"}, {"shadow.maker", "raster"}},
+                                {{"shadow.emitters", "patches"}, {"area.tracer", "gpu"}},
+                                {{"direct.soft", "maps"}, {"frame.overlap", "on"}}};
+  if (!isLong()) ways.erase(ways.begin() + 1, ways.begin() + 5);
+  uint32_t seed = 0;
+  for (const Assignments& way : ways) {
+    Settings settings = World::settings();
+    settings.smc.vpls = settings.smc.points = 128;
+    settings.cube.resolution = 16;
+    for (const auto& [name, value] : way)
+      if (name == "technique")
+        applyTechnique(settings, value);
+      else
+        applySetting(settings, name, value);
+    SCOPED_TRACE(way.empty() ? "as set" : way.front().second);
+    World world(settings, false), fresh(settings, false);
+    // Light of rays has noise, which other frames before have otherwise.
+    const bool exact = settings.direct.soft == SoftLightBy::Maps || settings.shadow.emitters == EmitterShadows::Patches;
+    RandomRoom room(world.scene, ++seed, exact);
+    for (int i = 0; i < changes; ++i) {
+      for (int k = 0; k < 1 + i % 4; ++k) room.change();
+      if (i % 25 == 24 &&
+          axesOf(settings).gather != GatherMode::Volume) // what a volume keeps outlives a pause of motion: gi/README.md
+        world.gi.settings().effects[EffectId::Motion] = i % 50 == 24 ? EffectMode::Off : EffectMode::Auto;
+      world.run();
+    }
+    world.gi.settings().effects[EffectId::Motion] = EffectMode::Auto;
+    room.tell(fresh.scene);
+    world.run(24);
+    fresh.run(24);
+    EXPECT_LT(apart(world, fresh), 0.02);
+    const auto indirect = [](const World& w) { return World::mean(w.read(w.gi.indirectIrradiance())); };
+    EXPECT_NEAR(indirect(world) / indirect(fresh), 1, 0.15);
+  }
 }
 
 } // namespace lambent::test
