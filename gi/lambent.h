@@ -48,7 +48,7 @@ typedef enum lambent_status {
   LAMBENT_NO_CONTEXT = 3,       /* no OpenGL 4.5 context is current, or not the device's */
   LAMBENT_OUT_OF_MEMORY = 4,
   LAMBENT_FAILED = 5, /* the machine or its driver: a shader that does not compile */
-  LAMBENT_DEVICE_LOST = 6,   /* a fault in the library, now or before: destroy the device */
+  LAMBENT_DEVICE_LOST = 6, /* a fault in the library, now or before: destroy the device */
   LAMBENT_BUSY = 7    /* another call to the device is on its way, on another thread or around a callback */
 } lambent_status;
 LAMBENT_API const char* lambent_status_text(int status);
@@ -126,7 +126,11 @@ LAMBENT_API lambent_status lambent_scene_exists(lambent_device* device, lambent_
 /* GL. With its views. */
 LAMBENT_API lambent_status lambent_scene_destroy(lambent_device* device, lambent_scene scene);
 
-typedef enum lambent_wrap { LAMBENT_WRAP_REPEAT, LAMBENT_WRAP_MIRRORED_REPEAT, LAMBENT_WRAP_CLAMP_TO_EDGE } lambent_wrap;
+typedef enum lambent_wrap {
+  LAMBENT_WRAP_REPEAT,
+  LAMBENT_WRAP_MIRRORED_REPEAT,
+  LAMBENT_WRAP_CLAMP_TO_EDGE
+} lambent_wrap;
 typedef struct lambent_texture_desc {
   size_t size;
   int width, height;
@@ -202,7 +206,11 @@ LAMBENT_API lambent_status lambent_instance_deform(lambent_device* device, lambe
 LAMBENT_API lambent_status lambent_instance_destroy(lambent_device* device, lambent_scene scene,
                                                     lambent_instance instance);
 
-typedef enum lambent_light_type { LAMBENT_LIGHT_POINT, LAMBENT_LIGHT_SPOT, LAMBENT_LIGHT_DIRECTIONAL } lambent_light_type;
+typedef enum lambent_light_type {
+  LAMBENT_LIGHT_POINT,
+  LAMBENT_LIGHT_SPOT,
+  LAMBENT_LIGHT_DIRECTIONAL
+} lambent_light_type;
 typedef struct lambent_light_desc {
   size_t size;
   int32_t type;          /* lambent_light_type */
@@ -227,7 +235,8 @@ typedef struct lambent_sky_desc {
   float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours: lambent_sky_sun */
   float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
 } lambent_sky_desc;
-LAMBENT_API lambent_status lambent_scene_set_sky(lambent_device* device, lambent_scene scene, const lambent_sky_desc* desc);
+LAMBENT_API lambent_status lambent_scene_set_sky(lambent_device* device, lambent_scene scene,
+                                                 const lambent_sky_desc* desc);
 
 /* The sun that goes with a clear sky: irradiance on what faces it, W/m², and the radius of its disk. Tell it as a
  * directional light that travels along -towards_sun. In these units a sun at noon is about 3 W/m²; scale both alike for
