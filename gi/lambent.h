@@ -311,8 +311,8 @@ typedef struct lambent_frame {
 
 typedef struct lambent_output {
   size_t size;
-  uint32_t indirect, direct;         /* names of the textures that hold irradiance now, W/m², valid until the next
-                                        lambent_render of this view; 0: there is no such light */
+  uint32_t indirect, direct;         /* names of the textures whose RGB holds irradiance now, W/m² (alpha is the library's
+                                        own), valid until the next lambent_render of this view; 0: no such light */
   uint32_t depth, normal, albedo, emission; /* surfaces that the library drew: reversed infinite depth, world normals;
                                         0 with a host's */
   int converged;                     /* 1: nothing moves, and another frame would bring nothing new */

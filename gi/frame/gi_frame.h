@@ -51,7 +51,8 @@ class GiFrame {
                         const HostSurfaces* host = nullptr);
 
   /// Returns the irradiance of the last frame at its surfaces, W/m², albedo not included: names of RGBA32F textures of
-  /// the view's size, rows from the bottom, valid until the next run. 0: there is no such light.
+  /// the view's size, rows from the bottom, valid until the next run; alpha is the frame's own. 0: there is no such
+  /// light.
   uint32_t directIrradiance() const;
   uint32_t indirectIrradiance() const;
   /// Says whether another frame of the same view, drawn alike, would bring nothing new.

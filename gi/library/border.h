@@ -19,26 +19,16 @@ enum class Gl { NotNeeded, Needed };
 
 /// Runs a call on a device, on its threads and its account.
 template <class Work> lambent_status call(lambent_device* device, Gl needs, const Work& work) noexcept {
-  if (!Live<lambent_device>::has(device)) {
-    guarded(messageWithoutDevice(), [] { refuse("no such device"); });
-    return LAMBENT_INVALID_HANDLE;
-  }
-  if (device->busy.exchange(true)) {
-    guarded(messageWithoutDevice(), [] { refuse("the device is busy with another call"); });
-    return LAMBENT_BUSY;
-  }
-  lambent_status status = LAMBENT_DEVICE_LOST;
-  if (!device->dead) {
-    status = guarded(device->message, [&] {
+  return alone(device, "device", messageWithoutDevice(), [&] {
+    const lambent_status status = guarded(device->message, [&] {
       if (needs == Gl::Needed) requireContext(*device);
       const MemoryAccount::Scope account(device->account);
       device->workers.run(work);
     });
     device->dead = status == LAMBENT_DEVICE_LOST;
     if (status != LAMBENT_OK) guarded(device->message, [&] { device->log(LAMBENT_LOG_ERROR, device->message); });
-  }
-  device->busy = false;
-  return status;
+    return status;
+  });
 }
 
 /// The defaults of a descriptor, but for its size.

@@ -77,4 +77,16 @@ template <class Work> lambent_status guarded(std::string& message, const Work& w
   }
 }
 
+/// Runs a call on a handle that lives and that no other thread is in. `outside` says what another finds.
+template <class Handle, class Work>
+lambent_status alone(Handle* handle, const char* what, std::string& outside, const Work& work) noexcept {
+  if (!Live<Handle>::has(handle))
+    return guarded(outside, [&] { refuse(LAMBENT_INVALID_HANDLE, std::string("no such ") + what); });
+  if (handle->busy.exchange(true))
+    return guarded(outside, [&] { refuse(LAMBENT_BUSY, std::string("the ") + what + " is busy with another call"); });
+  const lambent_status status = handle->dead ? LAMBENT_DEVICE_LOST : work();
+  handle->busy = false;
+  return status;
+}
+
 } // namespace lambent::library

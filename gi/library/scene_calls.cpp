@@ -15,6 +15,18 @@ void settle(lambent_device& device, lambent_scene scene) {
     if (view->scene == scene) view->gi.vpls();
 }
 
+/// Takes a thing out of its scene.
+template <Kind kind>
+lambent_status destroy(lambent_device* device, lambent_scene scene, uint64_t id, const char* what,
+                       bool (HostScene::*has)(uint32_t) const, void (HostScene::*remove)(uint32_t)) {
+  return call(device, Gl::NotNeeded, [&] {
+    HostScene& host = sceneOf(*device, scene).host;
+    const uint32_t number = numberOf(kind, scene, id, what, host, has);
+    if (kind != Kind::Instance && kind != Kind::Light) settle(*device, scene);
+    (host.*remove)(number);
+  });
+}
+
 Material materialOf(const Scene& s, lambent_scene scene, const lambent_material_desc* given) {
   const lambent_material_desc d = read(given, "material");
   const auto textureOf = [&](lambent_texture id, int32_t set, const float* m) -> TextureRef {
@@ -108,12 +120,7 @@ lambent_status lambent_texture_create(lambent_device* device, lambent_scene scen
 }
 
 lambent_status lambent_texture_destroy(lambent_device* device, lambent_scene scene, lambent_texture texture) {
-  return call(device, Gl::NotNeeded, [&] {
-    HostScene& host = sceneOf(*device, scene).host;
-    const uint32_t number = numberOf(Kind::Texture, scene, texture, "texture", host, &HostScene::hasTexture);
-    settle(*device, scene);
-    host.removeTexture(number);
-  });
+  return destroy<Kind::Texture>(device, scene, texture, "texture", &HostScene::hasTexture, &HostScene::removeTexture);
 }
 
 lambent_status lambent_material_create(lambent_device* device, lambent_scene scene, const lambent_material_desc* desc,
@@ -139,12 +146,8 @@ lambent_status lambent_material_set(lambent_device* device, lambent_scene scene,
 }
 
 lambent_status lambent_material_destroy(lambent_device* device, lambent_scene scene, lambent_material material) {
-  return call(device, Gl::NotNeeded, [&] {
-    HostScene& host = sceneOf(*device, scene).host;
-    const uint32_t number = numberOf(Kind::Material, scene, material, "material", host, &HostScene::hasMaterial);
-    settle(*device, scene);
-    host.removeMaterial(number);
-  });
+  return destroy<Kind::Material>(device, scene, material, "material", &HostScene::hasMaterial,
+                                 &HostScene::removeMaterial);
 }
 
 lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene, const lambent_mesh_desc* given,
@@ -176,12 +179,7 @@ lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene, 
 }
 
 lambent_status lambent_mesh_destroy(lambent_device* device, lambent_scene scene, lambent_mesh mesh) {
-  return call(device, Gl::NotNeeded, [&] {
-    HostScene& host = sceneOf(*device, scene).host;
-    const uint32_t number = numberOf(Kind::Mesh, scene, mesh, "mesh", host, &HostScene::hasMesh);
-    settle(*device, scene);
-    host.removeMesh(number);
-  });
+  return destroy<Kind::Mesh>(device, scene, mesh, "mesh", &HostScene::hasMesh, &HostScene::removeMesh);
 }
 
 lambent_status lambent_instance_create(lambent_device* device, lambent_scene scene, lambent_mesh mesh,
@@ -214,10 +212,8 @@ lambent_status lambent_instance_deform(lambent_device* device, lambent_scene sce
 }
 
 lambent_status lambent_instance_destroy(lambent_device* device, lambent_scene scene, lambent_instance instance) {
-  return call(device, Gl::NotNeeded, [&] {
-    HostScene& host = sceneOf(*device, scene).host;
-    host.removeInstance(numberOf(Kind::Instance, scene, instance, "instance", host, &HostScene::hasInstance));
-  });
+  return destroy<Kind::Instance>(device, scene, instance, "instance", &HostScene::hasInstance,
+                                 &HostScene::removeInstance);
 }
 
 lambent_status lambent_light_create(lambent_device* device, lambent_scene scene, const lambent_light_desc* desc,
@@ -238,10 +234,7 @@ lambent_status lambent_light_set(lambent_device* device, lambent_scene scene, la
 }
 
 lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene, lambent_light light) {
-  return call(device, Gl::NotNeeded, [&] {
-    HostScene& host = sceneOf(*device, scene).host;
-    host.removeLight(numberOf(Kind::Light, scene, light, "light", host, &HostScene::hasLight));
-  });
+  return destroy<Kind::Light>(device, scene, light, "light", &HostScene::hasLight, &HostScene::removeLight);
 }
 
 lambent_status lambent_sky_sun(const lambent_sky_desc* given, float irradiance[3], float* angular_radius) {

@@ -148,17 +148,25 @@ class Syncing {
       if (has == wanted) continue;
       if (has.mesh != v.mesh) end(has);
       const float* const place = &v.worldFromObject[0][0];
+      const DeformedMesh* const d = v.deformed.get();
+      const auto create = [&] {
+        has = {};
+        if (synced_.meshes[v.mesh])
+          take(lambent_instance_create(device_, scene_, synced_.meshes[v.mesh], place, &has.instance), named(v.id));
+      };
+      const auto pose = [&] {
+        if (!has.instance || has.shape == wanted.shape) return LAMBENT_OK;
+        return lambent_instance_deform(device_, scene_, has.instance, d ? &d->positions[0].x : nullptr,
+                                       d ? &d->normals[0].x : nullptr, d ? uint32_t(d->positions.size()) : 0);
+      };
       if (has.instance && has.place != wanted.place &&
           isGone(lambent_instance_move(device_, scene_, has.instance, place), named(v.id) + ", moved,"))
-        has = {};
-      if (!has.instance && synced_.meshes[v.mesh])
-        take(lambent_instance_create(device_, scene_, synced_.meshes[v.mesh], place, &has.instance), named(v.id));
-      const DeformedMesh* const d = v.deformed.get();
-      if (has.instance && has.shape != wanted.shape &&
-          isGone(lambent_instance_deform(device_, scene_, has.instance, d ? &d->positions[0].x : nullptr,
-                                         d ? &d->normals[0].x : nullptr, d ? uint32_t(d->positions.size()) : 0),
-                 named(v.id) + ", posed,"))
         has.instance = 0;
+      if (!has.instance) create();
+      if (isGone(pose(), named(v.id) + ", posed,")) {
+        create();
+        need(pose());
+      }
       has = {has.instance, wanted.mesh, wanted.place, wanted.shape};
     }
     for (auto& [id, has] : synced_.instances)

@@ -14,24 +14,16 @@ std::string& messageWithoutWorld() {
 }
 
 template <class Work> lambent_status call(lambent_world* world, const Work& work) noexcept {
-  if (!Live<lambent_world>::has(world)) {
-    guarded(messageWithoutWorld(), [] { refuse("no such world"); });
-    return LAMBENT_INVALID_HANDLE;
-  }
-  if (world->busy.exchange(true)) {
-    guarded(messageWithoutWorld(), [] { refuse("the world is busy with another call"); });
-    return LAMBENT_BUSY;
-  }
-  const lambent_status status = world->dead ? LAMBENT_DEVICE_LOST : guarded(world->message, [&] {
-    try {
-      work();
-    } catch (const CheckFailure&) { // and no device's
-      world->dead = true;
-      throw;
-    }
+  return alone(world, "world", messageWithoutWorld(), [&] {
+    return guarded(world->message, [&] {
+      try {
+        work();
+      } catch (const CheckFailure&) { // and no device's
+        world->dead = true;
+        throw;
+      }
+    });
   });
-  world->busy = false;
-  return status;
 }
 
 Entity entityOf(const lambent_world& world, lambent_entity id) {
@@ -252,6 +244,7 @@ lambent_status lambent_world_camera(lambent_world* world, size_t index, lambent_
     if (index > 0 && index >= cameras.size())
       refuse("no camera " + std::to_string(index) + " (there are " + std::to_string(cameras.size()) + ")");
     const CameraView view = cameras.empty() ? defaultView(world->scene) : cameras[index].view;
+    require(isNear(view.position()), "the camera stands at no place within 1e12 m");
     write(view.worldFromView, frame->world_from_view);
     frame->fov_y = view.fovY;
     frame->ortho_half_height = view.orthoHalfHeight;

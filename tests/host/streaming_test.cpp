@@ -1,5 +1,4 @@
 // Meshes, materials and textures that come and go while frames run: light goes on, and is that of the scene as it is.
-#include "contexts.h"
 #include "engine/core/error.h"
 #include "engine/core/rng.h"
 #include "gi/contract/frame_outputs.h"
@@ -7,6 +6,7 @@
 #include "gi/host/host_scene.h"
 #include "gi/plan/needs.h"
 #include "gi/plan/presets.h"
+#include "in_host.h"
 #include "tests/support/effort.h"
 #include "tests/support/test.h"
 
@@ -106,20 +106,7 @@ double apart(const World& a, const World& b) {
   return apart(a.read(a.gi.directIrradiance()), b.read(b.gi.directIrradiance()));
 }
 
-class Streaming : public testing::Test {
- protected:
-  void SetUp() override {
-    context = eglHost();
-    if (!context) GTEST_SKIP() << "EGL offers no OpenGL 4.5 here";
-    context->makeCurrent();
-  }
-  void TearDown() override {
-    if (!context) return;
-    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
-    context->release();
-  }
-  std::unique_ptr<HostContext> context;
-};
+class Streaming : public InHost {};
 
 } // namespace
 

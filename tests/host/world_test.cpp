@@ -1,9 +1,9 @@
 // Worlds told to the library: the light is that of the frame itself; what changes is told, what is wrong is a status.
-#include "contexts.h"
 #include "engine/scene/scene.h"
 #include "gi/frame/gi_frame.h"
 #include "gi/lambent_world.h"
-#include "tests/support/test.h"
+#include "in_host.h"
+#include "tests/support/files.h"
 
 #include <epoxy/gl.h>
 
@@ -23,6 +23,25 @@ double meanOf(uint32_t texture) {
   for (const vec4& t : texels) sum += double(luminance(vec3(t))) / double(texels.size());
   return sum;
 }
+
+/// A triangle under a lamp, seen from above, that a morph target carries away: by 30 m at 1 s.
+const char* const kMorphed = R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+"buffers":[{"byteLength":88,"uri":"data:application/octet-stream;base64,AACAvwAAAAAAAIA/AACAPwAAAAAAAIA/AAAAAAAAAAAAAIC/)"
+                             R"(AADwQQAAAAAAAAAAAADwQQAAAAAAAAAAAADwQQAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPw=="}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
+{"buffer":0,"byteOffset":72,"byteLength":8},{"buffer":0,"byteOffset":80,"byteLength":8}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,0,-1],"max":[1,0,1]},
+{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3","min":[30,0,0],"max":[30,0,0]},
+{"bufferView":2,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]},
+{"bufferView":3,"componentType":5126,"count":2,"type":"SCALAR"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1}]}],"weights":[0]}],
+"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":2000}]}},
+"nodes":[{"name":"sheet","mesh":0},
+{"name":"lamp","translation":[0,1,0],"extensions":{"KHR_lights_punctual":{"light":0}}},
+{"name":"eye","camera":0,"translation":[0,3,0],"rotation":[-0.70710678,0,0,0.70710678]}],
+"scenes":[{"nodes":[0,1,2]}],"scene":0,
+"animations":[{"samplers":[{"input":2,"output":3}],"channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}]})";
 
 /// A world of a file, a device with a scene that it is told to, and a view of that.
 struct Told {
@@ -69,20 +88,7 @@ struct Told {
   }
 };
 
-class Worlds : public testing::Test {
- protected:
-  void SetUp() override {
-    context = eglHost();
-    if (!context) GTEST_SKIP() << "EGL offers no OpenGL 4.5 here";
-    context->makeCurrent();
-  }
-  void TearDown() override {
-    if (!context) return;
-    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
-    context->release();
-  }
-  std::unique_ptr<HostContext> context;
-};
+class Worlds : public InHost {};
 
 } // namespace
 
@@ -250,6 +256,43 @@ TEST_F(Worlds, AnInstanceThatTheHostDestroyedComesAgainAlone) {
   told.draw();
   EXPECT_NE(instanceOf(*shown), first);
   EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(Worlds, AnInstanceThatTheHostDestroyedComesAgainInItsPose) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "morphed.gltf", kMorphed);
+  Told told((folder / "morphed.gltf").c_str());
+  const lambent_entity sheet = told.find("sheet");
+  const double undeformed = meanOf(told.draw().direct);
+  EXPECT_GT(undeformed, 0);
+  ASSERT_EQ(lambent_world_animate(told.world, 0.95), LAMBENT_OK);
+  EXPECT_EQ(meanOf(told.draw().direct), 0) << "out of sight";
+  for (const bool posed : {true, false}) { // the instance is missed where it is posed, and where it is moved
+    SCOPED_TRACE(posed);
+    const lambent_instance had = lambent_world_instance(told.world, sheet, told.device, told.scene);
+    ASSERT_EQ(lambent_instance_destroy(told.device, told.scene, had), LAMBENT_OK);
+    float place[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.01f, 0, 1};
+    ASSERT_EQ(posed ? lambent_world_animate(told.world, 0.9) : lambent_world_set_transform(told.world, sheet, place),
+              LAMBENT_OK);
+    EXPECT_EQ(meanOf(told.draw().direct), 0) << "still";
+    const lambent_instance has = lambent_world_instance(told.world, sheet, told.device, told.scene);
+    EXPECT_TRUE(has != 0 && has != had);
+  }
+  ASSERT_EQ(lambent_world_animate(told.world, 0), LAMBENT_OK);
+  EXPECT_NEAR(meanOf(told.draw().direct) / undeformed, 1, 0.05);
+}
+
+TEST_F(Worlds, ACameraBeyondAllPlacesIsRefused) {
+  const TemporaryFolder folder;
+  std::string far = kMorphed;
+  far.replace(far.find("[0,3,0]"), 7, "[0,3e12,0]");
+  writeBytes(folder / "far.gltf", far);
+  lambent_world* world = nullptr;
+  ASSERT_EQ(lambent_world_load((folder / "far.gltf").c_str(), nullptr, &world), LAMBENT_OK);
+  lambent_frame frame;
+  LAMBENT_DEFAULTS(LAMBENT_FRAME, &frame);
+  EXPECT_EQ(lambent_world_camera(world, 0, &frame), LAMBENT_INVALID_ARGUMENT);
+  lambent_world_destroy(world);
 }
 
 TEST_F(Worlds, WrongCallsAreStatuses) {

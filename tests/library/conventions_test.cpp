@@ -15,6 +15,20 @@ struct Convention {
   bool top, rectangle;
 };
 
+/// Of 0.2 m, at the upper right of what is seen.
+void addGlowingBox(const Room& room, float emission) {
+  lambent_material_desc glow;
+  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &glow);
+  for (float& c : glow.emission) c = emission;
+  lambent_material material = 0;
+  room.ok(lambent_material_create(room.device, room.scene, &glow, &material));
+  lambent_instance instance = 0;
+  float place[16];
+  std::copy(kIdentity, kIdentity + 16, place);
+  place[12] = 0.5f, place[13] = 0.5f, place[14] = -0.3f;
+  room.ok(lambent_instance_create(room.device, room.scene, room.box(0.1f, false, material), place, &instance));
+}
+
 TEST_F(Library, EveryConventionOfAGBufferGivesTheSameLight) {
   constexpr int w = Room::kWidth, h = Room::kHeight, x0 = 5, y0 = 3;
   Room room;
@@ -207,16 +221,7 @@ TEST_F(Library, NormalsOfViewSpaceAreTurnedWithTheCamera) {
 TEST_F(Library, ParallelRaysAndEmissionGiveTheSameLight) {
   constexpr int w = Room::kWidth, h = Room::kHeight;
   Room room;
-  lambent_material_desc glow;
-  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &glow);
-  for (float& c : glow.emission) c = 3;
-  lambent_material material = 0;
-  room.ok(lambent_material_create(room.device, room.scene, &glow, &material));
-  lambent_instance instance = 0;
-  float place[16];
-  std::copy(kIdentity, kIdentity + 16, place);
-  place[12] = 0.5f, place[13] = 0.5f, place[14] = -0.3f;
-  room.ok(lambent_instance_create(room.device, room.scene, room.box(0.1f, false, material), place, &instance));
+  addGlowingBox(room, 3);
   lambent_frame f = Room::frame();
   f.ortho_half_height = 0.7f;
   const lambent_output own = room.render(room.view(), f);
@@ -270,16 +275,7 @@ TEST_F(Library, ParallelRaysAndEmissionGiveTheSameLight) {
 TEST_F(Library, SoftLightFallsOnTheHostsSurfaces) {
   constexpr int w = Room::kWidth, h = Room::kHeight;
   Room room;
-  lambent_material_desc glow;
-  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &glow);
-  for (float& c : glow.emission) c = 20;
-  lambent_material material = 0;
-  room.ok(lambent_material_create(room.device, room.scene, &glow, &material));
-  lambent_instance instance = 0;
-  float place[16];
-  std::copy(kIdentity, kIdentity + 16, place);
-  place[12] = 0.5f, place[13] = 0.5f, place[14] = -0.3f;
-  room.ok(lambent_instance_create(room.device, room.scene, room.box(0.1f, false, material), place, &instance));
+  addGlowingBox(room, 20);
   room.ok(lambent_light_destroy(room.device, room.scene, room.lamp));
   lambent_output out = room.render(room.view());
   std::vector<float> normals = Room::read(out.normal, GL_RGB), depth(size_t(w * h));

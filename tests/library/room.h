@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gi/lambent.h"
-#include "tests/host/contexts.h"
+#include "tests/host/in_host.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
@@ -130,15 +130,6 @@ inline GLuint textureOf(GLenum format, int width, int height, int channels, cons
 }
 
 /// In a context of its own, of the core profile.
-class Library : public testing::Test {
- protected:
-  void SetUp() override {
-    context = eglHost();
-    if (!context) GTEST_SKIP() << "EGL offers no OpenGL 4.5 here";
-    context->makeCurrent();
-  }
-  void TearDown() override { EXPECT_TRUE(!context || glGetError() == GL_NO_ERROR); }
-  std::unique_ptr<HostContext> context;
-};
+class Library : public InHost {};
 
 } // namespace lambent::test
