@@ -13,7 +13,8 @@ uniform ivec2 base;          // of the atlas's level 0
 uniform int coarsest;        // level
 uniform float normalPower;   // as in upsample.frag
 uniform float distanceSigma;
-uniform bool compared; // fragments with what lies across their borders (area.refinement=counts)
+uniform int stable; // what is seen between the middles of a fragment's quarters: 0 unknown; 1 the same where that is all
+                    // or nothing; 2 the same
 layout(location = 0) out vec4 outShare;
 
 /// Level of the fragment that a pixel belongs to; −1: none. From the coarsest on, where most are.
@@ -26,7 +27,7 @@ int levelAt(ivec2 pixel) {
 
 #ifdef BETWEEN
 const float kVariance = 2.0;           // C of equation 2b
-const float kLeastDeterminant = 0.02; // of the fit's matrix, whose diagonal is 1
+const float kLeastDeterminant = 1e-5; // of the fit's matrix, whose diagonal is 1
 
 struct Sample {
   vec2 at; // pixels
@@ -69,10 +70,9 @@ void consider(ivec2 texel, int level, bool each) {
   float width = float(1 << level);
   vec2 middle = vec2(texel) * width + 0.5 * (width - 1.0);
   vec3 share = texelFetch(atlas, atlasOrigin(base, level) + texel, 0).rgb;
-  // Quarters that all see the whole lamp, or nothing, and that were compared with what is around them: so does all between
-  // their middles (the paper's stable region, figure 3a).
-  bool stable = compared && level >= 3 && (share == vec3(0.0) || share == vec3(1.0));
-  vec2 at = stable ? clamp(here, middle - 0.25 * width, middle + 0.25 * width) : middle, way = at - here;
+  // Quarters that see the same: so does all between their middles (the paper's stable region, figure 3a).
+  bool known = stable == 2 || (stable == 1 && (share == vec3(0.0) || share == vec3(1.0)));
+  vec2 at = known && level >= 3 ? clamp(here, middle - 0.25 * width, middle + 0.25 * width) : middle, way = at - here;
   Sample s = Sample(at, share, dot(way, way));
   if (each)
     keep(s);

@@ -1,7 +1,8 @@
 #version 450
 // One step of light through the volume (Kaplanyan and Dachsbacher 2010, section 4.3): each cell takes from its six
 // neighbours what leaves them towards its five other faces, and sends it on through each of these as a cosine lobe.
-// INJECT: takes what was deposited instead.
+// INJECT: takes what was deposited instead. FACES: lobes look along the faces' normals, as published; else the way that
+// the light came.
 //
 // Two bands cannot hold a lobe, and dip below zero behind it. Negative light is left out, and the rest scaled so that a
 // cell sends out what it holds, not more (without: an eighth more in every step).
@@ -65,8 +66,12 @@ void main() {
         int aside = (axis + turn) % 3;
         vec3 up = scale * leaving(held, axis, sign, aside, 1.0), down = scale * leaving(held, axis, sign, aside, -1.0);
         sum += up + down;
+#ifdef FACES
+        moment[aside] += up - down;
+#else
         moment[axis] += sign * kOut * (up + down);
         moment[aside] += kAside * (up - down);
+#endif
       }
     }
   }

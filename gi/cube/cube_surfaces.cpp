@@ -88,6 +88,7 @@ void CubeSurfaces::adopt(Growth& growth) {
   firsts_.assign(1, 0);
   entries_.clear();
   for (DepthCube& cube : growth.cubes) {
+    cut_ += cube.cut;
     cubes_.push_back(cube.grid);
     const uint32_t begin = uint32_t(entries_.size());
     std::transform(cube.firsts.begin() + 1, cube.firsts.end(), std::back_inserter(firsts_),
@@ -107,6 +108,7 @@ void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, 
   resolution_ = settings.resolution;
   levels_ = settings.levels;
   split_ = settings.split;
+  cut_ = 0;
   Growth growth = grow(nullptr, rays, counts);
   adopt(growth);
 }

@@ -31,6 +31,8 @@ class CubeSurfaces {
   /// Entries of column c are [firsts()[c], firsts()[c + 1]).
   std::span<const uint32_t> firsts() const { return firsts_; }
   std::span<const CubeEntry> entries() const { return entries_; }
+  /// Columns that hold more surfaces than were found, at most: those that were cast again count again.
+  uint32_t columnsCut() const { return cut_; }
 
  private:
   friend struct CubeFile; // gi/cube/cube_file.cpp
@@ -44,6 +46,7 @@ class CubeSurfaces {
   float edge_ = 0; // of the box
   int resolution_ = 0, levels_ = 0;
   float split_ = 0;
+  uint32_t cut_ = 0;
   std::vector<CubeNode> nodes_;
   std::vector<CubeGrid> cubes_;
   std::vector<uint32_t> firsts_;

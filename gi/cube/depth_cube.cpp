@@ -11,7 +11,7 @@ namespace lambent {
 namespace {
 
 constexpr size_t kBlock = 64;                      // columns cast as one
-constexpr int kMostSurfaces = 64;                  // that a ray goes through
+constexpr int kMostSurfaces = 256;                 // that a ray goes through
 constexpr float kSamePlane = 0.3f, kNextPlane = 1; // texels
 constexpr vec2 kWithin[] = {{0.5f, 0.5f}, {0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}};
 
@@ -20,10 +20,15 @@ vec3 lifted(const CubeEntry& e, float texel, float rayEpsilon) {
   return offsetPoint(e.position, e.normal, rayEpsilon) + e.normal * (0.1f * texel);
 }
 
-/// A ray through the middle of a column, then four around it, which find what the first misses.
-std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& at, const RayQuery& rays,
-                                  RayCounts& counts) {
+struct Column {
   std::vector<CubeEntry> found;
+  bool cut = false; // there are more
+};
+
+/// A ray through the middle of a column, then four around it, which find what the first misses.
+Column castColumn(const CubeGrid& grid, const CubeGrid::Place& at, const RayQuery& rays, RayCounts& counts) {
+  Column column;
+  std::vector<CubeEntry>& found = column.found;
   const float length = grid.edge();
   const auto known = [&](const CubeEntry& e) {
     return std::any_of(found.begin(), found.end(), [&](const CubeEntry& f) {
@@ -37,10 +42,14 @@ std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& a
   along[at.axis] = 1;
   for (const vec2 within : kWithin) {
     Ray ray{grid.pointOf(at, within), along, length};
-    for (int i = 0; i < kMostSurfaces; ++i) {
+    for (int i = 0;; ++i) {
       ++counts.closest;
       const SurfaceHit h = rays.closest(ray);
       if (!h.valid() || !isFinite(h.position)) break;
+      if (i == kMostSurfaces) {
+        column.cut = true;
+        break;
+      }
       const float gone = h.position[at.axis] - ray.origin[at.axis];
       if (axesOf(h.geometricNormal) >> at.axis & 1)
         for (const float side : {1.0f, -1.0f}) {
@@ -54,7 +63,7 @@ std::vector<CubeEntry> castColumn(const CubeGrid& grid, const CubeGrid::Place& a
       if (!(ray.tMax > 0)) break;
     }
   }
-  return found;
+  return column;
 }
 
 std::vector<uint32_t> allColumns(const CubeGrid& grid) {
@@ -99,7 +108,7 @@ vec3 CubeGrid::pointOf(const Place& at, vec2 within) const {
 }
 
 DepthCube DepthCube::cast(const CubeGrid& grid, const RayQuery& rays, RayCounts& counts) {
-  DepthCube cube{.grid = grid, .firsts = std::vector<uint32_t>(grid.columns() + 1, 0), .entries = {}};
+  DepthCube cube{.grid = grid, .firsts = std::vector<uint32_t>(grid.columns() + 1, 0)};
   const std::vector<uint32_t> all = allColumns(grid);
   cube.castAll(all, rays, counts);
   cube.linkAll(all, rays, counts);
@@ -137,17 +146,18 @@ float DepthCube::atEdges() const {
 }
 
 void DepthCube::castAll(std::span<const uint32_t> columns, const RayQuery& rays, RayCounts& counts) {
-  std::vector<std::vector<CubeEntry>> found(columns.size());
+  std::vector<Column> found(columns.size());
   parallelCount(columns.size(), kBlock, counts, [&](size_t begin, size_t end, RayCounts& count) {
     for (size_t i = begin; i < end; ++i) found[i] = castColumn(grid, grid.placeOf(columns[i]), rays, count);
   });
+  cut += uint32_t(std::ranges::count_if(found, &Column::cut));
   std::vector<CubeEntry> all;
   std::vector<uint32_t> begins(firsts.size(), 0);
   size_t next = 0; // of `columns`, which ascend
   for (size_t c = 0; c + 1 < firsts.size(); ++c) {
     begins[c] = uint32_t(all.size());
     if (next < columns.size() && columns[next] == c) {
-      all.insert(all.end(), found[next].begin(), found[next].end());
+      all.insert(all.end(), found[next].found.begin(), found[next].found.end());
       ++next;
     } else {
       all.insert(all.end(), entries.begin() + firsts[c], entries.begin() + firsts[c + 1]);

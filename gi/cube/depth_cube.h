@@ -57,7 +57,8 @@ struct CubeGrid {
 struct DepthCube {
   CubeGrid grid;
   std::vector<uint32_t> firsts; // entries of column c are [firsts[c], firsts[c + 1])
-  std::vector<CubeEntry> entries;
+  std::vector<CubeEntry> entries = {};
+  uint32_t cut = 0; // columns of which a ray met 256 surfaces and there were more: of those that were cast
 
   /// Casts all columns.
   static DepthCube cast(const CubeGrid& grid, const RayQuery& rays, RayCounts& counts);

@@ -13,8 +13,13 @@ namespace lambent {
 
 namespace {
 
-constexpr size_t kTile = 64;  // entries near one another, as rays ask for them
-constexpr size_t kRun = 1024; // as sums are made
+constexpr size_t kTile = 64;                       // entries near one another, as rays ask for them
+constexpr size_t kRun = 1024;                      // as sums are made
+constexpr size_t kHemicubeBytes = size_t(1) << 30; // at once: 64 of 2048 texels a side would take 13 GB
+
+size_t bytesOfHemicube(int resolution) {
+  return Hemicube{.resolution = resolution, .texels = {}}.size() * sizeof(HemicubeTexel);
+}
 
 bool sameHemisphere(const VirtualLight& a, const VirtualLight& b) {
   return a.alive && b.alive && a.position == b.position && a.normal == b.normal &&
@@ -44,7 +49,10 @@ size_t LayeredCube::bytesKept() const {
 }
 
 void LayeredCube::clear() {
-  const double needed = double(surfaces_.entries().size()) * double(words() * sizeof(Word) + sizeof(dvec3));
+  double needed = double(surfaces_.entries().size()) * double(words() * sizeof(Word) + sizeof(dvec3));
+  if (settings_.visibility == CubeVisibility::Hemicubes)
+    needed += double(std::max(std::min(kHemicubeBytes, in_.size() * bytesOfHemicube(settings_.hemicube)),
+                              bytesOfHemicube(settings_.hemicube)));
   if (needed > double(freeMemory()) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3)))
     throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
                    " GB of memory, more than is left (lower cube.resolution, cube.levels or smc.vpls)");
@@ -183,24 +191,27 @@ std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t 
 
 std::vector<LayeredCube::Word> LayeredCube::byHemicubes(const CubeInputs& in, size_t word, Word which,
                                                         RayCounts& counts) const {
-  std::vector<int> bits;
-  std::vector<Hemicube> hemicubes;
-  for (Word left = which; left; left &= left - 1) {
-    const size_t slot = word * kBatch + size_t(bits.emplace_back(std::countr_zero(left)));
-    const int resolution = slot < in.firstLights ? settings_.hemicube : settings_.hemicube / 2;
-    hemicubes.push_back(hemicubeAt(in_[slot], resolution, in.rays.rayEpsilon()));
-  }
-  if (in.hemicubes) in.hemicubes->make(hemicubes);
-  std::vector<std::vector<uint8_t>> marks(bits.size());
-  parallelCount(bits.size(), 1, counts, [&](size_t i, size_t, RayCounts& count) {
-    if (!in.hemicubes) castHemicube(hemicubes[i], in.rays, count);
-    marks[i].assign(sums_.size(), 0);
-    splat(hemicubes[i], surfaces_, marks[i]);
-  });
   std::vector<Word> seen(sums_.size(), 0);
-  for (size_t i = 0; i < bits.size(); ++i)
-    for (size_t e = 0; e < seen.size(); ++e)
-      if (marks[i][e]) seen[e] |= Word(1) << bits[i];
+  const size_t atOnce = std::max(kHemicubeBytes / bytesOfHemicube(settings_.hemicube), size_t(1));
+  while (which) {
+    std::vector<int> bits;
+    std::vector<Hemicube> hemicubes;
+    for (; which && bits.size() < atOnce; which &= which - 1) {
+      const size_t slot = word * kBatch + size_t(bits.emplace_back(std::countr_zero(which)));
+      const int resolution = slot < in.firstLights ? settings_.hemicube : settings_.hemicube / 2;
+      hemicubes.push_back(hemicubeAt(in_[slot], resolution, in.rays.rayEpsilon()));
+    }
+    if (in.hemicubes) in.hemicubes->make(hemicubes);
+    std::vector<std::vector<uint8_t>> marks(bits.size());
+    parallelCount(bits.size(), 1, counts, [&](size_t i, size_t, RayCounts& count) {
+      if (!in.hemicubes) castHemicube(hemicubes[i], in.rays, count);
+      marks[i].assign(sums_.size(), 0);
+      splat(hemicubes[i], surfaces_, marks[i]);
+    });
+    for (size_t i = 0; i < bits.size(); ++i)
+      for (size_t e = 0; e < seen.size(); ++e)
+        if (marks[i][e]) seen[e] |= Word(1) << bits[i];
+  }
   return seen;
 }
 

@@ -78,8 +78,8 @@ bool differsBeyondBorders(const Fragment& f, std::span<const Fragment> fragments
   return false;
 }
 
-/// Nichols et al. 2010: all rays from the middle of each fragment and from those of the eight patches around it,
-/// whether or not these are fragments; says which fragments are split. `level` above 0.
+/// Nichols et al. 2010: all rays, to the same samples, from the middle of each fragment and from those of the eight
+/// patches around it, whether or not these are fragments; says which fragments are split. `level` above 0.
 std::vector<uint8_t> askAround(const AreaVisibility& visibility, const FrameSurfaces& surfaces, int level,
                                const glm::ivec2& size, int threshold, std::vector<Fragment>& fragments,
                                uint64_t& rays) {
@@ -98,7 +98,7 @@ std::vector<uint8_t> askAround(const AreaVisibility& visibility, const FrameSurf
       number = int(asked.size());
       asked.push_back(visibility.middleOf(there, level));
     });
-  const std::vector<AreaSeen> seen = visibility.ofPixels(asked, true);
+  const std::vector<AreaSeen> seen = visibility.ofPixelsAlike(asked);
   for (const AreaSeen& s : seen) rays += s.rays;
   std::vector<uint8_t> split(fragments.size(), 0);
   for (size_t i = 0; i < fragments.size(); ++i) {
@@ -364,7 +364,7 @@ class Fragments {
     for (const bool partly : {false, true}) {   // a quarter of the rays does not tell a little shadow from none
       std::vector<glm::ivec2> pixels;
       for (const Extra& e : extra[partly]) pixels.push_back(e.pixel);
-      const std::vector<AreaSeen> seen = visibility_.ofPixels(pixels, partly);
+      const std::vector<AreaSeen> seen = visibility_.ofPixels(pixels, partly || !byCounts_);
       for (size_t i = 0; i < seen.size(); ++i) {
         const auto [pixel, level] = extra[partly][i];
         const glm::ivec2 texel = pixel >> level;

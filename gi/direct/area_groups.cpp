@@ -10,12 +10,13 @@ namespace lambent {
 namespace {
 
 /// Some of the lights, with what is theirs.
-AreaLights only(const AreaLights& all, std::span<const uint32_t> which) {
+AreaLights only(const AreaLights& all, std::span<const uint32_t> which, std::span<const double> brought) {
   AreaLights some;
   for (const uint32_t l : which) {
     AreaLight light = all.lights[l];
     const std::span pieces = std::span(all.pieces).subspan(light.firstPiece, light.pieces);
     const std::span samples = std::span(all.samples).subspan(light.firstSample, light.samples);
+    light.brought = float(brought[l]);
     light.firstPiece = uint32_t(some.pieces.size());
     light.firstSample = uint32_t(some.samples.size());
     some.pieces.insert(some.pieces.end(), pieces.begin(), pieces.end());
@@ -58,7 +59,7 @@ std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays,
   }
   std::vector<AreaLights> out;
   for (const std::vector<uint32_t>& group : groups)
-    if (!group.empty()) out.push_back(only(lights, group));
+    if (!group.empty()) out.push_back(only(lights, group, brought));
   return out;
 }
 

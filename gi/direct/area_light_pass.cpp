@@ -176,6 +176,10 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
   framebuffer_.bind();
   bindSurfaces(surfaces);
   atlas_.bind(2);
+  // What quarters say that were compared: shares alone, or answers one by one.
+  const AreaSettings& area = settings.area;
+  const bool byAnswers = area.refinement == AreaRefinement::SubFragments && area.threshold == 1;
+  const int stable = byAnswers ? 2 : area.refinement == AreaRefinement::Neighbours ? 0 : 1;
   const auto draw = [&](const char* variant, gl::PipelineState state) {
     std::vector<std::string> defines;
     if (*variant) defines.push_back(variant);
@@ -186,7 +190,7 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
     program.set("coarsest", atlas_.shape().coarsest);
     program.set("normalPower", settings.filter.normalPower);
     program.set("distanceSigma", settings.filter.distance);
-    program.set("compared", int(settings.area.refinement == AreaRefinement::Counts));
+    program.set("stable", stable);
     state.width = size.x;
     state.height = size.y;
     state.apply();

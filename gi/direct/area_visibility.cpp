@@ -3,6 +3,8 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 
+#include <numeric>
+
 namespace lambent {
 
 namespace {
@@ -11,7 +13,7 @@ namespace {
 /// whose rays follow each other in turn, is spread over the lights as evenly as all.
 constexpr int kQuarterOf[4] = {0, 2, 3, 1}; // by sub-fragment: of those that lie opposite, next to each other
 constexpr int kPartOf[4] = {0, 3, 1, 2};    // the inverse
-constexpr int kCommon = 2;                  // quarter whose samples all ask where they ask the same
+constexpr int kCommon = 2;                  // quarter of a pixel's rays that its patch asked, where all ask the same
 constexpr int kMostAll = 4 * kMostAreaRays;
 
 } // namespace
@@ -19,6 +21,8 @@ constexpr int kMostAll = 4 * kMostAreaRays;
 /// The rays of a fragment: where they go, and what is known of them.
 struct AreaVisibility::Question {
   Unshadowed from;
+  std::vector<float> due;                         // share of the samples that each light gets
+  int drawn = 0;                                  // samples
   std::array<uint32_t, kMostAll> lights, samples; // where they end
   std::array<Ray, kMostAll> segments;
   std::array<float, kMostAll> weights; // of a sample's light, for a receiver; 0: not traced
@@ -62,17 +66,33 @@ AreaVisibility::Unshadowed AreaVisibility::unshadowedAround(const Place& middle,
 }
 
 void AreaVisibility::choose(Question& q, bool alike) const {
-  float below = 0; // light before `l`, share of all
+  q.due.clear();
+  for (const vec3& light : q.from.light) q.due.push_back(luminance(light));
+  draw(q, alike);
+}
+
+void AreaVisibility::chooseForAll(Question& q) const {
+  float sum = 0;
+  for (const AreaLight& light : lights_.lights) sum += light.brought;
+  const float least = sum > 0 ? sum / float(all()) : 1; // a ray for those that bring little
+  q.due.clear();
+  for (const AreaLight& light : lights_.lights) q.due.push_back(light.brought + least);
+  draw(q, false);
+}
+
+void AreaVisibility::draw(Question& q, bool alike) const {
+  const float sum = std::accumulate(q.due.begin(), q.due.end(), 0.0f);
+  for (float& due : q.due) due /= sum;
+  q.drawn = alike ? count_ : all();
+  float below = 0; // due to lights before `l`
   size_t l = 0;
   for (int k = 0; k < all(); ++k) {
-    const float u = (float(alike ? k / 4 * 4 + kCommon : k) + 0.5f) / float(all());
-    const auto share = [&] { return luminance(q.from.light[l]) / q.from.total; };
-    while (l + 1 < q.from.light.size() && below + share() <= u) {
-      below += share();
-      ++l;
-    }
+    // The samples that all quarters ask lie in the middles of their own strata, also where the others are added.
+    const bool common = aims_ == AreaAims::Same && (alike || k % 4 == kCommon);
+    const float u = common ? (float(k / 4) + 0.5f) / float(count_) : (float(k) + 0.5f) / float(all());
+    while (l + 1 < q.due.size() && below + q.due[l] <= u) below += q.due[l++];
     const AreaLight& light = lights_.lights[l];
-    const float within = std::max(u - below, 0.0f) / std::max(share(), 1e-30f);
+    const float within = std::max(u - below, 0.0f) / std::max(q.due[l], 1e-30f);
     q.lights[size_t(k)] = uint32_t(l);
     q.samples[size_t(k)] = light.firstSample + std::min(uint32_t(within * float(light.samples)), light.samples - 1);
   }
@@ -184,9 +204,9 @@ void AreaVisibility::addUp(const Question& q, AreaSeen& to) const {
       open += weight;
       to.bits[size_t(kPartOf[k % 4])] |= uint64_t(1) << (k / 4);
     }
-    // A light that is due less than one ray stands for others like it.
+    // A light that is due less than one sample stands for others like it.
     const vec3& own = q.from.light[light];
-    const float share = std::max(1.0f, q.from.total / (float(all()) * std::max(luminance(own), 1e-30f)));
+    const float share = std::max(1.0f, 1 / (float(q.drawn) * std::max(q.due[light], 1e-30f)));
     for (int c = 0; c < 3; ++c) {
       if (!(sum[c] > 0)) continue;
       whole[c] += share * own[c];
@@ -218,7 +238,9 @@ std::vector<AreaSeen> AreaVisibility::ofPatches(std::span<const glm::ivec2> texe
   return seen;
 }
 
-std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const {
+template <class Choose>
+std::vector<AreaSeen> AreaVisibility::askPixels(std::span<const glm::ivec2> pixels, bool askAll,
+                                                const Choose& choose) const {
   constexpr int kFirst = 1; // the quarter that is asked before the others
   std::vector<AreaSeen> seen(pixels.size());
   ask(
@@ -248,6 +270,14 @@ std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixel
         return false;
       });
   return seen;
+}
+
+std::vector<AreaSeen> AreaVisibility::ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const {
+  return askPixels(pixels, askAll, [&](Question& q) { choose(q); });
+}
+
+std::vector<AreaSeen> AreaVisibility::ofPixelsAlike(std::span<const glm::ivec2> pixels) const {
+  return askPixels(pixels, true, [&](Question& q) { chooseForAll(q); });
 }
 
 std::vector<AreaSeen> AreaVisibility::ofQuads(std::span<const glm::ivec2> texels,

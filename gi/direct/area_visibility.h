@@ -46,6 +46,9 @@ class AreaVisibility {
   std::vector<AreaSeen> ofPatches(std::span<const glm::ivec2> texels, int level) const;
   /// Asks for pixels. Unless `askAll`: where a quarter of a pixel's rays is open, the others are not traced.
   std::vector<AreaSeen> ofPixels(std::span<const glm::ivec2> pixels, bool askAll) const;
+  /// Asks all rays of pixels, each to the same sample from all of them, so that answers can be compared (as Nichols et
+  /// al. 2010 do).
+  std::vector<AreaSeen> ofPixelsAlike(std::span<const glm::ivec2> pixels) const;
   /// Asks for the four pixels of each of some patches of level 1 that have been asked: all their rays, of which the
   /// patches' are a quarter.
   std::vector<AreaSeen> ofQuads(std::span<const glm::ivec2> texels, std::span<const AreaSeen> patches) const;
@@ -78,13 +81,19 @@ class AreaVisibility {
   glm::ivec2 clamped(const glm::ivec2& p) const {
     return glm::min(p, glm::ivec2(surfaces_.width - 1, surfaces_.height - 1));
   }
-  /// Draws the samples that rays go to. `alike`: ray k goes where the others of k / 4 go.
+  /// Draws the samples that rays go to, in proportion to what the lights bring to the receiver. `alike`: ray k goes
+  /// where the others of k / 4 go.
   void choose(Question& q, bool alike = false) const;
+  /// The same in proportion to what the lights bring to the image.
+  void chooseForAll(Question& q) const;
+  void draw(Question& q, bool alike) const;
   void aim(Question& q, int k, const Place& place) const;
   void addUp(const Question& q, AreaSeen& to) const;
   /// `begin(i, q)` aims the rays of question i; `asked(i, q)` takes the answers and says whether there is more to
   /// trace.
   template <class Begin, class Asked> void ask(size_t count, const Begin& begin, const Asked& asked) const;
+  template <class Choose>
+  std::vector<AreaSeen> askPixels(std::span<const glm::ivec2> pixels, bool askAll, const Choose& choose) const;
 
   int all() const { return 4 * count_; }
 

@@ -3,6 +3,7 @@
 #include "gi/lighting/area_pieces.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <numeric>
 #include <span>
@@ -98,6 +99,32 @@ void addSamples(std::span<const SurfaceLight> points, uint32_t count, std::vecto
   }
 }
 
+float bitsReversed(uint32_t i) {
+  uint32_t out = 0;
+  for (int bit = 0; bit < 32; ++bit) out = out << 1 | (i >> bit & 1);
+  return float(out) * 0x1p-32f;
+}
+
+/// `count` samples of a parallelogram, a power of two. Where R rays, a power of two, ask sample (k + 1/2) count / R
+/// each, these are a Hammersley set along the curve: of every strip along a side as wide as 1/R they know one point, so
+/// that shadows' edges along a side are known to 1/R. (Points that merely lie in a grid of cells each know them to its
+/// rows, 1/√R.)
+void addNets(const AreaPiece& piece, uint32_t count, std::vector<AreaSample>& to) {
+  const vec3 corner(piece.corners[0]), e1 = vec3(piece.corners[1]) - corner, e2 = vec3(piece.corners[3]) - corner;
+  std::vector<vec2> places(count, vec2(0));
+  for (uint32_t rays = 1; rays < count; rays *= 2) { // sets for unlike R have no sample in common
+    std::vector<std::pair<uint32_t, vec2>> net;
+    for (uint32_t i = 0; i < rays; ++i) {
+      const vec2 at = (vec2(float(i) / float(rays), bitsReversed(i)) + 0.5f / float(rays));
+      net.emplace_back(alongCurve(vec3(at, 0)), at);
+    }
+    std::ranges::sort(net, {}, &std::pair<uint32_t, vec2>::first);
+    for (uint32_t k = 0; k < rays; ++k) places[(2 * k + 1) * (count / rays / 2)] = net[k].second;
+  }
+  for (const vec2& at : places)
+    to.push_back({corner + at.x * e1 + at.y * e2, vec3(piece.normalArea), vec3(piece.radianceSides)});
+}
+
 /// `count` of a light's samples as disks that share its surface.
 void addDisks(std::span<const AreaSample> samples, size_t count, float area, bool doubleSided,
               std::vector<AreaPiece>& to) {
@@ -118,7 +145,8 @@ AreaLights areaLights(const LightSet& lights) {
   AreaLights out;
   const LightSet parts = byParts(lights);
   const uint32_t count = std::max(1u, uint32_t(parts.emitters.size()));
-  const uint32_t samples = std::clamp(AreaLights::kAllSamples / count, AreaLights::kLeastSamples, AreaLights::kSamples);
+  const uint32_t samples =
+      std::bit_floor(std::clamp(AreaLights::kAllSamples / count, AreaLights::kLeastSamples, AreaLights::kSamples));
   const uint32_t texturedPoints = std::clamp(kAllTexturedPoints / count, kLeastTexturedPoints, kTexturedPoints);
   const uint32_t most = std::clamp(AreaLights::kAllPieces / count, 1u, AreaLights::kMostPieces);
   for (const Emitter& emitter : parts.emitters) {
@@ -130,10 +158,13 @@ AreaLights areaLights(const LightSet& lights) {
                     .firstSample = uint32_t(out.samples.size()),
                     .samples = samples,
                     .doubleSided = emitter.doubleSided};
-    addSamples(points, samples, out.samples);
     const std::span of = std::span(parts.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);
     std::vector<uint32_t> pieceOf;
     std::vector<AreaPiece> pieces = mergedPieces(of, emitter.doubleSided, pieceOf);
+    if (!uneven && pieces.size() == 1 && pieces[0].corners[0].w == 4)
+      addNets(pieces[0], samples, out.samples);
+    else
+      addSamples(points, samples, out.samples);
     if (pieces.size() > most) {
       float area = 0;
       for (const EmitterTriangle& t : of) area += t.area;

@@ -40,14 +40,14 @@ LampTruth traceLamps(const SceneView& view, int rays) {
   query.update(view, true);
   const LightSet set = collectLights(view);
   const Lamps lamps(set);
-  LampTruth out{Image(camera.width, camera.height), Image(camera.width, camera.height),
-                Image(camera.width, camera.height)};
+  const Image black(camera.width, camera.height);
+  LampTruth out{black, black, black, black};
   if (lamps.triangles.empty()) return out;
   const float all = lamps.upTo.back();
   parallelFor(size_t(camera.height), 1, [&](size_t begin, size_t end) {
     std::vector<Ray> segments;
     std::vector<vec3> light;
-    std::vector<uint8_t> blocked;
+    std::vector<uint8_t> odd, blocked;
     for (int y = int(begin); y < int(end); ++y)
       for (int x = 0; x < camera.width; ++x) {
         const CameraRay seen =
@@ -60,6 +60,7 @@ LampTruth traceLamps(const SceneView& view, int rays) {
         const vec3 shift = Rng(1, Stream::Reference, uint64_t(y) << 32 | uint64_t(x)).next3();
         segments.clear();
         light.clear();
+        odd.clear();
         for (int i = 0; i < rays; ++i) {
           const vec3 u = additiveRecurrence3(uint32_t(i), shift);
           const float power = all * (float(i) + u.x) / float(rays);
@@ -73,14 +74,16 @@ LampTruth traceLamps(const SceneView& view, int rays) {
           if (!(cosine > 0 && cosineLight > 0)) continue;
           segments.push_back(segment(origin, offsetPoint(at, facing < 0 ? -t.normal : t.normal, query.rayEpsilon())));
           const float density = luminance(t.radiance) / all; // of samples, per m²
+          odd.push_back(i % 2);
           light.push_back(t.radiance * (cosine * cosineLight / (r2 * r2 * density * float(rays))));
         }
         blocked.resize(segments.size());
         query.occluded(segments, blocked);
-        vec3 sum(0);
+        vec3 halves[2] = {vec3(0), vec3(0)};
         for (size_t i = 0; i < light.size(); ++i)
-          if (!blocked[i]) sum += light[i];
-        out.light.at(x, y) = hit.albedo / kPi * sum;
+          if (!blocked[i]) halves[odd[i]] += light[i];
+        out.light.at(x, y) = hit.albedo / kPi * (halves[0] + halves[1]);
+        out.noise.at(x, y) = hit.albedo / kPi * glm::abs(halves[0] - halves[1]);
       }
   });
   return out;

@@ -11,6 +11,7 @@ namespace lambent {
 /// lamp's texture counts with its mean. Pixels that glow or show nothing are 0.
 struct LampTruth {
   Image light;
+  Image noise;    // of light: half the difference of two halves of the rays, rather more than the standard error
   Image distance; // along the view direction, metres; 0: such a pixel
   Image normal;
 };

@@ -209,6 +209,9 @@ class Table {
     number(SETTING(lpv, steps), {0, 512, "steps", PowersOfTwo}, Nothing,
            "gather.mode volume: cells that light goes from where it was reflected; what is then on its way is lost");
     flag(SETTING(lpv, occlusion), Nothing, "gather.mode volume: surfaces stop light; off: it goes through walls");
+    choice(SETTING(lpv, lobes), {"way", "face"}, Nothing,
+           "gather.mode volume: where light that passes a cell's face goes on, the way it came or along the face's "
+           "normal (as published)");
     number(SETTING(history, frames), {0, 256, "frames", PowersOfTwo}, Nothing,
            "frames that the indirect light of a pixel is averaged over, each by other rays and another part of "
            "the VPLs; 0 = each frame by itself");

@@ -30,6 +30,9 @@ enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
+// Where the lobes of light volumes look that go on through a face: the way that the light came | along the face's
+// normal.
+enum class VolumeLobes : int { Way, Face };
 enum class CubeMaker : int { Auto, Raster, Rays }; // who makes hemicubes
 // Who brings direct light of what has a size (emissive surfaces, the sky, suns' disks): few rays from every pixel,
 // averaged over frames and denoised | shadow maps of points that stand for it.
@@ -184,6 +187,7 @@ struct VolumeSettings {
   float size = 0;        // edge, metres, of a grid that follows the camera; 0 = all of the scene
   int steps = 32;        // of propagation, a cell each
   bool occlusion = true; // surfaces stop light; off: it goes through walls
+  VolumeLobes lobes = VolumeLobes::Way;
   bool operator==(const VolumeSettings&) const = default;
 };
 

@@ -8,8 +8,9 @@
 namespace lambent {
 
 void LightVolume::update(const VolumeInputs& in, FrameStats& stats) {
-  bool changed = steps_ != in.settings.steps;
+  bool changed = steps_ != in.settings.steps || lobes_ != in.settings.lobes;
   steps_ = in.settings.steps;
+  lobes_ = in.settings.lobes;
   {
     const CpuScope scope(stats.stages, key(StageId::VolumeVisibility));
     const VolumeGrid grid = volumeGrid(in.settings, in.world.view, sights_.grid());
@@ -127,9 +128,10 @@ void LightVolume::propagate() {
   deposits_.bindStorage(4);
   const int groups = (grid.cells + 3) / 4;
   for (int step = 0; step <= steps_; ++step) {
-    const gl::Program& program =
-        context_.programs.get({.defines = step == 0 ? std::vector<std::string>{"INJECT"} : std::vector<std::string>{},
-                               .compute = "volume_step.comp"});
+    std::vector<std::string> defines;
+    if (step == 0) defines.push_back("INJECT");
+    if (step > 0 && lobes_ == VolumeLobes::Face) defines.push_back("FACES");
+    const gl::Program& program = context_.programs.get({.defines = std::move(defines), .compute = "volume_step.comp"});
     program.use();
     program.set("cells", grid.cells);
     light_[(step + 1) % 2].bindStorage(0);

@@ -56,6 +56,7 @@ class LightVolume {
   std::vector<Injection> injections_; // by slot
   std::vector<vec4> deposited_;
   int steps_ = -1;
+  VolumeLobes lobes_ = VolumeLobes::Way;
 };
 
 } // namespace lambent

@@ -105,6 +105,36 @@ TEST(AreaLights, NeighboursInTheOrderLieSideBySide) {
   }
 }
 
+/// A square of n × n squares in one mesh, `apart` by so much, facing down at height 2.
+std::vector<EmitterTriangle> squares(int n, float apart) {
+  std::vector<EmitterTriangle> out;
+  const float side = 2.0f / float(n);
+  for (int i = 0; i < n * n; ++i) {
+    const vec3 at = vec3(float(i % n), 0, float(i / n)) * (side + apart) + vec3(-1, 2, -1), x(side, 0, 0),
+               z(0, 0, side);
+    out.push_back(makeEmitterTriangle(at, at + x, at + x + z, vec3(3)));
+    out.push_back(makeEmitterTriangle(at, at + x + z, at + z, vec3(3)));
+  }
+  return out;
+}
+
+/// Of every strip along a side of a lamp, rays to it know as much as they are many.
+TEST(AreaLights, RaysKnowEdgesAlongASideToTheirNumber) {
+  LightSet set;
+  addEmitter(set, 0, 0, squares(3, 0), false); // one of 2 × 2 m
+  const AreaLights lights = areaLights(set);
+  const uint32_t count = lights.lights.at(0).samples;
+  for (const uint32_t rays : {4u, 16u, 64u, 128u})
+    for (const int axis : {0, 2})
+      for (int i = 0; i <= 100; ++i) {
+        const float edge = -1 + 0.02f * float(i);
+        float open = 0;
+        for (uint32_t k = 0; k < rays; ++k)
+          open += float(lights.samples[(2 * k + 1) * count / (2 * rays)].position[axis] < edge) / float(rays);
+        EXPECT_NEAR(open, 0.5f * (edge + 1), 0.501f / float(rays)) << rays << " rays, axis " << axis;
+      }
+}
+
 TEST(AreaLights, TexturedOnesKeepTheirTexture) {
   HandScene scene;
   const uint32_t material = scene.material(vec3(0), vec3(4));
@@ -120,19 +150,6 @@ TEST(AreaLights, TexturedOnesKeepTheirTexture) {
   }
   const float bright = summed(quadPiece({0, 1, -1}, {1, 0, 0}, {0, 0, 2}), vec3(0), vec3(0, 1, 0), 200);
   EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0), vec3(0, 1, 0)).x, 4 * bright, 0.01f * 4 * bright);
-}
-
-/// A square of n × n squares in one mesh, `apart` by so much, facing down at height 2.
-std::vector<EmitterTriangle> squares(int n, float apart) {
-  std::vector<EmitterTriangle> out;
-  const float side = 2.0f / float(n);
-  for (int i = 0; i < n * n; ++i) {
-    const vec3 at = vec3(float(i % n), 0, float(i / n)) * (side + apart) + vec3(-1, 2, -1), x(side, 0, 0),
-               z(0, 0, side);
-    out.push_back(makeEmitterTriangle(at, at + x, at + x + z, vec3(3)));
-    out.push_back(makeEmitterTriangle(at, at + x + z, at + z, vec3(3)));
-  }
-  return out;
 }
 
 TEST(AreaLights, AreWhatTheyAreHoweverTheyAreCut) {

@@ -15,8 +15,9 @@ class AreaLightTest : public GlTest {
     return directOf(passes, scene, collectLights(scene.view()), settings, stats, ShadowRayPass::kMost, &levels);
   }
 
-  /// The same with side² rays per triangle of a lamp at every pixel.
-  Image tracedOf(const HandScene& scene, int side = 32) const {
+  /// The same with side² rays per triangle of a lamp at every pixel: a grid of them, or `scattered`, others at each
+  /// pixel, which know edges along the grid better and what is near worse.
+  Image tracedOf(const HandScene& scene, int side = 32, bool scattered = false) const {
     const CameraView& camera = scene.camera;
     const TracedScene traced(scene);
     const EmbreeQuery& rays = traced.rays;
@@ -27,9 +28,11 @@ class AreaLightTest : public GlTest {
       if (!hit.valid()) continue;
       const vec3 origin = offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon());
       vec3 sum(0);
+      const vec3 shift = Rng(1, Stream::Test, uint64_t(y) << 32 | uint64_t(x)).next3();
       for (const EmitterTriangle& t : traced.lights.triangles)
         for (int i = 0; i < side * side; ++i) {
-          vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+          vec2 u = (vec2(i % side, i / side) + 0.5f) / float(side);
+          if (scattered) u = vec2(additiveRecurrence3(uint32_t(i), shift));
           if (u.x + u.y > 1) u = 1.0f - u;
           const vec3 at = t.p0 + t.e1 * u.x + t.e2 * u.y, way = at - hit.position;
           const float cosine = glm::dot(hit.normal, way), cosineLight = -glm::dot(t.normal, way);
@@ -157,7 +160,8 @@ TEST_F(AreaLightTest, ShadowsAreThoseOfAThousandRays) {
       }
     const Image image = irradianceOf(scene), traced = tracedOf(scene);
     EXPECT_LT(relativeRmse(image, traced), what == 2 || what == 4 ? 0.035 : 0.02) << what;
-    EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.003) << what;
+    EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, what == 3 ? 1.0 / 128 : 0.003)
+        << what << ": rays know the block's edge, which is everywhere the same on the lamp, to 1/64 of it";
     EXPECT_LT(stats.areaFragments, 96u * 64u * 3 / 4) << what;
     EXPECT_LT(stats.raysArea.occlusion, 96u * 64u * 64u * 6 / 10) << what;
   }
@@ -327,8 +331,8 @@ TEST_F(AreaLightTest, FragmentsAreSplitWhereAHalfPlaneSaysSo) {
       constexpr int kOwn[4] = {0, 2, 3, 1};
       uint64_t bits = 0;
       for (int j = 0; j < rays; ++j) {
-        const int ray4 = 4 * j + (rule == AreaRefinement::SubFragments ? 2 : kOwn[quarter]);
-        const float u = (float(ray4) + 0.5f) / float(4 * rays);
+        const float u = rule == AreaRefinement::SubFragments ? (float(j) + 0.5f) / float(rays)
+                                                             : (float(4 * j + kOwn[quarter]) + 0.5f) / float(4 * rays);
         const AreaSample& to = lights.samples[uint32_t(u * float(lights.lights[0].samples))];
         bits |= uint64_t(x + to.position.x > 0) << j; // what lies half way up is left or right of the edge
       }
@@ -371,6 +375,61 @@ TEST_F(AreaLightTest, FragmentsAreSplitWhereAHalfPlaneSaysSo) {
   }
 }
 
+/// Dim lamps that get less than a sample each stand for others like them, by as many samples as were drawn.
+TEST_F(AreaLightTest, DimLampsCountByTheSamplesThatWereDrawn) {
+  LampScene scene(vec3(12));
+  const uint32_t dim = scene.material(vec3(0), vec3(12));
+  for (int i = 0; i < 24; ++i) // a twelfth of the bright lamp's area each, far to the left
+    scene.quad(vec3(-4.0f + 0.25f * float(i % 6), 2, -0.6f + 0.3f * float(i / 6)), vec3(0.2f, 0, 0), vec3(0, 0, 0.2f),
+               dim);
+  scene.box({-0.9f, 1.6f, -0.8f}, {0.9f, 1.7f, 0.8f}, scene.material(vec3(0.7f)), false); // hides the bright one
+  const Image traced = tracedOf(scene, 8);
+  for (const auto& [rule, threshold] : {std::pair(AreaRefinement::SubFragments, 1), {AreaRefinement::Counts, 3}}) {
+    settings.area.refinement = rule;
+    settings.area.threshold = threshold;
+    const Image image = irradianceOf(scene);
+    double found = 0, expected = 0;
+    for (const auto [x, y] : Pixels(96, 64)) {
+      const CameraRay ray = pixelRay(scene.camera, x, y);
+      const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
+      if (ray.direction.y >= 0 || std::abs(at.x) > 0.7f || std::abs(at.z) > 0.7f) continue; // umbra of the bright lamp
+      found += double(image.at(x, y).x);
+      expected += double(traced.at(x, y).x);
+    }
+    EXPECT_GT(expected, 1);
+    EXPECT_NEAR(found / expected, 1, 0.05) << int(rule);
+  }
+}
+
+/// A lamp that half of the picture does not see, though nothing tells of it there: pixels whose shares of the two lamps
+/// differ ask the same samples all the same, so that nothing is split where nothing changes.
+TEST_F(AreaLightTest, ThePredecessorComparesLikeRays) {
+  LampScene scene;
+  const uint32_t white = scene.material(vec3(0.7f));
+  scene.quad(vec3(2, 1.5f, -0.3f), vec3(0.6f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), vec3(6)));
+  scene.box({1.8f, 0.4f, -4}, {1.9f, 1.8f, 4}, white, false); // the floor left of it does not see that lamp
+  scene.size(192, 128);
+  settings.area.refinement = AreaRefinement::Neighbours;
+  settings.area.threshold = 1000;
+  irradianceOf(scene);
+  const std::vector<int> whole = levels;
+  settings.area.threshold = 1;
+  irradianceOf(scene);
+  int left = 0, split = 0, elsewhere = 0;
+  for (const auto [x, y] : Pixels(192, 128)) {
+    const CameraRay ray = pixelRay(scene.camera, x, y);
+    const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y);
+    if (ray.direction.y >= 0) continue;
+    const size_t i = size_t(y * 192 + x);
+    const bool hidden = at.x > -1.5f && at.x < 0.5f && std::abs(at.z) < 2;
+    left += hidden;
+    (hidden ? split : elsewhere) += levels[i] != whole[i];
+  }
+  EXPECT_GT(left, 2000);
+  EXPECT_EQ(split, 0);
+  EXPECT_GT(elsewhere, 500) << "its shadow's edge";
+}
+
 /// A plate, a pole, a fence and a block that reaches the lamp, above the floor.
 struct ShadedLampScene : LampScene {
   explicit ShadedLampScene(int what) {
@@ -388,12 +447,14 @@ struct ShadedLampScene : LampScene {
 TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
   settings.area.refinement = AreaRefinement::SubFragments;
   settings.area.threshold = 1;
-  double squares[2] = {}, pixels[2] = {};
+  constexpr float kMost[4] = {1.4f, 0.96f, 0.96f, 0.96f}; // of the error without, by obstacle
+  double squares[2] = {};
   for (int what = 0; what < 4; ++what) {
     const ShadedLampScene scene(what);
-    const Image traced = tracedOf(scene, 8);
+    const Image traced = tracedOf(scene, 12, true);
     const AreaLights lights = areaLights(collectLights(scene.view()));
     double own[2] = {};
+    int pixels = 0;
     std::vector<int> large; // fragments, without the single pixels in them
     for (const bool extra : {false, true}) {
       settings.area.extra = extra;
@@ -409,16 +470,16 @@ TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
         const double off = double((image.at(x, y).x - traced.at(x, y).x) / whole);
         squares[extra] += off * off;
         own[extra] += off * off;
-        ++pixels[extra];
+        ++pixels;
       }
     }
-    std::printf("%d: RMSE of the share in half shadows %.2f of that without extra samples\n", what,
-                std::sqrt(own[1] / own[0]));
+    std::printf("%d: RMSE of the share in half shadows %.2f of that without extra samples, %d pixels\n", what,
+                std::sqrt(own[1] / own[0]), pixels / 2);
+    EXPECT_LT(std::sqrt(own[1] / own[0]), kMost[what]) << what;
+    EXPECT_GT(pixels / 2, 300) << what;
   }
-  EXPECT_GT(pixels[0], 2000);
-  EXPECT_EQ(pixels[0], pixels[1]);
   std::printf("all: %.3f of that without\n", std::sqrt(squares[1] / squares[0]));
-  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.7);
+  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.96);
 }
 
 TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {
@@ -429,7 +490,7 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
   EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.008) << "64 rays";
-  EXPECT_LT(error, 0.022) << "0.0234 where patches beside a shadow's edge are not split too";
+  EXPECT_LT(error, 0.0095) << "0.0105 where a ray's places on the lamp are only in a grid's cells";
   settings.area.upsample = AreaUpsample::Bilinear;
   const double bilinear = relativeRmse(irradianceOf(scene), traced);
   std::printf("RMSE %.5f, bilinear %.5f\n", error, bilinear);
@@ -437,15 +498,17 @@ TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {
   settings.area.refinement = AreaRefinement::SubFragments; // paper 4's own, with its extra samples
   settings.area.threshold = 1;
   settings.area.upsample = AreaUpsample::Rbf;
-  irradianceOf(scene);
+  const double papersError = relativeRmse(irradianceOf(scene), traced);
   const uint64_t papers = stats.areaFragments;
   settings.area.upsample = AreaUpsample::Bilinear;
   settings.area.refinement = AreaRefinement::Neighbours;
   irradianceOf(scene);
   std::printf("fragments %llu, of paper 4 %llu, of its predecessor %llu\n", (unsigned long long)fragments,
               (unsigned long long)papers, (unsigned long long)stats.areaFragments);
+  std::printf("RMSE of paper 4 %.5f\n", papersError);
+  EXPECT_LT(papersError, 0.022) << "0.038 where what lies between the middles of quarters is mixed too";
   EXPECT_GT(stats.areaFragments, fragments);
-  EXPECT_LT(double(papers), 0.63 * double(stats.areaFragments)) << "0.53 is published";
+  EXPECT_LT(double(papers), 0.75 * double(stats.areaFragments)) << "0.53 is published";
   EXPECT_GT(2 * stats.raysArea.occlusion, 3 * rays)
       << "twice as many where fragments are not held to finer ones beside them";
   settings.multires.depth = 0; // every pixel asks all

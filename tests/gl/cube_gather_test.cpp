@@ -63,6 +63,22 @@ TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
   EXPECT_LT(entries[1], entries[2] / 2);
 }
 
+/// Four times the lights: pixels look up as much as before, and what keeps it up to date grows (paper 5, table 1).
+TEST_F(CubeGatherTest, LookedUpMemoryIsThatOfFewLights) {
+  settings.cube.resolution = 32;
+  uint64_t bytes[2], kept[2];
+  for (const int many : {0, 1}) {
+    settings.smc.vpls = many ? 512 : 128;
+    Viewer gi(settings);
+    const FrameStats& stats = gi.run(room.scene.view());
+    bytes[many] = stats.cubeBytes;
+    kept[many] = stats.cubeKeptBytes;
+  }
+  EXPECT_GT(bytes[0], 0u);
+  EXPECT_LE(double(bytes[1]), 1.1 * double(bytes[0]));
+  EXPECT_GT(kept[1], kept[0]);
+}
+
 /// While nothing but the camera moves a frame draws surfaces and looks up.
 TEST_F(CubeGatherTest, AMovingCameraAsksNoRayAndLightsNothing) {
   Viewer gi(settings);

@@ -83,10 +83,33 @@ TEST_F(LightVolumeTest, NothingIsLostOnTheWay) {
   const VirtualLight light = lightAt(vec3(0.01f), glm::normalize(vec3(1, 2, 3)), vec3(1, 2, 3), 0.1f);
   settings.lpv.cells = 32;
   const vec3 sent = kPi * light.radiance * light.area;
-  for (int steps : {0, 1, 2, 7, 14}) {
-    const vec3 now = flux(scene, {&light, 1}, steps);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(now[c], sent[c], 1e-5f * sent[c]) << steps;
+  for (const VolumeLobes lobes : {VolumeLobes::Way, VolumeLobes::Face}) {
+    settings.lpv.lobes = lobes;
+    for (int steps : {0, 1, 2, 7, 14}) {
+      const vec3 now = flux(scene, {&light, 1}, steps);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(now[c], sent[c], 1e-5f * sent[c]) << steps;
+    }
   }
+}
+
+/// A light that faces a wall: lobes along faces' normals send to the sides what went ahead, all of it still arrives.
+TEST_F(LightVolumeTest, LobesAlongFacesSpreadLight) {
+  HandScene scene;
+  scene.box(vec3(-1), vec3(1), scene.material(vec3(0.5f)), true);
+  scene.camera = cameraAt(vec3(0), vec3(1, 0, 0), kPi / 2, 64, 64); // it fills the wall at x = 1
+  const GBuffer gbuffer = surfaces(scene);
+  const VirtualLight light = lightAt(vec3(-0.9f, 0.03f, 0.03f), vec3(1, 0, 0), vec3(1), 0.2f);
+  settings.lpv.steps = 256;
+  double arrives[2];
+  for (const VolumeLobes lobes : {VolumeLobes::Way, VolumeLobes::Face}) {
+    settings.lpv.lobes = lobes;
+    double& here = arrives[int(lobes)] = 0;
+    for (const vec4& e : readTexture(*gathered(gbuffer, {&light, 1}, settings).irradiance)) here += e.y * 4 / 4096.0;
+  }
+  std::printf("of %.4f W reach the wall ahead %.4f, by lobes along faces %.4f\n", double(kPi) * 0.2, arrives[0],
+              arrives[1]);
+  EXPECT_GT(arrives[1], 0.3 * arrives[0]);
+  EXPECT_LT(arrives[1], 0.95 * arrives[0]);
 }
 
 /// Walls of 1 W/m² all around light each other with as much: what leaves them arrives, in all directions.

@@ -1,6 +1,6 @@
 // lambent accuracy SCENE: what approximations cost in error. Shadow maps of VPLs, and pictures of one view under
 // changing settings, compared with path tracing or with one among them: --convergence, --gathers, --light, --direct,
-// --volume, --figure of paper 1. The other forms: reflective.cpp, accuracy_report.cpp.
+// --volume, --cube. The other forms: accuracy_figures.cpp, reflective.cpp, accuracy_report.cpp.
 #include "tools/lambent/accuracy.h"
 
 #include "engine/core/error.h"
@@ -16,9 +16,6 @@ namespace lambent {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Light of one picture, each pixel by itself: without what gives bounded energy back, and without a history.
-const Assignments kPlain{{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}};
 
 /// But the brightest hundredth of the pixels.
 Value biasOfMost(const Outcome& o) {
@@ -47,12 +44,6 @@ void accuracyMaps(const AccuracyOptions& options) {
   std::printf("  raster and ray-cast maps disagree  %6.3f %%\n", 100 * a.makers);
   std::printf("  raster maps against a ray a pair   %6.3f %%\n", 100 * a.rasterAgainstRays);
   std::printf("  ray-cast maps against a ray a pair %6.3f %%\n", 100 * a.castAgainstRays);
-}
-
-/// Throws InputError where no bound of the geometry term is given.
-void needClamp(const AccuracyOptions& options) {
-  if (!(options.clamp.value_or(0) > 0))
-    throw InputError("--clamp", "is needed here (largest geometry term on both sides, in 1/m^2: --clamp 10)");
 }
 
 /// How the set of virtual lights converges (paper 1, 5.4).
@@ -211,6 +202,7 @@ void accuracyVolume(const AccuracyOptions& options) {
                                                          {{"lpv.steps", "16"}},
                                                          {{"lpv.steps", "64"}},
                                                          {{"lpv.occlusion", "off"}},
+                                                         {{"lpv.lobes", "face"}},
                                                          {{"smc.vpls", "512"}},
                                                          {{"smc.vpls", "8192"}},
                                                          {{"smc.bounces", "1"}}}) {
@@ -231,83 +223,41 @@ void accuracyVolume(const AccuracyOptions& options) {
   study.report(columns, study.rows(columns, study.draw(variants, Buffer::Irradiance)));
 }
 
-/// Paper 1's figs. 8, 9 and 10: pictures of one set of virtual lights, or of sets of several sizes, compared with path
-/// tracing or with a ray for every pair. Its fig. 7 is `lambent stability`.
-struct PathFigure {
-  std::vector<std::pair<std::string, Assignments>> drawn;
-  std::vector<std::string> traced; // what all are compared with; none: the first that is drawn
-  bool twiceShown = false;         // differences are of what is shown, times 2; else of radiance
-};
-
-constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-tracing";
-
-PathFigure pathFigure(const std::string& name, bool quick) {
-  if (name == "1.8")
-    return {{{"interleaved", {{"gather.mode", "interleaved"}}},
-             {"all-maps", {{"gather.mode", "full"}}},
-             {"all-rays", {{"vpl.visibility", "rays"}}}},
-            {kTraced, kTracedClamped}};
-  PathFigure figure{{}, {kTraced, kTracedClamped}, true};
-  if (name == "1.9") {
-    figure = {{{"rays", {{"vpl.visibility", "rays"}}}}, {}};
-    for (const char* texels : {"128", "256", "512", "1024"})
-      if (!quick || figure.drawn.size() < 3)
-        figure.drawn.emplace_back(std::string("maps-") + texels,
-                                  Assignments{{"gather.mode", "full"}, {"shadow.resolution", texels}});
-    return figure;
-  }
-  using Texts = std::vector<std::string>;
-  for (const std::string& vpls : quick ? Texts{"64", "256"} : Texts{"2000", "8000", "40000"})
-    figure.drawn.emplace_back("vpls-" + vpls, Assignments{{"vpl.visibility", "rays"}, {"smc.vpls", vpls}});
-  return figure;
-}
-
-void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
-  const PathFigure figure = pathFigure(name, options.quick);
-  if (!figure.traced.empty()) needClamp(options);
-  const fs::path folder = reportFolder(options.output.out, "out/figure-" + name);
-  Study study(options, options.launch.scene, {.size = "320x180", .set = kPlain});
-  std::vector<std::pair<std::string, Image>> truths;
-  for (const std::string& traced : figure.traced) {
-    study.trace(1024, ReferenceBuffer::Indirect, traced == kTracedClamped, folder / (traced + ".state"));
-    truths.emplace_back(traced, study.truth);
-  }
+/// Layered depth cubes by their texels: against a ray for every pixel and light of the same lights, which is what
+/// texels cost, and against path tracing.
+void accuracyCube(const AccuracyOptions& options) {
+  Study study(options, options.launch.scene, {.size = "320x180"});
+  study.trace(options.quick ? 4 : 256, ReferenceBuffer::Irradiance);
+  const Assignments lights = {{"gather.near", "0"}, {"filter.on", "off"}, {"history.frames", "0"}};
   std::vector<Variant> variants;
-  for (const auto& [drawn, set] : figure.drawn) variants.push_back(study.variant(drawn, set));
-  std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
-  const float exposure = study.traced ? study.traced->exposure : runs[0].exposure;
-  if (truths.empty()) {
-    truths.emplace_back(runs[0].variant.name, runs[0].image);
-    runs.erase(runs.begin());
-  }
-
-  const auto write = [&](const std::string& picture, const Image& image) {
-    for (const char* extension : {".exr", ".png"})
-      writePicture((folder / (picture + extension)).string(), image, exposure);
+  const auto add = [&](const std::string& name, const Assignments& set, const char* technique) {
+    Assignments all = lights;
+    all.insert(all.end(), set.begin(), set.end());
+    variants.push_back(study.variant(name, all, technique));
   };
-  const std::vector<Column> columns{
-      {{"picture", "picture"}, variantName}, {{"against", "against"}}, kRmseShare, kRelMse, kBias};
-  Value rows;
-  for (const auto& [picture, truth] : truths) write(picture, truth);
-  for (const Measured& m : runs) {
-    write(m.variant.name, m.image);
-    for (const auto& [against, truth] : truths) {
-      study.compareWith(truth);
-      rows.add(study.row(columns, m))["against"] = against;
-      const std::string file = (folder / (m.variant.name + "-minus-" + against + ".png")).string();
-      if (figure.twiceShown)
-        writeShown(file, absoluteDifference(shownImage(m.image, exposure), shownImage(truth, exposure), 2));
-      else
-        writePicture(file, absoluteDifference(m.image, truth), midGreyAt(study.outcome(m).error.meanTruth));
-    }
+  add("every pixel and light", {{"vpl.visibility", "rays"}}, "ir");
+  for (const std::string texels : {"16", "32", "64", "128", "256", "512"})
+    if (!options.quick || variants.size() < 3) add("ibrr, " + texels + "²", {{"cube.resolution", texels}}, "ibrr");
+  const std::vector<Measured> runs = study.draw(variants, Buffer::Irradiance);
+  const std::vector<Column> columns{{{"technique", "technique"}, variantName},
+                                    {{"texel_rel_mse", "relMSE by texels", "%.2e"}},
+                                    {{"texel_bias", "bias by texels", "%+.2f %%", 100}},
+                                    kBias,
+                                    kRmseShare,
+                                    kRelMse,
+                                    {{"built_s", "built in, s", "%.1f"},
+                                     [](const Outcome& o) -> Value { return o.run.ms(StageId::Cube).median / 1000; }},
+                                    {{"looked_up_mib", "looked up, MiB", "%.1f"}, [](const Outcome& o) -> Value {
+                                       return double(o.run.frames.back().cubeBytes) / (1 << 20);
+                                     }}};
+  Value rows = study.rows(columns, runs);
+  for (size_t i = 1; i < runs.size(); ++i) {
+    const ImageError error = imageError(runs[i].image, runs[0].image);
+    rows.items()[i]["texel_rel_mse"] = error.relMse;
+    rows.items()[i]["texel_bias"] = error.bias;
   }
-  writeText(folder / "figure.csv", csvText(rows));
   study.report(columns, rows);
-  if (!options.output.quiet) std::printf("pictures: %s\n", folder.c_str());
 }
-
-/// Of paper 1, by number alone as well.
-const std::vector<std::string> kPathFigures{"1.8", "1.9", "1.10", "8", "9", "10"};
 
 void accuracy(AccuracyOptions& o) {
   if (o.form != accuracyReport && o.scenes.size() > 1)
@@ -318,13 +268,14 @@ void accuracy(AccuracyOptions& o) {
   const bool reflective = std::ranges::count(reflectiveFigureNames(), o.figure) > 0;
   if (const std::string& technique = o.launch.technique; !technique.empty()) {
     if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
-    if (reflective) throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
+    if (reflective || o.figure == "1.3" || o.figure == "1.5")
+      throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
     needSampledLights(technique);
   }
   if (o.quick && o.curve.empty() && !reflective && o.form != accuracyReport) useFewLights(o);
   if (!o.curve.empty()) return accuracyCurve(o);
   if (reflective) return reflectiveFigure(o);
-  if (!o.figure.empty()) return drawPathFigure(o, o.figure.starts_with("1.") ? o.figure : "1." + o.figure);
+  if (!o.figure.empty()) return pathFigure(o);
   (o.form ? o.form : accuracyMaps)(o);
 }
 
@@ -361,25 +312,33 @@ void declareAccuracy(CLI::App& app) {
        "maps, and with lamps by patches");
   form("--volume", accuracyVolume,
        "light propagation volumes (technique lpv) by their settings, beside smc and rsm, against path tracing");
+  form("--cube", accuracyCube,
+       "layered depth cubes (technique ibrr) by their texels, against a ray for every pixel and light and against path "
+       "tracing");
   form("--report", accuracyReport,
        "what accuracy costs in time: every setting that trades one for the other, alone and together, and "
        "every technique, along each shot and standing at its end: front, curves, pictures on one page "
        "(index.html), points.csv; interrupted, the same command goes on");
-  std::vector<std::string> figures = kPathFigures;
+  std::vector<std::string> figures = pathFigureNames();
   for (const std::string& name : reflectiveFigureNames()) figures.push_back(name);
-  command.choice("--figure", o->figure, figures,
-                 "of a paper. 1.8 (or 8): visibility by maps and rays against path tracing; 1.9: resolution of shadow "
-                 "maps against rays; 1.10: N = 2000, 8000, 40000 by rays against path tracing. 2.table-1, 2.8: frame "
-                 "rate by finest patches and VPLs; 2.7, 2.9: by the threshold of normals, and detail put back. 3.10: "
-                 "as a shot's light moves; 3.11, 3.12: isr and hisr by thresholds and finest clusters; 3.combined: "
-                 "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3");
+  command.choice(
+      "--figure", o->figure, figures,
+      "of a paper. 1.3: what changes between two frames of a shot (--frame), and where lights are placed; 1.5: "
+      "frames in which light comes into sight, with resampled candidates and without; 1.8: visibility by maps "
+      "and rays against path tracing; 1.9: resolution of shadow "
+      "maps against rays; 1.10: N = 2000, 8000, 40000 by rays against path tracing. 2.table-1, 2.8: frame "
+      "rate by finest patches and VPLs; 2.7, 2.9: by the threshold of normals, and detail put back; 2.6: glossy. 3.8: "
+      "four techniques; 3.10: "
+      "as a shot's light moves; 3.11, 3.12: isr and hisr by thresholds and finest clusters; 3.combined: "
+      "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3");
   command.endForms();
   command.number("--spp", &o->samples, 2, 1 << 24,
                  "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --figure 1024)");
   command.number("--clamp", &o->clamp, 0, 0,
                  "--convergence, --figure: largest geometry term, of VPLs and of path tracing, 1/m^2");
   command.number("--seeds", &o->seeds, 1, 1000, "--convergence, --light: so many (3); --report (1)");
-  command.number("--frame", &o->frame, 1, 1000000, "--light, --direct: of a shot, with all that moves before it");
+  command.number("--frame", &o->frame, 1, 1000000,
+                 "--light, --direct, --figure 1.3, 1.5: of a shot, with all that moves before it");
   command.flag("--joint", o->joint, "--report: only what presets are chosen among");
   command.flag("--alone", o->alone, "--light, --direct: only as set, nothing beside it");
   command.flag(

@@ -71,6 +71,9 @@ class CubeGather : public Gather {
                                          kAtOnce);
       stats.raysCube += work.rays;
       hemicubes_.tell(stats);
+      if (const uint32_t cut = cube_.surfaces().columnsCut(); first && cut > 0 && stats.warning.empty())
+        stats.warning = "the layered depth cube lacks surfaces in " + std::to_string(cut) +
+                        " of its columns, where more than 256 lie behind one another (raise cube.levels)";
       changed |= work.changed;
       if (first) total = work.lightsIn + cube_.pending();
       try {
