@@ -1,5 +1,6 @@
 #include "gi/lighting/area_lights.h"
 
+#include "engine/core/rng.h"
 #include "gi/lighting/area_pieces.h"
 
 #include <algorithm>
@@ -115,7 +116,8 @@ void addNets(const AreaPiece& piece, uint32_t count, std::vector<AreaSample>& to
   for (uint32_t rays = 1; rays < count; rays *= 2) { // sets for unlike R have no sample in common
     std::vector<std::pair<uint32_t, vec2>> net;
     for (uint32_t i = 0; i < rays; ++i) {
-      const vec2 at = (vec2(float(i) / float(rays), bitsReversed(i)) + 0.5f / float(rays));
+      const uint32_t other = uint32_t(mix64(rays)) % rays; // sets are unlike one another
+      const vec2 at = vec2(float(i) / float(rays), bitsReversed(i ^ other)) + 0.5f / float(rays);
       net.emplace_back(alongCurve(vec3(at, 0)), at);
     }
     std::ranges::sort(net, {}, &std::pair<uint32_t, vec2>::first);

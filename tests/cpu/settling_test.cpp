@@ -82,6 +82,13 @@ TEST(Settling, NotWhileAVplIsUnverified) {
   EXPECT_TRUE(s.settled());
   s.restart();
   EXPECT_FALSE(s.settled());
+  s.observe(0, 0, 64, 16);
+  EXPECT_FALSE(s.settled()) << "what it waited before is forgotten";
+  Settling fixed; // nothing is replaced
+  fixed.observe(0, 1, 64, 0);
+  EXPECT_FALSE(fixed.settled());
+  fixed.observe(0, 0, 64, 0);
+  EXPECT_TRUE(fixed.settled());
 }
 
 /// Most sets stay as they are once they have settled; of some a better or a worse one comes about, mostly within two

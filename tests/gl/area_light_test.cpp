@@ -447,7 +447,7 @@ struct ShadedLampScene : LampScene {
 TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
   settings.area.refinement = AreaRefinement::SubFragments;
   settings.area.threshold = 1;
-  constexpr float kMost[4] = {1.4f, 0.96f, 0.96f, 0.96f}; // of the error without, by obstacle
+  constexpr float kMost[4] = {1.1f, 0.97f, 1.05f, 0.93f}; // of the error without, by obstacle
   double squares[2] = {};
   for (int what = 0; what < 4; ++what) {
     const ShadedLampScene scene(what);
@@ -479,33 +479,31 @@ TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
     EXPECT_GT(pixels / 2, 300) << what;
   }
   std::printf("all: %.3f of that without\n", std::sqrt(squares[1] / squares[0]));
-  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.96);
+  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.93);
 }
 
 TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {
   LampScene scene;
   scene.box({-0.3f, 0.6f, -0.3f}, {0.3f, 0.7f, 0.3f}, scene.material(vec3(0.7f)), false);
   scene.size(384, 256);
-  const Image traced = tracedOf(scene, 16), image = irradianceOf(scene);
+  const Image traced = tracedOf(scene, 24, true), image = irradianceOf(scene);
   const double error = relativeRmse(image, traced);
   const uint64_t fragments = stats.areaFragments, rays = stats.raysArea.occlusion;
   EXPECT_NEAR(meanLuminance(image) / meanLuminance(traced), 1, 0.008) << "64 rays";
-  EXPECT_LT(error, 0.0095) << "0.0105 where a ray's places on the lamp are only in a grid's cells";
-  settings.area.upsample = AreaUpsample::Bilinear;
-  const double bilinear = relativeRmse(irradianceOf(scene), traced);
-  std::printf("RMSE %.5f, bilinear %.5f\n", error, bilinear);
-  EXPECT_GT(bilinear, error);
+  EXPECT_LT(error, 0.0065);
   settings.area.refinement = AreaRefinement::SubFragments; // paper 4's own, with its extra samples
   settings.area.threshold = 1;
   settings.area.upsample = AreaUpsample::Rbf;
   const double papersError = relativeRmse(irradianceOf(scene), traced);
   const uint64_t papers = stats.areaFragments;
   settings.area.upsample = AreaUpsample::Bilinear;
+  const double papersBilinear = relativeRmse(irradianceOf(scene), traced);
   settings.area.refinement = AreaRefinement::Neighbours;
   irradianceOf(scene);
   std::printf("fragments %llu, of paper 4 %llu, of its predecessor %llu\n", (unsigned long long)fragments,
               (unsigned long long)papers, (unsigned long long)stats.areaFragments);
-  std::printf("RMSE of paper 4 %.5f\n", papersError);
+  std::printf("RMSE %.5f, of paper 4 %.5f, bilinear %.5f\n", error, papersError, papersBilinear);
+  EXPECT_GT(papersBilinear, 1.1 * papersError);
   EXPECT_LT(papersError, 0.022) << "0.038 where what lies between the middles of quarters is mixed too";
   EXPECT_GT(stats.areaFragments, fragments);
   EXPECT_LT(double(papers), 0.75 * double(stats.areaFragments)) << "0.53 is published";

@@ -69,6 +69,8 @@ TEST_F(ContextTest, IncludesGoInOnceAndKeepTheirLines) {
   const gl::ShaderText shader = gl::loadShader(folder.path, "main.frag", {"VARIANT 3"});
   ASSERT_EQ(shader.files.size(), 3u);
   EXPECT_NE(shader.text.find("#version 450\n#define VARIANT 3\n#line 2 0\n"), std::string::npos);
+  EXPECT_NE(shader.text.find("#line 1 2\n#ifdef __cplusplus\n\n#endif\nfloat b;\n"), std::string::npos) << shader.text;
+  EXPECT_NE(shader.text.find("#line 2 1\nfloat a;\n"), std::string::npos) << shader.text;
   EXPECT_EQ(shader.text.find("float b;"), shader.text.rfind("float b;"));
   EXPECT_NE(shader.text.find("#line 4 0\nfloat c;"), std::string::npos);
   EXPECT_EQ(shader.text.find("only/for/cpp"), std::string::npos);

@@ -177,6 +177,7 @@ TEST_P(HostTest, WithoutACurrentContextItIsRefusedInOneLine) {
   EXPECT_EQ(refusal(), "");
   host->release();
   EXPECT_NE(refusal().find("no OpenGL context is current"), std::string::npos) << refusal();
+  EXPECT_EQ(refusal().find('\n'), std::string::npos) << refusal();
   host->makeCurrent();
   EXPECT_EQ(refusal(), "");
 }

@@ -54,6 +54,12 @@ TEST_F(BadInput, BinaryFilesCutOffAnywhereAreRefused) {
   std::string lastChunk = whole;
   lastChunk[whole.size() - 36 - 8] = 40;
   expectError("last.glb", lastChunk, "chunk 1");
+  for (size_t more = 1; more < 8; ++more) { // a third chunk, without all of its header
+    std::string header = whole + std::string(more, '\0');
+    header[8] = char(header.size() & 0xff);
+    header[9] = char(header.size() >> 8);
+    expectError("header.glb", header, "within the header of chunk 2");
+  }
 }
 
 TEST_F(BadInput, IndicesOutOfRangeNameTheirPlace) {
@@ -254,9 +260,13 @@ TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
 
 TEST_F(BadInput, KeysTwiceAndMatricesThatAreNotAffine) {
   expectError("twice.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scene": 1})", "'scene' twice");
-  GltfBuilder b = oneTriangle();
-  b.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  expectError(b, "not affine");
+  for (const size_t element : {3u, 7u, 11u, 15u}) {
+    std::vector<float> matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    matrix[element] = 0.5f;
+    GltfBuilder node = oneTriangle();
+    node.json["nodes"][0]["matrix"] = matrix;
+    expectError(node, "not affine");
+  }
 }
 
 TEST_F(BadInput, LightBeyondPicturesIsRefused) {

@@ -296,6 +296,14 @@ TEST_F(BadDeform, Skins) {
   expectError(with("/accessors/3/componentType", 5126), "JOINTS_0");
   expectError(with("/meshes/0/primitives/0/attributes/WEIGHTS_0", 99), "WEIGHTS_0: refers to accessor 99");
 
+  for (const size_t element : {3u, 7u, 11u, 15u}) {
+    Bar skewed;
+    std::vector<mat4> binds(2, mat4(1));
+    binds[1][int(element / 4)][int(element % 4)] = 0.5f;
+    skewed.b.json["skins"][0]["inverseBindMatrices"] = skewed.b.accessor(skewed.b.view(binds), 5126, "MAT4", 2);
+    expectError(skewed.b, "inverse bind matrix 1 is not affine");
+  }
+
   Bar rigid;
   rigid.b.json["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0");
   scene = rigid.b.load(folder);

@@ -116,6 +116,14 @@ TEST(WriteAtomically, LeavesNothingBehindOnFailureAndKeepsTheOldFile) {
                RunError);
   EXPECT_EQ(readBytes(folder / "old.txt"), "old");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  const std::filesystem::path target = folder / "becomes-a-folder.txt";
+  EXPECT_THROW(writeAtomically(target,
+                               [&](const std::filesystem::path& temporary) {
+                                 writeBytes(temporary, "whole");
+                                 std::filesystem::create_directory(target);
+                               }),
+               RunError);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "old.txt and the folder";
   EXPECT_THROW(writeExr(folder / "no/such/folder.exr", Image(1, 1)), RunError);
   EXPECT_THROW(writePng(folder / "no/such/folder.png", Image8{1, 1, {1, 2, 3}}), RunError);
 }

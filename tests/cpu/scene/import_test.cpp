@@ -40,6 +40,19 @@ vec3 areaVector(const Mesh& m) {
   return sum;
 }
 
+/// Where the surface lies on the mean.
+vec3 centroid(const Mesh& m) {
+  vec3 sum(0);
+  float areas = 0;
+  for (const uvec3& t : m.triangles) {
+    const vec3 a = m.positions[t.x], b = m.positions[t.y], c = m.positions[t.z];
+    const float area = 0.5f * glm::length(glm::cross(b - a, c - a));
+    sum += area * (a + b + c) / 3.0f;
+    areas += area;
+  }
+  return sum / areas;
+}
+
 TEST_F(Import, TriangleWithoutNormalsOrIndicesGetsFlatNormals) {
   const Mesh& m = onlyMesh(oneTriangle());
   ASSERT_EQ(m.triangles.size(), 1u);
@@ -63,6 +76,7 @@ TEST_F(Import, IndexedStripAndFanMakeTheSameSquare) {
     const Mesh& m = onlyMesh(b);
     EXPECT_EQ(m.triangles.size(), 2u);
     expectNear(areaVector(m), {0, 0, 1});
+    expectNear(centroid(m), {0.5f, 0.5f, 0});
     EXPECT_EQ(m.positions.size(), 6u); // flat normals: no vertex is shared
   }
 }
