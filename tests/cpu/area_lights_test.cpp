@@ -124,7 +124,13 @@ TEST(AreaLights, RaysKnowEdgesAlongASideToTheirNumber) {
   addEmitter(set, 0, 0, squares(3, 0), false); // one of 2 × 2 m
   const AreaLights lights = areaLights(set);
   const uint32_t count = lights.lights.at(0).samples;
-  for (const uint32_t rays : {4u, 16u, 64u, 128u})
+  for (const uint32_t rays : {4u, 16u, 64u, 128u}) {
+    uint32_t quadrants[4] = {};
+    for (uint32_t k = 0; k < rays; ++k) {
+      const vec3& p = lights.samples[(2 * k + 1) * count / (2 * rays)].position;
+      ++quadrants[(p.x > 0) + 2 * (p.z > 0)];
+    }
+    for (const uint32_t in : quadrants) EXPECT_EQ(in, rays / 4);
     for (const int axis : {0, 2})
       for (int i = 0; i <= 100; ++i) {
         const float edge = -1 + 0.02f * float(i);
@@ -133,6 +139,7 @@ TEST(AreaLights, RaysKnowEdgesAlongASideToTheirNumber) {
           open += float(lights.samples[(2 * k + 1) * count / (2 * rays)].position[axis] < edge) / float(rays);
         EXPECT_NEAR(open, 0.5f * (edge + 1), 0.501f / float(rays)) << rays << " rays, axis " << axis;
       }
+  }
 }
 
 TEST(AreaLights, TexturedOnesKeepTheirTexture) {

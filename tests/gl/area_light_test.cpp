@@ -378,8 +378,8 @@ TEST_F(AreaLightTest, FragmentsAreSplitWhereAHalfPlaneSaysSo) {
 /// Dim lamps that get less than a sample each stand for others like them, by as many samples as were drawn.
 TEST_F(AreaLightTest, DimLampsCountByTheSamplesThatWereDrawn) {
   LampScene scene(vec3(12));
-  const uint32_t dim = scene.material(vec3(0), vec3(12));
-  for (int i = 0; i < 24; ++i) // a twelfth of the bright lamp's area each, far to the left
+  const uint32_t dim = scene.material(vec3(0), vec3(48)); // bring a tenth of the bright one's each: they share its rays
+  for (int i = 0; i < 24; ++i)                            // far to the left
     scene.quad(vec3(-4.0f + 0.25f * float(i % 6), 2, -0.6f + 0.3f * float(i / 6)), vec3(0.2f, 0, 0), vec3(0, 0, 0.2f),
                dim);
   scene.box({-0.9f, 1.6f, -0.8f}, {0.9f, 1.7f, 0.8f}, scene.material(vec3(0.7f)), false); // hides the bright one

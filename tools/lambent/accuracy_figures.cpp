@@ -8,6 +8,7 @@
 #include "tools/lambent/picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace lambent {
@@ -162,10 +163,21 @@ Image overhead(const Variant& variant, const SceneView& view) {
   return picture;
 }
 
+/// Mean step of a pixel from the frame before, over the mean.
+Value meanStep(const Outcome& o) {
+  double step = 0, light = 0;
+  for (size_t i = 0; i < o.run.image.pixels.size(); ++i) {
+    const float now = luminance(o.run.image.pixels[i]);
+    step += double(std::abs(now - luminance(o.run.before[0].pixels[i])));
+    light += double(now);
+  }
+  return light > 0 ? step / light : 0;
+}
+
 /// Fig. 3: how much of a picture changes from one frame to the next while a light moves, and where lights are placed.
 void drawSteps(const AccuracyOptions& options) {
   const fs::path folder = reportFolder(options.output.out, "out/figure-1.3");
-  Study study(options, options.launch.scene, {.size = "320x180", .set = kPlain});
+  Study study(options, options.launch.scene, {.size = "320x180", .set = asInPaper1()});
   const RunPlan plan = upTo(study, options, 1);
   std::vector<Variant> variants;
   for (const char* technique : {"ir", "tcas", "mir", "smc"})
@@ -173,7 +185,8 @@ void drawSteps(const AccuracyOptions& options) {
   const std::vector<Measured> runs = run(variants, plan, "drawing", options.output.quiet);
   const std::vector<Column> columns{
       {{"technique", "technique"}, variantName},
-      {{"step", "step of a pixel over the mean", "%.2f %%", 100},
+      {{"step", "step of a pixel over the mean", "%.2f %%", 100}, meanStep},
+      {{"step_rms", "root of its square", "%.2f %%", 100},
        [](const Outcome& o) -> Value { return imageError(o.run.before[0], o.run.image).rmseShare(); }},
       {{"mean_step", "of the mean", "%+.2f %%", 100},
        [](const Outcome& o) -> Value { return -imageError(o.run.before[0], o.run.image).bias; }}};
@@ -195,7 +208,7 @@ void drawSteps(const AccuracyOptions& options) {
 void drawResampling(const AccuracyOptions& options) {
   constexpr int kFrames = 3;
   const fs::path folder = reportFolder(options.output.out, "out/figure-1.5");
-  Study study(options, options.launch.scene, {.size = "320x180", .set = kPlain});
+  Study study(options, options.launch.scene, {.size = "320x180", .set = asInPaper1()});
   const RunPlan plan = upTo(study, options, kFrames - 1);
   const std::vector<Variant> variants{study.variant("resampled", {{"smc.candidateRays", "16"}}, "smc"),
                                       study.variant("as-drawn", {{"smc.candidateRays", "1"}}, "smc")};

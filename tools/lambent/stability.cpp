@@ -56,16 +56,8 @@ struct Protocol {
 };
 const Protocol kProtocols[] = {
     {"rays", "sets of lights alone, a ray for every pixel and light (default)", {{"vpl.visibility", "rays"}}},
-    {"paper",
-     "as paper 1: maps, 4x4 subsets, filter, each frame by itself, one clamp for all, no near light",
-     {{"vpl.visibility", "maps"},
-      {"shadow.resolution", "128"},
-      {"gather.mode", "interleaved"},
-      {"gather.disk", "0"},
-      {"gather.clamp", "10"}, // theirs is set by hand for each scene and not told
-      {"gather.near", "0"},
-      {"filter.on", "on"},
-      {"history.frames", "0"}}},
+    {"paper", "as paper 1: maps, 4x4 subsets, filter, each frame by itself, one clamp for all, no near light",
+     asInPaper1()},
     {"frames", "frames as they are drawn otherwise", {}},
 };
 const Protocol& protocolOf(const StabilityOptions& options) {

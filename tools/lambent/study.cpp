@@ -78,6 +78,12 @@ TracedImage trace(const SceneView& view, const Settings& settings, TracePlan pla
   return traceImage(view, settings, plan);
 }
 
+Assignments asInPaper1() {
+  return {{"vpl.visibility", "maps"}, {"shadow.resolution", "128"}, {"gather.mode", "interleaved"},
+          {"gather.disk", "0"},       {"gather.clamp", "10"}, // theirs is set by hand for each scene and not told
+          {"gather.near", "0"},       {"filter.on", "on"},          {"history.frames", "0"}};
+}
+
 double msOf(const FrameStats& stats, std::span<const StageId> stages) {
   double ms = 0;
   for (StageId stage : stages) ms += stats.ms(stage);

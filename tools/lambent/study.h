@@ -31,6 +31,8 @@ std::vector<Variant> seeded(const std::vector<Variant>& variants, int seeds);
 /// What techniques from these maps approximate. Their maps are what `rsm.resolution` says. As isr without clusters: the
 /// same as hisr's whole tree, two to four times as fast.
 void lightByEveryTexel(Settings& settings);
+/// How paper 1 compares techniques: maps, 4×4 subsets, a filter, each frame by itself, one clamp, no near light.
+Assignments asInPaper1();
 /// Lights that are soon placed, unless the command line says otherwise: for --quick.
 void useFewLights(MeasureOptions& options);
 /// Throws InputError where the technique does not sample its lights.
