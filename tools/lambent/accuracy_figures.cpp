@@ -195,7 +195,7 @@ void drawSteps(const AccuracyOptions& options) {
     writePicture(name + ".png", m.image, m.exposure);
     writeShown(name + "-step.png",
                absoluteDifference(shownImage(m.image, m.exposure), shownImage(m.before[0], m.exposure), 8));
-    if (m.variant.name == "ir" || m.variant.name == "smc")
+    if (&m == &runs.front() || &m == &runs.back()) // lights for all of the scene, and for what is seen of it
       writeShown(name + "-overhead.png", overhead(m.variant, plan.view(plan.frames - 1)));
   }
   const Value rows = study.rows(columns, runs);
