@@ -55,7 +55,7 @@ void LayeredCube::clear() {
                               bytesOfHemicube(settings_.hemicube)));
   if (needed > double(freeMemory()) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3)))
     throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
-                   " GB of memory, more than is left (lower cube.resolution, cube.levels or smc.vpls)");
+                   " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
   seen_.assign(surfaces_.entries().size() * words(), 0);
   sums_.assign(surfaces_.entries().size(), dvec3(0));
   for (VirtualLight& light : in_) light.alive = false;

@@ -106,23 +106,28 @@ float bitsReversed(uint32_t i) {
   return float(out) * 0x1p-32f;
 }
 
-/// `count` samples of a parallelogram, a power of two. Where R rays, a power of two, ask sample (k + 1/2) count / R
+/// `count` places in the unit square, a power of two. Where R rays, a power of two, ask for place (k + 1/2) count / R
 /// each, these are a Hammersley set along the curve: of every strip along a side as wide as 1/R they know one point, so
 /// that shadows' edges along a side are known to 1/R. (Points that merely lie in a grid of cells each know them to its
 /// rows, 1/√R.)
-void addNets(const AreaPiece& piece, uint32_t count, std::vector<AreaSample>& to) {
-  const vec3 corner(piece.corners[0]), e1 = vec3(piece.corners[1]) - corner, e2 = vec3(piece.corners[3]) - corner;
+std::vector<vec2> netsOf(uint32_t count) {
   std::vector<vec2> places(count, vec2(0));
-  for (uint32_t rays = 1; rays < count; rays *= 2) { // sets for unlike R have no sample in common
+  for (uint32_t rays = 1; rays < count; rays *= 2) {     // sets for unlike R have no place in common
+    const uint32_t other = uint32_t(mix64(rays)) % rays; // and are unlike one another
     std::vector<std::pair<uint32_t, vec2>> net;
     for (uint32_t i = 0; i < rays; ++i) {
-      const uint32_t other = uint32_t(mix64(rays)) % rays; // sets are unlike one another
       const vec2 at = vec2(float(i) / float(rays), bitsReversed(i ^ other)) + 0.5f / float(rays);
       net.emplace_back(alongCurve(vec3(at, 0)), at);
     }
     std::ranges::sort(net, {}, &std::pair<uint32_t, vec2>::first);
     for (uint32_t k = 0; k < rays; ++k) places[(2 * k + 1) * (count / rays / 2)] = net[k].second;
   }
+  return places;
+}
+
+/// Samples of a parallelogram.
+void addSamples(const AreaPiece& piece, std::span<const vec2> places, std::vector<AreaSample>& to) {
+  const vec3 corner(piece.corners[0]), e1 = vec3(piece.corners[1]) - corner, e2 = vec3(piece.corners[3]) - corner;
   for (const vec2& at : places)
     to.push_back({corner + at.x * e1 + at.y * e2, vec3(piece.normalArea), vec3(piece.radianceSides)});
 }
@@ -151,6 +156,7 @@ AreaLights areaLights(const LightSet& lights) {
       std::bit_floor(std::clamp(AreaLights::kAllSamples / count, AreaLights::kLeastSamples, AreaLights::kSamples));
   const uint32_t texturedPoints = std::clamp(kAllTexturedPoints / count, kLeastTexturedPoints, kTexturedPoints);
   const uint32_t most = std::clamp(AreaLights::kAllPieces / count, 1u, AreaLights::kMostPieces);
+  const std::vector<vec2> nets = netsOf(samples);
   for (const Emitter& emitter : parts.emitters) {
     const bool uneven = textured(parts, emitter);
     const std::vector<SurfaceLight> points =
@@ -164,7 +170,7 @@ AreaLights areaLights(const LightSet& lights) {
     std::vector<uint32_t> pieceOf;
     std::vector<AreaPiece> pieces = mergedPieces(of, emitter.doubleSided, pieceOf);
     if (!uneven && pieces.size() == 1 && pieces[0].corners[0].w == 4)
-      addNets(pieces[0], samples, out.samples);
+      addSamples(pieces[0], nets, out.samples);
     else
       addSamples(points, samples, out.samples);
     if (pieces.size() > most) {

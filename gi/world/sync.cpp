@@ -165,7 +165,7 @@ class Syncing {
       if (!has.instance) create();
       if (isGone(pose(), named(v.id) + ", posed,")) {
         create();
-        need(pose());
+        take(pose(), named(v.id) + ", posed,");
       }
       has = {has.instance, wanted.mesh, wanted.place, wanted.shape};
     }

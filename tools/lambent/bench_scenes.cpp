@@ -216,7 +216,7 @@ void addCubeRows(const BenchOptions& options, const std::string& file, Value& ro
     try {
       first = runner->run(view);
     } catch (const RunError& e) { // a cube that this machine has no memory for
-      if (interrupted) throw;
+      if (interrupted || own) throw;
       std::fprintf(stderr, "warning: %s: %s\n", variants[i].name.c_str(), e.what());
       continue;
     }
