@@ -18,6 +18,7 @@ uniform int resolution;  // texels along an edge of each cube
 uniform float brightest; // irradiance of the brightest entry, W/m²
 
 const float kLeastCos = 0.5;    // between the pixel's normal, which may be interpolated or mapped, and the entry's
+const float kSlantCos = 0.25, kSlantPlane = 0.2; // where nothing matches: slanted sides of joints and mouldings, which no ray met
 const float kNextImage = 0.8;   // of the largest part of the normal: from here on its axis is asked too
 const float kSamePlane = 1.0;   // texels, for flat surfaces; curved ones leave their planes between texels
 
@@ -60,7 +61,7 @@ struct Found {
 };
 
 /// Of a column's entries on the surface at x (from the corner) the one nearest to it. `at`: x in texels of the image.
-Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal) {
+Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal, float leastCos) {
   Found found = Found(1e9, 0.0, vec3(0.0), 0u, vec2(0.0));
   if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(resolution)))) return found;
   int blocks = resolution / kCubeBlock;
@@ -73,7 +74,7 @@ Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal)
     CubeTexel t = CubeTexel(packed_.x, uintBitsToFloat(packed_.y), packed_.z, packed_.w);
     vec3 n = unitFromOctahedral(unpackSnorm2x16(t.normal));
     float height = abs(dot(x, n) - t.distance) / cube.texel;
-    if (height > kSamePlane || dot(n, normal) < kLeastCos) continue;
+    if (height > (leastCos < kLeastCos ? kSlantPlane : kSamePlane) || dot(n, normal) < leastCos) continue;
     vec2 way = vec2(column) + (vec2(t.place >> 8 & 255u, t.place >> 16 & 255u) + 0.5) / 256.0 - at;
     float off = max(abs(way.x), abs(way.y)) + height;
     if (off >= found.off) continue;
@@ -84,13 +85,14 @@ Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal)
 }
 
 /// Adds what an image holds around x; `share` of the image in all.
-void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, inout vec3 sum, inout float total, inout vec4 fallback) {
+void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, float leastCos, inout vec3 sum, inout float total,
+            inout vec4 fallback) {
   vec2 at = vec2(x[(axis + 1) % 3], x[(axis + 2) % 3]) / cube.texel;
   ivec2 base = ivec2(floor(at - 0.5));
   Found found[4];
   int nearest = 0;
   for (int i = 0; i < 4; ++i) {
-    found[i] = nearestIn(cube, base + ivec2(i & 1, i >> 1), axis, at, x, normal);
+    found[i] = nearestIn(cube, base + ivec2(i & 1, i >> 1), axis, at, x, normal, leastCos);
     if (found[i].off < found[nearest].off) nearest = i;
   }
   if (found[nearest].off > 1e8) return;
@@ -120,10 +122,12 @@ void main() {
   vec4 nearest = vec4(0.0, 0.0, 0.0, 1e9);
   for (int axis = 0; axis < 3; ++axis) {
     float share = smoothstep(kNextImage * most, most, a[axis]);
-    if (share > 0.0) lookUp(cube, axis, share, x, normal, sum, total, nearest);
+    if (share > 0.0) lookUp(cube, axis, share, x, normal, kLeastCos, sum, total, nearest);
   }
-  if (nearest.w > 1e8) // a mapped normal may lead to another image than the surface's own
-    for (int axis = 0; axis < 3; ++axis) lookUp(cube, axis, 1.0, x, normal, sum, total, nearest);
+  // A mapped normal may lead to another image than the surface's own.
+  for (int turn = 0; turn < 2 && nearest.w > 1e8; ++turn)
+    for (int axis = 0; axis < 3; ++axis)
+      lookUp(cube, axis, 1.0, x, normal, turn == 0 ? kLeastCos : kSlantCos, sum, total, nearest);
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
   outIrradiance = vec4(irradiance, total > 1e-3 || nearest.w < 1e8 ? 1.0 : 0.0);
 #ifdef GLOSSY

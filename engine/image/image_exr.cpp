@@ -1,6 +1,7 @@
 // OpenEXR in and out: 32-bit float RGB, scan lines, ZIP.
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/image/image.h"
 
 #include <OpenEXR/ImfChannelList.h>

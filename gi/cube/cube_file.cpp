@@ -17,7 +17,7 @@ namespace {
 
 constexpr char kMagic[8] = {'L', 'A', 'M', 'B', 'C', 'U', 'B', '\n'};
 // Counts up when the file or the meaning of its numbers changes.
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 struct Header {
   char magic[8];
@@ -86,6 +86,7 @@ struct CubeFile {
     stream.bytes(&s.resolution_, sizeof s.resolution_);
     stream.bytes(&s.levels_, sizeof s.levels_);
     stream.bytes(&s.split_, sizeof s.split_);
+    stream.bytes(&s.cut_, sizeof s.cut_);
     stream.bytes(&cube.settings_, sizeof cube.settings_);
     stream.padded(&cube.gather_, kOfGather);
     stream.vector(s.nodes_);

@@ -13,6 +13,7 @@ namespace {
 constexpr size_t kBlock = 64;                      // columns cast as one
 constexpr int kMostSurfaces = 256;                 // that a ray goes through
 constexpr float kSamePlane = 0.3f, kNextPlane = 1; // texels
+constexpr float kAbove = 0.01f;                    // texels
 constexpr vec2 kWithin[] = {{0.5f, 0.5f}, {0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}};
 
 /// Off the surface as far as its curvature may hide neighbours from one another.
@@ -25,17 +26,23 @@ struct Column {
   bool cut = false; // there are more
 };
 
-/// A ray through the middle of a column, then four around it, which find what the first misses.
+/// A ray through the middle of a column, then four around it, which find what the first misses. Of surfaces merged, as
+/// a floor and slabs on it, the one that covers the other stands for both: it is what most pixels show.
 Column castColumn(const CubeGrid& grid, const CubeGrid::Place& at, const RayQuery& rays, RayCounts& counts) {
   Column column;
   std::vector<CubeEntry>& found = column.found;
   const float length = grid.edge();
   const auto known = [&](const CubeEntry& e) {
-    return std::any_of(found.begin(), found.end(), [&](const CubeEntry& f) {
+    return std::any_of(found.begin(), found.end(), [&](CubeEntry& f) {
       if (!matches(f, e.position, e.normal, kSamePlane * grid.texel)) return false;
+      const vec3 over = lifted(e, grid.texel, rays.rayEpsilon());
       ++counts.occlusion;
-      return !rays.occluded(
-          segment(lifted(f, grid.texel, rays.rayEpsilon()), lifted(e, grid.texel, rays.rayEpsilon())));
+      if (rays.occluded(segment(lifted(f, grid.texel, rays.rayEpsilon()), over))) return false;
+      if (glm::dot(e.position - f.position, f.normal) > kAbove * grid.texel) {
+        ++counts.occlusion;
+        if (rays.occluded(segment(offsetPoint(f.position, f.normal, rays.rayEpsilon()), over))) f = e;
+      }
+      return true;
     });
   };
   vec3 along(0);

@@ -21,6 +21,10 @@ size_t bytesOfHemicube(int resolution) {
   return Hemicube{.resolution = resolution, .texels = {}}.size() * sizeof(HemicubeTexel);
 }
 
+size_t hemicubesAtOnce(int resolution) {
+  return std::clamp(kHemicubeBytes / bytesOfHemicube(resolution), size_t(1), size_t(64)); // 64: bits of a word
+}
+
 bool sameHemisphere(const VirtualLight& a, const VirtualLight& b) {
   return a.alive && b.alive && a.position == b.position && a.normal == b.normal &&
          a.geometricNormal == b.geometricNormal;
@@ -48,14 +52,22 @@ size_t LayeredCube::bytesKept() const {
   return surfaces_.entries().size_bytes() + sums_.size() * sizeof(dvec3) + seen_.size() * sizeof(Word);
 }
 
-void LayeredCube::clear() {
+/// Throws RunError where there is not as much, counting what is given up for it. The next update then begins anew.
+void LayeredCube::refuseBeyond(size_t memory, double needed) {
+  if (memory == 0) memory = freeMemory();
+  if (needed <= double(memory) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3))) return;
+  surfaces_ = {};
+  throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
+                 " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
+}
+
+void LayeredCube::clear(size_t memory) {
   double needed = double(surfaces_.entries().size()) * double(words() * sizeof(Word) + sizeof(dvec3));
-  if (settings_.visibility == CubeVisibility::Hemicubes)
-    needed += double(std::max(std::min(kHemicubeBytes, in_.size() * bytesOfHemicube(settings_.hemicube)),
-                              bytesOfHemicube(settings_.hemicube)));
-  if (needed > double(freeMemory()) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3)))
-    throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
-                   " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
+  if (settings_.visibility == CubeVisibility::Hemicubes) {
+    const size_t atOnce = std::clamp(in_.size(), size_t(1), hemicubesAtOnce(settings_.hemicube));
+    needed += double(atOnce) * double(bytesOfHemicube(settings_.hemicube) + surfaces_.entries().size()); // with marks
+  }
+  refuseBeyond(memory, needed);
   seen_.assign(surfaces_.entries().size() * words(), 0);
   sums_.assign(surfaces_.entries().size(), dvec3(0));
   for (VirtualLight& light : in_) light.alive = false;
@@ -77,9 +89,11 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   if (fresh) {
     settings_ = in.settings;
     gather_ = in.gather;
+    constexpr double kBytesOfColumn = 200; // while it is cast, with an entry or two
+    refuseBeyond(in.memory, 3.0 * settings_.resolution * settings_.resolution * kBytesOfColumn);
     surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays);
     in_.assign(in.lights.size(), {});
-    clear();
+    clear(in.memory);
     work.entriesAnew = uint32_t(sums_.size());
     work.changed = true;
   } else if (!in.moved.empty()) {
@@ -192,7 +206,7 @@ std::vector<LayeredCube::Word> LayeredCube::byRays(const CubeInputs& in, size_t 
 std::vector<LayeredCube::Word> LayeredCube::byHemicubes(const CubeInputs& in, size_t word, Word which,
                                                         RayCounts& counts) const {
   std::vector<Word> seen(sums_.size(), 0);
-  const size_t atOnce = std::max(kHemicubeBytes / bytesOfHemicube(settings_.hemicube), size_t(1));
+  const size_t atOnce = hemicubesAtOnce(settings_.hemicube);
   while (which) {
     std::vector<int> bits;
     std::vector<Hemicube> hemicubes;

@@ -29,6 +29,7 @@ struct CubeInputs {
   const CubeSettings& settings;
   const GatherSettings& gather;
   HemicubeMaker* hemicubes = nullptr; // null: cast
+  size_t memory = 0;                  // bytes that it may take; 0: what this machine has left
 };
 
 /// What an update did.
@@ -60,7 +61,8 @@ class LayeredCube {
   static constexpr uint32_t kBatch = 64; // lights, a word's bits
 
   size_t words() const { return (in_.size() + kBatch - 1) / kBatch; }
-  void clear();
+  void refuseBeyond(size_t memory, double needed);
+  void clear(size_t memory);
   void adoptSurfaces(const CubeInputs& in, CubeWork& work);
   void put(const CubeInputs& in, size_t word, Word which, CubeWork& work, const std::vector<uint8_t>* isNew);
   std::vector<Word> byRays(const CubeInputs& in, size_t word, Word which, RayCounts& counts,

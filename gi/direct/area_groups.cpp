@@ -29,10 +29,11 @@ AreaLights only(const AreaLights& all, std::span<const uint32_t> which, std::spa
 } // namespace
 
 std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
-                                 RayCounts& counts) {
+                                 std::vector<int>& bands, RayCounts& counts) {
   constexpr size_t kTests = 1 << 15, kMostPixels = 256, kLeastPixels = 32;
-  constexpr float kAlike = 16; // as bright
-  constexpr size_t kBrightnesses = 3;
+  constexpr double kAlike = 16;    // as bright
+  constexpr double kBeyond = 0.25; // of a group's width that a light goes past its border before it leaves
+  constexpr int kBrightnesses = 3;
   const size_t count = lights.lights.size();
   if (count < 2) return {lights};
   const std::vector<glm::ivec2> pixels = surfaces.some(std::clamp(kTests / count, kLeastPixels, kMostPixels));
@@ -53,9 +54,15 @@ std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays,
   for (size_t l = 0; l < count; ++l)
     if (seen[l]) brightest = std::max(brightest, brought[l]);
   std::array<std::vector<uint32_t>, kBrightnesses + 1> groups;
+  bands.resize(count, kBrightnesses);
   for (uint32_t l = 0; l < count; ++l) {
-    const double steps = seen[l] ? std::log(brightest / brought[l]) / std::log(double(kAlike)) : 0;
-    groups[seen[l] ? std::min(size_t(steps), kBrightnesses - 1) : kBrightnesses].push_back(l);
+    const double steps = seen[l] ? std::log(brightest / brought[l]) / std::log(kAlike) : 0;
+    const bool stays = bands[l] < kBrightnesses && std::abs(steps - (bands[l] + 0.5)) < 0.5 + kBeyond;
+    if (!seen[l])
+      bands[l] = kBrightnesses;
+    else if (!stays)
+      bands[l] = std::min(int(steps), kBrightnesses - 1);
+    groups[size_t(bands[l])].push_back(l);
   }
   std::vector<AreaLights> out;
   for (const std::vector<uint32_t>& group : groups)

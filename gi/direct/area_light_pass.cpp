@@ -50,7 +50,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
   std::vector<AreaLights> groups;
   {
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
-    groups = groupsOf(lights_, rays, seen, stats.raysArea);
+    groups = groupsOf(lights_, rays, seen, bands_, stats.raysArea);
   }
   blocks_.reserve((lights_.pieces.size() + 2 * groups.size() * kPiecesPerBlock) * sizeof(AreaPiece));
   const glm::ivec2 size(surfaces.width, surfaces.height);
@@ -60,10 +60,10 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
     {
       const CpuScope scope(stats.stages, key(StageId::AreaRays));
       counts = shareVisible(rays, group, seen, settings.area, levels_);
+      noteFragments(size, smallest);
     }
     stats.areaFragments += counts.fragments;
     stats.raysArea += counts.rays;
-    noteFragments(size, smallest);
     if (counts.dark == counts.fragments) continue; // nothing of it arrives
     const gl::PassScope scope = context_.scope(StageId::AreaLight);
     for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
@@ -99,6 +99,7 @@ void AreaLightPass::collect(const World& world) {
   if (same && !world.view.changes.first && !lights_.lights.empty()) return;
   lights_ = areaLights(world.lights);
   triangles_ = now;
+  if (bands_.size() != lights_.lights.size()) bands_.clear(); // which lamp is which is known no more
 }
 
 /// Embree or the GPU.
@@ -159,7 +160,7 @@ void AreaLightPass::readLevels(const FrameSurfaces& seen, const PatchPyramid& py
 }
 
 const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settings& settings) {
-  if (settings.area.upsample != AreaUpsample::Rbf) {
+  if (!fitted(settings.area.upsample)) {
     Settings between = settings;
     between.multires.upsample =
         settings.area.upsample == AreaUpsample::Bilinear ? PatchUpsample::Bilinear : PatchUpsample::Bilateral;
@@ -179,7 +180,8 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
   // What quarters say that were compared: shares alone, or answers one by one.
   const AreaSettings& area = settings.area;
   const bool byAnswers = area.refinement == AreaRefinement::SubFragments && area.threshold == 1;
-  const int stable = byAnswers ? 2 : area.refinement == AreaRefinement::Neighbours ? 0 : 1;
+  const bool centres = area.upsample == AreaUpsample::RbfCentres || area.refinement == AreaRefinement::Neighbours;
+  const int stable = centres ? 0 : byAnswers ? 2 : 1;
   const auto draw = [&](const char* variant, gl::PipelineState state) {
     std::vector<std::string> defines;
     if (*variant) defines.push_back(variant);

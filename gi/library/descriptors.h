@@ -4,7 +4,10 @@
 #include "engine/view/scene_view.h"
 #include "gi/library/guard.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <string>
 
 namespace lambent::library {
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
@@ -111,9 +112,9 @@ float bitsReversed(uint32_t i) {
 /// that shadows' edges along a side are known to 1/R. (Points that merely lie in a grid of cells each know them to its
 /// rows, 1/√R.)
 std::vector<vec2> netsOf(uint32_t count) {
-  std::vector<vec2> places(count, vec2(0));
-  for (uint32_t rays = 1; rays < count; rays *= 2) {     // sets for unlike R have no place in common
-    const uint32_t other = uint32_t(mix64(rays)) % rays; // and are unlike one another
+  std::vector<vec2> places(count, vec2(0.5f / std::sqrt(float(count)))); // the first, along the curve, is of no set
+  for (uint32_t rays = 1; rays < count; rays *= 2) {                     // sets for unlike R have no place in common
+    const uint32_t other = uint32_t(mix64(rays)) % rays;                 // and are unlike one another
     std::vector<std::pair<uint32_t, vec2>> net;
     for (uint32_t i = 0; i < rays; ++i) {
       const vec2 at = vec2(float(i) / float(rays), bitsReversed(i ^ other)) + 0.5f / float(rays);

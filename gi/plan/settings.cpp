@@ -111,9 +111,9 @@ class Table {
            "difference between quarters side by side beyond which both are split twice at once; 0 = never");
     flag(SETTING(area, extra), Nothing,
          "three single pixels more in patches of 8x8 pixels and larger, for area.upsample=rbf");
-    choice(SETTING(area, upsample), {"rbf", "bilateral", "bilinear"}, Nothing,
+    choice(SETTING(area, upsample), {"rbf", "bilateral", "bilinear", "rbf-centres"}, Nothing,
            "between patches: radial basis functions around the three nearest samples, or level by level as "
-           "multires.upsample");
+           "multires.upsample; rbf-centres: a patch is a sample at its centre, not all that lies between its quarters");
     choice(SETTING(area, tracer), {"auto", "cpu", "gpu"}, Nothing,
            "who traces these rays; auto: the CPU where it draws anyway, else the GPU; the window measures both once");
     number(SETTING(shadow, skyMaps), {1, 512, "maps", PowersOfTwo}, Maps, "direct.soft maps: directions of the sky");

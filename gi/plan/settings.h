@@ -27,7 +27,11 @@ enum class AreaTracer : int { Auto, Cpu, Gpu }; // who traces rays of these patc
 // 4) | which the eight patches around do (Nichols et al. 2010).
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
 // Between them: three radial basis functions | level by level, as PatchUpsample.
-enum class AreaUpsample : int { Rbf, Bilateral, Bilinear };
+enum class AreaUpsample : int { Rbf, Bilateral, Bilinear, RbfCentres };
+/// Whether radial basis functions are fitted.
+constexpr bool fitted(AreaUpsample upsample) {
+  return upsample == AreaUpsample::Rbf || upsample == AreaUpsample::RbfCentres;
+}
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).
 enum class CubeVisibility : int { Rays, Hemicubes };
 // Where the lobes of light volumes look that go on through a face: the way that the light came | along the face's

@@ -124,6 +124,8 @@ TEST(AreaLights, RaysKnowEdgesAlongASideToTheirNumber) {
   addEmitter(set, 0, 0, squares(3, 0), false); // one of 2 × 2 m
   const AreaLights lights = areaLights(set);
   const uint32_t count = lights.lights.at(0).samples;
+  for (const AreaSample& s : std::span(lights.samples).first(count)) // none at a corner, where a wall may begin
+    EXPECT_LT(std::max(std::abs(s.position.x), std::abs(s.position.z)), 1 - 1 / float(count));
   for (const uint32_t rays : {4u, 16u, 64u, 128u}) {
     uint32_t quadrants[4] = {};
     for (uint32_t k = 0; k < rays; ++k) {

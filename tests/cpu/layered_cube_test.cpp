@@ -115,6 +115,40 @@ TEST(CubeSurfaces, ManySheetsBehindOneAnother) {
   }
 }
 
+/// A floor, and slabs on it with joints between them, much lower than a texel is wide: what covers stands for both. The
+/// floor under a slab sees no light, and would take that of all pixels around.
+TEST(CubeSurfaces, SlabsStandForTheFloorUnderThem) {
+  CubeWorld w;
+  const uint32_t grey = w.scene.material(vec3(0.5f));
+  w.scene.quad({0, 0, 4}, {4, 0, 0}, {0, 0, -4}, grey);
+  for (int i = 0; i < 16; ++i) {
+    const vec3 at = vec3(i % 4, 0, i / 4);
+    w.scene.box(at + vec3(0.01f, -0.01f, 0.01f), at + vec3(0.99f, 0.01f, 0.99f), grey, false);
+  }
+  w.place();
+  w.lights.push_back(lightAt({2, 3, 2}, {0, -1, 0}, vec3(10)));
+  const CubeSettings settings = smallCube(CubeVisibility::Rays, 32);
+  LayeredCube cube;
+  cube.update(w.inputs(settings));
+  const CubeSurfaces& surfaces = cube.surfaces();
+  const CubeGrid grid = surfaces.cubes()[0];
+  ASSERT_GT(grid.texel, 0.1f);
+  size_t columns = 0, dark = 0, tops = 0; // dark: of the floor
+  for (size_t c = 0; c < surfaces.columns(); ++c) {
+    const CubeGrid::Place at = grid.placeOf(c);
+    if (at.axis != 1 || std::min(at.u, at.v) < 1 || std::max(at.u, at.v) > 30) continue;
+    ++columns;
+    for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+      const CubeEntry& entry = surfaces.entries()[e];
+      if (entry.normal.y > 0 && std::abs(entry.position.y) < 5e-3f) dark += !(cube.irradiance(e).x > 0);
+      tops += entry.normal.y > 0 && entry.position.y > 5e-3f && cube.irradiance(e).x > 0;
+    }
+  }
+  EXPECT_EQ(columns, 900u);
+  EXPECT_EQ(dark, 0u);
+  EXPECT_EQ(tops, columns);
+}
+
 /// A wide floor with small blocks in one corner: narrow texels there, wide ones on the rest.
 TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
   CubeWorld w;
@@ -342,6 +376,26 @@ TEST(LayeredCube, HemicubesAreMadeInTurns) {
   EXPECT_LT(off, 0.03 * sum);
 }
 
+/// Refused before anything is cast, or once it is known how many surfaces there are; both ways nothing stays behind.
+TEST(LayeredCube, WhatDoesNotFitIsRefused) {
+  LitWorld w;
+  CubeSettings settings = smallCube(CubeVisibility::Hemicubes);
+  LayeredCube cube;
+  const auto update = [&](size_t memory) {
+    CubeInputs in = w.inputs(settings);
+    in.memory = memory;
+    return cube.update(in);
+  };
+  for (const size_t memory : {size_t(100'000), size_t(4) << 20}) { // columns; hemicubes of all lights
+    EXPECT_THROW(update(memory), RunError) << memory;
+    EXPECT_TRUE(cube.surfaces().empty()) << memory;
+  }
+  EXPECT_GT(update(size_t(1) << 30).lightsIn, 0u);
+  double sum = 0;
+  for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) sum += double(cube.irradiance(e).x);
+  EXPECT_GT(sum, 0);
+}
+
 TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
   LitWorld w;
   const CubeSettings settings = smallCube();
@@ -385,6 +439,18 @@ TEST_F(CubeFileTest, GivesBackWhatWasSavedAndGoesOn) {
   EXPECT_EQ(on.update(w.inputs(settings)).lightsIn, 1u);
   whole.update(w.inputs(settings));
   for (size_t e = 0; e < whole.surfaces().entries().size(); ++e) ASSERT_EQ(on.irradiance(e), whole.irradiance(e));
+}
+
+TEST_F(CubeFileTest, KnowsOfColumnsThatWereCut) {
+  settings.resolution = 8;
+  for (int i = 0; i < 260; ++i)
+    w.scene.quad({-1, -0.9f + 0.005f * float(i), -1}, {0, 0, 2}, {2, 0, 0}, w.scene.material(vec3(0.5f)));
+  w.place();
+  LayeredCube cube;
+  cube.update(w.inputs(settings));
+  ASSERT_GT(cube.surfaces().columnsCut(), 0u);
+  saveCube(file_, cube, key_);
+  EXPECT_EQ(loadCube(file_, key_).surfaces().columnsCut(), cube.surfaces().columnsCut());
 }
 
 /// What memory holds between members does not reach the file. (After those of lights: tests/cli/busy.)

@@ -170,6 +170,48 @@ TEST_F(AreaLightTest, HiddenLampsLeaveNoTraceOfTheirPlanes) {
   }
 }
 
+/// A lamp a sixteenth as bright as another is on the border of two groups: a camera that sways makes it hop between
+/// them where each frame begins anew, and with that the rays that all lamps get.
+TEST_F(AreaLightTest, LampsKeepTheirGroupsWhileTheCameraMoves) {
+  const auto groupsAt = [&](float x, float radiance, std::vector<int>& bands) {
+    HandScene scene;
+    scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), scene.material(vec3(0.5f)));
+    scene.quad(vec3(-2, 2, -0.3f), vec3(0.6f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), vec3(10)));
+    scene.quad(vec3(2, 2, -0.3f), vec3(0.6f, 0, 0), vec3(0, 0, 0.6f), scene.material(vec3(0), vec3(radiance)));
+    scene.camera = cameraAt(vec3(x, 1.8f, 3), vec3(x, 0.2f, 0), 1.0f, 96, 64);
+    PlacedScene placed(passes, scene);
+    const SceneView view = scene.view();
+    const LightSet emitters = collectLights(view);
+    const World world = placed.world(emitters);
+    SurfacePass surfacePass(passes);
+    SurfaceReader reader;
+    const GBuffer surfaces = surfacePass.run({world.gpu, world.view.camera, false});
+    RayCounts counts;
+    return groupsOf(areaLights(emitters), world.rays, reader.read(surfaces), bands, counts);
+  };
+  std::vector<int> kept;
+  const std::vector<AreaLights> alike = groupsAt(0, 10, kept);
+  ASSERT_EQ(alike.size(), 1u);
+  const float border = 10 * alike[0].lights.at(0).brought / alike[0].lights.at(1).brought / 16;
+  kept.clear();
+  int hops = 0, hopsAnew = 0, before = -1, beforeAnew = -1;
+  for (int frame = 0; frame < 12; ++frame) {
+    std::vector<int> anew;
+    const float x = frame % 2 ? 0.1f : -0.1f;
+    groupsAt(x, border, kept);
+    groupsAt(x, border, anew);
+    hops += frame > 0 && kept.at(1) != before;
+    hopsAnew += frame > 0 && anew.at(1) != beforeAnew;
+    before = kept[1], beforeAnew = anew[1];
+  }
+  EXPECT_EQ(hops, 0);
+  EXPECT_EQ(hopsAnew, 11);
+  groupsAt(0, 0.2f * border, kept); // well beyond
+  EXPECT_EQ(kept.at(1), 1);
+  groupsAt(0, 5 * border, kept);
+  EXPECT_EQ(kept.at(1), 0);
+}
+
 /// Fragments of many sizes meet along a shadow's edge: no block of the picture may be smeared. (Fragments that are not
 /// held to finer ones beside them: the worst block is off by a tenth of the light and more.)
 TEST_F(AreaLightTest, ShadowEdgesHoldInEveryBlock) {

@@ -111,7 +111,37 @@ TEST_F(CubeGatherTest, FollowsLampsAndObjects) {
       << "the block makes a difference";
 }
 
-TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) { expectDarkBesideLit(settings, 0.01); }
+TEST_F(CubeGatherTest, ADarkRoomBesideALitOneStaysDark) {
+  expectDarkBesideLit(settings, 0.01);
+  settings.cube.visibility = CubeVisibility::Hemicubes;
+  expectDarkBesideLit(settings, 0.01);
+}
+
+/// Slanted sides of a slab that is lower than the rays of a texel are apart: they take the light of its top. (Upright
+/// ones are black: with light of any side, walls that no ray met shone.)
+TEST_F(CubeGatherTest, SidesThatNoRayMetAreNotBlack) {
+  HandScene scene;
+  const uint32_t white = scene.material(vec3(0.7f));
+  scene.box(vec3(-1), vec3(1), white, true);
+  scene.quad({-0.5f, -1, 0.505f}, {1, 0, 0}, {0, 0.015f, -0.005f}, white);
+  scene.quad({-0.5f, -0.985f, 0.5f}, {1, 0, 0}, {0, 0, -1}, white);
+  scene.lamp({0.3f, 0.6f, 0.4f}, vec3(2));
+  scene.camera = cameraAt(vec3(0, -0.8f, 0.95f), vec3(0, -0.99f, 0.5f), 0.3f, 96, 64);
+  settings.cube.resolution = 16;
+  const Image light = firstFrame(settings, scene.view()), normal = firstFrame(settings, scene.view(), Buffer::Normal),
+              plain = (applyTechnique(settings, "ir"), settings.vpl.visibility = VplVisibility::Rays,
+                       firstFrame(settings, scene.view()));
+  int side = 0;
+  double sum = 0, expected = 0;
+  for (size_t i = 0; i < light.pixels.size(); ++i) {
+    if (normal.pixels[i].z < 0.9f) continue;
+    ++side;
+    EXPECT_GT(light.pixels[i].x, 0);
+    sum += double(light.pixels[i].x), expected += double(plain.pixels[i].x);
+  }
+  EXPECT_GT(side, 200);
+  EXPECT_NEAR(sum / expected, 1, 0.5);
+}
 
 TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   const TemporaryFolder folder;

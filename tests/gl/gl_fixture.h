@@ -16,6 +16,8 @@
 #include "tests/support/hand_scene.h"
 #include "tests/support/images.h"
 
+#include <cstdlib>
+
 namespace lambent::test {
 
 class GlTest : public ::testing::Test {
@@ -29,7 +31,10 @@ class GlTest : public ::testing::Test {
     EXPECT_EQ(glDebugErrors(), errorsBefore_) << "the driver reported errors (logged above)";
   }
   static GlContext& context() {
-    static GlContext shared = GlContext::headless(DebugOutput::AtOnce);
+    static GlContext shared = [] {
+      if (const char* folder = std::getenv("LAMBENT_SHADERS")) gl::setShaderFolder(folder); // in place of built-in ones
+      return GlContext::headless(DebugOutput::AtOnce);
+    }();
     return shared;
   }
 

@@ -491,8 +491,9 @@ TEST_F(TechniqueTest, ASettingCostsWhatItsRowSays) {
       applyTechnique(s, row.name == "rsm.vpls" ? "rsm" : row.name == "rsm.tau" ? "hisr" : "isr");
     if (row.name.starts_with("multires.")) applyTechnique(s, "multires-gather");
     if (row.name.starts_with("lpv.")) applyTechnique(s, "lpv");
-    if (row.name.starts_with("cube.") || row.name.starts_with("hemicubes.")) applyTechnique(s, "ibrr");
-    if (row.name.starts_with("hemicubes.")) s.cube.visibility = CubeVisibility::Hemicubes;
+    if (row.name.starts_with("cube.")) applyTechnique(s, "ibrr");
+    if (row.name == "cube.hemicube" || row.name == "cube.maker") s.cube.visibility = CubeVisibility::Hemicubes;
+    if (row.name == "cube.split") s.cube.levels = 1;
     if (row.name.starts_with("area.")) s.shadow.emitters = EmitterShadows::Patches;
     if (row.name.starts_with("shadow.emitter") || row.name.starts_with("shadow.sky")) s.direct.soft = SoftLightBy::Maps;
     Viewer gi(s);

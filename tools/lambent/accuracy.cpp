@@ -268,7 +268,7 @@ void accuracy(AccuracyOptions& o) {
   const bool reflective = std::ranges::count(reflectiveFigureNames(), o.figure) > 0;
   if (const std::string& technique = o.launch.technique; !technique.empty()) {
     if (!o.curve.empty()) throw InputError("--technique " + technique, "--curve has techniques of its own");
-    if (reflective || o.figure == "1.3" || o.figure == "1.5")
+    if (reflective || o.figure == "1.3" || o.figure == "1.5" || o.figure == "5.5")
       throw InputError("--technique " + technique, "--figure " + o.figure + " has techniques of its own");
     needSampledLights(technique);
   }
@@ -330,7 +330,8 @@ void declareAccuracy(CLI::App& app) {
       "rate by finest patches and VPLs; 2.7, 2.9: by the threshold of normals, and detail put back; 2.6: glossy. 3.8: "
       "four techniques; 3.10: "
       "as a shot's light moves; 3.11, 3.12: isr and hisr by thresholds and finest clusters; 3.combined: "
-      "error of patches and clusters. criterion, upsampling: ours beside those of papers 2 and 3");
+      "error of patches and clusters. 5.5: layered depth cubes by their texels against rays. criterion, upsampling: "
+      "ours beside those of papers 2 and 3");
   command.endForms();
   command.number("--spp", &o->samples, 2, 1 << 24,
                  "paths per pixel of the truth (4096; --report, --light 2048, --direct 256, --figure 1024)");

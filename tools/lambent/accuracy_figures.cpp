@@ -1,6 +1,6 @@
 // lambent accuracy SCENE --figure 1.N: what paper 1 draws. Figs. 8, 9 and 10 compare pictures of one view with path
 // tracing or with a ray for every pair; figs. 3 and 5 look at frames of a shot that follow each other. Its fig. 7 is
-// `lambent stability`.
+// `lambent stability`. 5.5: pictures from paper 5's cubes, compared with those of a ray for every pair.
 #include "engine/core/error.h"
 #include "gi/plan/techniques.h"
 #include "gi/vpl/vpl_set.h"
@@ -29,6 +29,7 @@ struct PathFigure {
   std::vector<std::pair<std::string, Assignments>> drawn;
   std::vector<std::string> traced; // what all are compared with; none: the first that is drawn
   bool twiceShown = false;         // differences are of what is shown, times 2; else of radiance
+  bool cubes = false;              // all but the first are drawn from layered depth cubes
 };
 
 constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-tracing";
@@ -39,6 +40,13 @@ PathFigure comparedPictures(const std::string& name, bool quick) {
              {"all-maps", {{"gather.mode", "full"}}},
              {"all-rays", {{"vpl.visibility", "rays"}}}},
             {kTraced, kTracedClamped}};
+  if (name == "5.5") {
+    PathFigure figure{{{"rays", {{"vpl.visibility", "rays"}, {"filter.on", "off"}}}}, {}, false, true};
+    for (const char* texels : {"32", "64", "128", "256", "512"})
+      if (!quick || figure.drawn.size() < 3)
+        figure.drawn.emplace_back(std::string("cube-") + texels, Assignments{{"cube.resolution", texels}});
+    return figure;
+  }
   PathFigure figure{{}, {kTraced, kTracedClamped}, true};
   if (name == "1.9") {
     figure = {{{"rays", {{"vpl.visibility", "rays"}}}}, {}};
@@ -65,7 +73,8 @@ void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
     truths.emplace_back(traced, study.truth);
   }
   std::vector<Variant> variants;
-  for (const auto& [drawn, set] : figure.drawn) variants.push_back(study.variant(drawn, set));
+  for (const auto& [drawn, set] : figure.drawn)
+    variants.push_back(study.variant(drawn, set, !figure.cubes ? "" : variants.empty() ? "ir" : "ibrr"));
   std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
   const float exposure = study.traced ? study.traced->exposure : runs[0].exposure;
   if (truths.empty()) {
@@ -237,7 +246,7 @@ void drawResampling(const AccuracyOptions& options) {
 
 } // namespace
 
-std::vector<std::string> pathFigureNames() { return {"1.3", "1.5", "1.8", "1.9", "1.10"}; }
+std::vector<std::string> pathFigureNames() { return {"1.3", "1.5", "1.8", "1.9", "1.10", "5.5"}; }
 
 void pathFigure(const AccuracyOptions& options) {
   if (options.figure == "1.3") return drawSteps(options);
