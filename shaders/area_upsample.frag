@@ -73,7 +73,11 @@ void consider(ivec2 texel, int level, bool each) {
   // Quarters that see the same: so does all between their middles (the paper's stable region, figure 3a).
   bool known = stable == 2 || (stable == 1 && (share == vec3(0.0) || share == vec3(1.0)));
   vec2 at = known && level >= 3 ? clamp(here, middle - 0.25 * width, middle + 0.25 * width) : middle, way = at - here;
-  Sample s = Sample(at, share, dot(way, way));
+  // In half shadow a fragment knows but a quarter of the places on a lamp that a single pixel knows: three of these within
+  // its width count before it.
+  bool partly = any(greaterThan(share, vec3(0.0))) && any(lessThan(share, vec3(1.0)));
+  float coarse = stable == 2 && level >= 3 && partly ? width * width : 0.0;
+  Sample s = Sample(at, share, dot(way, way) + coarse);
   if (each)
     keep(s);
   else if (s.distance2 < nearestHere.distance2)

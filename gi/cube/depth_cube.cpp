@@ -26,29 +26,45 @@ struct Column {
   bool cut = false; // there are more
 };
 
+/// A surface that a column's rays met, and what lies over it so closely that texels do not tell both apart.
+struct Met {
+  CubeEntry entry, over = {};
+  int covered = 0, ray = -1; // rays that found it covered; the last of these
+};
+
 /// A ray through the middle of a column, then four around it, which find what the first misses. Of surfaces merged, as
-/// a floor and slabs on it, the one that covers the other stands for both: it is what most pixels show.
+/// a floor and slabs on it, the upper one stands for both where most rays meet it: most pixels show that.
 Column castColumn(const CubeGrid& grid, const CubeGrid::Place& at, const RayQuery& rays, RayCounts& counts) {
+  constexpr int kMost = int(std::size(kWithin)) / 2;
   Column column;
-  std::vector<CubeEntry>& found = column.found;
-  const float length = grid.edge();
-  const auto known = [&](const CubeEntry& e) {
-    return std::any_of(found.begin(), found.end(), [&](CubeEntry& f) {
-      if (!matches(f, e.position, e.normal, kSamePlane * grid.texel)) return false;
-      const vec3 over = lifted(e, grid.texel, rays.rayEpsilon());
-      ++counts.occlusion;
-      if (rays.occluded(segment(lifted(f, grid.texel, rays.rayEpsilon()), over))) return false;
-      if (glm::dot(e.position - f.position, f.normal) > kAbove * grid.texel) {
-        ++counts.occlusion;
-        if (rays.occluded(segment(offsetPoint(f.position, f.normal, rays.rayEpsilon()), over))) f = e;
+  std::vector<Met> found;
+  const float length = grid.edge(), epsilon = rays.rayEpsilon();
+  const auto sees = [&](const vec3& from, const vec3& to) {
+    ++counts.occlusion;
+    return !rays.occluded(segment(from, to));
+  };
+  const auto height = [](const CubeEntry& over, const CubeEntry& e) {
+    return glm::dot(over.position - e.position, e.normal);
+  };
+  const auto merge = [&](const CubeEntry& e, int ray) {
+    const vec3 lift = lifted(e, grid.texel, epsilon);
+    for (Met& f : found) {
+      if (!matches(f.entry, e.position, e.normal, kSamePlane * grid.texel)) continue;
+      if (!sees(lifted(f.entry, grid.texel, epsilon), lift)) continue;
+      if (height(e, f.entry) > kAbove * grid.texel &&
+          !sees(offsetPoint(f.entry.position, f.entry.normal, epsilon), lift)) {
+        if (f.covered == 0 || (f.ray == ray && height(e, f.over) > 0)) f.over = e;
+        f.covered += f.ray != ray;
+        f.ray = ray;
       }
-      return true;
-    });
+      return;
+    }
+    found.push_back({e});
   };
   vec3 along(0);
   along[at.axis] = 1;
-  for (const vec2 within : kWithin) {
-    Ray ray{grid.pointOf(at, within), along, length};
+  for (int r = 0; r < int(std::size(kWithin)); ++r) {
+    Ray ray{grid.pointOf(at, kWithin[r]), along, length};
     for (int i = 0;; ++i) {
       ++counts.closest;
       const SurfaceHit h = rays.closest(ray);
@@ -59,17 +75,15 @@ Column castColumn(const CubeGrid& grid, const CubeGrid::Place& at, const RayQuer
       }
       const float gone = h.position[at.axis] - ray.origin[at.axis];
       if (axesOf(h.geometricNormal) >> at.axis & 1)
-        for (const float side : {1.0f, -1.0f}) {
-          const CubeEntry e{h.position, side * h.geometricNormal, side * h.normal};
-          if (!known(e)) found.push_back(e);
-        }
-      ray.origin = offsetPoint(h.position, -h.geometricNormal, rays.rayEpsilon());
+        for (const float side : {1.0f, -1.0f}) merge({h.position, side * h.geometricNormal, side * h.normal}, r);
+      ray.origin = offsetPoint(h.position, -h.geometricNormal, epsilon);
       ray.origin[at.axis] = std::max(ray.origin[at.axis], h.position[at.axis]);
       for (const int other : {(at.axis + 1) % 3, (at.axis + 2) % 3}) ray.origin[other] = h.position[other];
       ray.tMax -= std::max(gone, 0.0f);
       if (!(ray.tMax > 0)) break;
     }
   }
+  for (const Met& f : found) column.found.push_back(f.covered > kMost ? f.over : f.entry);
   return column;
 }
 

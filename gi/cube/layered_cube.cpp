@@ -52,17 +52,16 @@ size_t LayeredCube::bytesKept() const {
   return surfaces_.entries().size_bytes() + sums_.size() * sizeof(dvec3) + seen_.size() * sizeof(Word);
 }
 
-/// Throws RunError where there is not as much, counting what is given up for it. The next update then begins anew.
+/// Throws RunError where there is not as much. The next update then begins anew.
 void LayeredCube::refuseBeyond(size_t memory, double needed) {
-  if (memory == 0) memory = freeMemory();
-  if (needed <= double(memory) + double(seen_.capacity() * sizeof(Word) + sums_.capacity() * sizeof(dvec3))) return;
+  if (needed <= double(memory == 0 ? freeMemory() : memory)) return;
   surfaces_ = {};
   throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
                  " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
 }
 
 void LayeredCube::clear(size_t memory) {
-  double needed = double(surfaces_.entries().size()) * double(words() * sizeof(Word) + sizeof(dvec3));
+  double needed = double(surfaces_.entries().size()) * double((words() + 1) * sizeof(Word) + sizeof(dvec3));
   if (settings_.visibility == CubeVisibility::Hemicubes) {
     const size_t atOnce = std::clamp(in_.size(), size_t(1), hemicubesAtOnce(settings_.hemicube));
     needed += double(atOnce) * double(bytesOfHemicube(settings_.hemicube) + surfaces_.entries().size()); // with marks
@@ -87,6 +86,9 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   const bool fresh = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
                      !surfaces_.holds(in.boundsWorld) || in.lights.size() != in_.size();
   if (fresh) {
+    surfaces_ = {}; // so that what is not finished begins anew
+    seen_ = {};
+    sums_ = {};
     settings_ = in.settings;
     gather_ = in.gather;
     constexpr double kBytesOfColumn = 200; // while it is cast, with an entry or two

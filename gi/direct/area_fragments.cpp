@@ -339,7 +339,7 @@ class Fragments {
   /// Single pixels in large fragments that have none yet. Says whether one of them differs from the fragment
   /// around it, which is then split.
   bool askExtra() {
-    if (!settings_.extra || !fitted(settings_.upsample) || neighbours_) return false;
+    if (!settings_.extra || !fitsBasisFunctions(settings_.upsample) || neighbours_) return false;
     struct Extra {
       glm::ivec2 pixel;
       int level;

@@ -28,13 +28,17 @@ AreaLights only(const AreaLights& all, std::span<const uint32_t> which, std::spa
 
 } // namespace
 
-std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
-                                 std::vector<int>& bands, RayCounts& counts) {
+std::vector<AreaLights> AreaGroups::of(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
+                                       RayCounts& counts) {
   constexpr size_t kTests = 1 << 15, kMostPixels = 256, kLeastPixels = 32;
   constexpr double kAlike = 16;    // as bright
-  constexpr double kBeyond = 0.25; // of a group's width that a light goes past its border before it leaves
-  constexpr int kBrightnesses = 3;
+  constexpr double kBeyond = 0.25; // of a group's width (a factor of two) that a light goes past it before it leaves
+  constexpr int kBands = 3;
   const size_t count = lights.lights.size();
+  if (bands_.size() != count) {
+    bands_.assign(count, -1);
+    scale_ = 0;
+  }
   if (count < 2) return {lights};
   const std::vector<glm::ivec2> pixels = surfaces.some(std::clamp(kTests / count, kLeastPixels, kMostPixels));
   const AreaVisibility visibility(rays, lights, surfaces, 1);
@@ -53,16 +57,18 @@ std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays,
   double brightest = 0;
   for (size_t l = 0; l < count; ++l)
     if (seen[l]) brightest = std::max(brightest, brought[l]);
-  std::array<std::vector<uint32_t>, kBrightnesses + 1> groups;
-  bands.resize(count, kBrightnesses);
+  if (brightest > scale_ || brightest * kAlike * kAlike < scale_)
+    scale_ = brightest; // one that is out of sight may come back
+  std::array<std::vector<uint32_t>, kBands + 1> groups;
   for (uint32_t l = 0; l < count; ++l) {
-    const double steps = seen[l] ? std::log(brightest / brought[l]) / std::log(kAlike) : 0;
-    const bool stays = bands[l] < kBrightnesses && std::abs(steps - (bands[l] + 0.5)) < 0.5 + kBeyond;
-    if (!seen[l])
-      bands[l] = kBrightnesses;
-    else if (!stays)
-      bands[l] = std::min(int(steps), kBrightnesses - 1);
-    groups[size_t(bands[l])].push_back(l);
+    if (!seen[l]) {
+      groups[kBands].push_back(l);
+      continue;
+    }
+    const double steps = std::log(scale_ / brought[l]) / std::log(kAlike);
+    const bool stays = bands_[l] >= 0 && std::abs(steps - (bands_[l] + 0.5)) < 0.5 + kBeyond;
+    if (!stays) bands_[l] = std::min(int(steps), kBands - 1);
+    groups[size_t(bands_[l])].push_back(l);
   }
   std::vector<AreaLights> out;
   for (const std::vector<uint32_t>& group : groups)

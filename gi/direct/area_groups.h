@@ -6,11 +6,22 @@
 
 namespace lambent {
 
-/// The lights in groups: of those that a few rays from the image reach, each within a factor of 16 of the next in
-/// what they bring to it; and of those that no ray reached, which may be seen by a few pixels all the same. `bands`:
-/// the group of each light, those of the frame before where there is one: a light stays in its group until it is well
-/// beyond it, so that a camera that moves makes none hop to and fro between two.
-std::vector<AreaLights> groupsOf(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
-                                 std::vector<int>& bands, RayCounts& counts);
+class AreaGroups {
+ public:
+  /// Returns the lights in groups: of those that a few rays from the image reach, by what they bring to it, each group
+  /// within a factor of 16; and of those that no ray reached, which may be seen by a few pixels all the same. A light
+  /// stays in its group of the frame before until it is a factor of two beyond it (so that one holds a factor of 64 at
+  /// most): a camera that moves makes none hop to and fro between two.
+  std::vector<AreaLights> of(const AreaLights& lights, const RayQuery& rays, const FrameSurfaces& surfaces,
+                             RayCounts& counts);
+  /// Call it where lights are others than before, not where they moved or shine otherwise.
+  void forget() { bands_.clear(); }
+  /// Group of each light by brightness, 0 the brightest, also of one that no ray reached since; −1: none yet.
+  std::span<const int> bands() const { return bands_; }
+
+ private:
+  std::vector<int> bands_;
+  double scale_ = 0; // what the brightest of them begins at
+};
 
 } // namespace lambent

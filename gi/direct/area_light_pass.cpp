@@ -50,7 +50,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
   std::vector<AreaLights> groups;
   {
     const CpuScope scope(stats.stages, key(StageId::AreaRays));
-    groups = groupsOf(lights_, rays, seen, bands_, stats.raysArea);
+    groups = groups_.of(lights_, rays, seen, stats.raysArea);
   }
   blocks_.reserve((lights_.pieces.size() + 2 * groups.size() * kPiecesPerBlock) * sizeof(AreaPiece));
   const glm::ivec2 size(surfaces.width, surfaces.height);
@@ -60,10 +60,10 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
     {
       const CpuScope scope(stats.stages, key(StageId::AreaRays));
       counts = shareVisible(rays, group, seen, settings.area, levels_);
-      noteFragments(size, smallest);
     }
     stats.areaFragments += counts.fragments;
     stats.raysArea += counts.rays;
+    noteFragments(size, smallest);
     if (counts.dark == counts.fragments) continue; // nothing of it arrives
     const gl::PassScope scope = context_.scope(StageId::AreaLight);
     for (size_t level = 0; level < levels_.size(); ++level) atlas_.put(int(level), levels_[level].visible);
@@ -97,9 +97,9 @@ void AreaLightPass::collect(const World& world) {
                       return a.p0 == b.p0 && a.e1 == b.e1 && a.e2 == b.e2 && a.radiance == b.radiance;
                     });
   if (same && !world.view.changes.first && !lights_.lights.empty()) return;
+  if (world.view.changes.first || now.size() != triangles_.size()) groups_.forget(); // other lamps
   lights_ = areaLights(world.lights);
   triangles_ = now;
-  if (bands_.size() != lights_.lights.size()) bands_.clear(); // which lamp is which is known no more
 }
 
 /// Embree or the GPU.
@@ -160,7 +160,7 @@ void AreaLightPass::readLevels(const FrameSurfaces& seen, const PatchPyramid& py
 }
 
 const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settings& settings) {
-  if (!fitted(settings.area.upsample)) {
+  if (!fitsBasisFunctions(settings.area.upsample)) {
     Settings between = settings;
     between.multires.upsample =
         settings.area.upsample == AreaUpsample::Bilinear ? PatchUpsample::Bilinear : PatchUpsample::Bilateral;

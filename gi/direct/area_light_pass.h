@@ -30,7 +30,7 @@ class AreaLightPass {
   void forget() {
     lights_ = {};
     gpuRays_.reset();
-    bands_.clear();
+    groups_.forget();
     fragments_ = {};
   }
 
@@ -48,7 +48,7 @@ class AreaLightPass {
 
   PassContext context_;
   AreaLights lights_;
-  std::vector<int> bands_;                 // their groups in the last frame
+  AreaGroups groups_;
   std::vector<EmitterTriangle> triangles_; // that they are of
   std::unique_ptr<GpuRays> gpuRays_;       // where the GPU traces
   uint64_t traced_ = 0;                    // meshRevision of the assets that they know

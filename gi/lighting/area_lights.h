@@ -18,7 +18,7 @@ struct AreaLight {
   uint32_t firstPiece = 0, pieces = 0;   // run of AreaLights::pieces
   uint32_t firstSample = 0, samples = 0; // run of AreaLights::samples, in an order in which neighbours lie side by side
   bool doubleSided = false;
-  float brought = 1; // to the image where nothing is between, relative to other lights of the group (groupsOf)
+  float brought = 1; // to the image where nothing is between, relative to other lights of the group (AreaGroups)
 };
 
 struct AreaLights {

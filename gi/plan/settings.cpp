@@ -110,7 +110,7 @@ class Table {
     number(SETTING(area, gradient), {0, 64, "rays"}, Nothing,
            "difference between quarters side by side beyond which both are split twice at once; 0 = never");
     flag(SETTING(area, extra), Nothing,
-         "three single pixels more in patches of 8x8 pixels and larger, for area.upsample=rbf");
+         "three single pixels more in patches of 8x8 pixels and larger, for area.upsample=rbf and rbf-centres");
     choice(SETTING(area, upsample), {"rbf", "bilateral", "bilinear", "rbf-centres"}, Nothing,
            "between patches: radial basis functions around the three nearest samples, or level by level as "
            "multires.upsample; rbf-centres: a patch is a sample at its centre, not all that lies between its quarters");

@@ -26,10 +26,10 @@ enum class AreaTracer : int { Auto, Cpu, Gpu }; // who traces rays of these patc
 // What splits them: how many rays their quarters and those next to them find open | which rays their quarters do (paper
 // 4) | which the eight patches around do (Nichols et al. 2010).
 enum class AreaRefinement : int { Counts, SubFragments, Neighbours };
-// Between them: three radial basis functions | level by level, as PatchUpsample.
+// Between them: three radial basis functions, of which a patch's is as wide as what lies between its quarters | level
+// by level, as PatchUpsample | around patches' centres, as paper 4 writes it.
 enum class AreaUpsample : int { Rbf, Bilateral, Bilinear, RbfCentres };
-/// Whether radial basis functions are fitted.
-constexpr bool fitted(AreaUpsample upsample) {
+constexpr bool fitsBasisFunctions(AreaUpsample upsample) {
   return upsample == AreaUpsample::Rbf || upsample == AreaUpsample::RbfCentres;
 }
 // Who says which entries of the layered depth cube a light sees: a ray each | the texels of hemicubes (paper 5).

@@ -173,8 +173,8 @@ TEST(Lights, PatchesAddUpToTheEmittersPower) {
   const std::vector<EmitterPatch> patches = emitterPatches(lights, 16);
   double power[2] = {0, 0};
   for (const EmitterPatch& p : patches) power[p.position.z > 1] += double(luminance(p.radiance)) * p.area;
-  EXPECT_NEAR(power[0], 2 * lights.emitters[0].power, 1e-4); // both sides
-  EXPECT_NEAR(power[1], lights.emitters[1].power, 1e-5);
+  EXPECT_NEAR(power[0], 2 * double(luminance(vec3(1, 2, 3))), 1e-4); // both sides of a square metre
+  EXPECT_NEAR(power[1], 0.1 * 2, 1e-5);
 }
 
 } // namespace lambent::test::sampling_test

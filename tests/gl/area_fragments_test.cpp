@@ -180,7 +180,7 @@ struct ShadedLampScene : LampScene {
 TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
   settings.area.refinement = AreaRefinement::SubFragments;
   settings.area.threshold = 1;
-  constexpr float kMost[4] = {1, 0.97f, 1, 0.93f}; // of the error without, by obstacle
+  constexpr float kMost[4] = {1, 0.9f, 1.02f, 0.7f}; // of the error without, by obstacle
   double squares[2] = {};
   for (int what = 0; what < 4; ++what) {
     const ShadedLampScene scene(what);
@@ -212,7 +212,7 @@ TEST_F(AreaLightTest, ExtraSamplesSteerLargeFragments) {
     EXPECT_GT(pixels / 2, 300) << what;
   }
   std::printf("all: %.3f of that without\n", std::sqrt(squares[1] / squares[0]));
-  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.93);
+  EXPECT_LT(std::sqrt(squares[1] / squares[0]), 0.7);
 }
 
 TEST_F(AreaLightTest, FewerFragmentsThanThePredecessorAndUpsampledBetter) {

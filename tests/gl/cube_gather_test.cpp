@@ -41,7 +41,8 @@ TEST_F(CubeGatherTest, GivesThePicturesOfItsLights) {
   EXPECT_LE(dark, 2u);
 }
 
-/// Walls with wide texels, the block with narrow ones: nearly as near as one cube that has these everywhere.
+/// Walls with wide texels, the block with narrow ones: twice the error of a cube that has these everywhere, from a
+/// quarter of its entries.
 TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
   const Image rays = byRays();
   struct Kind {
@@ -59,8 +60,9 @@ TEST_F(CubeGatherTest, ATreeComesNearAFinerCube) {
     std::printf("%d texels, %d levels: %.2f %%, %llu entries\n", kKinds[k].resolution, kKinds[k].levels,
                 100 * differences[k], static_cast<unsigned long long>(entries[k]));
   }
-  EXPECT_LT(differences[1], 0.5 * differences[0]);
-  EXPECT_LT(entries[1], entries[2] / 2);
+  EXPECT_LT(differences[1], 0.2 * differences[0]);
+  EXPECT_LT(differences[1], 2.5 * differences[2]);
+  EXPECT_LT(double(entries[1]), 0.3 * double(entries[2]));
 }
 
 /// Four times the lights: pixels look up as much as before, and what keeps it up to date grows (paper 5, table 1).

@@ -397,6 +397,8 @@ TEST_F(EffectsTest, ReflectiveMapsAreDrawnWhereSomethingChanged) {
     EXPECT_NE(gi.read(Buffer::Indirect).pixels, before.pixels) << technique;
     EXPECT_EQ(gi.read(Buffer::Indirect).pixels, firstFrame(settings, world.first(), Buffer::Indirect).pixels)
         << technique;
+    const FrameStats seen = gi.run(world.view(kCameraChanged)); // light is gathered again, its maps are not drawn
+    EXPECT_LT(seen.work[size_t(Indirect)], moved.work[size_t(Indirect)]) << technique;
     world.scene.lights.clear();
     world.scene.sky = vec3(1);
     const FrameStats dark = gi.run(world.first());

@@ -312,14 +312,22 @@ TEST_F(StateGuardTest, AHostMayDrawWhileItIsToldOfProgress) {
 
 /// Far from a frame's time even under sanitizers or a driver that answers slowly.
 TEST_F(StateGuardTest, CostsLittle) {
-  constexpr int kTimes = 1000;
-  const auto microseconds = [](const auto& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0; i < kTimes; ++i) work();
-    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count() / kTimes;
+  constexpr int kTimes = 100, kPasses = 20;
+  const auto microseconds = [](const auto& work) { // the least of some passes: other work only adds
+    double least = 1e30;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const auto begin = std::chrono::steady_clock::now();
+      for (int i = 0; i < kTimes; ++i) work();
+      const std::chrono::duration<double, std::micro> gone = std::chrono::steady_clock::now() - begin;
+      least = std::min(least, gone.count() / kTimes);
+    }
+    return least;
   };
   const auto guarded = [] { const gl::StateGuard guard; };
-  const double empty = microseconds(guarded);
+  const double empty = microseconds(guarded), asked = microseconds([] {
+                                                GLint value = 0;
+                                                for (int i = 0; i < 100; ++i) glGetIntegerv(GL_ACTIVE_TEXTURE, &value);
+                                              });
   HostState host;
   host.poison();
   const double full = microseconds(guarded);
@@ -333,9 +341,9 @@ TEST_F(StateGuardTest, CostsLittle) {
   RecordProperty("guard_inner_us", std::to_string(inner));
   std::printf("a guard takes %.1f us, %.1f us where every binding is taken, %.3f us inside another\n", empty, full,
               inner);
-  EXPECT_LT(empty, 5000);
-  EXPECT_LT(full, 5000);
-  EXPECT_LT(inner, 100);
+  EXPECT_LT(empty, 20 * asked) << "of a hundred questions to GL, " << asked << " us";
+  EXPECT_LT(full, 20 * asked);
+  EXPECT_LT(inner, 0.05 * empty);
 }
 
 } // namespace lambent::test::state_guard_test

@@ -85,6 +85,9 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
     const double most = exact ? c.bounds.most : 2 * c.bounds.most;
     EXPECT_LE(std::abs(mean), most * (1 + 1e-6)) << "too much light";
   }
+  if (stripsShow) {
+    EXPECT_LE(mean, 0.1) << "more than in strips";
+  }
   if (!smc) {
     // tcas has one bounce; what comes through the gaps beside that wall has two. Samples spread over all surfaces
     // seldom meet a narrow spot, and neither a slit nor the way along a corridor is as wide as a cell.

@@ -26,10 +26,14 @@ namespace {
 
 /// Pictures of one set of virtual lights, or of sets of several sizes.
 struct PathFigure {
-  std::vector<std::pair<std::string, Assignments>> drawn;
+  struct Drawn {
+    std::string name;
+    Assignments set;
+    std::string technique = {}; // empty: as set
+  };
+  std::vector<Drawn> drawn;
   std::vector<std::string> traced; // what all are compared with; none: the first that is drawn
   bool twiceShown = false;         // differences are of what is shown, times 2; else of radiance
-  bool cubes = false;              // all but the first are drawn from layered depth cubes
 };
 
 constexpr const char *kTraced = "path-tracing", *kTracedClamped = "clamped-path-tracing";
@@ -41,10 +45,10 @@ PathFigure comparedPictures(const std::string& name, bool quick) {
              {"all-rays", {{"vpl.visibility", "rays"}}}},
             {kTraced, kTracedClamped}};
   if (name == "5.5") {
-    PathFigure figure{{{"rays", {{"vpl.visibility", "rays"}, {"filter.on", "off"}}}}, {}, false, true};
+    PathFigure figure{{{"rays", {{"vpl.visibility", "rays"}, {"filter.on", "off"}}, "ir"}}, {}};
     for (const char* texels : {"32", "64", "128", "256", "512"})
       if (!quick || figure.drawn.size() < 3)
-        figure.drawn.emplace_back(std::string("cube-") + texels, Assignments{{"cube.resolution", texels}});
+        figure.drawn.push_back({std::string("cube-") + texels, {{"cube.resolution", texels}}, "ibrr"});
     return figure;
   }
   PathFigure figure{{}, {kTraced, kTracedClamped}, true};
@@ -52,13 +56,13 @@ PathFigure comparedPictures(const std::string& name, bool quick) {
     figure = {{{"rays", {{"vpl.visibility", "rays"}}}}, {}};
     for (const char* texels : {"128", "256", "512", "1024"})
       if (!quick || figure.drawn.size() < 3)
-        figure.drawn.emplace_back(std::string("maps-") + texels,
-                                  Assignments{{"gather.mode", "full"}, {"shadow.resolution", texels}});
+        figure.drawn.push_back(
+            {std::string("maps-") + texels, {{"gather.mode", "full"}, {"shadow.resolution", texels}}});
     return figure;
   }
   using Texts = std::vector<std::string>;
   for (const std::string& vpls : quick ? Texts{"64", "256"} : Texts{"2000", "8000", "40000"})
-    figure.drawn.emplace_back("vpls-" + vpls, Assignments{{"vpl.visibility", "rays"}, {"smc.vpls", vpls}});
+    figure.drawn.push_back({"vpls-" + vpls, {{"vpl.visibility", "rays"}, {"smc.vpls", vpls}}});
   return figure;
 }
 
@@ -73,8 +77,7 @@ void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
     truths.emplace_back(traced, study.truth);
   }
   std::vector<Variant> variants;
-  for (const auto& [drawn, set] : figure.drawn)
-    variants.push_back(study.variant(drawn, set, !figure.cubes ? "" : variants.empty() ? "ir" : "ibrr"));
+  for (const PathFigure::Drawn& d : figure.drawn) variants.push_back(study.variant(d.name, d.set, d.technique));
   std::vector<Measured> runs = study.draw(variants, Buffer::Indirect);
   const float exposure = study.traced ? study.traced->exposure : runs[0].exposure;
   if (truths.empty()) {

@@ -26,7 +26,10 @@ class CubeGather : public Gather {
   explicit CubeGather(PassContext context) : context_(context) {}
 
   SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
-    if (in.stores && update(in, stats)) uploaded_ = false;
+    if (in.stores) {
+      const bool was = std::exchange(uploaded_, false); // also where the update is refused
+      uploaded_ = !update(in, stats) && was;
+    }
     if (in.stores && !uploaded_) {
       traceNear(in, stats);
       upload();

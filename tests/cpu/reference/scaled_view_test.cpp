@@ -128,10 +128,16 @@ TEST_F(ScaledViewTest, PiecesOfAMovedInstanceSayWhereTheyWere) {
   block.worldFromObjectBefore[3] = vec4(5, 0, 0, 1);
   block.moved = true;
   const ScaledView parts = splitInstances(scene.assets, 2);
-  for (const InstanceView& i : parts(scene.view()).instances)
-    if (i.moved) {
-      EXPECT_GT(i.boundsWorldBefore.lo.x, 4);
-    }
+  ScaledView split = parts;
+  const SceneView view = split(scene.view());
+  int moved = 0;
+  for (const InstanceView& i : view.instances) {
+    const Aabb before = transformed(view.assets->meshes[i.mesh].boundsObject, i.worldFromObjectBefore);
+    EXPECT_EQ(i.boundsWorldBefore.lo, before.lo);
+    EXPECT_EQ(i.boundsWorldBefore.hi, before.hi);
+    moved += i.moved && i.boundsWorldBefore.lo.x > 4;
+  }
+  EXPECT_EQ(moved, 2) << "both halves of the block";
 }
 
 TEST_F(ScaledViewTest, LightsShareTheirIntensity) {
