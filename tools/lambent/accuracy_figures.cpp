@@ -45,10 +45,11 @@ PathFigure comparedPictures(const std::string& name, bool quick) {
              {"all-rays", {{"vpl.visibility", "rays"}}}},
             {kTraced, kTracedClamped}};
   if (name == "5.5") {
-    PathFigure figure{{{"rays", {{"vpl.visibility", "rays"}, {"filter.on", "off"}}, "ir"}}, {}};
+    PathFigure figure{{{"rays", {{"vpl.visibility", "rays"}, {"filter.on", "off"}, {"gather.disk", "1"}}, "ir"}}, {}};
     for (const char* texels : {"32", "64", "128", "256", "512"})
       if (!quick || figure.drawn.size() < 3)
-        figure.drawn.push_back({std::string("cube-") + texels, {{"cube.resolution", texels}}, "ibrr"});
+        figure.drawn.push_back(
+            {std::string("cube-") + texels, {{"cube.resolution", texels}, {"gather.disk", "1"}}, "ibrr"});
     return figure;
   }
   PathFigure figure{{}, {kTraced, kTracedClamped}, true};

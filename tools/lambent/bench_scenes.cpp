@@ -57,15 +57,15 @@ class ScaledLamps {
 
 constexpr size_t kPredecessor = 2; // of the rows below
 
-/// Patches as set; those of paper 4 (quarters whose answers differ by one bit), whose quarters ask 16 samples, or as
-/// many as the predecessor knows, or that are samples at their centres; those of Nichols et al. 2010 (nine patches
-/// whose answers differ by one bit, or by four, upsampling level by level); every pixel with 64 rays, and with the 16
-/// that a patch of paper 4 knows.
+/// Patches as set; those of paper 4 (quarters whose answers differ by one bit), whose quarters ask 16 samples, or more,
+/// up to as many as the predecessor knows, that differ by two bits, or that are samples at their centres; those of
+/// Nichols et al. 2010 (nine patches whose answers differ by one bit, or by four, upsampling level by level); every
+/// pixel with 64 rays, and with the 16 that a patch of paper 4 knows.
 std::vector<Variant> areaVariants(const LaunchContext& opened) {
-  const auto paper = [&](const char* name, int rays, const char* upsample) {
+  const auto paper = [&](const char* name, int rays, const char* threshold = "1", const char* upsample = "rbf") {
     return variantOf(opened, name,
                      {{"area.refinement", "sub-fragments"},
-                      {"area.threshold", "1"},
+                      {"area.threshold", threshold},
                       {"area.rays", std::to_string(rays)},
                       {"area.gradient", std::to_string(rays / 4)}, // published: 4 of 16
                       {"area.extra", "on"},
@@ -84,10 +84,13 @@ std::vector<Variant> areaVariants(const LaunchContext& opened) {
                       {"area.upsample", "bilinear"}});
   };
   std::vector<Variant> variants{variantOf(opened, "as set"),
-                                paper("paper 4", 16, "rbf"),
+                                paper("paper 4", 16),
                                 predecessor("predecessor", "1"),
-                                paper("paper 4, 64 samples", 64, "rbf"),
-                                paper("paper 4, centres", 16, "rbf-centres"),
+                                paper("paper 4, 32 samples", 32),
+                                paper("paper 4, 64 samples", 64),
+                                paper("paper 4, 2 bits", 16, "2"),
+                                paper("paper 4, centres", 16, "1", "rbf-centres"),
+                                paper("paper 4, bilinear", 16, "1", "bilinear"),
                                 predecessor("predecessor, 4 bits", "4"),
                                 everyPixel("every pixel", "16"),
                                 everyPixel("every pixel, 16 samples", "4")};
