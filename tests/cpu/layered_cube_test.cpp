@@ -473,7 +473,7 @@ TEST_F(CubeFileTest, GivesBackWhatWasSavedAndGoesOn) {
 TEST_F(CubeFileTest, KnowsOfColumnsThatWereCut) {
   settings.resolution = 8;
   for (int i = 0; i < 260; ++i)
-    w.scene.quad({-1, -0.9f + 0.005f * float(i), -1}, {0, 0, 2}, {2, 0, 0}, w.scene.material(vec3(0.5f)));
+    w.scene.quad({0, -0.9f + 0.005f * float(i), 0}, {0, 0, 0.3f}, {0.3f, 0, 0}, w.scene.material(vec3(0.5f)));
   w.place();
   LayeredCube cube;
   cube.update(w.inputs(settings));
