@@ -17,10 +17,15 @@ layout(binding = 12) uniform usamplerBuffer nodes;   // CubeNode, two texels eac
 uniform int resolution;  // texels along an edge of each cube
 uniform float brightest; // irradiance of the brightest entry, W/m²
 
-const float kLeastCos = 0.5;    // between the pixel's normal, which may be interpolated or mapped, and the entry's
-const float kSlantCos = 0.25, kSlantPlane = 0.2; // where nothing matches: slanted sides of joints and mouldings, which no ray met
-const float kNextImage = 0.8;   // of the largest part of the normal: from here on its axis is asked too
-const float kSamePlane = 1.0;   // texels, for flat surfaces; curved ones leave their planes between texels
+const float kNextImage = 0.8; // of the largest part of the normal: from here on its axis is asked too
+
+/// What counts as the pixel's surface.
+struct Match {
+  float leastCos; // between the pixel's normal, which may be interpolated or mapped, and the entry's
+  float height;   // texels off the entry's plane; curved surfaces leave their planes between texels
+};
+const Match kOwn = Match(0.5, 1.0);
+const Match kSlanted = Match(0.25, 0.2); // where nothing matches: slanted sides of joints and mouldings, which no ray met
 
 vec3 irradianceOf(CubeTexel t) {
   vec3 mantissa = vec3(t.irradiance & 511u, t.irradiance >> 9 & 511u, t.irradiance >> 18 & 511u);
@@ -61,7 +66,7 @@ struct Found {
 };
 
 /// Of a column's entries on the surface at x (from the corner) the one nearest to it. `at`: x in texels of the image.
-Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal, float leastCos) {
+Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal, Match match) {
   Found found = Found(1e9, 0.0, vec3(0.0), 0u, vec2(0.0));
   if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(resolution)))) return found;
   int blocks = resolution / kCubeBlock;
@@ -74,7 +79,7 @@ Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal,
     CubeTexel t = CubeTexel(packed_.x, uintBitsToFloat(packed_.y), packed_.z, packed_.w);
     vec3 n = unitFromOctahedral(unpackSnorm2x16(t.normal));
     float height = abs(dot(x, n) - t.distance) / cube.texel;
-    if (height > (leastCos < kLeastCos ? kSlantPlane : kSamePlane) || dot(n, normal) < leastCos) continue;
+    if (height > match.height || dot(n, normal) < match.leastCos) continue;
     vec2 way = vec2(column) + (vec2(t.place >> 8 & 255u, t.place >> 16 & 255u) + 0.5) / 256.0 - at;
     float off = max(abs(way.x), abs(way.y)) + height;
     if (off >= found.off) continue;
@@ -85,14 +90,14 @@ Found nearestIn(Cube cube, ivec2 column, int axis, vec2 at, vec3 x, vec3 normal,
 }
 
 /// Adds what an image holds around x; `share` of the image in all.
-void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, float leastCos, inout vec3 sum, inout float total,
+void lookUp(Cube cube, int axis, float share, vec3 x, vec3 normal, Match match, inout vec3 sum, inout float total,
             inout vec4 fallback) {
   vec2 at = vec2(x[(axis + 1) % 3], x[(axis + 2) % 3]) / cube.texel;
   ivec2 base = ivec2(floor(at - 0.5));
   Found found[4];
   int nearest = 0;
   for (int i = 0; i < 4; ++i) {
-    found[i] = nearestIn(cube, base + ivec2(i & 1, i >> 1), axis, at, x, normal, leastCos);
+    found[i] = nearestIn(cube, base + ivec2(i & 1, i >> 1), axis, at, x, normal, match);
     if (found[i].off < found[nearest].off) nearest = i;
   }
   if (found[nearest].off > 1e8) return;
@@ -122,12 +127,12 @@ void main() {
   vec4 nearest = vec4(0.0, 0.0, 0.0, 1e9);
   for (int axis = 0; axis < 3; ++axis) {
     float share = smoothstep(kNextImage * most, most, a[axis]);
-    if (share > 0.0) lookUp(cube, axis, share, x, normal, kLeastCos, sum, total, nearest);
+    if (share > 0.0) lookUp(cube, axis, share, x, normal, kOwn, sum, total, nearest);
   }
   // A mapped normal may lead to another image than the surface's own.
   for (int turn = 0; turn < 2 && nearest.w > 1e8; ++turn)
     for (int axis = 0; axis < 3; ++axis)
-      lookUp(cube, axis, 1.0, x, normal, turn == 0 ? kLeastCos : kSlantCos, sum, total, nearest);
+      lookUp(cube, axis, 1.0, x, normal, turn == 0 ? kOwn : kSlanted, sum, total, nearest);
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
   outIrradiance = vec4(irradiance, total > 1e-3 || nearest.w < 1e8 ? 1.0 : 0.0);
 #ifdef GLOSSY
