@@ -135,6 +135,13 @@ TEST_P(Comparator, NoLightNoVpls) {
 }
 
 TEST_P(Comparator, NothingToMeet) {
+  World emptied(GetParam()); // once lit: what is met no more must not shine on
+  emptied.update();
+  emptied.rays = {};
+  if (GetParam() != VplSource::Mir) { // which keeps its set where nothing of this frame says otherwise
+    EXPECT_EQ(emptied.update().alive, 0u);
+    for (const Vpl& v : emptied.set.slots) EXPECT_FALSE(v.alive);
+  }
   world.rays = {};
   EXPECT_EQ(world.update().alive, 0u);
   world.view.boundsWorld = {};

@@ -48,6 +48,8 @@ Trace run(Governed& g, const Machine& machine, double targetMs, double seconds, 
     g = governed(std::move(g), ms, targetMs);
     EXPECT_TRUE(!before.calibrated || g.settings == before.settings) << "another preset while frames run";
     if (g.scale != before.scale) trace.changes.push_back(time);
+    EXPECT_FALSE(g.pace == Pace::TooSlow && before.scale > GovernorGains{}.least) << "a smaller image is left";
+    EXPECT_FALSE(g.pace == Pace::Idle && before.scale < 1) << "a larger image is left";
   }
   return trace;
 }
@@ -100,6 +102,10 @@ TEST(Governor, SaysWhatCannotBeReached) {
   EXPECT_EQ(fast.scale, 1);
   EXPECT_EQ(fast.preset, presetTable().back().name);
   EXPECT_EQ(fast.pace, Pace::Idle);
+  Governed can;
+  run(can, {}, kTarget, 3);
+  run(can, {.load = 2}, kTarget, 5, 1000);
+  EXPECT_EQ(can.pace, Pace::Holding);
 }
 
 TEST(Governor, LooksAwayWhileFramesWarmUp) {

@@ -85,6 +85,7 @@ TEST(LightChange, NoiseOfManyLightsIsLittle) {
   for (size_t i = 0; i < 100; ++i) place.lights[i].radiance *= (i + i / 10) % 2 ? 1.1f : 0.9f;
   EXPECT_LT(std::abs(place.change().gained), 0.01f);
   EXPECT_LT(place.change().share, 0.03f);
+  EXPECT_GT(place.change().share, 0.01f);
 }
 
 TEST(LightChange, AnotherColourIsAChange) {

@@ -53,15 +53,27 @@ TEST(Daylight, IsBrightestAtTheSun) {
 TEST(Daylight, ZenithIsAsPublished) {
   // Luminance at the zenith in kcd/m² (Preetham et al. 1999, appendix 2), in double; the unit is 100/π kcd/m².
   const double pi = std::acos(-1.0);
+  // Its chromaticity: polynomials in the turbidity and the sun's angle from the zenith.
+  const glm::dmat3x4 ofX({0.00166, -0.00375, 0.00209, 0}, {-0.02903, 0.06377, -0.03202, 0.00394},
+                         {0.11693, -0.21196, 0.06052, 0.25886});
+  const glm::dmat3x4 ofY({0.00275, -0.00610, 0.00317, 0}, {-0.04214, 0.08970, -0.04153, 0.00516},
+                         {0.15346, -0.26756, 0.06670, 0.26688});
   for (const double elevation : {2.0, 30.0, 60.0, 88.0})
     for (const double t : {2.0, 3.0, 6.0}) {
       const double fromZenith = (90 - elevation) * pi / 180, chi = (4.0 / 9 - t / 120) * (pi - 2 * fromZenith);
       const double wanted = ((4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192) * pi / 100;
       const vec3 zenith = Sky::daylight(directionAt(float(elevation), 10), float(t)).radiance({0, 1, 0});
       EXPECT_NEAR(luminance(zenith), wanted, 2e-3 * wanted) << elevation << ' ' << t;
-      if (t < 4) {
-        EXPECT_GT(zenith.z, zenith.x) << "blue";
-      }
+      if (t > 4) continue;
+      const double s = fromZenith;
+      const auto chromaticity = [&](const glm::dmat3x4& of) {
+        return glm::dot(of * dvec3(t * t, t, 1), glm::dvec4(s * s * s, s * s, s, 1));
+      };
+      const dvec3 c(zenith); // linear Rec.709, to CIE XYZ
+      const dvec3 xyz(0.4124 * c.x + 0.3576 * c.y + 0.1805 * c.z, 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
+                      0.0193 * c.x + 0.1192 * c.y + 0.9505 * c.z);
+      EXPECT_NEAR(xyz.x / (xyz.x + xyz.y + xyz.z), chromaticity(ofX), 1e-3) << elevation << ' ' << t;
+      EXPECT_NEAR(xyz.y / (xyz.x + xyz.y + xyz.z), chromaticity(ofY), 1e-3) << elevation << ' ' << t;
     }
 }
 
@@ -305,8 +317,7 @@ TEST(SkyPaths, RadiosityOfOpenPlanesAndOfARoom) {
   EXPECT_TRUE(agrees(meanOf(values), wanted, 0.03 * wanted, 1e-3 * wanted));
 }
 
-/// Kept paths give what paths from scratch do, whatever becomes of the sky and of what stands before the window.
-/// Lobes of smooth-shaded surfaces reach there, with no weight.
+/// Of rays by the cosine. Those of lobes reach there too; a cosine of 0 weighs them.
 TEST(SkyPaths, NothingComesFromBelowTheShadingHorizon) {
   LightSet lights;
   lights.sky = Sky::daylight(directionAt(25, 75), 3);
@@ -322,6 +333,7 @@ TEST(SkyPaths, NothingComesFromBelowTheShadingHorizon) {
   EXPECT_GT(below, 100);
 }
 
+/// Kept paths give what paths from scratch do, whatever becomes of the sky and of what stands before the window.
 TEST(SkyPaths, KeptThroughChangesOfSkyAndGeometry) {
   WindowRoom room;
   const uint32_t m = room.scene.material(vec3(0.4f));

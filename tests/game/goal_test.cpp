@@ -180,8 +180,11 @@ TEST(Shrine, IsMeasuredAlikeEveryTime) {
     s.openDoor();
     s.put(ThingKind::WhiteBoard, kBeforeDoor, {0, 0, -1});
     value = measured(*s.goal, 5);
+    s.goal->reset();
+    EXPECT_EQ(measured(*s.goal, 5), value);
   }
   EXPECT_EQ(values[0], values[1]);
+  EXPECT_GT(values[0], 0);
 }
 
 } // namespace lambent::test::goal_test

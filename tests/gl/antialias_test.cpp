@@ -45,15 +45,13 @@ class AntiAliasTest : public GlTest {
     for (vec3& c : radiance.pixels)
       if (std::isfinite(luminance(c))) c /= 1 - luminance(c);
     radiance_ = textureOf(radiance);
-    for (gl::Texture* texture : {&depth_, &zero_}) {
-      *texture = gl::Texture("surfaces", {.format = GL_RGBA32F, .width = width, .height = height});
-      texture->clear();
-    }
+    depth_ = gl::Texture("depth", {.format = GL_RGBA32F, .width = width, .height = height});
+    depth_.clear();
     const float one = 1;
     glClearTexImage(depth_.name(), 0, GL_RED, GL_FLOAT, &one);
     frame_ = {};
     frame_.surfaces.depth = &depth_;
-    frame_.surfaces.normal = frame_.surfaces.albedo = frame_.surfaces.emission = &zero_;
+    frame_.surfaces.normal = frame_.surfaces.albedo = frame_.surfaces.emission = &radiance_;
     frame_.surfaces.width = width;
     frame_.surfaces.height = height;
     frame_.indirect = {&radiance_};
@@ -81,7 +79,7 @@ class AntiAliasTest : public GlTest {
     return std::sqrt(sum / count);
   }
 
-  gl::Texture radiance_, depth_, zero_;
+  gl::Texture radiance_, depth_;
   FrameResults frame_;
   DisplayPass display_{passes};
 };
@@ -234,6 +232,15 @@ TEST_F(AntiAliasTest, PicturesOfAnySize) {
       EXPECT_LE(byte, *std::max_element(off.rgb.begin(), off.rgb.end()));
     }
     EXPECT_TRUE(on.rgb != off.rgb || size != glm::ivec2(7, 5));
+    // Beyond its border a picture goes on as its outermost pixels are.
+    constexpr int kAround = 32;
+    const Image8 larger = shown(drawn(size.x + 2 * kAround, size.y + 2 * kAround, [&](float x, float y) {
+      x = glm::clamp(x - kAround, 0.5f, float(size.x) - 0.5f), y = glm::clamp(y - kAround, 0.5f, float(size.y) - 0.5f);
+      return x + 2 * y < float(size.y) + 1;
+    }));
+    for (const auto [x, y] : Pixels(size.x, size.y))
+      EXPECT_LE(maxComponent(glm::abs(byteAt(on, x, y) - byteAt(larger, x + kAround, y + kAround))), 3) // dither
+          << x << ' ' << y << " of " << size.x << 'x' << size.y;
   }
 }
 

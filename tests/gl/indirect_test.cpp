@@ -96,17 +96,30 @@ TEST_F(IndirectTest, EmptyBlackAndBrokenLightsBringNothing) {
 }
 
 TEST_F(IndirectTest, OnlyChangedLightsAreUploaded) {
-  std::vector<VirtualLight> lights(100, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
-  lightBuffer.run(lights);
-  EXPECT_EQ(lightBuffer.uploaded(), 100u);
+  constexpr uint32_t kFirst = 7, kSecond = kLightsPerChunk + 7; // of either chunk
+  std::vector<VirtualLight> lights(kLightsPerChunk + 100, lamp(vec3(0, 2, 0), vec3(0, -1, 0), 1, 0.1f));
+  const PackedLights packed = lightBuffer.run(lights);
+  EXPECT_EQ(lightBuffer.uploaded(), lights.size());
   lightBuffer.run(lights);
   EXPECT_EQ(lightBuffer.uploaded(), 0u);
-  lights[7] = lamp(vec3(0, 3, 0), vec3(0, -1, 0), 1, 0.1f);
+  const auto held = [&](uint32_t slot) {
+    VplLight light;
+    packed.buffer->read(lightOrder(slot) * sizeof light, std::span(&light, 1));
+    return light;
+  };
+  const auto same = [](const VplLight& a, const VplLight& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  glClearNamedBufferData(packed.buffer->name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  lights[kFirst] = lamp(vec3(0, 3, 0), vec3(0, -1, 0), 1, 0.1f);
   lightBuffer.run(lights);
   EXPECT_EQ(lightBuffer.uploaded(), 1u);
-  lights.resize(50);
+  EXPECT_TRUE(same(held(kFirst), pack(lights[kFirst])));
+  EXPECT_TRUE(same(held(kSecond), VplLight{})) << "a chunk without changes was sent";
+  lights[kSecond].alive = false;
+  lights.resize(kLightsPerChunk + 50);
   lightBuffer.run(lights);
-  EXPECT_EQ(lightBuffer.uploaded(), 50u) << "slots that are gone are emptied";
+  EXPECT_EQ(lightBuffer.uploaded(), 51u) << "slots that are gone are emptied";
+  EXPECT_TRUE(same(held(kLightsPerChunk + 20), pack(lights[0]))) << "the chunk with changes is whole";
+  EXPECT_TRUE(same(held(kLightsPerChunk + 60), VplLight{}));
 }
 
 TEST_F(IndirectTest, FilterKeepsConstants) {

@@ -294,9 +294,12 @@ TEST_F(ReflectiveTest, AllTexelsAreTheSameLightWhicheverWay) {
   const Image clusters = gathered(room.scene, maps(lights, rsm, kClusters), rsm, kClusters);
   const Image tree = gathered(room.scene, maps(lights, rsm, kTrees), rsm, kTrees);
   for (size_t i = 0; i < grid.pixels.size(); ++i) {
-    ASSERT_GT(grid.pixels[i].x, 0);
-    ASSERT_NEAR(clusters.pixels[i].x, grid.pixels[i].x, 1e-4f * grid.pixels[i].x);
-    ASSERT_NEAR(tree.pixels[i].x, grid.pixels[i].x, 1e-4f * grid.pixels[i].x);
+    for (int c = 0; c < 3; ++c) {
+      const float wanted = grid.pixels[i][c];
+      ASSERT_GT(wanted, 0);
+      ASSERT_NEAR(clusters.pixels[i][c], wanted, 1e-4f * wanted) << c;
+      ASSERT_NEAR(tree.pixels[i][c], wanted, 1e-4f * wanted) << c;
+    }
   }
 }
 

@@ -47,25 +47,27 @@ TEST_F(Library, GivesTheSameLightToTheBitInTwoDevicesAndWithOneThread) {
 }
 
 TEST_F(Library, TwoDevicesRunInTwoThreads) {
-  std::vector<float> light[2];
-  const auto work = [](std::vector<float>& to) {
+  std::vector<float> alone[2], light[2];
+  const auto work = [](std::vector<float>& to, float step) {
     const auto own = eglHost();
     own->makeCurrent();
     {
       Room room;
       const lambent_view view = room.view();
       for (int frame = 0; frame < 4; ++frame) {
-        room.place(0.05f * float(frame));
+        room.place(step * float(frame));
         to = Room::read(room.render(view).indirect, GL_RGB);
       }
     }
     own->release();
   };
-  std::thread other(work, std::ref(light[1]));
-  work(light[0]);
+  for (int i = 0; i < 2; ++i) work(alone[i], i ? -0.05f : 0.05f);
+  std::thread other(work, std::ref(light[1]), -0.05f);
+  work(light[0], 0.05f);
   other.join();
   context->makeCurrent();
-  EXPECT_EQ(light[0], light[1]);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(light[i], alone[i]) << i;
+  EXPECT_NE(light[0], light[1]);
 }
 
 // What a host may get wrong ---------------------------------------------------------------------------

@@ -93,9 +93,24 @@ TEST_F(Room, StateOfAnotherPictureIsRefused) {
   refused({rays, lights, camera}, "another picture");
   camera.width = 32;
   refused({rays, lights, camera}, "24x16");
+  camera = view.camera;
+  camera.fovY *= 1.1f;
+  refused({rays, lights, camera}, "another picture");
   scene_.lights[0].intensity.y = 2;
   refused(in, "another picture");
   scene_.lights[0].intensity.y = 1;
+  using Change = void (*)(LightView&);
+  for (const Change change :
+       {Change([](LightView& l) { l.type = LightType::Spot; }), Change([](LightView& l) { l.position.y += 0.01f; }),
+        Change([](LightView& l) { l.direction = vec3(1, 0, 0); }), Change([](LightView& l) { l.range = 3; }),
+        Change([](LightView& l) { l.innerConeCos = 0.9f; }), Change([](LightView& l) { l.outerConeCos = 0.6f; }),
+        Change([](LightView& l) { l.angularRadius = 0.1f; })}) {
+    const LightView before = scene_.lights[0];
+    change(scene_.lights[0]);
+    refused(in, "another picture");
+    scene_.lights[0] = before;
+    EXPECT_EQ(refusal(in), "accepted");
+  }
   scene_.assets.meshes[0].positions[0].x += 0.25f;
   refused(in, "another picture");
   scene_.assets.meshes[0].positions[0].x -= 0.25f;

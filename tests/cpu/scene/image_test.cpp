@@ -6,6 +6,10 @@
 #include "tests/cpu/scene/support.h"
 
 #include <bit>
+#include <cstring>
+#include <functional>
+
+#include <sys/resource.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -205,8 +209,23 @@ TEST_F(TextureLookup, TransformSrgbAndStrangeCoordinates) {
 
 TEST(Pictures, AHeaderAloneAsksForNoMemory) {
   TemporaryFolder folder;
-  writeBytes(folder / "a.pfm", "PF 32768 32768 -1\n"); // 12 GiB
-  EXPECT_NE(inputErrorOf([&] { readPfm(folder / "a.pfm"); }).find("ends before the last"), std::string::npos);
+  const auto refused = [](const std::function<void()>& read) {
+    struct rusage before, after;
+    getrusage(RUSAGE_SELF, &before);
+    const std::string message = inputErrorOf(read);
+    EXPECT_NE(message.find("ends before the last"), std::string::npos) << message;
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 100 << 10) << "KiB, of 3 GiB that the header tells of";
+  };
+  writeBytes(folder / "a.pfm", "PF 16384 16384 -1\n");
+  refused([&] { readPfm(folder / "a.pfm"); });
+  writeExr(folder / "a.exr", gradient(3, 2));
+  std::string exr = readBytes(folder / "a.exr");
+  const int32_t corner[] = {16383, 16383};
+  std::memcpy(exr.data() + exr.find("dataWindow") + sizeof "dataWindow" + sizeof "box2i" + 3 * sizeof(int32_t), corner,
+              sizeof corner);
+  writeBytes(folder / "a.exr", exr + std::string(64 << 10, '\0')); // of its rows, where they are in the file
+  refused([&] { readExr(folder / "a.exr"); });
 }
 
 TEST(Pictures, NamesMayBeAsLongAsTheDiskTakes) {

@@ -340,9 +340,24 @@ TEST_F(Import, SkinnedMeshIsPlacedByItsJointsAlone) {
 }
 
 TEST_F(Import, BinaryFileIsTheSameScene) {
-  oneTriangle().writeGlb(folder / "triangle.glb");
+  GltfBuilder b = oneTriangle();
+  b.json["nodes"][0]["translation"] = {1, 2, 3};
+  const std::vector<uint8_t> picture = png({10, 20, 30, 255});
+  writeBytes(folder / "a.png", {picture.begin(), picture.end()});
+  b.json["images"] = {{{"uri", "a.png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const Scene text = b.load(folder);
+  b.writeGlb(folder / "triangle.glb");
   scene = loadScene(folder / "triangle.glb");
-  EXPECT_EQ(scene.assets.meshes.at(0).triangles.size(), 1u);
+  EXPECT_EQ(scene.assets.meshes.at(0).triangles, text.assets.meshes.at(0).triangles);
+  EXPECT_EQ(scene.assets.meshes.at(0).positions, text.assets.meshes.at(0).positions);
+  ASSERT_EQ(scene.assets.images.size(), 1u);
+  EXPECT_EQ(scene.assets.images[0].texels, text.assets.images.at(0).texels);
+  EXPECT_EQ(scene.assets.images[0].texels.at(0), u8vec4(10, 20, 30, 255));
+  expectNear(worldBounds(scene).lo, worldBounds(text).lo);
+  expectNear(worldBounds(scene).lo, {1, 2, 3});
 }
 
 TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
@@ -354,6 +369,10 @@ TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
   expectNear(t.translation, {5, 6, 7});
   expectNear(glm::abs(t.scale), {2, 3, 1});
   expectNear(vec3(t.local() * vec4(1, 0, 0, 1)), {5, 6, 5});
+  b.json["nodes"][0]["matrix"] = {-2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; // a mirror
+  scene = b.load(folder);
+  EXPECT_FALSE(scene.registry.get<Transform>(Entity(0, 0)).matrix);
+  expectNear(vec3(scene.registry.get<Transform>(Entity(0, 0)).local() * vec4(1)), {-2, 3, 1});
   b.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   scene = b.load(folder);
   EXPECT_TRUE(scene.registry.get<Transform>(Entity(0, 0)).matrix);

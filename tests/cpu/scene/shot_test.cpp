@@ -115,8 +115,12 @@ TEST(ShotCamera, PassesThroughItsKeysAndHoldsOutside) {
     expectNear(-vec3(view.worldFromView[2]), glm::normalize(key.target - key.eye));
     EXPECT_FLOAT_EQ(view.fovY, key.fovY);
   }
-  expectNear(shotCamera(shot, -1, dvec3(0)).position(), {0, 0, 0});
-  expectNear(shotCamera(shot, 99, dvec3(0)).position(), {5, 2, 1});
+  for (const auto& [t, key] : {std::pair(-1.0f, shot.camera.front()), {99.0f, shot.camera.back()}}) {
+    const CameraView view = shotCamera(shot, t, dvec3(0));
+    expectNear(view.position(), key.eye);
+    expectNear(-vec3(view.worldFromView[2]), glm::normalize(key.target - key.eye));
+    EXPECT_FLOAT_EQ(view.fovY, key.fovY);
+  }
   EXPECT_FLOAT_EQ(shotCamera(shot, 2, dvec3(0)).fovY, 1.5f);
   // The speed is the same on both sides of a key.
   const float h = 1e-3f;
