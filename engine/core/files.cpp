@@ -2,34 +2,81 @@
 
 #include "engine/core/error.h"
 
+#include <cerrno>
+#include <climits>
 #include <fstream>
 #include <random>
 #include <system_error>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace lambent {
 
 namespace fs = std::filesystem;
 
-void checkWritable(const fs::path& file) {
+namespace {
+constexpr size_t kLongestStem = 100; // of 255 bytes that a name may have: a temporary's fits where the target's does
+
+/// What a link leads to, whether it is there or not: that is written, and the link stays one. Throws RunError for links
+/// that lead to one another.
+fs::path followed(fs::path file) {
+  constexpr int kMostLinks = 40; // as Linux follows
   std::error_code none;
+  if (fs::exists(file, none)) {
+    const fs::path there = fs::canonical(file, none); // has none where it is a pipe of the shell's
+    return there.empty() ? file : there;
+  }
+  const std::string named = file.string();
+  for (int i = 0; fs::is_symlink(file, none); ++i) {
+    if (i == kMostLinks) throw RunError(named + ": cannot be written: its links lead to one another");
+    file = file.parent_path() / fs::read_symlink(file, none);
+  }
+  return file;
+}
+
+/// Made by this program alone, and locked while it lives: a lock that can be had is that of a program that was killed.
+class Temporary {
+ public:
+  Temporary(const fs::path& temporary, const fs::path& file)
+      : file_(open(temporary.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666)) {
+    if (file_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
+    flock(file_, LOCK_EX | LOCK_NB); // where the disk knows no locks it is as one that was left
+  }
+  ~Temporary() { close(file_); }
+  Temporary(const Temporary&) = delete;
+
+ private:
+  int file_;
+};
+
+/// Whether nobody writes it any more.
+bool abandoned(const fs::path& temporary) {
+  const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file < 0) return false;
+  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  close(file);
+  return free;
+}
+} // namespace
+
+void checkWritable(const fs::path& named) {
+  std::error_code none;
+  const fs::path file = followed(named);
   const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
-  const auto refuse = [&](const std::string& why) { throw RunError(file.string() + ": cannot be written: " + why); };
+  const auto refuse = [&](const std::string& why) { throw RunError(named.string() + ": cannot be written: " + why); };
+  if (file.filename().string().size() > NAME_MAX)
+    refuse("its name is longer than " + std::to_string(NAME_MAX) + " bytes");
   if (!fs::is_directory(folder, none)) refuse("there is no folder " + folder.string());
   if (fs::is_directory(file, none)) refuse("it is a folder");
   if (fs::exists(file, none) && !fs::is_regular_file(file, none)) return; // a device or a pipe
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
 }
 
-namespace {
-constexpr size_t kLongestStem = 100; // of 255 bytes that a name may have: a temporary's fits where the target's does
-}
-
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code none;
-  const fs::path resolved = fs::canonical(named, none); // a link stays one, and what it leads to is written
-  const fs::path file = resolved.empty() ? named : resolved;
+  const fs::path file = followed(named);
   if (fs::exists(file, none) && !fs::is_regular_file(file, none) && !fs::is_directory(file, none))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
@@ -39,6 +86,7 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
                              std::to_string(std::random_device{}()) + file.extension().string());
   std::error_code ignored;
   checkWritable(file);
+  const Temporary held(temporary, file);
   try {
     write(temporary);
     fs::rename(temporary, file);
@@ -60,7 +108,8 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
   });
 }
 
-void removeLeftovers(const fs::path& file) {
+void removeLeftovers(const fs::path& named) {
+  const fs::path file = followed(named);
   const std::string begin = "." + file.stem().string().substr(0, kLongestStem) + ".", end = file.extension().string();
   std::error_code ignored;
   for (const fs::directory_entry& e :
@@ -68,7 +117,7 @@ void removeLeftovers(const fs::path& file) {
     const std::string name = e.path().filename().string();
     if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
     const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
-    if (between.find_first_not_of("0123456789") == between.npos) fs::remove(e.path(), ignored);
+    if (between.find_first_not_of("0123456789") == between.npos && abandoned(e.path())) fs::remove(e.path(), ignored);
   }
 }
 

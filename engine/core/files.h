@@ -17,8 +17,7 @@ void writeAtomically(const std::filesystem::path& file, const std::function<void
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Removes temporaries of `file` left by a program that was killed while it wrote. Call it only where no other program
-/// writes the file, as when a run is resumed.
+/// Removes temporaries of `file` left by programs that were killed while they wrote. What another one writes stays.
 void removeLeftovers(const std::filesystem::path& file);
 
 } // namespace lambent

@@ -38,7 +38,7 @@ BufferSlice Ring::write(uint64_t bytes, const void* data) {
     constexpr GLbitfield kAccess = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
     buffer_ = Buffer(label_, kParts * partBytes_, nullptr, kAccess);
     mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(buffer_.name(), 0, GLsizeiptr(buffer_.bytes()), kAccess));
-    CHECK(mapped_ != nullptr);
+    if (!mapped_) throw RunError(label_ + ": no memory for what is sent to the GPU in a frame");
     forgetFences();
     head_ = part_ = 0;
   }

@@ -13,6 +13,8 @@ struct CubeSurfaces::Growth {
   const DirtyRegion* moved; // null: nothing is kept
   const RayQuery& rays;
   RayCounts& counts;
+  size_t memory = ~size_t(0); // bytes that it may take
+  size_t taken = 0;
   std::vector<CubeNode> nodes = {};
   std::vector<DepthCube> cubes = {};
   std::vector<uint32_t> from = {}; // by cube: the one it was, or kNone
@@ -26,6 +28,11 @@ struct CubeSurfaces::Growth {
     constexpr size_t kMostColumns = size_t(1) << 30;
     if ((cubes.size() + 1) * before.columns() > kMostColumns)
       throw RunError("the tree of layered depth cubes has too many columns (lower cube.levels or raise cube.split)");
+    constexpr size_t kTwice = 2; // parts, and all of them together
+    taken += kTwice * (cube.firsts.size() * sizeof(uint32_t) + cube.entries.size() * sizeof(CubeEntry));
+    if (taken > memory)
+      throw RunError("the tree of layered depth cubes needs more memory than is left (lower cube.levels or "
+                     "cube.resolution, or raise cube.split)");
     nodes[node].firstColumn = uint32_t(cubes.size() * before.columns());
     cubes.push_back(std::move(cube));
     from.push_back(was);
@@ -59,11 +66,17 @@ struct CubeSurfaces::Growth {
   }
 };
 
+namespace {
+constexpr float kLeastEdge = 1e-20f; // metres
+float edgeOver(const Aabb& boundsWorld) { return std::max(maxComponent(boundsWorld.size()), kLeastEdge); }
+} // namespace
+
 bool CubeSurfaces::holds(const Aabb& boundsWorld) const {
-  const float around = levels_ > 0 ? 0 : texel(); // narrow cubes of a tree reach less far
+  // Narrow cubes of a tree reach less far: as far as rounding puts the box beside what it was built over.
+  const float rounding = 8e-7f * (edge_ + maxComponent(glm::max(glm::abs(boundsWorld.lo), glm::abs(boundsWorld.hi))));
+  const float around = levels_ > 0 ? rounding : texel() + rounding;
   return !empty() && glm::all(glm::greaterThanEqual(boundsWorld.lo, lo_ - around)) &&
-         glm::all(glm::lessThanEqual(boundsWorld.hi, lo_ + edge_ + around)) &&
-         maxComponent(boundsWorld.size()) > 0.5f * edge_;
+         glm::all(glm::lessThanEqual(boundsWorld.hi, lo_ + edge_ + around)) && edgeOver(boundsWorld) > 0.5f * edge_;
 }
 
 DepthCube CubeSurfaces::cubeOf(uint32_t index) const {
@@ -75,8 +88,9 @@ DepthCube CubeSurfaces::cubeOf(uint32_t index) const {
   return cube;
 }
 
-CubeSurfaces::Growth CubeSurfaces::grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const {
-  Growth growth{*this, moved, rays, counts};
+CubeSurfaces::Growth CubeSurfaces::grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts,
+                                        size_t memory) const {
+  Growth growth{*this, moved, rays, counts, memory};
   growth.nodes.resize(1);
   growth.grow(0, lo_, edge_, 0, moved ? 0 : kNone);
   return growth;
@@ -102,19 +116,19 @@ void CubeSurfaces::adopt(Growth& growth) {
 }
 
 void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays,
-                         RayCounts& counts) {
-  edge_ = std::max(maxComponent(boundsWorld.size()), 1e-20f);
+                         RayCounts& counts, size_t memory) {
+  edge_ = edgeOver(boundsWorld);
   lo_ = boundsWorld.centre() - 0.5f * edge_;
   resolution_ = settings.resolution;
   levels_ = settings.levels;
   split_ = settings.split;
   cut_ = 0;
-  Growth growth = grow(nullptr, rays, counts);
+  Growth growth = grow(nullptr, rays, counts, memory);
   adopt(growth);
 }
 
 std::vector<uint32_t> CubeSurfaces::update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts) {
-  Growth growth = grow(&moved, rays, counts);
+  Growth growth = grow(&moved, rays, counts, ~size_t(0));
   const std::vector<CubeEntry> before = std::move(entries_);
   const std::vector<uint32_t> firstsBefore = std::move(firsts_);
   adopt(growth);

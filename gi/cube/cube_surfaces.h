@@ -13,8 +13,9 @@ namespace lambent {
 class CubeSurfaces {
  public:
   bool empty() const { return nodes_.empty(); }
-  /// Casts all columns.
-  void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts);
+  /// Casts all columns. Throws RunError where they take more than so many bytes.
+  void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts,
+             size_t memory = ~size_t(0));
   /// Casts what `moved` touches; the result is what build() would make. Returns for each entry its number before, kNone
   /// where it is new.
   std::vector<uint32_t> update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
@@ -39,7 +40,7 @@ class CubeSurfaces {
   struct Growth;          // of a tree, next to the one before
 
   DepthCube cubeOf(uint32_t index) const;
-  Growth grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts) const;
+  Growth grow(const DirtyRegion* moved, const RayQuery& rays, RayCounts& counts, size_t memory) const;
   void adopt(Growth& growth);
 
   vec3 lo_{0};

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace lambent {
 
@@ -81,6 +82,20 @@ dvec3 LayeredCube::bring(const CubeEntry& entry, const VirtualLight& light) cons
                                                      -glm::dot(d, light.normal) * inverse, r2, light.area, gather_));
 }
 
+/// Takes light out of an entry's sum, which `seen_` and `in_` know no more. Where what stays is as small as the
+/// rounding of what went, as after a flash, it is summed anew.
+void LayeredCube::take(size_t entry, const dvec3& light) {
+  constexpr double kExact = 1e-9;
+  if (light == dvec3(0)) return;
+  dvec3& sum = sums_[entry];
+  sum -= light;
+  if (!glm::any(glm::lessThan(glm::abs(sum), kExact * light))) return;
+  sum = dvec3(0);
+  for (size_t w = 0; w < words(); ++w)
+    for (Word left = seen_[entry * words() + w]; left; left &= left - 1)
+      sum += bring(surfaces_.entries()[entry], in_[w * kBatch + size_t(std::countr_zero(left))]);
+}
+
 CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
   CubeWork work;
   const bool fresh = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
@@ -93,7 +108,7 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
     gather_ = in.gather;
     constexpr double kBytesOfColumn = 200; // while it is cast, with an entry or two
     refuseBeyond(in.memory, 3.0 * settings_.resolution * settings_.resolution * kBytesOfColumn);
-    surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays);
+    surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays, in.memory == 0 ? freeMemory() : in.memory);
     in_.assign(in.lights.size(), {});
     clear(in.memory);
     work.entriesAnew = uint32_t(sums_.size());
@@ -127,18 +142,22 @@ CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
     work.lightsOut += uint32_t(std::popcount(out));
     if (!(out | relit | add)) continue;
     work.changed = true;
+    const std::vector<VirtualLight> before(in_.begin() + w * kBatch, in_.begin() + w * kBatch + next.size());
+    std::copy(next.begin(), next.end(), in_.begin() + w * kBatch);
     parallelFor(sums_.size(), kRun, [&](size_t begin, size_t end) {
       for (size_t e = begin; e < end; ++e) {
         Word& seen = seen_[e * words() + w];
-        for (Word left = seen & (out | relit); left; left &= left - 1) {
+        Word left = seen & (out | relit);
+        seen &= ~out;
+        dvec3 taken(0);
+        for (; left; left &= left - 1) {
           const int b = std::countr_zero(left);
-          sums_[e] -= bring(surfaces_.entries()[e], in_[w * kBatch + size_t(b)]);
+          taken += bring(surfaces_.entries()[e], before[size_t(b)]);
           if (relit >> b & 1) sums_[e] += bring(surfaces_.entries()[e], next[size_t(b)]);
         }
-        seen &= ~out;
+        take(e, taken);
       }
     });
-    std::copy(next.begin(), next.end(), in_.begin() + w * kBatch);
     if (add) put(in, w, add, work, nullptr);
   }
   return work;
@@ -152,14 +171,14 @@ void LayeredCube::put(const CubeInputs& in, size_t word, Word which, CubeWork& w
                                      : byHemicubes(in, word, which, work.rays);
   parallelFor(sums_.size(), kRun, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e) {
-      Word& before = seen_[e * words() + word];
-      const Word now = (before & ~which) | seen[e];
-      for (Word left = before ^ now; left; left &= left - 1) {
+      Word& bits = seen_[e * words() + word];
+      const Word before = std::exchange(bits, (bits & ~which) | seen[e]);
+      dvec3 taken(0);
+      for (Word left = before ^ bits; left; left &= left - 1) {
         const int b = std::countr_zero(left);
-        const dvec3 brought = bring(surfaces_.entries()[e], in_[word * kBatch + size_t(b)]);
-        sums_[e] += now >> b & 1 ? brought : -brought;
+        (bits >> b & 1 ? sums_[e] : taken) += bring(surfaces_.entries()[e], in_[word * kBatch + size_t(b)]);
       }
-      before = now;
+      take(e, taken);
     }
   });
 }

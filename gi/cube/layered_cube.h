@@ -69,6 +69,7 @@ class LayeredCube {
                            const std::vector<uint8_t>* isNew) const;
   std::vector<Word> byHemicubes(const CubeInputs& in, size_t word, Word which, RayCounts& counts) const;
   dvec3 bring(const CubeEntry& entry, const VirtualLight& light) const;
+  void take(size_t entry, const dvec3& light);
 
   CubeSettings settings_;
   GatherSettings gather_;

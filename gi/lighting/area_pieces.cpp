@@ -122,7 +122,9 @@ bool isLongest(const AreaPiece& triangle, int edge) {
 bool joinTriangles(const AreaPiece& a, const AreaPiece& b, int e, int f, AreaPiece& to) {
   if (sides(a) != 3 || sides(b) != 3) return false;
   const vec3 from = corner(a, e), next = corner(a, e + 1), off = corner(a, e + 2), fourth = corner(b, f + 2);
-  if (glm::distance(from + next - off, fourth) > kSame * glm::distance(from, next)) return false;
+  const float length = glm::distance(from, next),
+              width = 2 * a.normalArea.w / std::max(length, glm::distance(next, off));
+  if (glm::distance(from + next - off, fourth) > std::min(kSame * length, 0.01f * width)) return false;
   to = withCorners(a, {off, from, fourth, next}, a.normalArea.w + b.normalArea.w);
   return true;
 }

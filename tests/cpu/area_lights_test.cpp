@@ -1,6 +1,7 @@
 // Area lights: their pieces' unshadowed light against closed forms and sums, and the points that rays are sent to.
 #include "engine/core/rng.h"
 #include "gi/lighting/area_lights.h"
+#include "gi/lighting/area_pieces.h"
 #include "tests/support/area_pieces.h"
 #include "tests/support/hand_scene.h"
 
@@ -171,6 +172,25 @@ TEST(AreaLights, AreWhatTheyAreHoweverTheyAreCut) {
     EXPECT_NEAR(lights.pieces[0].normalArea.w, 4, 1e-4);
     const float one = summed(quadPiece({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), vec3(0.9f, 1.9f, 0), vec3(1, 0, 0), 400);
     EXPECT_NEAR(unshadowed(lights, lights.lights[0], vec3(0.9f, 1.9f, 0), vec3(1, 0, 0)).x, 3 * one, 0.01f * one);
+  }
+}
+
+/// However thin a strip of light is: corners that lie closer than lengths are told apart must not be taken for one.
+TEST(AreaLights, ThinStripsKeepTheirLight) {
+  for (const float width : {1e-2f, 1e-3f, 1e-4f, 3e-5f, 1e-5f, 1e-6f}) {
+    const vec3 corner(-1, 1, 0), along(2, 0, 0), across(0, 0, width);
+    const std::vector<EmitterTriangle> triangles{
+        makeEmitterTriangle(corner, corner + along, corner + along + across, vec3(1)),
+        makeEmitterTriangle(corner, corner + along + across, corner + across, vec3(1))};
+    std::vector<uint32_t> of;
+    float light = 0, area = 0;
+    for (const AreaPiece& piece : mergedPieces(triangles, true, of)) {
+      light += areaFormFactor(piece, vec3(0.3f, 0, 0), {0, 1, 0});
+      area += piece.normalArea.w;
+    }
+    const float wanted = areaFormFactor(quadPiece(corner, along, across, true), vec3(0.3f, 0, 0), {0, 1, 0});
+    EXPECT_NEAR(area / (2 * width), 1, 1e-3f) << width;
+    EXPECT_NEAR(light / wanted, 1, 1e-2f) << width;
   }
 }
 

@@ -1,4 +1,5 @@
 // The layered depth cube: surfaces found along the axes, light put in and taken out, and the file that keeps it.
+#include "engine/trace/analytic_query.h"
 #include "engine/view/scene_hash.h"
 #include "gi/cube/cube_file.h"
 #include "gi/lighting/light_set.h"
@@ -101,18 +102,21 @@ TEST(CubeSurfaces, NeighboursBehindAWallAreNotLinked) {
   EXPECT_GT(along, 20u);
 }
 
-/// Sheets behind one another: each is there, and what a column has no room for is told. (Of the three outermost, whose
-/// outer sides see one another within a third of a texel, one side is kept.)
+/// Sheets behind one another, three columns wide, on a floor: each is there, and what a column has no room for is told.
+/// (Of the three outermost, whose outer sides see one another within a third of a texel, one side is kept.)
 TEST(CubeSurfaces, ManySheetsBehindOneAnother) {
   for (const int sheets : {100, 260}) {
     if (kSanitized && sheets > 100) continue; // CubeFileTest cuts a smaller pile
     CubeWorld w;
     const uint32_t grey = w.scene.material(vec3(0.5f));
-    for (int i = 0; i < sheets; ++i) w.scene.quad({0, 0.01f * float(i), 0}, {0, 0, 4}, {4, 0, 0}, grey);
+    constexpr float kColumn = 4.0f / 14; // a texel on every side lies outside
+    w.scene.quad({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, grey);
+    for (int i = 1; i < sheets; ++i)
+      w.scene.quad({5 * kColumn, 0.01f * float(i), 5 * kColumn}, {0, 0, 3 * kColumn}, {3 * kColumn, 0, 0}, grey);
     w.place();
     const CubeSurfaces surfaces = w.surfaces(smallCube(CubeVisibility::Rays, 16));
-    const size_t columns = 14 * 14; // a texel on every side lies outside
-    EXPECT_EQ(surfaces.entries().size(), columns * size_t(sheets > 256 ? 2 * 256 - 2 : 2 * sheets - 4));
+    const size_t columns = 3 * 3, ofFloor = 2 * (14 * 14 - columns);
+    EXPECT_EQ(surfaces.entries().size(), ofFloor + columns * size_t(sheets > 256 ? 2 * 256 - 2 : 2 * sheets - 4));
     EXPECT_EQ(surfaces.columnsCut(), sheets > 256 ? columns : 0);
   }
 }
@@ -209,6 +213,30 @@ TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
   double volume = 0;
   for (const CubeGrid& grid : tree.cubes()) volume += std::pow(double(grid.texel) * (grid.resolution - 2), 3);
   EXPECT_NEAR(volume, 32.0 * 32 * 32, 1);
+}
+
+/// What was just built holds the box that it was built over: else it would be built again for ever.
+TEST(CubeSurfaces, HoldTheBoxTheyWereBuiltOver) {
+  AnalyticQuery nothing;
+  nothing.addSphere(vec3(0), 1e-3f, {});
+  for (uint32_t i = 0; i < 400; ++i) {
+    Rng rng(7, Stream::Test, i);
+    const auto scale = [&](float least, float most) {
+      return std::exp2(std::log2(least) + rng.next() * std::log2(most / least));
+    };
+    const vec3 size = i % 9 == 0 ? vec3(0) : scale(1e-3f, 1e4f) * (i % 5 == 0 ? vec3(1, 0, 1e-6f) : rng.next3());
+    const vec3 lo = scale(1e-3f, 1e5f) * (2.0f * rng.next3() - 1.0f);
+    for (const int levels : {0, 3}) {
+      CubeSurfaces surfaces;
+      RayCounts counts;
+      surfaces.build({lo, lo + size}, {.resolution = 8, .levels = levels, .split = 0}, nothing, counts);
+      EXPECT_TRUE(surfaces.holds({lo, lo + size})) << i << ", levels " << levels;
+      if (maxComponent(size) > 1e-3f * maxComponent(glm::abs(lo))) { // else single precision does not tell them apart
+        EXPECT_FALSE(surfaces.holds({lo, lo + 2.5f * size})) << i;
+        EXPECT_FALSE(surfaces.holds({lo, lo + 0.3f * size})) << i;
+      }
+    }
+  }
 }
 
 TEST(LayeredCube, ALightOverAFloorBringsWhatItsFormulaSays) {
@@ -313,6 +341,30 @@ INSTANTIATE_TEST_SUITE_P(Sights, CubeVisibilityTest,
                          ::testing::Values(CubeKind{CubeVisibility::Rays, 0}, CubeKind{CubeVisibility::Hemicubes, 0},
                                            CubeKind{CubeVisibility::Rays, 2}, CubeKind{CubeVisibility::Hemicubes, 2}));
 
+/// A flash leaves no more behind than any other light, however much brighter it is than what stays.
+TEST(LayeredCube, AFlashLeavesNothingBehind) {
+  CubeWorld w;
+  w.lights = {lightAt({0, -0.99f, 0}, {0, 1, 0}, vec3(1)), lightAt({0.5f, -0.99f, 0}, {0, 1, 0}, vec3(2, 1, 0))};
+  w.room();
+  const CubeSettings settings = smallCube();
+  LayeredCube cube, fresh;
+  fresh.update(w.inputs(settings));
+  cube.update(w.inputs(settings));
+  const VirtualLight before = w.lights[1];
+  for (const bool gone : {false, true})
+    for (const float times : {1e12f, 1e18f, 1e28f}) {
+      w.lights[1].radiance = before.radiance * times;
+      cube.update(w.inputs(settings));
+      if (gone) w.lights[1].alive = false;
+      if (gone) cube.update(w.inputs(settings));
+      w.lights[1] = before;
+      cube.update(w.inputs(settings));
+      for (size_t e = 0; e < fresh.surfaces().entries().size(); ++e)
+        ASSERT_LE(glm::length(cube.irradiance(e) - fresh.irradiance(e)), 1e-5f * glm::length(fresh.irradiance(e)))
+            << times << ' ' << gone;
+    }
+}
+
 TEST(LayeredCube, WhatNothingChangedAsksNoRay) {
   LitWorld w;
   const CubeSettings settings = smallCube();
@@ -386,11 +438,11 @@ TEST(LayeredCube, HemicubesAreMadeInTurns) {
   SKIP_STATISTICS_WHEN_SANITIZED();
   CubeWorld w;
   w.room();
-  for (int i = 0; i < 24; ++i) w.lights.push_back(lightAt({-0.5f + 0.04f * float(i), -0.999f, 0}, {0, 1, 0}, vec3(1)));
+  for (int i = 0; i < 7; ++i) w.lights.push_back(lightAt({-0.5f + 0.14f * float(i), -0.999f, 0}, {0, 1, 0}, vec3(1)));
   CubeSettings settings = smallCube(CubeVisibility::Hemicubes, 16);
   settings.hemicube = 1024;
   LayeredCube byHemicubes, byRays;
-  EXPECT_EQ(byHemicubes.update(w.inputs(settings)).lightsIn, 24u);
+  EXPECT_EQ(byHemicubes.update(w.inputs(settings)).lightsIn, 7u);
   settings.visibility = CubeVisibility::Rays;
   byRays.update(w.inputs(settings));
   double sum = 0, off = 0;
@@ -426,6 +478,11 @@ TEST(LayeredCube, WhatDoesNotFitIsRefused) {
     ASSERT_EQ(cube.surfaces().entries().size(), first.size());
     for (size_t e = 0; e < first.size(); ++e) ASSERT_EQ(cube.irradiance(e), first[e]) << e;
   }
+  settings.levels = 3;
+  settings.split = 0;
+  EXPECT_NE(messageOf<RunError>([&] { update(1 << 20); }).find("the tree"), std::string::npos);
+  EXPECT_TRUE(cube.surfaces().empty());
+  EXPECT_GT(update(kEnough).lightsIn, 0u);
 }
 
 TEST(LayeredCube, LightsMayBePutInAFewAtATime) {

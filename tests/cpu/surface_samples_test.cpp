@@ -59,6 +59,19 @@ TEST_F(SurfaceSamplesTest, StandEvenlyOnBothSides) {
   EXPECT_GT(nearest, 0.09f);
 }
 
+/// Where walls meet, each stands for its own wall.
+TEST_F(SurfaceSamplesTest, StandForWhatFacesAsTheyDo) {
+  scene.box(vec3(-2, 0, -2), vec3(2, 4, 2), scene.material(vec3(0.6f)), true);
+  update();
+  size_t points = 0;
+  for (size_t slot = 0; slot < set.slots.size(); ++slot)
+    for (const CellPoint& p : set.cells[slot].points) {
+      ++points;
+      ASSERT_GT(glm::dot(p.geometricNormal, set.slots[slot].geometricNormal), 0.5f);
+    }
+  EXPECT_GT(points, 10000u);
+}
+
 TEST_F(SurfaceSamplesTest, StayAndRideAndAreLitAnew) {
   update();
   const VplSet first = set;

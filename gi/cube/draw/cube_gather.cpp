@@ -106,7 +106,8 @@ class CubeGather : public Gather {
   bool open(const GatherInputs& in, FrameStats& stats) {
     const std::filesystem::path file = in.frame.settings.cubeFile;
     removeLeftovers(file);
-    if (!std::filesystem::exists(file)) {
+    std::error_code none;
+    if (!std::filesystem::exists(file, none)) {
       checkWritable(file);
       return true;
     }
@@ -156,11 +157,32 @@ class CubeGather : public Gather {
 
   vec3 irradiance(size_t entry) const { return cube_.irradiance(entry) + near_[entry]; }
 
-  /// Without entries that no light sees, which lie in solids and behind walls: pixels next to one would take it for
-  /// theirs. (Left in: black specks where boxes stand on a floor, and twice the memory.)
+  bool lit(size_t entry) const {
+    constexpr float kDark = 1e-12f; // what rounding leaves of lights that were taken out
+    return maxComponent(cube_.irradiance(entry)) > kDark * brightest_;
+  }
+
+  /// Whether a lit surface that faces as a dark one does lies behind it, near enough for pixels to take it for theirs:
+  /// a thin floor over a lit room.
+  bool overLight(const CubeGrid& grid, const CubeGrid::Place& at, size_t firstColumn, const CubeEntry& dark) const {
+    constexpr float kNear = 1.3f, kCoplanar = 0.02f; // texels; kOwn of cube_gather.frag is 1
+    const CubeSurfaces& surfaces = cube_.surfaces();
+    for (int v = std::max(at.v - 1, 0); v <= std::min(at.v + 1, grid.resolution - 1); ++v)
+      for (int u = std::max(at.u - 1, 0); u <= std::min(at.u + 1, grid.resolution - 1); ++u) {
+        const size_t c = firstColumn + grid.column(at.axis, u, v);
+        for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
+          const CubeEntry& other = surfaces.entries()[e];
+          const float behind = glm::dot(dark.position - other.position, dark.normal) / grid.texel;
+          if (behind > kCoplanar && behind < kNear && glm::dot(other.normal, dark.normal) > 0.5f && lit(e)) return true;
+        }
+      }
+    return false;
+  }
+
+  /// Without most entries that no light sees, which lie in solids and behind walls: pixels next to one would take it
+  /// for theirs. (Left in: black specks where boxes stand on a floor, and twice the memory.)
   void upload() {
     const CubeSurfaces& surfaces = cube_.surfaces();
-    constexpr float kDark = 1e-12f; // what rounding leaves of lights that were taken out
     brightest_ = 1e-30f;
     for (size_t i = 0; i < surfaces.entries().size(); ++i)
       brightest_ = std::max(brightest_, maxComponent(irradiance(i)));
@@ -174,7 +196,7 @@ class CubeGather : public Gather {
         for (uint32_t e = surfaces.firsts()[c]; e < surfaces.firsts()[c + 1]; ++e) {
           const CubeEntry& entry = surfaces.entries()[e];
           if ((entry.normal[at.axis] > 0) != side) continue;
-          if (!(maxComponent(cube_.irradiance(e)) > kDark * brightest_)) continue;
+          if (!lit(e) && !overLight(grid, at, c - c % surfaces.columns(), entry)) continue;
           const vec3 x = entry.position - grid.corner;
           const vec2 within = vec2(x[(at.axis + 1) % 3], x[(at.axis + 2) % 3]) / grid.texel - vec2(at.u, at.v);
           const uvec2 place = uvec2(glm::clamp(within, 0.0f, 0.999f) * 256.0f);

@@ -46,4 +46,25 @@ TEST(Leftovers, AreThoseOfThatFileAlone) {
     EXPECT_TRUE(fs::exists(folder / name)) << name;
 }
 
+/// What a program that lives is about to finish is not taken from it.
+TEST(Leftovers, AreNotWhatSomebodyWrites) {
+  const TemporaryFolder folder;
+  writeAtomically(folder / "a.png", [&](const fs::path& temporary) {
+    writeBytes(temporary, "whole");
+    removeLeftovers(folder / "a.png");
+    EXPECT_TRUE(fs::exists(temporary));
+  });
+  EXPECT_EQ(readBytes(folder / "a.png"), "whole");
+}
+
+/// They lie where a link leads.
+TEST(Leftovers, OfALinkLieBesideWhatItLeadsTo) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/b.png", folder / "a.png");
+  writeBytes(folder / "there/.b.123.png", "x");
+  removeLeftovers(folder / "a.png");
+  EXPECT_FALSE(fs::exists(folder / "there/.b.123.png"));
+}
+
 } // namespace lambent::test::free_memory_test

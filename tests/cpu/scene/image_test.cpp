@@ -144,6 +144,19 @@ TEST(WriteAtomically, ALinkStaysOne) {
   writePng(folder / "link.png", Image8{1, 1, {1, 2, 3}});
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.png"));
   EXPECT_EQ(readBytes(folder / "target.png").substr(1, 3), "PNG");
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/new.png", folder / "new.png"); // nothing is there yet
+  fs::create_symlink("new.png", folder / "again.png");
+  writePng(folder / "again.png", Image8{1, 1, {1, 2, 3}});
+  EXPECT_TRUE(fs::is_symlink(folder / "new.png") && fs::is_symlink(folder / "again.png"));
+  EXPECT_EQ(readBytes(folder / "there/new.png").substr(1, 3), "PNG");
+  fs::create_symlink("b.png", folder / "a.png");
+  fs::create_symlink("a.png", folder / "b.png");
+  for (const auto& write : {std::function<void()>([&] { writePng(folder / "a.png", Image8{1, 1, {1, 2, 3}}); }),
+                            std::function<void()>([&] { checkWritable(folder / "a.png"); }),
+                            std::function<void()>([&] { checkWritable(folder / std::string(256, 'n')); })})
+    EXPECT_NE(messageOf<RunError>(write).find("cannot be written: its"), std::string::npos);
+  EXPECT_TRUE(fs::is_symlink(folder / "a.png"));
 }
 
 TEST(Srgb, CodesAndLinearValuesAreInverse) {
