@@ -38,6 +38,9 @@ struct Aabb {
     hi = glm::max(hi, b.hi);
   }
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+  bool contains(const vec3& p) const { // false for NaN
+    return glm::all(glm::greaterThanEqual(p, lo)) && glm::all(glm::lessThanEqual(p, hi));
+  }
   vec3 centre() const { return 0.5f * (lo + hi); }
   vec3 size() const { return empty() ? vec3(0) : hi - lo; }
   /// Length of the diagonal, metres; 0 when empty.

@@ -1,94 +1,48 @@
-// Layout, little-endian as the machine's own: Header, then counts and members in the order of CubeFile::each, then a
-// checksum of all of that.
+// Values in the order of CubeFile::each, as engine/core/checked_file.h stores them.
 #include "gi/cube/cube_file.h"
 
-#include "engine/core/error.h"
-#include "engine/core/files.h"
+#include "engine/core/checked_file.h"
+#include "engine/core/parallel.h"
 #include "engine/view/scene_hash.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <fstream>
 
 namespace lambent {
 
 namespace {
 
-constexpr char kMagic[8] = {'L', 'A', 'M', 'B', 'C', 'U', 'B', '\n'};
-// Counts up when the file or the meaning of its numbers changes.
-constexpr uint32_t kVersion = 3;
-
-struct Header {
-  char magic[8];
-  uint32_t version, entryBytes; // of an entry, a light and settings: another build's may differ
-  uint64_t key;
-};
-static_assert(sizeof(Header) == 24);
+constexpr uint32_t kVersion = 4; // counts up when the file or the meaning of its numbers changes
 constexpr uint32_t kBytes = uint32_t((sizeof(CubeEntry) * 1000 + sizeof(VirtualLight)) * 1000 + sizeof(GatherSettings));
 
-/// Bytes of a type between its members, which hold whatever memory held. Zero in the file, so that the same cube has
-/// the same bytes.
-struct Padding {
-  size_t begin = 0, end = 0;
-};
-constexpr Padding kOfGather{offsetof(GatherSettings, glossy) + 1, offsetof(GatherSettings, spread)};
-constexpr Padding kOfLight{offsetof(VirtualLight, alive) + 1, sizeof(VirtualLight)};
+const FileKind kKind{{'L', 'A', 'M', 'B', 'C', 'U', 'B', '\n'},
+                     kVersion,
+                     kBytes,
+                     "a layered depth cube",
+                     "--cube-file wants a new name, or what it wrote before"};
+const ByteLayout kOfGather{offsetof(GatherSettings, glossy) + 1,
+                           offsetof(GatherSettings, spread),
+                           {offsetof(GatherSettings, checks), offsetof(GatherSettings, glossy)}};
+const ByteLayout kOfLight{offsetof(VirtualLight, alive) + 1, sizeof(VirtualLight), {offsetof(VirtualLight, alive)}};
 
-struct Writer {
-  std::ofstream& out;
-  Hash hash{kVersion};
-  void bytes(void* data, size_t size) {
-    out.write(static_cast<const char*>(data), std::streamsize(size));
-    hash.bytes(data, size);
-  }
-  template <class T> void padded(const T* first, Padding padding, size_t count = 1) {
-    std::vector<std::byte> copy(count * sizeof(T));
-    if (count > 0) std::memcpy(copy.data(), first, copy.size());
-    for (size_t at = 0; at < copy.size(); at += sizeof(T))
-      std::memset(copy.data() + at + padding.begin, 0, padding.end - padding.begin);
-    bytes(copy.data(), copy.size());
-  }
-  template <class T> void vector(std::vector<T>& v, Padding padding = {}) {
-    uint64_t count = v.size();
-    bytes(&count, sizeof count);
-    padding.end == 0 ? bytes(v.data(), v.size() * sizeof(T)) : padded(v.data(), padding, v.size());
-  }
-};
-
-struct Reader {
-  std::ifstream& in;
-  uint64_t left; // bytes of the file
-  Hash hash{kVersion};
-  void bytes(void* data, size_t size) {
-    if (size > left || !in.read(static_cast<char*>(data), std::streamsize(size))) throw std::ios_base::failure("short");
-    left -= size;
-    hash.bytes(data, size);
-  }
-  template <class T> void padded(T* value, Padding) { bytes(value, sizeof *value); }
-  template <class T> void vector(std::vector<T>& v, Padding = {}) {
-    uint64_t count = 0;
-    bytes(&count, sizeof count);
-    if (count > left / sizeof(T)) throw std::ios_base::failure("short");
-    v.resize(count);
-    bytes(v.data(), v.size() * sizeof(T));
-  }
-};
+bool isUnit(const vec3& v) { return std::abs(glm::dot(v, v) - 1) < 1e-3f; }
 
 } // namespace
 
-/// The members of a cube, in the order in which they lie in the file.
+/// What the file holds of a cube, and what each value must be for the rest to rely on it.
 struct CubeFile {
-  template <class Stream> static void each(Stream& stream, LayeredCube& cube) {
-    CubeSurfaces& s = cube.surfaces_;
-    stream.bytes(&s.lo_, sizeof s.lo_);
-    stream.bytes(&s.edge_, sizeof s.edge_);
-    stream.bytes(&s.resolution_, sizeof s.resolution_);
-    stream.bytes(&s.levels_, sizeof s.levels_);
-    stream.bytes(&s.split_, sizeof s.split_);
-    stream.bytes(&s.cut_, sizeof s.cut_);
-    stream.bytes(&cube.settings_, sizeof cube.settings_);
-    stream.padded(&cube.gather_, kOfGather);
+  template <class Stream, class Cube> static void each(Stream& stream, Cube& cube) {
+    auto& s = cube.surfaces_;
+    stream.value(s.lo_);
+    stream.value(s.edge_);
+    stream.value(s.resolution_);
+    stream.value(s.levels_);
+    stream.value(s.split_);
+    stream.value(s.cut_);
+    stream.value(cube.settings_);
+    stream.value(cube.gather_, kOfGather);
     stream.vector(s.nodes_);
     stream.vector(s.cubes_);
     stream.vector(s.firsts_);
@@ -97,22 +51,80 @@ struct CubeFile {
     stream.vector(cube.seen_);
     stream.vector(cube.sums_);
   }
-  /// Whether the parts of what was read fit together.
-  static bool whole(const LayeredCube& cube) {
-    const CubeSurfaces& s = cube.surfaces_;
-    if (s.resolution_ < 8 || s.resolution_ % 8 != 0 || s.nodes_.empty()) return false;
-    if (s.firsts_.size() != s.cubes_.size() * s.columns() + 1) return false;
-    if (s.firsts_.front() != 0 || s.firsts_.back() != s.entries_.size()) return false;
-    if (!std::is_sorted(s.firsts_.begin(), s.firsts_.end())) return false;
-    for (const CubeGrid& grid : s.cubes_)
-      if (grid.resolution != s.resolution_) return false;
-    for (size_t n = 0; n < s.nodes_.size(); ++n) {
-      const CubeNode& node = s.nodes_[n];
-      if (node.children != 0 ? node.children <= n || size_t(node.children) + 8 > s.nodes_.size()
-                             : node.firstColumn % s.columns() != 0 || node.firstColumn / s.columns() >= s.cubes_.size())
-        return false;
+
+  /// Walks the tree as CubeSurfaces::Growth grows it: every node where it must lie, leaves in the order of octants.
+  struct Walk {
+    const CubeSurfaces& s;
+    size_t nodes = 0, leaves = 0;
+    bool right(size_t at, const vec3& lo, float edge, int level) {
+      const CubeGrid grid = CubeGrid::over(lo, edge, s.resolution_);
+      const CubeNode& node = s.nodes_[at];
+      ++nodes;
+      if (node.corner != grid.corner || node.texel != grid.texel) return false;
+      if (node.children == 0)
+        return leaves < s.cubes_.size() && s.cubes_[leaves] == grid && node.firstColumn == leaves++ * s.columns();
+      if (level >= s.levels_ || node.children <= at || size_t(node.children) + 8 > s.nodes_.size()) return false;
+      for (uint32_t octant = 0; octant < 8; ++octant)
+        if (!right(node.children + octant, lo + 0.5f * edge * vec3(octant & 1, octant >> 1 & 1, octant >> 2),
+                   0.5f * edge, level + 1))
+          return false;
+      return true;
     }
-    return cube.sums_.size() == s.entries_.size() && cube.seen_.size() == s.entries_.size() * cube.words();
+  };
+  static bool surfacesRight(const LayeredCube& cube) {
+    constexpr int kMostTexels = 16384, kMostLevels = 24; // so that no product overflows
+    const CubeSurfaces& s = cube.surfaces_;
+    if (s.resolution_ != cube.settings_.resolution || s.levels_ != cube.settings_.levels ||
+        s.split_ != cube.settings_.split)
+      return false;
+    if (s.resolution_ < 8 || s.resolution_ % 8 != 0 || s.resolution_ > kMostTexels) return false;
+    if (s.levels_ < 0 || s.levels_ > kMostLevels) return false;
+    if (!isFinite(s.lo_) || !std::isfinite(s.edge_) || !(s.edge_ > 0)) return false;
+    Walk walk{s};
+    if (s.nodes_.empty() || !walk.right(0, s.lo_, s.edge_, 0)) return false;
+    if (walk.nodes != s.nodes_.size() || walk.leaves != s.cubes_.size()) return false;
+    if (s.firsts_.size() != s.cubes_.size() * s.columns() + 1 || s.firsts_.front() != 0 ||
+        s.firsts_.back() != s.entries_.size() || !std::is_sorted(s.firsts_.begin(), s.firsts_.end()))
+      return false;
+    return everyOf(s.firsts_.size() - 1, [&](size_t column) {
+      const CubeGrid& grid = s.cubes_[column / s.columns()];
+      const CubeGrid::Place at = grid.placeOf(column % s.columns());
+      Aabb texel; // and one around it
+      for (const float within : {-1.0f, 2.0f}) texel.add(grid.pointOf(at, vec2(within)));
+      texel.lo[at.axis] = grid.corner[at.axis] - grid.texel;
+      texel.hi[at.axis] = grid.corner[at.axis] + grid.edge() + grid.texel;
+      return std::all_of(
+          &s.entries_[0] + s.firsts_[column], &s.entries_[0] + s.firsts_[column + 1],
+          [&](const CubeEntry& e) { return texel.contains(e.position) && isUnit(e.normal) && isUnit(e.shading); });
+    });
+  }
+  /// Sums are what the lights bring that are seen, to the rounding that lights leave which came and went.
+  static bool sumsRight(const LayeredCube& cube) {
+    const size_t words = cube.words();
+    if (cube.sums_.size() != cube.surfaces_.entries_.size() || cube.seen_.size() != cube.sums_.size() * words)
+      return false;
+    for (const VirtualLight& l : cube.in_)
+      if (l.alive && !(isFinite(l.position) && isUnit(l.normal) && isUnit(l.geometricNormal) && isFinite(l.radiance) &&
+                       std::isfinite(l.area) && l.area >= 0))
+        return false;
+    return everyOf(cube.sums_.size(), [&](size_t e) {
+      dvec3 wanted(0);
+      for (size_t w = 0; w < words; ++w)
+        for (LayeredCube::Word left = cube.seen_[e * words + w]; left; left &= left - 1) {
+          const size_t light = w * LayeredCube::kBatch + size_t(std::countr_zero(left));
+          if (light >= cube.in_.size() || !cube.in_[light].alive) return false;
+          wanted += cube.bring(cube.surfaces_.entries_[e], cube.in_[light]);
+        }
+      return glm::length(cube.sums_[e] - wanted) <= 1e-6 * (1 + glm::length(wanted)); // false for NaN
+    });
+  }
+  template <class Holds> static bool everyOf(size_t count, const Holds& holds) {
+    std::atomic<bool> all = true;
+    parallelFor(count, 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end && all; ++i)
+        if (!holds(i)) all = false;
+    });
+    return all;
   }
 };
 
@@ -123,51 +135,18 @@ uint64_t cubeKey(const SceneView& view) {
 }
 
 void saveCube(const std::filesystem::path& file, const LayeredCube& cube, uint64_t key) {
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    Header header{{}, kVersion, kBytes, key};
-    std::memcpy(header.magic, kMagic, sizeof kMagic);
-    out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    Writer writer{out};
-    CubeFile::each(writer, const_cast<LayeredCube&>(cube)); // is only read
-    const uint64_t checksum = writer.hash.result();
-    out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
-  });
+  writeChecked(file, kKind, key, [&](CheckedWriter& writer) { CubeFile::each(writer, cube); });
 }
 
-bool isCube(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  char magic[sizeof kMagic];
-  return in.read(magic, sizeof magic) && std::memcmp(magic, kMagic, sizeof magic) == 0;
-}
+bool isCube(const std::filesystem::path& file) { return isChecked(file, kKind); }
 
 LayeredCube loadCube(const std::filesystem::path& file, uint64_t key) {
-  std::ifstream in(file, std::ios::binary);
-  Header header;
-  if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
-    throw InputError(file.string(),
-                     "is not a layered depth cube (--cube-file wants a new name, or what it wrote before)");
-  if (header.version != kVersion || header.entryBytes != kBytes)
-    throw InputError(file.string(), "is a layered depth cube of another version of the program");
-  if (header.key != key)
-    throw InputError(file.string(), "is a layered depth cube of another scene, or its objects stood elsewhere");
-  const std::string damaged = "is a damaged layered depth cube";
+  CheckedReader reader(file, kKind);
+  if (reader.key() != key) reader.refuse("is a layered depth cube of another scene, or its objects stood elsewhere");
   LayeredCube cube;
-  try {
-    std::error_code ignored;
-    Reader reader{in, std::filesystem::file_size(file, ignored)};
-    CubeFile::each(reader, cube);
-    uint64_t checksum = 0;
-    in.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
-    if (!in || in.peek() != std::ifstream::traits_type::eof() || checksum != reader.hash.result())
-      throw InputError(file.string(), damaged);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception&) { // short, or counts that no memory holds
-    throw InputError(file.string(), damaged);
-  }
-  if (!CubeFile::whole(cube)) throw InputError(file.string(), damaged);
+  CubeFile::each(reader, cube);
+  reader.end();
+  if (!CubeFile::surfacesRight(cube) || !CubeFile::sumsRight(cube)) reader.damaged();
   return cube;
 }
 

@@ -36,6 +36,7 @@ struct PixelSums {
 };
 
 struct ReferenceSums {
+  static constexpr uint32_t kMostSamples = 1u << 24; // of a pixel
   int width = 0, height = 0;
   uint32_t samples = 0; // of each pixel
   std::vector<PixelSums> pixels;

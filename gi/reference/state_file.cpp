@@ -1,27 +1,22 @@
-// Layout, little-endian as the machine's own: Header, then the pixels' sums in row order, then a checksum of them.
 #include "gi/reference/state_file.h"
 
-#include "engine/core/error.h"
-#include "engine/core/files.h"
+#include "engine/core/checked_file.h"
 #include "engine/view/scene_hash.h"
 
-#include <cstring>
-#include <fstream>
+#include <algorithm>
+#include <cmath>
 
 namespace lambent {
 
 namespace {
 
-constexpr char kMagic[8] = {'L', 'A', 'M', 'B', 'R', 'E', 'F', '\n'};
-// Counts up when the file or the meaning of the sums (the sampling included) changes.
-constexpr uint32_t kVersion = 1;
-
-struct Header {
-  char magic[8];
-  uint32_t version, width, height, samples;
-  uint64_t key;
-};
-static_assert(sizeof(Header) == 32 && sizeof(PixelSums) == 15 * sizeof(double));
+constexpr uint32_t kVersion = 2; // counts up when the file or the meaning of the sums (the sampling included) changes
+const FileKind kKind{{'L', 'A', 'M', 'B', 'R', 'E', 'F', '\n'},
+                     kVersion,
+                     sizeof(PixelSums),
+                     "the state of a reference",
+                     "a file written by --state"};
+static_assert(sizeof(PixelSums) == 15 * sizeof(double));
 
 void add(Hash& hash, const LightView& light) {
   hash.value(light.type);
@@ -34,11 +29,19 @@ void add(Hash& hash, const LightView& light) {
   hash.value(light.angularRadius);
 }
 
-uint64_t checksumOf(const ReferenceSums& sums) {
-  Hash hash(kVersion);
-  hash.value(sums.samples);
-  hash.bytes(sums.pixels.data(), sums.pixels.size() * sizeof(PixelSums));
-  return hash.result();
+/// Sums that so many samples may have, none below zero: the square of a sum is at least the sum of squares, and at most
+/// the samples times that.
+bool possible(const PixelSums& p, uint32_t samples) {
+  constexpr double kRounding = 1 + 1e-6;
+  const auto holds = [&](double sum, double squares) {
+    return sum >= 0 && squares >= 0 && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
+           sum * sum <= samples * squares * kRounding && squares <= sum * sum * kRounding;
+  };
+  for (int c = 0; c < 3; ++c)
+    if (!holds(p.direct[c], p.directSquares[c]) || !holds(p.indirect[c], p.indirectSquares[c]) ||
+        !(p.product[c] >= 0 && p.product[c] * p.product[c] <= p.directSquares[c] * p.indirectSquares[c] * kRounding))
+      return false;
+  return true;
 }
 
 } // namespace
@@ -62,42 +65,31 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
 }
 
 void saveReference(const std::filesystem::path& file, const ReferenceSums& sums, uint64_t key) {
-  Header header{{}, kVersion, uint32_t(sums.width), uint32_t(sums.height), sums.samples, key};
-  std::memcpy(header.magic, kMagic, sizeof kMagic);
-  const uint64_t checksum = checksumOf(sums);
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    out.write(reinterpret_cast<const char*>(sums.pixels.data()),
-              std::streamsize(sums.pixels.size() * sizeof(PixelSums)));
-    out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+  writeChecked(file, kKind, key, [&](CheckedWriter& writer) {
+    writer.value(sums.width);
+    writer.value(sums.height);
+    writer.value(sums.samples);
+    writer.values(std::span(sums.pixels));
   });
 }
 
 ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key) {
-  std::ifstream stream(file, std::ios::binary);
-  Header header;
-  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.magic, kMagic, sizeof kMagic))
-    throw InputError(file.string(), "is not the state of a reference (a file written by --state)");
-  if (header.version != kVersion)
-    throw InputError(file.string(), "was written by another version of the reference (" +
-                                        std::to_string(header.version) + ", while this is " + std::to_string(kVersion) +
-                                        ")");
-  if (header.width != uint32_t(in.camera.width) || header.height != uint32_t(in.camera.height))
-    throw InputError(file.string(), "holds an image of " + std::to_string(header.width) + "x" +
-                                        std::to_string(header.height) + " (this run's is " +
-                                        std::to_string(in.camera.width) + "x" + std::to_string(in.camera.height) + ")");
-  if (header.key != key)
-    throw InputError(file.string(), "belongs to another picture (same scene, lights, camera, bounces, clamp and seed "
-                                    "expected)");
-  ReferenceSums sums(in.camera.width, in.camera.height);
-  sums.samples = header.samples;
-  uint64_t checksum = 0;
-  stream.read(reinterpret_cast<char*>(sums.pixels.data()), std::streamsize(sums.pixels.size() * sizeof(PixelSums)));
-  stream.read(reinterpret_cast<char*>(&checksum), sizeof checksum);
-  if (!stream || stream.peek() != std::ifstream::traits_type::eof() || checksum != checksumOf(sums))
-    throw InputError(file.string(), "is damaged (begin again without it)");
+  CheckedReader reader(file, kKind);
+  int width = 0, height = 0;
+  reader.value(width);
+  reader.value(height);
+  if (width != in.camera.width || height != in.camera.height)
+    reader.refuse("holds an image of " + std::to_string(width) + "x" + std::to_string(height) + " (this run's is " +
+                  std::to_string(in.camera.width) + "x" + std::to_string(in.camera.height) + ")");
+  if (reader.key() != key)
+    reader.refuse("belongs to another picture (same scene, lights, camera, bounces, clamp and seed expected)");
+  ReferenceSums sums(width, height);
+  reader.value(sums.samples);
+  reader.values(std::span(sums.pixels));
+  reader.end();
+  const auto right = [&](const PixelSums& p) { return possible(p, sums.samples); };
+  if (sums.samples > ReferenceSums::kMostSamples || !std::all_of(sums.pixels.begin(), sums.pixels.end(), right))
+    reader.damaged();
   return sums;
 }
 

@@ -5,9 +5,11 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
 #include "engine/trace/analytic_query.h"
+#include "gi/cube/cube_file.h"
 #include "gi/lighting/light_set.h"
 #include "gi/plan/presets.h"
 #include "gi/reference/state_file.h"
+#include "tests/support/checked.h"
 
 #include <fstream>
 #include <sstream>
@@ -219,8 +221,9 @@ struct State {
   State() { camera.width = 4, camera.height = 3; }
 };
 
+/// Behind its checksum.
 void state(std::string_view bytes) {
-  reading(bytes, ".state", [](const fs::path& file) {
+  reading(test::mended(std::string(bytes)), ".state", [](const fs::path& file) {
     const State s;
     const ReferenceSums sums = loadReference(file, s.in, State::kKey);
     CHECK_EQ(sums.pixels.size(), size_t(12));
@@ -231,6 +234,41 @@ std::vector<std::string> stateSeeds() {
   ReferenceSums sums(4, 3);
   sums.samples = 7;
   return {written(".state", [&](const fs::path& file) { saveReference(file, sums, State::kKey); })};
+}
+
+/// Of a box, with two lights.
+struct Cube {
+  AnalyticQuery rays;
+  Aabb bounds{vec3(-1), vec3(1)};
+  CubeSettings settings{.resolution = 8, .levels = 1, .split = 0.3f};
+  GatherSettings gather;
+  std::vector<VirtualLight> lights;
+  static constexpr uint64_t kKey = 42;
+  Cube() {
+    rays.addBox(bounds.lo, bounds.hi, {vec3(0.5f)});
+    for (const float x : {0.0f, 0.5f}) lights.push_back({{x, -0.9f, 0}, {0, 1, 0}, {0, 1, 0}, vec3(3), 0.1f, true});
+  }
+  CubeInputs inputs(const DirtyRegion& moved) const {
+    return {bounds, rays, moved, false, lights, ~0u, settings, gather};
+  }
+};
+
+/// Behind its checksum: what is believed goes on, also where something moved.
+void cube(std::string_view bytes) {
+  reading(test::mended(std::string(bytes)), ".cube", [](const fs::path& file) {
+    const Cube c;
+    LayeredCube cube = loadCube(file, Cube::kKey);
+    const Aabb place{vec3(-0.2f), vec3(0.3f)};
+    cube.update(c.inputs(DirtyRegion(std::span(&place, 1))));
+    for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) CHECK(isFinite(cube.irradiance(e)));
+  });
+}
+
+std::vector<std::string> cubeSeeds() {
+  const Cube c;
+  LayeredCube cube;
+  cube.update(c.inputs(kNothingMoved));
+  return {written(".cube", [&](const fs::path& file) { saveCube(file, cube, Cube::kKey); })};
 }
 
 } // namespace
@@ -253,6 +291,7 @@ const std::vector<Target>& targets() {
        pictureSeeds,
        {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"}},
       {"state", state, stateSeeds, {}},
+      {"cube", cube, cubeSeeds, {}},
   };
   return all;
 }

@@ -29,7 +29,6 @@ struct ReferenceOptions {
 };
 
 constexpr int kDefaultSamples = 64;
-constexpr int kLargestSamples = 1 << 24;
 
 ReferenceBuffer referenceBufferByName(const std::string& name) {
   const std::vector<std::string> names = {"beauty", "direct", "indirect", "irradiance"};
@@ -92,15 +91,15 @@ void reference(const ReferenceOptions& options) {
   const Settings& settings = opened->settings;
   checkClamp(options, settings);
   const auto begin = std::chrono::steady_clock::now();
-  const TracedImage traced =
-      trace(opened->at(options.time), settings,
-            {.buffer = buffer,
-             .samples = uint32_t(options.samples.value_or(options.error > 0 ? kLargestSamples : kDefaultSamples)),
-             .error = options.error,
-             .clamped = options.clamped,
-             .seed = opened->seed,
-             .state = options.state},
-            "tracing paths", options.output.quiet);
+  const TracedImage traced = trace(opened->at(options.time), settings,
+                                   {.buffer = buffer,
+                                    .samples = uint32_t(options.samples.value_or(
+                                        options.error > 0 ? int(ReferenceSums::kMostSamples) : kDefaultSamples)),
+                                    .error = options.error,
+                                    .clamped = options.clamped,
+                                    .seed = opened->seed,
+                                    .state = options.state},
+                                   "tracing paths", options.output.quiet);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   if (traced.samples > 0) {
@@ -178,7 +177,7 @@ void declareReference(CLI::App& app) {
   command.launch(options->launch);
   command.output(options->output, "picture, linear .exr or .png (default reference.exr)");
   command.text("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
-  command.number("--spp", &options->samples, 1, kLargestSamples,
+  command.number("--spp", &options->samples, 1, int(ReferenceSums::kMostSamples),
                  "samples per pixel in all (default 64; with --error no bound)");
   command.number("--error", &options->error, 1e-6, 1e6,
                  "stop at this standard error per pixel: its RMS over pixels and channels, over the picture's mean");

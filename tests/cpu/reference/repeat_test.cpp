@@ -1,8 +1,14 @@
 // The reference is the same however it is run, and honest about its own error.
 #include "engine/core/parallel.h"
 #include "gi/reference/state_file.h"
+#include "tests/support/checked.h"
 #include "tests/support/files.h"
 #include "tests/support/reference.h"
+
+#include <cmath>
+#include <cstring>
+
+#include <sys/stat.h>
 
 namespace lambent::test::repeat_test {
 
@@ -137,11 +143,26 @@ TEST_F(Room, DamagedStateIsRefused) {
   flipped[whole.size() / 2] ^= 1;
   refused(flipped, "damaged");
   flipped = whole;
-  flipped[20] ^= 1; // the number of samples
+  flipped[32] ^= 1; // the number of samples
   refused(flipped, "damaged");
   flipped = whole;
   flipped[8] ^= 64; // the version
   refused(flipped, "another version");
+  // Values that no run writes, behind a checksum that is right: samples, then sums and squares of the first pixel.
+  writeBytes(file_, mended(whole));
+  EXPECT_EQ(refusal(in), "accepted");
+  constexpr size_t kSamples = 24 + 8, kSums = kSamples + 4;
+  const auto altered = [&](size_t at, auto value) {
+    std::string bytes = whole;
+    std::memcpy(&bytes[at], &value, sizeof value);
+    refused(mended(bytes), "damaged");
+  };
+  altered(kSamples, ~0u);
+  for (const double sum : {std::nan(""), 1e300, -1.0, double(kInfinity)})
+    for (int value = 0; value < 5; ++value) altered(kSums + size_t(value) * 3 * sizeof(double), sum);
+  fs::remove(file_);
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  EXPECT_NE(refusal(in).find("is not the state"), std::string::npos) << "a pipe that nobody writes";
 }
 
 TEST_F(Room, SeedsAgreeWithinTheirErrors) {
