@@ -6,7 +6,7 @@
 #include "tests/support/hand_scene.h"
 #include "tests/support/host_state.h"
 
-namespace lambent::test {
+namespace lambent::test::host_test {
 
 namespace {
 
@@ -192,4 +192,4 @@ TEST(EmbeddedHostTest, IsRefusedInOneLine) {
   EXPECT_NE(refusal().find("OpenGL ES"), std::string::npos) << refusal();
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::host_test

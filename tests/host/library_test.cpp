@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace lambent::test {
+namespace lambent::test::library_test {
 
 namespace {
 
@@ -190,4 +190,4 @@ TEST(LibraryBesideTheFrame, GivesTheSameLightInTheSameTime) {
   context->release();
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::library_test

@@ -17,7 +17,7 @@
 #include <map>
 #include <set>
 
-namespace lambent::test {
+namespace lambent::test::streaming_test {
 
 namespace {
 
@@ -433,4 +433,4 @@ TEST_F(Streaming, AnyChangesLeaveTheLightOfTheSceneAsItIs) {
   }
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::streaming_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace lambent::test {
+namespace lambent::test::world_test {
 
 namespace {
 
@@ -333,4 +333,4 @@ TEST_F(Worlds, WrongCallsAreStatuses) {
   EXPECT_EQ(lambent_world_name(world, e), nullptr);
 }
 
-} // namespace lambent::test
+} // namespace lambent::test::world_test
