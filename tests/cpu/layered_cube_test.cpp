@@ -247,6 +247,10 @@ TEST(LayeredCube, WhatDoesNotFitIsRefused) {
     ASSERT_EQ(cube.surfaces().entries().size(), first.size());
     for (size_t e = 0; e < first.size(); ++e) ASSERT_EQ(cube.irradiance(e), first[e]) << e;
   }
+  settings.resolution = 32;
+  settings.visibility = CubeVisibility::Rays;
+  EXPECT_NE(messageOf<RunError>([&] { update(400'000); }).find("the layered depth cube needs"), std::string::npos)
+      << "its columns are not cast";
   settings.levels = 3;
   settings.split = 0;
   EXPECT_NE(messageOf<RunError>([&] { update(1 << 20); }).find("the tree"), std::string::npos);
