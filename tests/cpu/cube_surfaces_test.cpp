@@ -160,7 +160,7 @@ TEST(CubeSurfaces, ATreeRefinesWhereThingsAreSmall) {
       EXPECT_LT(grid.texel, 0.25f * wide.texel()) << p.x << ' ' << p.z;
     }
   }
-  EXPECT_LT(least, 0.1f);
+  EXPECT_NEAR(least, wide.texel() / 32, 1e-4f) << "five levels";
   EXPECT_GT(onBlocks, 9u * 5 * 2 * 9);
   EXPECT_GT(tree.entries().size(), 2 * wide.entries().size());
   EXPECT_LT(tree.entries().size(), narrow.entries().size() / 20);
