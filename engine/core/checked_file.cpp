@@ -107,7 +107,6 @@ void CheckedReader::bytes(void* data, size_t size) {
 }
 
 void CheckedReader::strided(void* first, size_t each, size_t count, const ByteLayout& layout) {
-  if (count > left_ / each) damaged();
   bytes(first, each * count);
   for (size_t i = 0; i < count && !layout.bools.empty(); ++i)
     for (const size_t at : layout.bools) {
