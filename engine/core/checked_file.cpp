@@ -78,19 +78,18 @@ void writeChecked(const std::filesystem::path& file, const FileKind& kind, uint6
 bool isChecked(const std::filesystem::path& file, const FileKind& kind) {
   std::error_code none;
   char magic[sizeof kind.magic];
-  return std::filesystem::is_regular_file(file, none) &&
+  return std::filesystem::is_regular_file(file, none) && // a pipe would wait for ever
          std::ifstream(file, std::ios::binary).read(magic, sizeof magic) &&
          std::memcmp(magic, kind.magic, sizeof magic) == 0;
 }
 
 CheckedReader::CheckedReader(const std::filesystem::path& file, const FileKind& kind)
     : file_(file), name_(kind.name), checksum_(kind.version) {
+  if (!isChecked(file, kind)) refuse("is not " + kind.name + " (" + kind.instead + ")");
   std::error_code none;
-  if (std::filesystem::is_regular_file(file, none)) in_.open(file, std::ios::binary); // a pipe would wait for ever
   Header header;
-  if (!in_.is_open() || !in_.read(reinterpret_cast<char*>(&header), sizeof header) ||
-      std::memcmp(header.magic, kind.magic, sizeof header.magic) != 0)
-    refuse("is not " + kind.name + " (" + kind.instead + ")");
+  in_.open(file, std::ios::binary);
+  if (!in_.read(reinterpret_cast<char*>(&header), sizeof header)) damaged();
   if (header.version != kind.version || header.layout != kind.layout)
     refuse("is " + kind.name + " of another version of the program");
   const uint64_t size = std::filesystem::file_size(file, none);

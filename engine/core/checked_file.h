@@ -4,6 +4,7 @@
 
 #include "engine/core/hash.h"
 
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -87,7 +88,11 @@ class CheckedReader {
     uint64_t count = 0;
     value(count);
     if (count > left_ / sizeof(T)) damaged();
-    v.resize(count);
+    try {
+      v.resize(count);
+    } catch (const std::exception&) { // a file with holes may be larger than memory
+      damaged();
+    }
     values(std::span(v), layout);
   }
   /// Ends it: nothing follows but the checksum, and that is right.

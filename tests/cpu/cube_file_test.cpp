@@ -79,6 +79,8 @@ TEST_F(CubeFileTest, SaysWhatIsWrongWithAFile) {
     writeBytes(file_, bad);
     EXPECT_THROW(loadCube(file_, key_), InputError) << at;
   }
+  writeBytes(file_, good.substr(0, 10));
+  EXPECT_NE(inputErrorOf([&] { loadCube(file_, key_); }).find("damaged"), std::string::npos) << "it begins as one";
   for (const size_t size : {size_t(0), size_t(10), size_t(24), size_t(100), good.size() / 2, good.size() - 1}) {
     writeBytes(file_, good.substr(0, size));
     EXPECT_THROW(loadCube(file_, key_), InputError) << size;
