@@ -113,7 +113,7 @@ void main() {
   const int first = 0, end = lightCount;
 #endif
 #ifdef DOUBTS
-  vec3 place = justBefore(position);
+  vec3 place = justBefore(position, normal);
 #ifdef SKY
   bool open = seesSky(place, normal);
 #endif

@@ -35,7 +35,8 @@ void main() {
 
   // The shading normal on the geometric normal's side; where it still faces away (silhouettes of coarse meshes) the
   // geometric one is the only answer that agrees with what is seen.
-  vec3 normal = normalize(normalWorld);
+  float long_ = length(normalWorld); // 0 where corners have none, or opposite ones
+  vec3 normal = long_ > 0.0 ? normalWorld / long_ : geometric;
   if (dot(normal, geometric) < 0.0) normal = -normal;
   if (!(dot(normal, towardsViewer) > 0.0)) normal = geometric;
 

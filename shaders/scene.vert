@@ -31,7 +31,9 @@ void main() {
   vec3 c0 = cross(worldRow1.xyz, worldRow2.xyz), c1 = cross(worldRow2.xyz, worldRow0.xyz),
        c2 = cross(worldRow0.xyz, worldRow1.xyz);
   handedness = dot(worldRow0.xyz, c0) < 0.0 ? -1.0 : 1.0;
-  normalWorld = handedness * normalize(vec3(dot(c0, normalObject), dot(c1, normalObject), dot(c2, normalObject)));
+  vec3 n = vec3(dot(c0, normalObject), dot(c1, normalObject), dot(c2, normalObject));
+  float size = length(n); // may be 0: a file may give normals of no length
+  normalWorld = size > 0.0 ? n * (handedness / size) : vec3(0.0);
 #endif
 #if !defined(DEPTH_ONLY) || defined(POSITION)
   positionEye = positionWorld - eye;

@@ -35,7 +35,7 @@ struct AreaVisibility::Question {
 };
 
 AreaVisibility::Place AreaVisibility::placeAt(const glm::ivec2& pixel) const {
-  return {surfaces_.positionAt(pixel), surfaces_.normalAt(pixel)};
+  return {surfaces_.placeAt(pixel), surfaces_.normalAt(pixel)};
 }
 
 std::array<AreaVisibility::Place, 4> AreaVisibility::partsOf(const glm::ivec2& texel, int level) const {

@@ -11,6 +11,10 @@ vec3 FrameSurfaces::positionAt(const glm::ivec2& pixel) const {
   return vec3(camera.worldFromView * vec4(positionViewFromDepth(camera, vec2(pixel) + 0.5f, depth[at(pixel)]), 1));
 }
 
+vec3 FrameSurfaces::placeAt(const glm::ivec2& pixel) const {
+  return positionAt(pixel) + normalAt(pixel) * cornerSlack(camera, viewDistanceFromDepth(camera, depth[at(pixel)]));
+}
+
 std::vector<glm::ivec2> FrameSurfaces::some(size_t count) const {
   std::vector<glm::ivec2> pixels;
   for (uint32_t i = 0; i < count; ++i) {

@@ -19,6 +19,8 @@ struct FrameSurfaces {
 
   bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
   vec3 positionAt(const glm::ivec2& pixel) const;
+  /// Above the surface by what its depth may be wrong by, for rays.
+  vec3 placeAt(const glm::ivec2& pixel) const;
   vec3 normalAt(const glm::ivec2& pixel) const { return glm::normalize(vec3(normal[at(pixel)])); }
   /// Up to `count` pixels that show a surface, spread over the image.
   std::vector<glm::ivec2> some(size_t count) const;

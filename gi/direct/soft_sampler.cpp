@@ -112,7 +112,7 @@ Start startOf(const FrameSurfaces* surfaces, const glm::ivec2& pixel, const Surf
   const vec4& lens = surfaces->camera.lens;
   const float pixelSize = 2 * lens.y * surfaces->camera.size.w * (lens.w > 0 ? 1 : distance);
   const vec3 normal = surfaces->normalAt(pixel);
-  if (!isSame(*surfaces, pixel, hit, pixelSize)) return {{surfaces->positionAt(pixel), normal, normal}, false};
+  if (!isSame(*surfaces, pixel, hit, pixelSize)) return {{surfaces->placeAt(pixel), normal, normal}, false};
   constexpr float kSameNormal = 0.98f;
   const bool alike = glm::dot(hit.normal, normal) > kSameNormal;
   return {{hit.position, alike ? hit.normal : normal, hit.geometricNormal}, true};

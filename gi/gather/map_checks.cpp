@@ -85,7 +85,8 @@ void MapChecks::add(const GatherInputs& in, const LightTarget& target, FrameStat
           normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
           if (pair.gain == 0 || !std::isfinite(pair.gain)) continue;
           const VirtualLight& light = in.lights.list.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
-          segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.rayEpsilon()),
+          const float slack = cornerSlack(in.frame.surfaces.block, pair.viewDistance);
+          segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.rayEpsilon() + slack),
                                      offsetPoint(light.position, light.geometricNormal, rays.rayEpsilon())));
           asked.push_back({i, light.radiance * (light.area * pair.gain), pair.gain > 0});
         }

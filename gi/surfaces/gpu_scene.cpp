@@ -123,7 +123,8 @@ void GpuScene::bindMaterial(uint32_t index) const {
   gl::bindSampler(4, material.finishSampler);
 }
 
-uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which) const {
+uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which,
+                        const mat3& wayFromPixel) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
   std::vector<const Item*> shown;
   for (const Item& item : items_) {
@@ -165,6 +166,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
       program->use();
       program->set("clipFromWorld", clipFromWorld);
       program->set("eye", eye);
+      if (kind == DrawKind::DistanceNormal) program->set("wayFromPixel", mat4(wayFromPixel));
     }
     if (!anyMaterial) bindMaterial(item.range.material);
     glBindVertexArray(item.deformed ? deformed_.array.name() : vertexArray_.name());

@@ -44,11 +44,11 @@ class GpuScene {
 
   /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer: one call per
   /// material and vertex array, and without a G-buffer one for all materials without alpha test. Sets programs, vertex
-  /// array and textures; the caller sets the pipeline state, gives the eye but for depth, and for a G-buffer binds the
-  /// camera block.
+  /// array and textures; the caller sets the pipeline state, gives the eye but for depth, for a G-buffer binds the camera
+  /// block, and for distances gives the directions of pixels: of window coordinates (x, y, 1), world axes.
   /// Returns the number of calls.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0),
-                Instances which = Instances::All) const;
+                Instances which = Instances::All, const mat3& wayFromPixel = mat3(1)) const;
 
   /// Sets which alpha test draws use; AlphaTest::Masked at the start.
   void setAlphaTest(AlphaTest test) {

@@ -50,6 +50,7 @@ class ParaboloidMapPass {
  private:
   void allocate(const ParaboloidMapInputs& in);
   MakerTimes timesOf(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
+  void draw(const ParaboloidMapInputs& in, std::span<const MapJob> jobs, bool partsByRays);
   void drawRaster(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void drawRays(const ParaboloidMapInputs& in, std::span<const MapJob> jobs);
   void rasterInto(const ParaboloidMapInputs& in, const MapPose& pose, const gl::Texture& array, int layer);

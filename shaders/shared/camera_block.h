@@ -25,6 +25,12 @@ SHARED_INLINE vec3 positionViewFromDepth(CameraBlock c, vec2 pixel, float depth)
   return vec3(xy.x, xy.y, -distance);
 }
 
+/// How far off its surface, metres, a place of the image may lie: GPUs round the corners of triangles to 1/256 of a pixel,
+/// and some interpolate depth between what they rounded. Rays begin so far above the place, along its normal.
+SHARED_INLINE float cornerSlack(CameraBlock c, float distance) {
+  return c.lens.y * c.size.w * (c.lens.w > 0.0f ? 1.0f : distance) / 128.0f;
+}
+
 /// View-space direction from the camera through `pixel` (as above), not of unit length.
 SHARED_INLINE vec3 viewDirectionFromPixel(CameraBlock c, vec2 pixel) {
   vec2 ndc = pixel * vec2(c.size.z, c.size.w) * 2.0f - vec2(1.0f, 1.0f);

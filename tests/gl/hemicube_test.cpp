@@ -4,6 +4,7 @@
 #include "frames.h"
 #include "gi/cube/layered_cube.h"
 #include "gi/vpl/sources.h"
+#include "shader_copy.h"
 #include "tests/support/random_world.h"
 
 namespace lambent::test::hemicube_test {
@@ -19,7 +20,11 @@ class HemicubeTest : public GlTest {
 
   /// Both makers' hemicubes of every light.
   void compare(const World& world, std::span<const VirtualLight> lights, int resolution, Agreement& sum) {
-    HemicubePass pass(passes);
+    compare(passes, world, lights, resolution, sum);
+  }
+  void compare(const PassContext& context, const World& world, std::span<const VirtualLight> lights, int resolution,
+               Agreement& sum) {
+    HemicubePass pass(context);
     std::vector<Hemicube> drawn, cast;
     for (const VirtualLight& light : lights) drawn.push_back(hemicubeAt(light, resolution, world.rays.rayEpsilon()));
     cast = drawn;
@@ -104,6 +109,20 @@ TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetInARoom) {
     compare(placed.world(), lights, resolution, sum);
     expectAlike(sum);
   }
+}
+
+/// What lies between rounded corners lies beside the middles of texels (rounded_corners_test.cpp).
+TEST_F(HemicubeTest, RoundedCornersLeaveDistances) {
+  const RoundedCorners rounding;
+  gl::ProgramCache rounded(rounding.path);
+  const PassContext context{rounded, profiler};
+  const Room room;
+  PlacedScene placed(context, room.scene);
+  const std::vector<VirtualLight> lights = {lightAt({0.5f, -1, 0.3f}, {0, 1, 0}, vec3(1), 0.01f),
+                                            lightAt({-1, 0.2f, 0.1f}, {1, 0, 0}, vec3(1), 0.01f)};
+  Agreement sum;
+  compare(context, placed.world(), lights, 64, sum);
+  expectAlike(sum);
 }
 
 TEST_F(HemicubeTest, DrawnOnesSeeWhatRaysMeetWhileAnythingMoves) {

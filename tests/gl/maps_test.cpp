@@ -93,6 +93,39 @@ TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   EXPECT_EQ(pass.maker().report(), report);
 }
 
+/// Where the GPU draws whole maps, a part of one is cast.
+TEST_F(MapsTest, PartsAreCastWhereTheGpuDraws) {
+  passes.drawnByCpu = false;
+  ParaboloidMapPass onGpu(passes, StageId::VplMaps);
+  const auto at = [](const std::vector<float>& map, int x, int y) { return map[size_t(y) * 64 + size_t(x)]; };
+  onGpu.run(inputs());
+  const std::vector<float> drawn = onGpu.readLayer(0);
+  const MakerComparison makers = onGpu.compareMakers(inputs(), poses[0]);
+  EXPECT_EQ(drawn, makers.raster);
+  const auto partIs = [&](const TexelRect& part, ShadowMaker maker, const std::vector<float>& wanted) {
+    jobs = {{0, TexelRect::whole(64)}};
+    onGpu.run(inputs());
+    jobs = {{0, part}};
+    ParaboloidMapInputs in = inputs();
+    in.maker = maker;
+    onGpu.run(in);
+    const std::vector<float> map = onGpu.readLayer(0);
+    int unlike = 0, outside = 0, told = 0;
+    for (const auto [x, y] : Pixels(64, 64)) {
+      const bool within = x >= part.x0 && x < part.x1 && y >= part.y0 && y < part.y1;
+      unlike += within && at(map, x, y) != at(wanted, x, y);
+      outside += !within && at(map, x, y) != at(drawn, x, y);
+      told += within && at(makers.raster, x, y) != at(makers.rays, x, y);
+    }
+    EXPECT_EQ(unlike, 0);
+    EXPECT_EQ(outside, 0);
+    EXPECT_GT(told, 0) << "or the makers cannot be told apart";
+  };
+  partIs({24, 8, 40, 24}, ShadowMaker::Auto, makers.rays);
+  partIs({16, 16, 48, 48}, ShadowMaker::Auto, makers.raster);
+  partIs({24, 8, 40, 24}, ShadowMaker::Raster, makers.raster);
+}
+
 TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {
   poses.resize(2100, poses[0]);
   ParaboloidMapInputs in = inputs();

@@ -38,4 +38,15 @@ class ShaderCopy {
   const fs::path path = folder_ / "shaders";
 };
 
+/// Shaders whose triangles have their corners rounded to 1/256 of a pixel of an image 64 wide.
+class RoundedCorners : public ShaderCopy {
+ public:
+  RoundedCorners() {
+    const std::string place = "gl_Position = clipFromWorld * vec4(positionWorld, 1.0);";
+    replace("scene.vert", place,
+            place + " if (gl_Position.w > 0.0) gl_Position.xy = "
+                    "round(gl_Position.xy / gl_Position.w * 8192.0) / 8192.0 * gl_Position.w;");
+  }
+};
+
 } // namespace lambent::test

@@ -64,8 +64,11 @@ void main() {
     basisAround(decoded, tangent, bitangent);
     const vec2 map = paraboloidFromDirection(vec3(n.x, n.y, std::abs(n.z)));
     const vec3 d = directionFromParaboloid(p * 0.5f + 0.5f);
-    EXPECT_LT(glm::length(vec3(got[0][i]) - tangent), 2e-4f) << x << ' ' << y;
-    EXPECT_LT(glm::length(vec3(got[1][i]) - bitangent), 2e-4f) << x << ' ' << y;
+    // A coordinate halfway between two of 16 bits is a driver's to round, and the basis switches on the sign of z.
+    if (std::abs(decoded.z) > 1e-4f || glm::abs(p) != vec2(0.5f)) {
+      EXPECT_LT(glm::length(vec3(got[0][i]) - tangent), 2e-4f) << x << ' ' << y;
+      EXPECT_LT(glm::length(vec3(got[1][i]) - bitangent), 2e-4f) << x << ' ' << y;
+    }
     EXPECT_LT(glm::length(vec3(got[3][i]) - decoded), 2e-4f) << x << ' ' << y;
     EXPECT_LT(glm::length(vec2(got[2][i].x, got[2][i].y) - map), 1e-5f) << x << ' ' << y;
     EXPECT_LT(glm::length(vec3(got[2][i].z, got[2][i].w, got[3][i].w) - d), 1e-5f) << x << ' ' << y;

@@ -274,7 +274,7 @@ class HostState {
       glTransformFeedbackBufferRange(feedback_, GLuint(i), buffer_, 256 * (i + 1), 64);
     glCreateProgramPipelines(1, &pipeline_);
     glCreateQueries(GL_TIME_ELAPSED, 1, &query_);
-    const char* text = "#version 450\nvoid main() { gl_Position = vec4(0); }\n";
+    const char* text = "#version 450\nout gl_PerVertex { vec4 gl_Position; };\nvoid main() { gl_Position = vec4(0); }\n";
     program_ = glCreateShaderProgramv(GL_VERTEX_SHADER, 1, &text);
   }
   HostState(const HostState&) = delete;

@@ -99,8 +99,10 @@ void HemicubePass::drawInto(int layer, const Hemicube& hemicube) {
     // y of the whole image from -1 to 1, of a half from its horizon; reversed depth near/z.
     const vec3 y = face == 0 ? up : up * (float(n) / float(state.height)) - forward;
     const vec4 rows[4] = {vec4(right, 0), vec4(y, 0), vec4(0, 0, 0, near_), vec4(forward, 0)};
+    const vec3 column = right * (2 / float(n)), row = up * (2 / float(n));
+    const vec3 corner = forward - right - (face == 0 ? up : vec3(0)) - row * float(state.y);
     scene_->draw(DrawKind::DistanceNormal, glm::transpose(mat4(rows[0], rows[1], rows[2], rows[3])) * relativeFromWorld,
-                 hemicube.origin);
+                 hemicube.origin, Instances::All, mat3(column, row, corner));
   }
 }
 
