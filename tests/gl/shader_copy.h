@@ -6,13 +6,14 @@
 
 namespace lambent::test {
 
-/// A folder of the built-in shaders, removed at the end.
+/// A folder of the shaders that tests run with (the built-in ones, or those of LAMBENT_SHADERS), removed at the end.
 class ShaderCopy {
  public:
   ShaderCopy() {
     for (const gl::BuiltInShader& shader : gl::builtInShaders()) {
       fs::create_directories((path / shader.file).parent_path());
-      writeBytes(path / shader.file, std::string(shader.text));
+      const fs::path given = gl::shaderFolder();
+      writeBytes(path / shader.file, given.empty() ? std::string(shader.text) : readBytes(given / shader.file));
     }
   }
 
