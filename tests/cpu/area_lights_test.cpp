@@ -63,8 +63,23 @@ TEST(AreaPiece, IsANumberOnItsEdgesAndCorners) {
     for (const vec3& n : {vec3(0, 1, 0), vec3(1, 0, 0), vec3(0, -1, 0), glm::normalize(vec3(1))}) {
       const float f = areaFormFactor(piece, at, n);
       EXPECT_TRUE(f >= 0 && f <= 3.2f) << f;
-      EXPECT_TRUE(std::isfinite(areaFormFactor(piece, at + vec3(0, 1e-7f, 0), n)));
+      const float above = areaFormFactor(piece, at + vec3(0, 1e-7f, 0), n);
+      EXPECT_TRUE(above >= 0 && above <= 3.142f) << above;
     }
+  // Of tilted ones, rounding puts corners and edges before the plane or behind it.
+  for (uint32_t i = 0; i < 1000; ++i) {
+    Rng rng(5, Stream::Test, i);
+    const auto around = [&] { return 2.0f * rng.next3() - 1.0f; };
+    const vec3 corner = around(), u = around(), v = around();
+    const AreaPiece tilted = quadPiece(corner, u, v, true);
+    const vec3 plane(tilted.normalArea), normal = glm::normalize(around());
+    for (const vec3& at : {corner, corner + u, corner + u + v, corner + v, corner + 0.5f * u, corner + u + 0.5f * v,
+                           corner + 0.5f * u + v, corner + 0.5f * v})
+      for (const vec3& n : {plane, -plane, normal}) {
+        const float f = areaFormFactor(tilted, at, n);
+        ASSERT_TRUE(f >= 0 && f <= 3.142f) << i << ": " << f;
+      }
+  }
 }
 
 AreaLights lightsOf(const HandScene& scene) { return areaLights(collectLights(scene.view())); }

@@ -188,6 +188,7 @@ TEST(CubeSurfaces, HoldTheBoxTheyWereBuiltOver) {
       EXPECT_TRUE(surfaces.holds({lo, lo + size})) << i << ", levels " << levels;
       if (maxComponent(size) > 1e-3f * maxComponent(glm::abs(lo))) { // else single precision does not tell them apart
         EXPECT_FALSE(surfaces.holds({lo, lo + 2.5f * size})) << i;
+        EXPECT_FALSE(surfaces.holds({lo - 1.5f * size, lo + size})) << i;
         EXPECT_FALSE(surfaces.holds({lo, lo + 0.3f * size})) << i;
       }
     }

@@ -33,6 +33,10 @@ void expectSame(const Room& a, const Room& b) {
     EXPECT_EQ(p.position, q.position) << i;
     EXPECT_EQ(p.direction, q.direction) << i;
     EXPECT_EQ(p.intensity, q.intensity) << i;
+    EXPECT_EQ(p.range, q.range) << i;
+    EXPECT_EQ(p.innerConeCos, q.innerConeCos) << i;
+    EXPECT_EQ(p.outerConeCos, q.outerConeCos) << i;
+    EXPECT_EQ(p.angularRadius, q.angularRadius) << i;
   }
 }
 
@@ -47,6 +51,7 @@ TEST(PropsTest, AreShownAgainToTheBit) {
   played.props.day.apply();
   played.props.movers.update(0.5);
   const Player turned(lookAt({0.5f, 1.6f, 1.2f}, {-1, 1.2f, 0.9f}, 1), played.solids.view().boundsWorld);
+  played.props.things.lampIntensity = {3, 2, 1};
   played.props.things.take(ThingKind::WhiteBoard, turned);
   played.props.things.update(played.solids, turned, 0.03f);
   played.props.things.take(ThingKind::Lamp, turned); // the board falls

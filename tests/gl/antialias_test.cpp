@@ -54,7 +54,7 @@ class AntiAliasTest : public GlTest {
     frame_.surfaces.normal = frame_.surfaces.albedo = frame_.surfaces.emission = &radiance_;
     frame_.surfaces.width = width;
     frame_.surfaces.height = height;
-    frame_.indirect = {&radiance_};
+    frame_.direct = frame_.indirect = {&radiance_};
     frame_.radiance = &radiance_;
     return frame_;
   }
@@ -216,10 +216,11 @@ TEST_F(AntiAliasTest, OffAndOtherBuffersAreAsBefore) {
   DisplayPass never{passes};
   never.run(Buffer::Beauty, frameOf(picture), {});
   EXPECT_EQ(shown(picture, AntiAliasing::Off).rgb, never.read().rgb);
-  for (const Buffer buffer : {Buffer::Irradiance, Buffer::Albedo, Buffer::Normal, Buffer::Depth, Buffer::Emission,
-                              Buffer::Unfiltered, Buffer::ShadowMaps, Buffer::Patches, Buffer::Nan})
-    EXPECT_EQ(shown(picture, AntiAliasing::Edges, buffer).rgb, shown(picture, AntiAliasing::Off, buffer).rgb)
-        << bufferNames()[size_t(buffer)];
+  for (const std::string& name : bufferNames()) {
+    const Buffer buffer = bufferByName(name);
+    if (buffer == Buffer::Beauty || buffer == Buffer::Direct || buffer == Buffer::Indirect) continue;
+    EXPECT_EQ(shown(picture, AntiAliasing::Edges, buffer).rgb, shown(picture, AntiAliasing::Off, buffer).rgb) << name;
+  }
 }
 
 TEST_F(AntiAliasTest, PicturesOfAnySize) {

@@ -19,6 +19,9 @@ TEST(Camera, CentreRayLooksAtTheTargetAndCornersAreWhereTheyShould) {
   expectNear(cameraRay(camera, 0.5f, 0.5f).direction, {0, 0, -1});
   expectNear(cameraRay(camera, 0, 0).direction, glm::normalize(vec3(-2, 1, -1))); // left, top
   expectNear(cameraRay(camera, 1, 1).direction, glm::normalize(vec3(2, -1, -1))); // right, bottom
+  camera.fovY = 2 * std::atan(0.5f);
+  expectNear(cameraRay(camera, 0, 0).direction, glm::normalize(vec3(-1, 0.5f, -1)));
+  expectNear(cameraRay(camera, 1, 1).direction, glm::normalize(vec3(1, -0.5f, -1)));
   const CameraRay ray = cameraRay(tiltedCamera(), 0.5f, 0.5f);
   expectNear(ray.origin, {1, 2, 3});
   expectNear(ray.direction, glm::normalize(vec3(-5, -1.5f, -1)));
