@@ -20,7 +20,12 @@ layout(location = 3) out vec2 outRoughnessMetalness;
 #endif
 
 void main() {
+  // What differs from pixel to pixel comes before any discard: afterwards a driver may have no neighbours to ask.
   vec4 base = baseColorAt(uv, color);
+  vec3 emission = emissionAt(uv), across = dFdx(positionEye), up = dFdy(positionEye);
+#ifdef GLOSSY
+  vec2 roughnessMetalness = roughnessMetalnessAt(uv);
+#endif
 #ifdef KEEPS_MODE
   if (camera.size.x < 0.0) discard; // never, which the compiler cannot know
 #endif
@@ -28,7 +33,7 @@ void main() {
   if (base.a < material.emission.a) discard;
 #endif
   vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : -normalize(positionEye);
-  vec3 geometric = cross(dFdx(positionEye), dFdy(positionEye));
+  vec3 geometric = cross(across, up);
   float size = length(geometric);
   geometric = size > 0.0 ? geometric / size : towardsViewer;
   if (dot(geometric, towardsViewer) < 0.0) geometric = -geometric;
@@ -45,8 +50,7 @@ void main() {
   outNormal = vec4(normal, 1.0);
   outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 #ifdef GLOSSY
-  vec2 roughnessMetalness = roughnessMetalnessAt(uv);
   outRoughnessMetalness = vec2(max(roughnessMetalness.x, kLeastRoughness), roughnessMetalness.y);
 #endif
-  outEmission = vec4(emits ? emissionAt(uv) : vec3(0.0), 1.0);
+  outEmission = vec4(emits ? emission : vec3(0.0), 1.0);
 }

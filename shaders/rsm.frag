@@ -21,7 +21,9 @@ void main() {
   outPosition = outFlux = vec4(0.0);
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
-  vec3 position = positionFromDepth(pixel - origin, depth);
+  // Lights and their maps stand above the surface, also of rounded corners.
+  vec3 position = positionFromDepth(pixel - origin, depth) +
+                  texelFetch(gbufferNormal, pixel, 0).xyz * cornerSlack(camera, viewDistanceFromDepth(camera, depth));
   vec3 reflectance = texelFetch(albedo, pixel, 0).rgb;
   if (camera.lens.w > 0.0) { // parallel
     outPosition = vec4(position, texelMean);

@@ -71,7 +71,8 @@ void writeChecked(const std::filesystem::path& file, const FileKind& kind, uint6
     write(writer);
     const uint64_t checksum = writer.checksum();
     out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
+    out.close(); // some disks say only then that they are full
+    if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
 }
 

@@ -94,7 +94,7 @@ struct CubeFile {
       texel.lo[at.axis] = grid.corner[at.axis] - grid.texel;
       texel.hi[at.axis] = grid.corner[at.axis] + grid.edge() + grid.texel;
       return std::all_of(
-          &s.entries_[0] + s.firsts_[column], &s.entries_[0] + s.firsts_[column + 1],
+          s.entries_.data() + s.firsts_[column], s.entries_.data() + s.firsts_[column + 1],
           [&](const CubeEntry& e) { return texel.contains(e.position) && isUnit(e.normal) && isUnit(e.shading); });
     });
   }

@@ -203,6 +203,7 @@ void ReflectiveMapPass::drawFlux(const ReflectiveMapInputs& in, size_t index) {
   program.set("texelMean", map.patchArea);
   program.set("exact", in.rsm.exact ? 1 : 0);
   depth_.bind(0);
+  normal_.bind(1);
   albedo_.bind(2);
   fluxes_.bind();
   gl::PipelineState{.x = origin.x, .y = origin.y, .width = resolution_, .height = resolution_}.apply();

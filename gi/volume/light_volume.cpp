@@ -137,7 +137,7 @@ void LightVolume::propagate() {
     light_[(step + 1) % 2].bindStorage(0);
     light_[step % 2].bindStorage(1);
     gl::dispatch(groups, groups, groups);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT); // the next step, and reading back
   }
 }
 

@@ -84,8 +84,9 @@ void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, bool masks, ino
   precise float u = pc.x * pb.y - pc.y * pb.x, v = pa.x * pc.y - pa.y * pc.x, w = pb.x * pa.y - pb.y * pa.x;
   if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return;
   float sum = u + v + w;
+  if (sum == 0.0) return;
   float t = shear.z * (u * a.z + v * b.z + w * c.z) / sum;
-  if (!(t > 0.0 && t <= hit.t)) return; // nor where `sum` is 0
+  if (!(t > 0.0 && t <= hit.t)) return;
   vec2 barycentric = vec2(v, w) / sum;
   if (masks && triangle.mask != kRayNone && cutOut(rayMasks[triangle.mask], barycentric)) return;
   hit.t = t;
