@@ -51,4 +51,20 @@ TEST_F(RoundedCornersTest, LeaveShadowsOfPunctualLights) {
   expectAlike(Buffer::Direct, 1, 0.003);
 }
 
+/// Lights of reflective maps, and their maps, stand at the depths that the light sees, far off where it grazes a wall.
+TEST_F(RoundedCornersTest, LeaveLightsOfReflectiveMaps) {
+  HandScene& scene = room.scene;
+  const uint32_t white = scene.material(vec3(0.7f));
+  constexpr int kTiles = 16; // whose corners are all in the light's view
+  for (int z = 0; z < kTiles; ++z)
+    for (int x = 0; x < kTiles; ++x)
+      scene.quad({-0.9f + 1.8f * float(x) / kTiles, -0.99f, -0.9f + 1.8f * float(z + 1) / kTiles},
+                 {1.8f / kTiles, 0, 0}, {0, 0, -1.8f / kTiles}, white);
+  scene.lights[0].position = {0, -0.9f, 0};
+  applyTechnique(settings, "rsm");
+  settings.vpl.visibility = VplVisibility::Rays;
+  settings.rsm.resolution = 32;
+  expectAlike(Buffer::Irradiance, 1, 0.004);
+}
+
 } // namespace lambent::test::rounded_corners_test

@@ -10,9 +10,9 @@ namespace lambent::test {
 class ShaderCopy {
  public:
   ShaderCopy() {
+    const fs::path given = gl::shaderFolder();
     for (const gl::BuiltInShader& shader : gl::builtInShaders()) {
       fs::create_directories((path / shader.file).parent_path());
-      const fs::path given = gl::shaderFolder();
       writeBytes(path / shader.file, given.empty() ? std::string(shader.text) : readBytes(given / shader.file));
     }
   }
