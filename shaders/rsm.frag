@@ -23,7 +23,7 @@ void main() {
   if (depth == 0.0) return;
   // Lights and their maps stand above the surface, also of rounded corners.
   vec3 position = positionFromDepth(pixel - origin, depth) +
-                  texelFetch(gbufferNormal, pixel, 0).xyz * cornerSlack(camera, viewDistanceFromDepth(camera, depth));
+                  texelFetch(gbufferNormal, pixel, 0).xyz * placeSlack(camera, viewDistanceFromDepth(camera, depth));
   vec3 reflectance = texelFetch(albedo, pixel, 0).rgb;
   if (camera.lens.w > 0.0) { // parallel
     outPosition = vec4(position, texelMean);

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/free_memory.h"
 
 #include <algorithm>
 
@@ -86,8 +87,10 @@ bool isChecked(const std::filesystem::path& file, const FileKind& kind) {
 
 CheckedReader::CheckedReader(const std::filesystem::path& file, const FileKind& kind)
     : file_(file), name_(kind.name), checksum_(kind.version) {
-  if (!isChecked(file, kind)) refuse("is not " + kind.name + " (" + kind.instead + ")");
   std::error_code none;
+  if (std::filesystem::is_regular_file(file, none) && !std::ifstream(file))
+    refuse("cannot be read (has this user the right to?)");
+  if (!isChecked(file, kind)) refuse("is not " + kind.name + " (" + kind.instead + ")");
   Header header;
   in_.open(file, std::ios::binary);
   if (!in_.read(reinterpret_cast<char*>(&header), sizeof header)) damaged();
@@ -114,6 +117,12 @@ void CheckedReader::strided(void* first, size_t each, size_t count, const ByteLa
       std::memcpy(&byte, static_cast<const char*>(first) + i * each + at, 1);
       if (byte > 1) damaged();
     }
+}
+
+void CheckedReader::refuseBeyondMemory(uint64_t bytes) const { // a file with holes may be larger than memory
+  if (bytes > freeMemory())
+    throw RunError(file_.string() + ": needs " + std::to_string(bytes / 1'000'000'000 + 1) +
+                   " GB of memory, more than is left (" + name_ + "; end other programs, or begin again without it)");
 }
 
 void CheckedReader::end() {

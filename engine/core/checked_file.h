@@ -4,7 +4,6 @@
 
 #include "engine/core/hash.h"
 
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -71,7 +70,8 @@ void writeChecked(const std::filesystem::path& file, const FileKind& kind, uint6
 /// Says whether a file claims to be of a kind, of any version.
 bool isChecked(const std::filesystem::path& file, const FileKind& kind);
 
-/// Asks for no more memory than the file has bytes. All throw InputError, "damaged" where the file is not as written.
+/// Asks for no more memory than the file has bytes. All throw InputError, "damaged" where the file is not as written;
+/// where memory is short, which says nothing of the file, RunError.
 class CheckedReader {
  public:
   /// Opens a file. Refuses what is no regular file, and what is of another kind or version.
@@ -88,11 +88,8 @@ class CheckedReader {
     uint64_t count = 0;
     value(count);
     if (count > left_ / sizeof(T)) damaged();
-    try {
-      v.resize(count);
-    } catch (const std::exception&) { // a file with holes may be larger than memory
-      damaged();
-    }
+    refuseBeyondMemory(count * sizeof(T));
+    v.resize(count);
     values(std::span(v), layout);
   }
   /// Ends it: nothing follows but the checksum, and that is right.
@@ -103,6 +100,7 @@ class CheckedReader {
 
  private:
   void strided(void* first, size_t each, size_t count, const ByteLayout& layout);
+  void refuseBeyondMemory(uint64_t bytes) const;
 
   const std::filesystem::path file_;
   const std::string name_;

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 
+#include <cmath>
 #include <limits>
 
 namespace lambent::gl {
@@ -178,11 +179,13 @@ bool Texture::comparesDepths() const {
   return compare != GL_NONE;
 }
 
-bool Texture::holdsSinglePrecision() const {
-  GLint depth = 0, red = 0;
-  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_DEPTH_SIZE, &depth);
-  glGetTextureLevelParameteriv(name(), 0, GL_TEXTURE_RED_SIZE, &red);
-  return depth == 32 || red == 32;
+Texture::Rounding Texture::rounding() const {
+  const bool depth = isDepth();
+  GLint bits = 0, type = 0;
+  glGetTextureLevelParameteriv(name(), 0, depth ? GL_TEXTURE_DEPTH_SIZE : GL_TEXTURE_RED_SIZE, &bits);
+  glGetTextureLevelParameteriv(name(), 0, depth ? GL_TEXTURE_DEPTH_TYPE : GL_TEXTURE_RED_TYPE, &type);
+  if (type == GL_FLOAT) return {0, bits >= 32 ? 0x1p-24f : bits >= 16 ? 0x1p-11f : 0x1p-7f};
+  return {std::ldexp(0.5f, type == GL_SIGNED_NORMALIZED ? 1 - bits : -bits), 0};
 }
 
 bool Texture::isDepth() const {

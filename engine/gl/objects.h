@@ -85,8 +85,11 @@ class Texture : public detail::Object {
   bool readsOtherThanLevel0() const;
   /// Says whether it compares depths, where no sampler is bound beside it.
   bool comparesDepths() const;
-  /// Says whether its depths, or its red, are numbers of 32 bits.
-  bool holdsSinglePrecision() const;
+  /// What a depth, or a red, of value v may be off by: absolute + relative |v|.
+  struct Rounding {
+    float absolute = 0, relative = 0;
+  };
+  Rounding rounding() const;
   bool isDepth() const; // else depths are in its red channel
   /// Reads the texels of a buffer, which must outlive it.
   static Texture ofBuffer(const std::string& label, GLenum format, const Buffer& buffer);

@@ -115,8 +115,8 @@ void CubeSurfaces::adopt(Growth& growth) {
   }
 }
 
-void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays,
-                         RayCounts& counts, size_t memory) {
+void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts,
+                         size_t memory) {
   edge_ = edgeOver(boundsWorld);
   lo_ = boundsWorld.centre() - 0.5f * edge_;
   resolution_ = settings.resolution;
@@ -127,8 +127,9 @@ void CubeSurfaces::build(const Aabb& boundsWorld, const CubeSettings& settings, 
   adopt(growth);
 }
 
-std::vector<uint32_t> CubeSurfaces::update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts) {
-  Growth growth = grow(&moved, rays, counts, ~size_t(0));
+std::vector<uint32_t> CubeSurfaces::update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts,
+                                           size_t memory) {
+  Growth growth = grow(&moved, rays, counts, memory);
   const std::vector<CubeEntry> before = std::move(entries_);
   const std::vector<uint32_t> firstsBefore = std::move(firsts_);
   adopt(growth);

@@ -17,8 +17,9 @@ class CubeSurfaces {
   void build(const Aabb& boundsWorld, const CubeSettings& settings, const RayQuery& rays, RayCounts& counts,
              size_t memory = ~size_t(0));
   /// Casts what `moved` touches; the result is what build() would make. Returns for each entry its number before, kNone
-  /// where it is new.
-  std::vector<uint32_t> update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts);
+  /// where it is new. Throws as build().
+  std::vector<uint32_t> update(const DirtyRegion& moved, const RayQuery& rays, RayCounts& counts,
+                               size_t memory = ~size_t(0));
   /// Says whether the box holds the scene, and not much more.
   bool holds(const Aabb& boundsWorld) const;
 

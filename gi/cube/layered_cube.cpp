@@ -47,22 +47,23 @@ bool sees(const VirtualLight& light, const Aabb& box, float reach) {
   return glm::dot(farthest - light.position, light.normal) > -reach;
 }
 
+size_t memoryFor(const CubeInputs& in) { return in.memory == 0 ? freeMemory() : in.memory; }
+
+/// Throws RunError where there are not so many bytes.
+void refuseBeyond(size_t memory, double needed) {
+  if (needed <= double(memory)) return;
+  throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
+                 " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
+}
+
 } // namespace
 
 size_t LayeredCube::bytesKept() const {
   return surfaces_.entries().size_bytes() + sums_.size() * sizeof(dvec3) + seen_.size() * sizeof(Word);
 }
 
-/// Throws RunError where there is not as much. The next update then begins anew.
-void LayeredCube::refuseBeyond(size_t memory, double needed) {
-  if (needed <= double(memory == 0 ? freeMemory() : memory)) return;
-  surfaces_ = {};
-  throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
-                 " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
-}
-
 void LayeredCube::clear(size_t memory) {
-  double needed = double(surfaces_.entries().size()) * double((words() + 1) * sizeof(Word) + sizeof(dvec3));
+  double needed = double(surfaces_.entries().size()) * bytesOfEntry();
   if (settings_.visibility == CubeVisibility::Hemicubes) {
     const size_t atOnce = std::clamp(in_.size(), size_t(1), hemicubesAtOnce(settings_.hemicube));
     needed += double(atOnce) * double(bytesOfHemicube(settings_.hemicube) + surfaces_.entries().size()); // with marks
@@ -97,20 +98,27 @@ void LayeredCube::take(size_t entry, const dvec3& light) {
 }
 
 CubeWork LayeredCube::update(const CubeInputs& in, uint32_t most) {
+  try {
+    return advance(in, most);
+  } catch (...) { // what is half done begins anew
+    *this = {};
+    throw;
+  }
+}
+
+CubeWork LayeredCube::advance(const CubeInputs& in, uint32_t most) {
   CubeWork work;
-  const bool fresh = surfaces_.empty() || in.newScene || !(settings_ == in.settings) || !(gather_ == in.gather) ||
-                     !surfaces_.holds(in.boundsWorld) || in.lights.size() != in_.size();
+  const bool fresh = surfaces_.empty() || in.newScene || !isOf(in.settings, in.gather, in.lights.size()) ||
+                     !surfaces_.holds(in.boundsWorld);
   if (fresh) {
-    surfaces_ = {}; // so that what is not finished begins anew
-    seen_ = {};
-    sums_ = {};
+    *this = {}; // room for what comes
     settings_ = in.settings;
     gather_ = in.gather;
     constexpr double kBytesOfColumn = 200; // while it is cast, with an entry or two
-    refuseBeyond(in.memory, 3.0 * settings_.resolution * settings_.resolution * kBytesOfColumn);
-    surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays, in.memory == 0 ? freeMemory() : in.memory);
+    refuseBeyond(memoryFor(in), 3.0 * settings_.resolution * settings_.resolution * kBytesOfColumn);
+    surfaces_.build(in.boundsWorld, settings_, in.rays, work.rays, memoryFor(in));
     in_.assign(in.lights.size(), {});
-    clear(in.memory);
+    clear(memoryFor(in));
     work.entriesAnew = uint32_t(sums_.size());
     work.changed = true;
   } else if (!in.moved.empty()) {
@@ -252,7 +260,8 @@ std::vector<LayeredCube::Word> LayeredCube::byHemicubes(const CubeInputs& in, si
 
 /// Surfaces where objects moved; then who sees whom there.
 void LayeredCube::adoptSurfaces(const CubeInputs& in, CubeWork& work) {
-  const std::vector<uint32_t> from = surfaces_.update(in.moved, in.rays, work.rays);
+  const std::vector<uint32_t> from = surfaces_.update(in.moved, in.rays, work.rays, memoryFor(in));
+  refuseBeyond(memoryFor(in), double(from.size()) * bytesOfEntry());
   std::vector<Word> seen(from.size() * words(), 0);
   std::vector<dvec3> sums(from.size(), dvec3(0));
   for (size_t e = 0; e < from.size(); ++e) {

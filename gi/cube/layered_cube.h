@@ -44,8 +44,13 @@ struct CubeWork {
 class LayeredCube {
  public:
   /// Brings surfaces up to date, and `lights` as far as `most` of them allow: the rest is put in by later calls.
-  /// Done where pending() is 0. After lights and objects changed it equals one that was built from them.
+  /// Done where pending() is 0. After lights and objects changed it equals one that was built from them. Throws
+  /// RunError where memory is short; after whatever was thrown it is empty.
   CubeWork update(const CubeInputs& in, uint32_t most = ~0u);
+  /// Says whether it is of such settings and as many lights, so that an update goes on from it.
+  bool isOf(const CubeSettings& settings, const GatherSettings& gather, size_t lights) const {
+    return settings_ == settings && gather_ == gather && in_.size() == lights;
+  }
   /// Lights that the last update left to do.
   uint32_t pending() const { return pending_; }
 
@@ -61,7 +66,9 @@ class LayeredCube {
   static constexpr uint32_t kBatch = 64; // lights, a word's bits
 
   size_t words() const { return (in_.size() + kBatch - 1) / kBatch; }
-  void refuseBeyond(size_t memory, double needed);
+  /// Of sums and sights, and of those that are looked at.
+  double bytesOfEntry() const { return double((words() + 1) * sizeof(Word) + sizeof(dvec3)); }
+  CubeWork advance(const CubeInputs& in, uint32_t most);
   void clear(size_t memory);
   void adoptSurfaces(const CubeInputs& in, CubeWork& work);
   void put(const CubeInputs& in, size_t word, Word which, CubeWork& work, const std::vector<uint8_t>* isNew);

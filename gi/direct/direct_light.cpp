@@ -121,7 +121,7 @@ bool DirectLight::hasSkyOrSuns(const Frame& in) {
 bool DirectLight::skyByMaps(const Frame& in) { return in.plan.on(EffectId::Sky) && !softByRays(in); }
 
 void DirectLight::lightByMaps(const Frame& in, FrameStats& stats) {
-  const bool allowed = in.settings.shadow.rays && in.surfaces.depth->holdsSinglePrecision();
+  const bool allowed = in.settings.shadow.rays;
   const std::vector<LightBlock> blocks = shadowed(in, allowed, stats);
   const bool rays = allowed && !blocks.empty();
   const Area whole{.width = in.surfaces.width, .height = in.surfaces.height};

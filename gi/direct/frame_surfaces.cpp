@@ -12,7 +12,7 @@ vec3 FrameSurfaces::positionAt(const glm::ivec2& pixel) const {
 }
 
 vec3 FrameSurfaces::placeAt(const glm::ivec2& pixel) const {
-  return positionAt(pixel) + normalAt(pixel) * cornerSlack(camera, viewDistanceFromDepth(camera, depth[at(pixel)]));
+  return positionAt(pixel) + normalAt(pixel) * placeSlack(camera, viewDistanceFromDepth(camera, depth[at(pixel)]));
 }
 
 std::vector<glm::ivec2> FrameSurfaces::some(size_t count) const {
@@ -32,7 +32,7 @@ FrameSurfaces SurfaceReader::read(const GBuffer& surfaces) {
   normal_.resize(pixels);
   surfaces.depth->read(std::span(depth_), surfaces.depth->isDepth() ? GL_DEPTH_COMPONENT : GL_RED, GL_FLOAT);
   surfaces.normal->read(std::span(normal_), GL_RGBA, GL_FLOAT);
-  return {surfaces.width, surfaces.height, depth_, normal_, surfaces.block, surfaces.depth->holdsSinglePrecision()};
+  return {surfaces.width, surfaces.height, depth_, normal_, surfaces.block};
 }
 
 } // namespace lambent

@@ -15,7 +15,6 @@ struct FrameSurfaces {
   std::span<const float> depth; // as GBuffer
   std::span<const vec4> normal;
   CameraBlock camera;
-  bool exact = true; // positions from depths are: not of a host's 24 bits
 
   bool seen(const glm::ivec2& pixel) const { return depth[at(pixel)] > 0; }
   vec3 positionAt(const glm::ivec2& pixel) const;

@@ -94,10 +94,10 @@ struct Place {
 
 /// Rays meet the scene at its triangles, the image at its depths. Where both show the same surface, the ray's place is
 /// the exact one; elsewhere, as at the rims of leaves, the image's counts.
-bool isSame(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, float pixelSize) {
+bool isSame(const FrameSurfaces& surfaces, const glm::ivec2& pixel, const SurfaceHit& hit, float apart) {
   if (!hit.valid() || glm::dot(hit.geometricNormal, surfaces.normalAt(pixel)) < 0.5f) return false;
   const vec3 way = hit.position - surfaces.positionAt(pixel);
-  return !surfaces.exact || glm::dot(way, way) <= pixelSize * pixelSize;
+  return glm::dot(way, way) <= apart * apart;
 }
 
 struct Start {
@@ -112,7 +112,8 @@ Start startOf(const FrameSurfaces* surfaces, const glm::ivec2& pixel, const Surf
   const vec4& lens = surfaces->camera.lens;
   const float pixelSize = 2 * lens.y * surfaces->camera.size.w * (lens.w > 0 ? 1 : distance);
   const vec3 normal = surfaces->normalAt(pixel);
-  if (!isSame(*surfaces, pixel, hit, pixelSize)) return {{surfaces->placeAt(pixel), normal, normal}, false};
+  if (!isSame(*surfaces, pixel, hit, pixelSize + placeSlack(surfaces->camera, distance)))
+    return {{surfaces->placeAt(pixel), normal, normal}, false};
   constexpr float kSameNormal = 0.98f;
   const bool alike = glm::dot(hit.normal, normal) > kSameNormal;
   return {{hit.position, alike ? hit.normal : normal, hit.geometricNormal}, true};

@@ -34,7 +34,7 @@ float cellOf(std::span<const VirtualLight> lights) {
 
 std::span<const gl::Framebuffer> MapChecks::begin(const GatherInputs& in, const LightTarget& target, bool subsets) {
   framebuffers_.clear();
-  const bool known = in.lights.maps && !in.lights.list.slots.empty() && in.frame.surfaces.depth->holdsSinglePrecision();
+  const bool known = in.lights.maps && !in.lights.list.slots.empty();
   if (!in.frame.settings.gather.checks || !subsets || in.lists || in.rest < 1 || !known) return {};
   const glm::ivec2 size = target.size();
   const size_t chunks = (in.lights.list.packed.count + kLightsPerChunk - 1) / kLightsPerChunk;
@@ -85,7 +85,7 @@ void MapChecks::add(const GatherInputs& in, const LightTarget& target, FrameStat
           normals[i] = unitFromOctahedral(glm::max(vec2(pair.octahedral[0], pair.octahedral[1]) / 32767.0f, vec2(-1)));
           if (pair.gain == 0 || !std::isfinite(pair.gain)) continue;
           const VirtualLight& light = in.lights.list.slots[size_t(chunk) * kLightsPerChunk + pair.layer];
-          const float slack = cornerSlack(in.frame.surfaces.block, pair.viewDistance);
+          const float slack = placeSlack(in.frame.surfaces.block, pair.viewDistance);
           segments.push_back(segment(offsetPoint(positions[i], normals[i], rays.rayEpsilon() + slack),
                                      offsetPoint(light.position, light.geometricNormal, rays.rayEpsilon())));
           asked.push_back({i, light.radiance * (light.area * pair.gain), pair.gain > 0});

@@ -21,6 +21,21 @@ float orthoFarFor(const CameraView& camera, const Aabb& scene) {
   return farthest * 1.01f;
 }
 
+/// CameraBlock::depthError of a host's depths.
+vec4 depthErrorOf(const HostSurfaces& host, const CameraBlock& block) {
+  const HostConventions& c = host.conventions;
+  auto [absolute, relative] = gl::Texture::borrowed(host.depth).rounding();
+  if (c.depth == HostDepth::Linear) return {absolute, relative, 0, 0};
+  constexpr float kSingle = 0x1p-24f; // of what is next to 1, as rasterisers compute it
+  const float ofOne = relative + (c.depth == HostDepth::Forward ? kSingle : 0);
+  const bool far0 = c.depth == HostDepth::Reversed && !c.depthMinusOne; // what is far is stored as next to 0
+  if (c.depthMinusOne) absolute *= 0.5f;
+  const float near = c.near > 0 ? c.near : block.lens.z;
+  const bool ortho = block.lens.w > 0;
+  if (ortho) return {(absolute + ofOne) * ((c.near > 0 ? c.far : block.lens.w) - near), 0, 0, 0};
+  return far0 ? vec4(0, relative, absolute / near, 0) : vec4(0, 0, (absolute + ofOne) / near, 0);
+}
+
 } // namespace
 
 CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
@@ -31,13 +46,15 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar) {
       .worldFromView = camera.worldFromView,
       .lens = vec4(halfHeight * camera.aspect(), halfHeight, camera.near, ortho ? orthoFar : 0.0f),
       .size = vec4(camera.width, camera.height, 1.0f / float(camera.width), 1.0f / float(camera.height)),
+      .depthError = vec4(0),
   };
 }
 
 GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const gl::PassScope scope = context_.scope(StageId::Surfaces);
   const int width = in.camera.width, height = in.camera.height;
-  const CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
+  CameraBlock block = cameraBlock(in.camera, orthoFarFor(in.camera, in.scene.bounds()));
+  if (in.host) block.depthError = depthErrorOf(*in.host, block);
   camera_ = cameras_.write(sizeof block, &block);
   camera_.bindUniform(0);
   const bool theirs = in.host && in.host->conventions.ours(), converted = in.host && !theirs;

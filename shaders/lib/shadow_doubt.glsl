@@ -24,14 +24,17 @@ int verdictOf(vec4 met, vec4 plane, vec4 same, vec4 apart) {
   return all(greaterThan(met, plane + apart)) ? kShadowed : kInDoubt;
 }
 
-/// A 256th of a pixel nearer to the viewer, as a place next to the joint of two walls may lie behind the other one, and as
-/// much above its own. (A 64th takes too much from places in narrow gaps: relMSE of the citadel 0.04 instead of 0.012.)
+/// A 256th of a pixel nearer to the viewer, as a place next to the joint of two walls may lie behind the other one, and
+/// above its own wall: corners that are rounded along the image sink it by the sine of its slant, of which the way to the
+/// viewer takes the cosine back. (More takes from places in narrow gaps: a 64th of a pixel gave the citadel a relMSE of
+/// 0.04 instead of 0.012, a 256th along the normal whatever the slant the hall 0.063 instead of 0.052.)
 vec3 justBefore(vec3 position, vec3 normal) {
   vec3 way = camera.worldFromView[3].xyz - position;
   float distance = -dot(way, camera.worldFromView[2].xyz);
-  float slack = cornerSlack(camera, abs(distance));
+  float slack = placeSlack(camera, abs(distance));
   vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : way / max(abs(distance), 1e-30);
-  return position + (towardsViewer + normal) * slack;
+  float cosine = clamp(dot(normalize(towardsViewer), normal), 0.0, 1.0);
+  return position + (towardsViewer + normal * max(sqrt(1.0 - cosine * cosine) - cosine, 0.0)) * slack;
 }
 
 void noteDoubt(ivec2 pixel, vec3 position, vec3 normal, uint light) {

@@ -10,6 +10,8 @@ struct CameraBlock {
   // Orthographic: x, y = half width and height, metres; z = near plane; w = far plane, metres.
   vec4 lens;
   vec4 size; // x, y = width and height, pixels; z, w = their inverses
+  // A depth read at distance d along the view direction is off by up to x + y d + z d² metres, by how its texture stores it.
+  vec4 depthError;
 };
 
 /// Distance along the view direction, metres, of reversed depth in (0, 1].
@@ -26,9 +28,11 @@ SHARED_INLINE vec3 positionViewFromDepth(CameraBlock c, vec2 pixel, float depth)
 }
 
 /// How far off its surface, metres, a place of the image may lie: GPUs round the corners of triangles to 1/256 of a pixel,
-/// and some interpolate depth between what they rounded. Rays begin so far above the place, along its normal.
-SHARED_INLINE float cornerSlack(CameraBlock c, float distance) {
-  return c.lens.y * c.size.w * (c.lens.w > 0.0f ? 1.0f : distance) / 128.0f;
+/// and some interpolate depth between what they rounded; a host's textures round it too. Rays begin so far above the place,
+/// along its normal.
+SHARED_INLINE float placeSlack(CameraBlock c, float distance) {
+  float ofCorners = c.lens.y * c.size.w * (c.lens.w > 0.0f ? 1.0f : distance) / 128.0f;
+  return ofCorners + c.depthError.x + distance * (c.depthError.y + distance * c.depthError.z);
 }
 
 /// View-space direction from the camera through `pixel` (as above), not of unit length.
@@ -39,5 +43,5 @@ SHARED_INLINE vec3 viewDirectionFromPixel(CameraBlock c, vec2 pixel) {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(lambent::CameraBlock) == 160);
+static_assert(sizeof(lambent::CameraBlock) == 176);
 #endif

@@ -258,6 +258,35 @@ TEST(LayeredCube, WhatDoesNotFitIsRefused) {
   EXPECT_TRUE(cube.surfaces().empty());
 }
 
+/// While objects move too.
+TEST(LayeredCube, WhatMovesAndDoesNotFitIsRefused) {
+  RandomWorld world(0.01f);
+  const SceneView& first = world.step(0);
+  VplSet set;
+  const std::vector<VirtualLight> lights = photonLights(first, world.rays(), set);
+  Aabb room;
+  room.add(vec3(-4, -1, -4)), room.add(vec3(4, 4, 4));
+  const GatherSettings gather;
+  for (const int levels : {0, 2}) {
+    CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
+    settings.levels = levels;
+    LayeredCube cube, anew;
+    cube.update({room, world.rays(), kNothingMoved, true, lights, ~0u, settings, gather});
+    const DirtyRegion moved(world.step(2));
+    CubeInputs in{room, world.rays(), moved, false, lights, ~0u, settings, gather};
+    for (const size_t memory : {size_t(1000), size_t(100'000)}) { // of columns; of sums
+      in.memory = memory;
+      EXPECT_THROW(cube.update(in), RunError) << memory;
+      EXPECT_TRUE(cube.surfaces().empty());
+      in.memory = 0;
+      cube.update(in);
+    }
+    anew.update(in);
+    ASSERT_EQ(cube.surfaces().entries().size(), anew.surfaces().entries().size());
+    for (size_t e = 0; e < anew.surfaces().entries().size(); ++e) ASSERT_EQ(cube.irradiance(e), anew.irradiance(e));
+  }
+}
+
 TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
   LitWorld w;
   const CubeSettings settings = smallCube();

@@ -207,17 +207,16 @@ TEST_F(CubeGatherTest, AFileKeepsItBetweenRuns) {
   moved.run(room.scene.view());
   plain.run(room.scene.view());
   EXPECT_LT(relativeDifference(moved.read(Buffer::Irradiance), plain.read(Buffer::Irradiance)), 1e-3);
-  // A damaged one, and one of another scene: said, built anew and replaced.
+  // A damaged one, one of other settings, of fewer lights, of another scene: said, built anew and replaced.
   settings.cubeFile = file.string();
-  for (const bool damaged : {true, false}) {
-    if (damaged) {
-      writeBytes(file, readBytes(file).replace(4000, 1, "\x5a"));
-    } else {
-      room.scene.instances.pop_back();
-    }
+  for (const std::string what : {"damaged", "other settings (cube", "smc.vpls", "another scene"}) {
+    if (what == "damaged") writeBytes(file, readBytes(file).replace(4000, 1, "\x5a"));
+    if (what == "other settings (cube") settings.gather.disk = 2.5f;
+    if (what == "smc.vpls") settings.smc.vpls /= 2;
+    if (what == "another scene") room.scene.instances.pop_back();
     Viewer anew(settings), without((plainSettings = settings, plainSettings.cubeFile.clear(), plainSettings));
     const std::string warning = anew.run(room.scene.view()).warning;
-    EXPECT_NE(warning.find(damaged ? "damaged" : "another scene"), std::string::npos) << warning;
+    EXPECT_NE(warning.find(what), std::string::npos) << warning;
     without.run(room.scene.view());
     EXPECT_EQ(anew.read(Buffer::Irradiance).pixels, without.read(Buffer::Irradiance).pixels);
     Viewer again(settings);

@@ -3,6 +3,8 @@
 #include "ambient.h"
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
+#include "gi/contract/frame_outputs.h"
+#include "gi/frame/gi_frame.h"
 #include "gi/measure/image_error.h"
 #include "gl_fixture.h"
 #include "progressive.h"
@@ -473,6 +475,60 @@ TEST_F(TechniqueTest, AHostsSurfacesGiveTheSamePicture) {
                                           .height = view.camera.height,
                                           .depthCompare = true});
   refused({.depth = compared.name(), .normal = host.normal, .albedo = host.albedo});
+}
+
+/// Rays from what a host stores in few bits begin above its surfaces, so no wall is in the way of its own light.
+TEST_F(TechniqueTest, AHostsCoarseDepthsAreNoWalls) {
+  room.scene.quad({-0.3f, 0, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f},
+                  room.scene.material(vec3(0.5f))); // so that there are edges of shadows
+  settings.vpl.visibility = VplVisibility::Maps;
+  settings.gather.mode = GatherMode::Interleaved;
+  const SceneView view = room.scene.view();
+  GpuScene gpu(passes, room.scene.assets);
+  gpu.place(view.instances);
+  SurfacePass surfaces(passes);
+  const GBuffer drawn = surfaces.run({gpu, view.camera});
+  std::vector<float> own(size_t(drawn.width) * size_t(drawn.height));
+  drawn.depth->read(std::span(own), GL_DEPTH_COMPONENT, GL_FLOAT);
+  GiFrame ours(settings);
+  ours.run(view);
+  const auto meanOf = [](const gl::Texture* texture) {
+    std::vector<vec4> texels(size_t(texture->width()) * size_t(texture->height()));
+    texture->read(std::span(texels), GL_RGBA, GL_FLOAT);
+    float sum = 0;
+    for (const vec4& t : texels) sum += luminance(vec3(t)) / float(texels.size());
+    return sum;
+  };
+  const auto means = [&](const GiFrame& gi) {
+    return vec2(meanOf(gi.outputs().direct.irradiance), meanOf(gi.outputs().indirect.irradiance));
+  };
+  const vec2 expected = means(ours);
+  for (const auto& [format, near, kind] : {std::tuple(GL_DEPTH_COMPONENT24, 1e-4f, HostDepth::Forward),
+                                           {GL_DEPTH_COMPONENT16, 5e-2f, HostDepth::Reversed},
+                                           {GL_DEPTH_COMPONENT32F, 1e-4f, HostDepth::Forward},
+                                           {GL_R16F, 1e-2f, HostDepth::Linear}}) {
+    const bool linear = kind == HostDepth::Linear;
+    GLuint depth = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &depth);
+    glTextureStorage2D(depth, 1, GLenum(format), drawn.width, drawn.height);
+    std::vector<float> stored(own.size());
+    for (size_t i = 0; i < own.size(); ++i) {
+      const double distance = double(view.camera.near) / double(own[i]);
+      stored[i] = float(linear                       ? distance
+                        : kind == HostDepth::Forward ? 1 - double(near) / distance
+                                                     : double(near) / distance);
+    }
+    glTextureSubImage2D(depth, 0, 0, 0, drawn.width, drawn.height, linear ? GL_RED : GL_DEPTH_COMPONENT, GL_FLOAT,
+                        stored.data());
+    HostSurfaces host{depth, drawn.normal->name(), drawn.albedo->name(), drawn.emission->name()};
+    host.conventions = {.depth = kind, .near = near, .far = kInfinity};
+    GiFrame theirs(settings);
+    theirs.run(view, {}, &host);
+    const vec2 seen = means(theirs);
+    EXPECT_NEAR(seen.x / expected.x, 1, 0.01) << "direct light, " << int(kind) << " of " << format;
+    EXPECT_NEAR(seen.y / expected.y, 1, 0.01) << "indirect light, " << int(kind) << " of " << format;
+    glDeleteTextures(1, &depth);
+  }
 }
 
 /// What the table of settings says of the cost of a change is what a running frame pays.

@@ -113,7 +113,11 @@ class CubeGather : public Gather {
     }
     try {
       cube_ = loadCube(file, keyOf(in));
-      opened_ = true;
+      opened_ = cube_.isOf(in.frame.settings.cube, in.frame.settings.gather, in.lights.list.slots.size());
+      if (!opened_)
+        stats.warning = file.string() +
+                        ": is a layered depth cube of other settings (cube.*, gather.*, smc.vpls); it is "
+                        "rebuilt and replaced";
       return true;
     } catch (const InputError& e) {
       const bool replaced = isCube(file);
