@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/interrupt.h"
 #include "engine/gl/state_guard.h"
 
 #include <epoxy/gl.h>
@@ -29,8 +30,9 @@ constexpr std::pair kWindow = {1280, 720};
 
 GlContext openWindow(const LaunchOptions& launch, const Preferences& preferences) {
   useThreads(launch.threads); // before there is a context
-  const auto [width, height] = !launch.size.empty() ? sizeOf(launch.size) : preferences.window.value_or(kWindow);
-  return GlContext::window("Lambent", width, height);
+  const bool asked = !launch.size.empty();
+  const auto [width, height] = asked ? sizeOf(launch.size) : preferences.window.value_or(kWindow);
+  return GlContext::window("Lambent", width, height, asked);
 }
 
 /// Files of the bundled scenes, and of those that `lambent content` has made next to them: content/NAME/NAME.gltf, by
@@ -75,8 +77,9 @@ void App::run() {
   if (options_.frames == 0) return; // tools/demo asks only whether a window can be opened
   open(options_.launch.scene);
   given_ = true;
+  tellOfCutRecordings();
   auto before = Clock::now();
-  while (!context_.shouldClose() && (!options_.frames || frames_ < *options_.frames)) {
+  while (!context_.shouldClose() && !interrupted && (!options_.frames || frames_ < *options_.frames)) {
     context_.poll();
     std::erase_if(cancelled_, [](const auto& loading) { return loading->done(); });
     if (!dropped_.empty()) {
@@ -101,6 +104,15 @@ void App::run() {
   preferences_.save();
   if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty())
     std::cerr << "warning: " << printable(complaint) << "\n";
+}
+
+/// A program that was killed did not end its recording.
+void App::tellOfCutRecordings() {
+  for (const fs::path& walk : endCutShots(fs::absolute("out"))) {
+    const std::string line = "a recording was cut short: what it has is in " + walk.string();
+    std::cerr << printable(line) << "\n";
+    hud_.say(line);
+  }
 }
 
 /// What the person changes, the window's size too, is there again the next time.
@@ -151,6 +163,9 @@ void App::load() {
   gap_.add(loading->gap());
   try {
     prepare(loading->take());
+  } catch (const RunError& e) { // as settings that this driver has no memory for
+    if (!preferences_.now.chooseQuality()) throw;
+    beginWithDefaults(loading->file(), e.what());
   } catch (const InputError& e) {
     if (given_) throw; // the command line asked for it
     hud_.say(e.what());
@@ -158,6 +173,19 @@ void App::load() {
     play_.reset();
     hud_.say("cancelled: " + fs::path(loading->file()).filename().string());
   }
+}
+
+/// What the person chose the last time must not keep a scene from being opened.
+void App::beginWithDefaults(const std::string& file, const std::string& why) {
+  const std::string line = "settings of the last time are left out: " + why;
+  std::cerr << "warning: " << printable(line) << "\n";
+  Preferences& p = preferences_.now;
+  p.set.clear();
+  p.preset.clear(), p.technique.clear();
+  const bool given = given_;
+  open(file);
+  given_ = given;
+  hud_.say(line);
 }
 
 /// Draws the first frames, the window going on between their parts.
@@ -176,7 +204,7 @@ void App::prepare(LoadedScene loaded) {
         };
         if (!passed(polled, kTurnSeconds)) return;
         context_.poll();
-        if (input_.escape() || context_.shouldClose() || !dropped_.empty()) throw Cancelled();
+        if (input_.escape() || context_.shouldClose() || interrupted || !dropped_.empty()) throw Cancelled();
         polled = Clock::now();
         if (quietly || !passed(shown, kProgressSeconds)) return;
         showProgress(progress);

@@ -27,11 +27,13 @@ class App {
   void choose(); // while there is none
   void play(double seconds);
   void prepare(LoadedScene loaded);
+  void beginWithDefaults(const std::string& file, const std::string& why);
   void obey(const MenuChoice& choice);
   void showProgress(const Progressed& progress);
   void cancelLoading();
   void writeState() const;
   void keepPreferences(double seconds);
+  void tellOfCutRecordings();
   void show(); // what was drawn
 
   GameOptions options_;

@@ -1,5 +1,6 @@
 // The walkthrough: its options, and what it does about errors.
 #include "engine/core/error.h"
+#include "engine/core/interrupt.h"
 #include "game/app.h"
 #include "tools/launch/streams.h"
 
@@ -57,6 +58,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   lambent::prepareStreams();
+  lambent::endOnRequest();
   try {
     lambent::chooseShaders();
     if (const auto options = lambent::readOptions(argc, argv)) lambent::App(*options).run();

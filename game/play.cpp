@@ -280,8 +280,7 @@ void Play::step(const Wishes& wishes, double seconds) {
     carryTorch();
   }
   if (goal_) measureGoal();
-  const bool recorded =
-      recorder_.recording() && recorder_.add(player_.view(1, 1), scene_.origin, props_.moment(model_.time));
+  const bool recorded = recordFrame();
 
   const auto [width, height] = context_.framebufferSize();
   CameraView camera = player_.view(width, height);
@@ -292,7 +291,7 @@ void Play::step(const Wishes& wishes, double seconds) {
   }
   view_ = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
   run(view_);
-  if (recorded) log_.add(model_.time, gi_.stats(), 0, nullptr);
+  if (recorded) logFrame();
 
   const SceneChanges& c = view_.changes;
   const mat4 pose = view_.camera.worldFromView; // the camera changes also where the scale does
@@ -415,9 +414,7 @@ std::string Play::state() const {
                   double(goal_->irradiance()), double(goal_->wanted()), goal_->reached() ? "true" : "false");
     all += text;
   }
-  std::array<bool, kStages> stages{};
-  stages.fill(true);
-  for (const FigureColumn& column : columnsOf(gi_.stats(), stages))
+  for (const FigureColumn& column : columnsOf(gi_.stats()))
     if (column.name.ends_with("_ms")) all += ", \"" + column.name + "\": " + column.text;
   return all + ", \"preset\": \"" + model_.preset + "\", \"own_settings\": " + std::to_string(preferences_.set.size()) +
          ", \"panel\": " + (model_.panel ? "true" : "false") +

@@ -74,6 +74,9 @@ class Play {
   SceneView viewAt(float scale);
   void pace(double seconds);
   void toggleRecording();
+  bool recordFrame();
+  void logFrame();
+  void endRecording(const std::string& why);
   void toggleFollowing();
   void takeOver();
   bool followsMoments() const { return model_.followPath && !path_->played.empty(); }
@@ -102,7 +105,7 @@ class Play {
   FrameTimes times_;
   float ownExposure_ = 1; // of the scene, without the person's
   PathRecorder recorder_;
-  FrameLog log_;             // of what is recorded
+  FrameLog log_; // of what is recorded
   std::optional<Shot> path_; // that F follows: of the shot, or recorded
   bool cramped_ = false;     // something was where the player is
   mat4 pose_{0};             // of the camera in the last frame

@@ -51,36 +51,64 @@ void Play::followMoment() {
 /// Scene time begins with the recording, so that everything in it moves as it did; at fixed steps the lights do too, so
 /// that its replay is the same to the last ray.
 void Play::toggleRecording() {
-  if (!recorder_.recording()) {
-    model_.time = 0;
-    model_.paused = false;
-    std::map<std::string, std::string> set;
-    for (const SettingRow& row : settingRows(gi_.settings()))
-      if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
-    recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set));
-    log_ = {};
-    if (options_.fps) {
-      gi_.restart();
-      extractor_ = {};
-    }
-    hud_.say("recording: every frame is a camera key (R ends it)");
-    return;
+  if (recorder_.recording()) return endRecording("");
+  model_.time = 0;
+  model_.paused = false;
+  std::map<std::string, std::string> set;
+  for (const SettingRow& row : settingRows(gi_.settings()))
+    if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
+  recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set),
+                  fs::absolute("out"));
+  if (options_.fps) {
+    gi_.restart();
+    extractor_ = {};
   }
+  hud_.say("recording: every frame is a camera key (R ends it)");
+}
+
+/// Keeps the frame that comes, and says whether it is one of the recording.
+bool Play::recordFrame() {
+  if (!recorder_.recording()) return false;
+  try {
+    const bool first = recorder_.frames() == 0;
+    if (!recorder_.add(player_.view(1, 1), scene_.origin, props_.moment(model_.time))) return false;
+    if (first) log_.begin(fs::path(recorder_.file()).replace_extension(".csv"));
+    return true;
+  } catch (const RunError& e) {
+    endRecording(e.what());
+    return false;
+  }
+}
+
+void Play::logFrame() {
+  try {
+    log_.add(model_.time, gi_.stats(), 0, nullptr);
+  } catch (const RunError& e) {
+    endRecording(e.what());
+  }
+}
+
+/// `why`: what went wrong; empty: the person wants it.
+void Play::endRecording(const std::string& why) {
+  const std::string before = why.empty() ? "" : "recording ended: " + why + "; ";
   report([&]() -> std::string {
+    log_.end();
+    const std::string frames = std::to_string(recorder_.frames()) + " frames in " + recorder_.file().string();
     std::optional<Shot> walk;
     try {
-      walk = recorder_.end(fs::absolute("out"));
-    } catch (const RunError& e) {
-      throw RunError(std::string(e.what()) + ": still recording, R tries again");
+      walk = recorder_.end();
+    } catch (const std::exception& e) {
+      throw RunError(before + frames + " (" + e.what() + ")");
     }
-    if (!walk) return "nothing was recorded";
-    log_.write(fs::path(walk->file).replace_extension(".csv"));
-    path_ = *walk;
-    model_.duration = std::max(model_.duration, walk->seconds);
-    model_.followPath = true;
-    model_.time = 0;
-    return std::to_string(walk->camera.size()) + " frames in " + fs::absolute(walk->file).string() +
-           ": shown now (any step ends it), lambent record makes images of it";
+    if (!walk) return before + "nothing was recorded";
+    if (why.empty()) {
+      path_ = *walk;
+      model_.duration = std::max(model_.duration, walk->seconds);
+      model_.followPath = true;
+      model_.time = 0;
+    }
+    return before + frames + ": " + (why.empty() ? "shown now (any step ends it), " : "") +
+           "lambent record makes images of it";
   });
 }
 

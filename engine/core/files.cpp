@@ -1,6 +1,7 @@
 #include "engine/core/files.h"
 
 #include "engine/core/error.h"
+#include "engine/core/interrupt.h"
 
 #include <cerrno>
 #include <climits>
@@ -17,7 +18,15 @@ namespace lambent {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr size_t kLongestStem = 100; // of 255 bytes that a name may have: a temporary's fits where the target's does
+/// A temporary's name fits in 255 bytes where the target's does.
+struct TemporaryName {
+  std::string begin, end;
+  explicit TemporaryName(const fs::path& file)
+      : begin("." + file.stem().string().substr(0, 100) + "."), end(file.extension().string()) {
+    constexpr size_t kLongestEnd = 32; // no format's
+    if (end.size() > kLongestEnd) end.clear();
+  }
+};
 
 /// What a link leads to, whether it is there or not: that is written, and the link stays one. Throws RunError for links
 /// that lead to one another.
@@ -81,11 +90,11 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
-  fs::path temporary = file;
-  temporary.replace_filename("." + file.stem().string().substr(0, kLongestStem) + "." +
-                             std::to_string(std::random_device{}()) + file.extension().string());
+  const TemporaryName name(file);
+  const fs::path temporary = file.parent_path() / (name.begin + std::to_string(std::random_device{}()) + name.end);
   std::error_code ignored;
   checkWritable(file);
+  const Unbroken whole;
   const Temporary held(temporary, file);
   try {
     write(temporary);
@@ -110,7 +119,7 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
 
 void removeLeftovers(const fs::path& named) {
   const fs::path file = followed(named);
-  const std::string begin = "." + file.stem().string().substr(0, kLongestStem) + ".", end = file.extension().string();
+  const auto [begin, end] = TemporaryName(file);
   std::error_code ignored;
   for (const fs::directory_entry& e :
        fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), ignored)) {

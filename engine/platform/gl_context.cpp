@@ -1,5 +1,6 @@
 #include "engine/platform/gl_context.h"
 
+#include "engine/core/enough.h"
 #include "engine/core/error.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
@@ -165,6 +166,7 @@ std::vector<DeviceDescription> GlContext::devices() {
 }
 
 GlContext GlContext::headless(DebugOutput debug) {
+  requireThreadsAndMemory();
   const std::vector<EGLDeviceEXT> devices = eglDevices();
   const std::vector<DeviceDescription> descriptions = GlContext::devices();
   const DeviceWish wish = deviceWish(std::getenv("LAMBENT_DEVICE"), std::getenv("LIBGL_ALWAYS_SOFTWARE"));
@@ -185,7 +187,7 @@ GlContext GlContext::headless(DebugOutput debug) {
   throw RunError(noContextMessage(descriptions, wish, reasons));
 }
 
-GlContext GlContext::window(const std::string& title, int width, int height, DebugOutput debug) {
+GlContext GlContext::window(const std::string& title, int width, int height, bool asIs, DebugOutput debug) {
   static std::string lastError;
   glfwSetErrorCallback([](int, const char* text) { lastError = text; });
   if (!glfwInit()) throw RunError("no window system (" + lastError + "); use the headless commands, or xvfb-run -a");
@@ -197,6 +199,9 @@ GlContext GlContext::window(const std::string& title, int width, int height, Deb
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  if (GLFWmonitor* monitor = asIs ? nullptr : glfwGetPrimaryMonitor())
+    if (const GLFWvidmode* mode = glfwGetVideoMode(monitor))
+      width = std::min(width, mode->width), height = std::min(height, mode->height);
   state->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (!state->window) {
     glfwTerminate();

@@ -22,8 +22,9 @@ class GlContext {
   /// On an EGL device, GPUs first, else on Mesa's surfaceless platform (see device_choice.h). Draw only into
   /// framebuffers of your own. Throws RunError with a cure when nothing gives a context.
   static GlContext headless(DebugOutput debug = DebugOutput::Asynchronous);
-  /// A resizable window. Throws RunError when there is no display or no OpenGL 4.5.
-  static GlContext window(const std::string& title, int width, int height,
+  /// A resizable window, no larger than the monitor unless `asIs`. Throws RunError when there is no display or no OpenGL
+  /// 4.5.
+  static GlContext window(const std::string& title, int width, int height, bool asIs,
                           DebugOutput debug = DebugOutput::Asynchronous);
   /// EGL devices in the order of their numbers.
   static std::vector<DeviceDescription> devices();

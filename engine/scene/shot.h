@@ -61,10 +61,37 @@ struct Shot {
 };
 
 /// Loads a shot. Throws InputError for a missing file, bad JSON (with line), unknown key, wrong type, keys out of time
-/// order.
+/// order. Of one that a ShotWriter was not able to end it has all whole frames.
 Shot loadShot(const std::filesystem::path& file);
 /// Saves a shot: written to a temporary name, then renamed.
 void saveShot(const Shot& shot, const std::filesystem::path& file);
+
+/// A shot whose frames are appended to its file as they come, so that whatever ends the program loses none. Until end()
+/// the file lacks its last line; only so much is kept in memory as a frame takes.
+class ShotWriter {
+ public:
+  /// Makes a new file of what `shot` holds beside camera, played and seconds. Throws RunError, also where there is one.
+  ShotWriter(const Shot& shot, const std::filesystem::path& file);
+  ~ShotWriter();
+  ShotWriter(const ShotWriter&) = delete;
+
+  /// Appends a key, and what was played from the key before on until then. Throws RunError where the disk is full: the
+  /// file then is as it was.
+  void add(const CameraKey& key, const std::vector<PlayedMoment>& played);
+  /// Throws likewise.
+  void end(double seconds);
+
+ private:
+  void append(const std::string& line);
+
+  const std::filesystem::path file_;
+  int descriptor_ = -1; // locked while it is written
+  bool first_ = true;
+};
+
+/// Ends shots walk-N.json in a folder that a program began and was killed at; returns those. What somebody still writes
+/// is left alone.
+std::vector<std::filesystem::path> endCutShots(const std::filesystem::path& folder);
 
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
 /// after the last, counted from `origin`: the scene's. Requires shot.camera not empty.

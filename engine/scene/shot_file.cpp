@@ -6,8 +6,17 @@
 #include "engine/scene/shot.h"
 #include "engine/view/scene_view.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -113,11 +122,14 @@ dvec3 placeOf(const Field& field) {
   return at;
 }
 
-std::vector<CameraKey> readCamera(const Field& camera) {
+void readPlayed(const Field& list, std::vector<PlayedMoment>& moments);
+
+std::vector<CameraKey> readCamera(const Field& camera, std::vector<PlayedMoment>& played) {
   camera.checkKeys({"keys"});
   std::vector<CameraKey> keys;
   camera["keys"].elements([&](const Field& k) {
-    k.checkKeys({"t", "eye", "target", "fov"});
+    k.checkKeys({"t", "eye", "target", "fov", "played"});
+    if (k.has("played")) readPlayed(k["played"], played);
     CameraKey key;
     key.t = keyTime(k, keys);
     key.eye = placeOf(k["eye"]);
@@ -180,8 +192,7 @@ PlayedMoment::Thing readThing(const Field& t) {
   return thing;
 }
 
-std::vector<PlayedMoment> readPlayed(const Field& list) {
-  std::vector<PlayedMoment> moments;
+void readPlayed(const Field& list, std::vector<PlayedMoment>& moments) {
   list.elements([&](const Field& m) {
     m.checkKeys({"t", "movers", "things", "lamps", "hour", "torch"});
     PlayedMoment moment;
@@ -204,16 +215,18 @@ std::vector<PlayedMoment> readPlayed(const Field& list) {
     }
     moments.push_back(std::move(moment));
   });
-  return moments;
 }
 
-json parse(const fs::path& file) {
+std::string textOf(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) throw InputError(file.string(), "no such file");
   if (!fs::is_regular_file(file, error)) throw InputError(file.string(), "is not a file (a shot in JSON expected)");
   std::ifstream in(file);
   if (!in) throw InputError(file.string(), "cannot be opened for reading");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+json parse(const fs::path& file, const std::string& text) {
   checkJson(file, text);
   try {
     return json::parse(text);
@@ -247,6 +260,10 @@ json toJson(const std::map<std::string, std::vector<NodeKey>>& nodes) {
   return out;
 }
 
+json toJson(const CameraKey& k) {
+  return {{"t", k.t}, {"eye", toJson(k.eye)}, {"target", toJson(k.target)}, {"fov", k.fovY / kDegree}};
+}
+
 json toJson(const PlayedMoment& m) {
   json out{{"t", m.t}};
   if (!m.movers.empty()) out["movers"] = m.movers;
@@ -261,10 +278,50 @@ json toJson(const PlayedMoment& m) {
   return out;
 }
 
+/// What a shot holds beside camera, played and seconds.
+json headOf(const Shot& shot, const fs::path& file) {
+  std::error_code error;
+  fs::path scene = fs::proximate(shot.scene, file.parent_path().empty() ? "." : file.parent_path(), error);
+  if (error) scene = fs::absolute(shot.scene);
+  json out{{"shot", 1}, {"scene", scene.generic_string()}, {"fps", shot.fps}};
+  if (!shot.lights.empty()) out["lights"] = toJson(shot.lights);
+  if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
+  for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));
+  if (!shot.set.empty()) out["set"] = shot.set;
+  return out;
+}
+
+// Lines of a file that a ShotWriter writes: the head, a key each, the end.
+constexpr const char *kKeysBegin = ",\"camera\":{\"keys\":[\n", *kKeysEnd = "]}";
+std::string endLine(double seconds) { return std::string(kKeysEnd) + ",\"seconds\":" + json(seconds).dump() + "}\n"; }
+
+/// Bytes of whole lines of what a ShotWriter began; nothing where it came to its end, or did not write it.
+std::optional<size_t> cutAt(const std::string& text) {
+  const std::string_view begin = kKeysBegin;
+  const size_t head = text.find('\n');
+  if (head == text.npos || head + 1 < begin.size() || text.compare(head + 1 - begin.size(), begin.size(), begin) != 0)
+    return {};
+  const size_t whole = text.rfind('\n') + 1, last = text.rfind('\n', whole - 2) + 1;
+  if (text.compare(last, std::strlen(kKeysEnd), kKeysEnd) == 0) return {};
+  return whole;
+}
+
+void writeAll(int descriptor, std::string_view bytes) {
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw std::system_error(errno, std::generic_category());
+    done += size_t(n);
+  }
+}
+
 } // namespace
 
 Shot loadShot(const fs::path& file) {
-  const json document = parse(file);
+  std::string text = textOf(file);
+  const std::optional<size_t> cut = cutAt(text);
+  if (cut) text = text.substr(0, *cut) + endLine(0);
+  const json document = parse(file, text);
   const Field root(document, file.string(), "");
   root.checkKeys({"shot", "scene", "fps", "seconds", "camera", "lights", "objects", "played", "pixels", "set"});
   if (root["shot"].number() != 1) root["shot"].fail("is not a version this program reads (1 expected)");
@@ -275,10 +332,11 @@ Shot loadShot(const fs::path& file) {
   if (!(shot.fps > 0 && shot.fps <= 1000)) root["fps"].fail("is out of range (frames per second, above 0 to 1000)");
   shot.seconds = root["seconds"].number();
   if (!(shot.seconds >= 0 && shot.seconds <= 86400)) root["seconds"].fail("is out of range (0 to 86400)");
-  if (root.has("camera")) shot.camera = readCamera(root["camera"]);
+  if (root.has("camera")) shot.camera = readCamera(root["camera"], shot.played);
+  if (cut && !shot.camera.empty()) shot.seconds = shot.camera.back().t + 1 / shot.fps;
   if (root.has("lights")) shot.lights = readNodes(root["lights"], true);
   if (root.has("objects")) shot.objects = readNodes(root["objects"], false);
-  if (root.has("played")) shot.played = readPlayed(root["played"]);
+  if (root.has("played")) readPlayed(root["played"], shot.played);
   if (root.has("pixels"))
     root["pixels"].elements([&](const Field& p) {
       const vec2 uv = p.vector<2>();
@@ -291,25 +349,76 @@ Shot loadShot(const fs::path& file) {
 }
 
 void saveShot(const Shot& shot, const fs::path& file) {
-  std::error_code error;
-  fs::path scene = fs::proximate(shot.scene, file.parent_path().empty() ? "." : file.parent_path(), error);
-  if (error) scene = fs::absolute(shot.scene);
-  json out{{"shot", 1}, {"scene", scene.generic_string()}, {"fps", shot.fps}, {"seconds", shot.seconds}};
-  if (!shot.camera.empty()) {
-    json keys = json::array();
-    for (const CameraKey& k : shot.camera)
-      keys.push_back({{"t", k.t}, {"eye", toJson(k.eye)}, {"target", toJson(k.target)}, {"fov", k.fovY / kDegree}});
-    out["camera"]["keys"] = std::move(keys);
-  }
-  if (!shot.lights.empty()) out["lights"] = toJson(shot.lights);
-  if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
+  json out = headOf(shot, file);
+  out["seconds"] = shot.seconds;
+  for (const CameraKey& k : shot.camera) out["camera"]["keys"].push_back(toJson(k));
   for (const PlayedMoment& moment : shot.played) out["played"].push_back(toJson(moment));
-  if (!shot.pixels.empty()) {
-    out["pixels"] = json::array();
-    for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));
-  }
-  if (!shot.set.empty()) out["set"] = shot.set;
   writeAtomically(file, out.dump(2) + "\n");
+}
+
+ShotWriter::ShotWriter(const Shot& shot, const fs::path& file)
+    : file_(file), descriptor_(open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
+  flock(descriptor_, LOCK_EX | LOCK_NB);
+  std::string head = headOf(shot, file).dump();
+  head.pop_back();
+  try {
+    append(head + kKeysBegin);
+  } catch (...) {
+    close(descriptor_);
+    std::error_code ignored;
+    fs::remove(file, ignored);
+    throw;
+  }
+}
+
+ShotWriter::~ShotWriter() { close(descriptor_); }
+
+void ShotWriter::append(const std::string& line) {
+  const off_t before = lseek(descriptor_, 0, SEEK_END);
+  try {
+    writeAll(descriptor_, line);
+  } catch (const std::system_error& e) {
+    const bool cut = ftruncate(descriptor_, before) == 0;
+    throw RunError(file_.string() + ": cannot be written: " + e.code().message() +
+                   (cut ? "" : " (its last line is torn)"));
+  }
+}
+
+void ShotWriter::add(const CameraKey& key, const std::vector<PlayedMoment>& played) {
+  json line = toJson(key);
+  for (const PlayedMoment& moment : played) line["played"].push_back(toJson(moment));
+  append((first_ ? "" : ",") + line.dump() + "\n");
+  first_ = false;
+}
+
+void ShotWriter::end(double seconds) { append(endLine(seconds)); }
+
+std::vector<fs::path> endCutShots(const fs::path& folder) {
+  std::vector<fs::path> ended;
+  std::error_code none;
+  for (const fs::directory_entry& e : fs::directory_iterator(folder, none)) {
+    const fs::path& file = e.path();
+    const std::string name = file.filename().string();
+    if (!name.starts_with("walk-") || file.extension() != ".json" || !fs::is_regular_file(e.symlink_status())) continue;
+    const int descriptor = open(file.c_str(), O_RDWR | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) continue;
+    try {
+      const bool mine = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+      const std::optional<size_t> cut = mine ? cutAt(textOf(file)) : std::nullopt;
+      if (cut) {
+        const Shot shot = loadShot(file);
+        if (ftruncate(descriptor, off_t(*cut)) == 0) {
+          writeAll(descriptor, endLine(shot.seconds));
+          ended.push_back(file);
+        }
+      }
+    } catch (const std::exception&) { // it stays as it is
+    }
+    close(descriptor);
+  }
+  std::ranges::sort(ended);
+  return ended;
 }
 
 } // namespace lambent

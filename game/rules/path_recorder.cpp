@@ -8,7 +8,24 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
-void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, std::map<std::string, std::string> set) {
+namespace {
+
+/// Makes the folder too.
+fs::path newFileIn(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
+  int number = 1;
+  const auto name = [&] { return folder / ("walk-" + std::to_string(number) + ".json"); };
+  while (fs::exists(fs::symlink_status(name(), failure))) ++number;
+  return name();
+}
+
+} // namespace
+
+void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, std::map<std::string, std::string> set,
+                         const fs::path& folder) {
+  *this = {};
   walk_ = shot ? *shot : Shot{};
   walk_->scene = fs::absolute(scene);
   walk_->camera.clear();
@@ -17,46 +34,49 @@ void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, st
   walk_->seconds = 0;
   walk_->fps = fps;
   walk_->set = std::move(set);
+  folder_ = folder;
 }
 
 bool PathRecorder::add(const CameraView& camera, const dvec3& origin, PlayedMoment moment) {
   CHECK(walk_.has_value());
   const double t = moment.t;
-  if (!walk_->camera.empty() && t <= walk_->camera.back().t) return false;
+  if (frames_ > 0 && t <= before_) return false;
+  if (!writer_) {
+    const fs::path file = newFileIn(folder_);
+    writer_ = std::make_unique<ShotWriter>(*walk_, file);
+    file_ = file;
+  }
   const dvec3 eye = origin + dvec3(camera.position());
-  walk_->camera.push_back({t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY});
-  walk_->seconds = t + 1 / walk_->fps;
-  std::vector<PlayedMoment>& played = walk_->played;
+  const CameraKey key{t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY};
+  std::vector<PlayedMoment> now;
+  std::vector<PlayedMoment>& played = walk_->played; // the last
   const auto same = [&](const PlayedMoment& other) { // but for the time
     moment.t = other.t;
     return moment == other;
   };
   if (played.empty() || !same(played.back())) {
     if (!played.empty() && played.back().t < before_) { // what stood still did not drift until it moved
-      played.push_back(played.back());
-      played.back().t = before_;
+      now.push_back(played.back());
+      now.back().t = before_;
     }
     moment.t = t;
-    played.push_back(std::move(moment));
+    now.push_back(std::move(moment));
   }
+  writer_->add(key, now);
+  walk_->camera = {key};
+  walk_->seconds = t + 1 / walk_->fps;
+  if (!now.empty()) played = {std::move(now.back())};
+  ++frames_;
   before_ = t;
   return true;
 }
 
-std::optional<Shot> PathRecorder::end(const fs::path& folder) {
-  if (!walk_ || walk_->camera.empty()) {
-    walk_.reset();
-    return {};
-  }
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
-  int number = 1;
-  const auto name = [&] { return folder / ("walk-" + std::to_string(number) + ".json"); };
-  while (fs::exists(name(), failure)) ++number;
-  walk_->file = name();
-  saveShot(*walk_, walk_->file);
-  return std::exchange(walk_, std::nullopt);
+std::optional<Shot> PathRecorder::end() {
+  const std::unique_ptr<ShotWriter> writer = std::move(writer_);
+  const std::optional<Shot> walk = std::exchange(walk_, std::nullopt);
+  if (!writer || frames_ == 0) return {};
+  writer->end(walk->seconds);
+  return loadShot(file_);
 }
 
 } // namespace lambent

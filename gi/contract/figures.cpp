@@ -94,7 +94,7 @@ double FrameStats::ms(StageId stage) const {
 
 std::span<const FigureRow> figureTable() { return kRows; }
 
-std::vector<FigureColumn> columnsOf(const FrameStats& stats, const std::array<bool, kStages>& stages) {
+std::vector<FigureColumn> columnsOf(const FrameStats& stats) {
   std::vector<FigureColumn> columns;
   for (const FigureRow& row : kRows) {
     const std::string name = underscored(row.name);
@@ -115,7 +115,7 @@ std::vector<FigureColumn> columnsOf(const FrameStats& stats, const std::array<bo
     }
   }
   for (size_t i = 0; i < kStages; ++i)
-    if (stages[i]) columns.push_back({underscored(kStageNames[i]) + "_ms", milliseconds(stats.ms(StageId(i)))});
+    columns.push_back({underscored(kStageNames[i]) + "_ms", milliseconds(stats.ms(StageId(i)))});
   return columns;
 }
 

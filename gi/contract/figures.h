@@ -66,8 +66,8 @@ std::span<const FigureRow> figureTable();
 struct FigureColumn {
   std::string name, text;
 };
-/// All columns of a frame, times of stages last: those that `stages` marks.
-std::vector<FigureColumn> columnsOf(const FrameStats& stats, const std::array<bool, kStages>& stages);
+/// All columns of a frame, times of stages last.
+std::vector<FigureColumn> columnsOf(const FrameStats& stats);
 /// One line of the panel: "1234", "on", "12.3 ms".
 std::string figureText(const Figure& figure);
 

@@ -3,6 +3,10 @@
 
 #include "tests/support/files.h"
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
 namespace lambent::test::path_recorder_test {
 
 class PathRecorderTest : public testing::Test {
@@ -25,7 +29,7 @@ CameraView at(double t) {
 TEST_F(PathRecorderTest, EveryFrameIsWhereItWasWhateverTheFrameRate) {
   PathRecorder recorder;
   const dvec3 origin(1000, 0, -8);
-  recorder.begin("a.gltf", nullptr, 30, {});
+  recorder.begin("a.gltf", nullptr, 30, {}, folder_);
   ASSERT_TRUE(recorder.recording());
   std::vector<double> times;
   for (double t = 0; t < 4; t += 0.01 + 0.2 * std::abs(std::sin(7 * t))) times.push_back(t);
@@ -33,7 +37,7 @@ TEST_F(PathRecorderTest, EveryFrameIsWhereItWasWhateverTheFrameRate) {
     EXPECT_TRUE(recorder.add(at(t), origin, momentAt(t)));
     EXPECT_FALSE(recorder.add(at(t + 1), origin, momentAt(t))); // no time has passed
   }
-  const std::optional<Shot> walk = recorder.end(folder_);
+  const std::optional<Shot> walk = recorder.end();
   ASSERT_TRUE(walk.has_value());
   EXPECT_FALSE(recorder.recording());
   const Shot read = loadShot(walk->file);
@@ -54,9 +58,9 @@ TEST_F(PathRecorderTest, KeepsWhatMovesAndOverwritesNothing) {
   moving.pixels = {vec2(0.5f)};
   PathRecorder recorder;
   for (int i = 1; i <= 2; ++i) {
-    recorder.begin("a.gltf", &moving, 30, {{"smc.vpls", "64"}});
+    recorder.begin("a.gltf", &moving, 30, {{"smc.vpls", "64"}}, folder_);
     recorder.add(at(0), dvec3(0), {});
-    const std::optional<Shot> walk = recorder.end(folder_);
+    const std::optional<Shot> walk = recorder.end();
     ASSERT_TRUE(walk.has_value());
     EXPECT_EQ(walk->file.filename(), "walk-" + std::to_string(i) + ".json");
     const Shot read = loadShot(walk->file);
@@ -68,17 +72,55 @@ TEST_F(PathRecorderTest, KeepsWhatMovesAndOverwritesNothing) {
 
 TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   PathRecorder recorder;
-  recorder.begin("a.gltf", nullptr, 30, {});
-  EXPECT_FALSE(recorder.end(folder_).has_value());
+  recorder.begin("a.gltf", nullptr, 30, {}, folder_);
+  EXPECT_FALSE(recorder.end().has_value());
   EXPECT_FALSE(fs::exists(folder_));
   writeBytes(folder_, "a file by the folder's name");
-  recorder.begin("a.gltf", nullptr, 30, {});
-  recorder.add(at(0), dvec3(0), {});
-  EXPECT_THROW(recorder.end(folder_), RunError);
-  EXPECT_TRUE(recorder.recording()) << "it can be tried again";
-  fs::remove(folder_);
-  EXPECT_TRUE(recorder.end(folder_).has_value());
+  recorder.begin("a.gltf", nullptr, 30, {}, folder_);
+  EXPECT_THROW(recorder.add(at(0), dvec3(0), {}), RunError);
+  EXPECT_FALSE(recorder.end().has_value());
   EXPECT_FALSE(recorder.recording());
+}
+
+/// What somebody does, moment by moment, in a walk of `frames`.
+PlayedMoment playedIn(int frame) {
+  PlayedMoment moment = momentAt(frame / 30.0);
+  moment.movers["door"] = frame < 3 ? 0 : frame < 6 ? 0.1 * frame : 1;
+  if (frame > 4) moment.things.push_back({7, "lamp", vec3(0.1f * float(frame), 1, 2), 0.3f});
+  return moment;
+}
+
+/// Whatever ends a program at whatever byte, the file has every frame before, and the next program ends it.
+TEST_F(PathRecorderTest, AWalkThatIsCutShortHasEveryWholeFrame) {
+  PathRecorder recorder;
+  recorder.begin("a.gltf", nullptr, 30, {{"smc.vpls", "64"}}, folder_);
+  constexpr int kFrames = 10;
+  std::vector<size_t> sizes;
+  for (int i = 0; i < kFrames; ++i) {
+    ASSERT_TRUE(recorder.add(at(i / 30.0), dvec3(0), playedIn(i)));
+    sizes.push_back(fs::file_size(recorder.file()));
+    EXPECT_EQ(loadShot(recorder.file()).camera.size(), size_t(i + 1)) << "while it is recorded";
+    EXPECT_TRUE(endCutShots(folder_).empty()) << "somebody writes it";
+  }
+  const Shot whole = *recorder.end();
+  const std::string text = readBytes(whole.file);
+  EXPECT_EQ(nlohmann::json::parse(text).at("camera").at("keys").size(), size_t(kFrames));
+  for (size_t size = sizes[0]; size <= text.size(); ++size) {
+    writeBytes(whole.file, text.substr(0, size));
+    const size_t frames = size_t(std::upper_bound(sizes.begin(), sizes.end(), size) - sizes.begin());
+    const Shot cut = loadShot(whole.file);
+    ASSERT_EQ(cut.camera.size(), frames) << size;
+    ASSERT_NEAR(cut.seconds, double(frames) / 30, 1e-9) << size;
+    for (size_t i = 0; i < frames; ++i) {
+      const PlayedMoment now = playedIn(int(i)), kept = playedAt(cut, cut.camera[i].t);
+      ASSERT_EQ(kept.movers, now.movers) << size << ' ' << i;
+      ASSERT_EQ(kept.things, now.things) << size << ' ' << i;
+    }
+    ASSERT_EQ(endCutShots(folder_).size(), size == text.size() ? 0u : 1u) << size;
+    ASSERT_EQ(nlohmann::json::parse(readBytes(whole.file)).at("camera").at("keys").size(), frames) << size;
+    ASSERT_TRUE(endCutShots(folder_).empty());
+    ASSERT_EQ(loadShot(whole.file).seconds, cut.seconds);
+  }
 }
 
 } // namespace lambent::test::path_recorder_test

@@ -1,12 +1,12 @@
 // The commands of `lambent`. A declare… function adds the command to the app.
 #pragma once
 
+#include "engine/core/interrupt.h"
 #include "gi/measure/runs/runs.h"
 #include "gi/reference/traced_image.h"
 #include "tools/lambent/command_line.h"
 #include "tools/lambent/report.h"
 
-#include <atomic>
 #include <string>
 
 namespace lambent {
@@ -42,8 +42,5 @@ Value figuresOf(const FrameStats& stats);
 /// hexadecimal digits. Not of pictures and buffers next to a scene's file. Work that was interrupted goes on under the
 /// same conditions only.
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& options, const std::string& more);
-
-/// Set by Ctrl-C: long work ends after the present frame.
-extern std::atomic<bool> interrupted;
 
 } // namespace lambent

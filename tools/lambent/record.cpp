@@ -75,34 +75,56 @@ std::string forFfmpeg(const fs::path& path) {
   return out;
 }
 
+struct NotInstalled {};
+
 /// Writes `video` from the first `frames` pictures (000000.png, …) of the folder: an earlier, longer recording may have
 /// left more. False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
 bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
-  const fs::path temporary = fs::absolute(folder) / ".video.mp4";
-  const pid_t child = fork();
-  if (child == 0) {
-    const std::string rate = format("%g", fps), pictures = forFfmpeg(folder) + "/%06d.png";
-    execlp("ffmpeg", "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", rate.c_str(), "-i",
-           pictures.c_str(), "-frames:v", std::to_string(frames).c_str(), "-pix_fmt", "yuv420p", "-vf",
-           "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18", temporary.c_str(), static_cast<char*>(nullptr));
-    _exit(kNotInstalled);
-  }
-  int status = 0;
-  const bool ended = child >= 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
-  if (ended && WEXITSTATUS(status) == 0) {
-    fs::rename(temporary, video);
+  const auto encode = [&](const fs::path& temporary) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const std::string rate = format("%g", fps), pictures = forFfmpeg(folder) + "/%06d.png";
+      execlp("ffmpeg", "ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", rate.c_str(), "-i",
+             pictures.c_str(), "-frames:v", std::to_string(frames).c_str(), "-pix_fmt", "yuv420p", "-vf",
+             "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-crf", "18", fs::absolute(temporary).c_str(),
+             static_cast<char*>(nullptr));
+      _exit(kNotInstalled);
+    }
+    int status = 0;
+    const bool ended = child >= 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
+    if (ended && WEXITSTATUS(status) == 0) return;
+    if (ended && WEXITSTATUS(status) == kNotInstalled) throw NotInstalled();
+    throw RunError(video.string() + ": ffmpeg failed (the frames are written)");
+  };
+  try {
+    writeAtomically(video, encode);
     return true;
+  } catch (const NotInstalled&) {
+    return false;
   }
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  if (ended && WEXITSTATUS(status) == kNotInstalled) return false;
-  throw RunError(video.string() + ": ffmpeg failed (the frames are written)");
+}
+
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-%") == word.npos)
+    return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 /// What a person does about it who has ffmpeg, in one line.
 std::string videoCommand(const fs::path& folder, double fps) {
-  return format("ffmpeg -framerate %g -i ", fps) + (folder / "%06d.png").string() + " -pix_fmt yuv420p " +
-         (folder / "video.mp4").string();
+  return format("ffmpeg -framerate %g -i ", fps) + quoted(forFfmpeg(folder) + "/%06d.png") + " -pix_fmt yuv420p " +
+         quoted(fs::absolute(folder / "video.mp4").string());
+}
+
+/// Whether a picture is one that record wrote, to its end: nobody has emptied it, or put something else in its place.
+bool isPicture(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(fs::symlink_status(file, none))) return false;
+  const std::string text = readText(file), begin = file.extension() == ".png" ? "\x89PNG" : "v/1\x01";
+  return text.starts_with(begin) && (file.extension() != ".png" || text.ends_with(std::string("IEND\xae\x42\x60\x82")));
 }
 
 /// One technique that is recorded: alone, or one of two beside each other.
@@ -202,13 +224,14 @@ void record(const RecordOptions& options) {
   const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
   int kept = 0;
   for (const int marked = options.resume ? mark.kept() : 0; kept < marked; ++kept) // as far as none is missing
-    if (!fs::exists(picture(kept))) break;
+    if (!isPicture(picture(kept))) break;
   if (options.resume) removeLeftovers(picture(kept));
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
   for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, opened->seed)});
   if (sides.size() > 1) sides[1].logName = "frames-" + options.beside + ".csv";
+  for (Side& side : sides) side.log.begin(folder / side.logName);
   Viewer& gi = *sides[0].gi;
   const CameraView whole = opened->camera;
   const int small = std::min(whole.width, kSheetWidth), smallHeight = std::max(1, whole.height * small / whole.width);
@@ -244,7 +267,7 @@ void record(const RecordOptions& options) {
       progress.update(done + 1, total);
     }
   }
-  for (const Side& side : sides) side.log.write(folder / side.logName);
+  for (Side& side : sides) side.log.end();
   if (const Image8 all = sheet.sheet(); all.width > 0) writePng(folder / "contact-sheet.png", all);
   const bool filmed = options.video && done > 0 && encodeVideo(folder, done, opened->shot->fps, folder / "video.mp4");
   tell(options, sides, folder, done, total, filmed);

@@ -5,33 +5,28 @@
 #include "gi/plan/governor.h"
 
 #include <filesystem>
+#include <fstream>
 
 namespace lambent {
 
-/// Keeps the log in memory and writes it whole, so that it is never half-written.
+/// Appends a line for each frame, so that whatever ends the program loses none and memory stays.
 class FrameLog {
  public:
-  /// `governed`: of the frame; null: nothing governs.
+  /// Columns are those of the table of figures, and scene time and time to write a picture. With the first line an
+  /// earlier file goes.
+  void begin(const std::filesystem::path& file);
+  /// `governed`: of the frame; null: nothing governs, from the first frame on. Throws RunError.
   void add(double time, const FrameStats& stats, double writeMs, const Governed* governed);
-
-  /// Columns are those of the table of figures, and scene time and time to write a picture. Throws RunError.
-  void write(const std::filesystem::path& file) const;
+  void end() { out_.close(); }
 
   /// Frames per second over all frames but the first (which warms the set up), pictures on disk included.
   double framesPerSecond() const;
 
  private:
-  struct Row {
-    double time = 0;
-    FrameStats stats;
-    double writeMs = 0;
-    float scale = 1;
-    std::string preset = {};
-  };
-
-  std::vector<Row> rows_;
-  bool governed_ = false;
-  std::array<bool, kStages> stages_{}; // that ran in any frame
+  std::filesystem::path file_;
+  std::ofstream out_;
+  size_t rows_ = 0;
+  double ms_ = 0; // of all but the first
 };
 
 } // namespace lambent

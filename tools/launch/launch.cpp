@@ -2,6 +2,7 @@
 
 #include "gi/plan/techniques.h"
 
+#include "engine/core/enough.h"
 #include "engine/core/error.h"
 #include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
@@ -339,6 +340,7 @@ SceneView LaunchContext::at(double t) {
 void useThreads(int threads) {
   setThreadCount(threads);
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+  requireThreadsAndMemory();
 }
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {

@@ -70,7 +70,8 @@ std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options);
 /// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only.
 /// openLaunch does it for the stage's own.
 void tellWhatIsLeftOut(LaunchContext& stage, const Settings& settings);
-/// Its two halves, for who loads beside a window: the first before there is a context, the second on any thread.
+/// Its two halves, for who loads beside a window: the first before there is a context, the second on any thread. The
+/// first throws RunError where the machine gives no threads or memory.
 void useThreads(int threads);
 std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const LoadStep& step);
 

@@ -57,6 +57,22 @@ TEST(Leftovers, AreNotWhatSomebodyWrites) {
   EXPECT_EQ(readBytes(folder / "a.png"), "whole");
 }
 
+/// As long as a name may be, in front of the dot or behind it.
+TEST(Leftovers, OfLongNamesFitInTheFolder) {
+  const TemporaryFolder folder;
+  for (const std::string& name : {std::string(251, 'a') + ".png", "a." + std::string(253, 'b')}) {
+    fs::path half;
+    EXPECT_THROW(
+        writeAtomically(folder / name, [&](const fs::path& t) { writeBytes(half = t, "x"), throw RunError(""); }),
+        RunError);
+    writeBytes(half, "killed");
+    writeAtomically(folder / name, "whole");
+    removeLeftovers(folder / name);
+    EXPECT_FALSE(fs::exists(half));
+    EXPECT_EQ(readBytes(folder / name), "whole");
+  }
+}
+
 /// They lie where a link leads.
 TEST(Leftovers, OfALinkLieBesideWhatItLeadsTo) {
   const TemporaryFolder folder;

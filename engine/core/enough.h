@@ -1,0 +1,10 @@
+// What libraries and drivers need of the machine, and do not say.
+#pragma once
+
+namespace lambent {
+
+/// Throws RunError where this process may not make the threads, or take the address space, that drivers, Embree and our
+/// own loops do: without, they end the program or wait for ever.
+void requireThreadsAndMemory();
+
+} // namespace lambent

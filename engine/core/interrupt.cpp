@@ -1,0 +1,50 @@
+#include "engine/core/interrupt.h"
+
+#include <csignal>
+#include <string_view>
+
+#include <sys/time.h>
+#include <unistd.h>
+
+namespace lambent {
+
+std::atomic<bool> interrupted{false};
+
+namespace {
+
+std::atomic<int> unbroken{0}, deferred{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free); // in handlers
+
+void alarmIn(int which, int ms) {
+  itimerval timer{};
+  timer.it_value = {ms / 1000, ms % 1000 * 1000};
+  setitimer(which, &timer, nullptr);
+}
+
+void cutOff(int) {
+  constexpr int kMostDeferred = 50; // 5 s: a file that never ends
+  if (unbroken > 0 && deferred++ < kMostDeferred) return alarmIn(ITIMER_PROF, 100), alarmIn(ITIMER_REAL, 1000);
+  constexpr std::string_view kSaid = "\nerror: interrupted, in the midst of work\n";
+  [[maybe_unused]] const ssize_t written = write(2, kSaid.data(), kSaid.size());
+  _exit(1);
+}
+
+void request(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+  constexpr int kCpuMs = 1900, kMs = 10'000;
+  alarmIn(ITIMER_PROF, kCpuMs);
+  alarmIn(ITIMER_REAL, kMs);
+}
+
+} // namespace
+
+void endOnRequest() {
+  for (const int signal : {SIGPROF, SIGALRM}) std::signal(signal, cutOff);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, request);
+}
+
+Unbroken::Unbroken() { ++unbroken; }
+Unbroken::~Unbroken() { --unbroken; }
+
+} // namespace lambent
