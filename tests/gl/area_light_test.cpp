@@ -1,6 +1,8 @@
 // Direct light of emissive surfaces by patches (paper 4) against closed forms and against a thousand rays per pixel.
 #include "area_lights.h"
 #include "engine/core/parallel.h"
+#include "engine/trace/embree_query.h"
+#include "gi/direct/area_visibility.h"
 #include "gi/lighting/area_lobe.h"
 
 namespace lambent::test::area_light_test {
@@ -302,6 +304,50 @@ TEST_F(AreaLightTest, DimLampsCountByTheSamplesThatWereDrawn) {
       EXPECT_NEAR(found / expected, 1, 0.05) << lamps << ' ' << int(rule);
     }
   }
+}
+
+// Patches that stay whole tell it, one by one: each asks sixteen samples, of which a dim lamp is due less than one.
+TEST_F(AreaLightTest, DimLampsCountInWholePatchesToo) {
+  LampScene scene(vec3(12));
+  const uint32_t dim = scene.material(vec3(0), vec3(48));
+  for (int i = 0; i < 24; ++i)
+    scene.quad(vec3(-4.0f + 0.25f * float(i % 6), 2, -0.6f + 0.3f * float(i / 6)), vec3(0.2f, 0, 0), vec3(0, 0, 0.2f),
+               dim);
+  scene.box({-0.9f, 1.6f, -0.8f}, {0.9f, 1.7f, 0.8f}, scene.material(vec3(0.7f)), false);
+  const AreaLights lights = areaLights(collectLights(scene.view()));
+  EmbreeQuery rays(scene.assets);
+  rays.update(scene.view());
+  std::vector<float> depth(96 * 64, 0);
+  std::vector<vec4> normal(depth.size(), vec4(0, 1, 0, 1));
+  const vec3 forward = -vec3(scene.camera.worldFromView[2]);
+  std::vector<glm::ivec2> patches;
+  std::vector<float> expected;
+  constexpr int kLevel = 3;
+  for (const auto [x, y] : Pixels(96, 64)) { // of the floor alone
+    const CameraRay ray = pixelRay(scene.camera, x, 63 - y);
+    if (ray.direction.y >= 0) continue;
+    const vec3 way = ray.direction * (-ray.origin.y / ray.direction.y), at = ray.origin + way;
+    depth[size_t(y * 96 + x)] = scene.camera.near / glm::dot(way, forward);
+    if (x % 8 != 4 || y % 8 != 4 || std::abs(at.x) > 2 || at.z < 0.5f || at.z > 2) continue; // umbra of the bright one
+    patches.emplace_back(x / 8, y / 8);
+    float all = 0, hidden = 0;
+    for (const AreaLight& light : lights.lights) {
+      const float brought = luminance(unshadowed(lights, light, at, vec3(0, 1, 0)));
+      all += brought;
+      if (&light == &lights.lights[0]) hidden = brought;
+    }
+    expected.push_back(1 - hidden / all);
+  }
+  const FrameSurfaces surfaces{96, 64, depth, normal, cameraBlock(scene.camera, 0)};
+  const AreaVisibility visibility(rays, lights, surfaces, 16, AreaAims::Same);
+  const std::vector<AreaSeen> seen = visibility.ofPatches(patches, kLevel);
+  ASSERT_GT(patches.size(), 8u);
+  float found = 0, wanted = 0;
+  for (size_t i = 0; i < patches.size(); ++i) {
+    EXPECT_NEAR(seen[i].visible.x / expected[i], 1, 0.1) << patches[i].x << ' ' << patches[i].y;
+    found += seen[i].visible.x, wanted += expected[i];
+  }
+  EXPECT_NEAR(found / wanted, 1, 0.03);
 }
 
 // A patch whose middle lies above a lamp's plane is not dark for that: its lower half is lit.
