@@ -29,6 +29,14 @@ size_t editDistance(std::string_view a, std::string_view b) {
 } // namespace
 
 std::string printable(std::string_view text) {
+  constexpr size_t kLongest = 2500, kBegin = 1900, kEnd = 500; // bytes; names may have a megabyte
+  if (text.size() > kLongest) {
+    const auto within = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; }; // a character
+    size_t begin = kBegin, end = text.size() - kEnd;
+    while (begin > 0 && within(begin)) --begin;
+    while (end < text.size() && within(end)) ++end;
+    return printable(text.substr(0, begin)) + " … " + printable(text.substr(end));
+  }
   std::string out;
   const auto escape = [&](unsigned char c) {
     constexpr char digits[] = "0123456789abcdef";

@@ -7,7 +7,8 @@
 
 namespace lambent {
 
-/// Text from a file as a terminal may show it: control characters (line feeds too) become \xNN, other bytes stay.
+/// Text from a file as a terminal may show it: control characters (line feeds too) become \xNN, other bytes stay. What is
+/// longer than anybody reads has its middle left out.
 std::string printable(std::string_view text);
 
 /// The candidate with the fewest single-letter edits to `name` (case ignored), the first of equals; empty when there

@@ -23,13 +23,6 @@ constexpr std::array<const char*, 5> kSupportedExtensions = {"KHR_lights_punctua
                                                              "KHR_texture_transform", "KHR_mesh_quantization",
                                                              "KHR_materials_unlit"};
 
-// File access of tinygltf. Its own expands paths through the shell's rules, command substitution included, which no
-// file from elsewhere may reach.
-bool fileExists(const std::string& file, void*) {
-  std::error_code error;
-  return fs::is_regular_file(file, error);
-}
-
 /// Reads the bytes of a file. Throws InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const fs::path& file) {
   std::error_code error;
@@ -88,6 +81,8 @@ Container checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes
 /// What the callbacks know of the file that is read.
 struct Reading {
   Budget* budget;
+  fs::path folder;
+  FileAccess access;
   std::map<std::string, std::string> uris; // decoded as the parser does → as RFC 3986 says
   std::set<std::string> files;             // read before
 };
@@ -110,14 +105,22 @@ std::string decoded(const std::string& uri, bool spaces) {
   return out;
 }
 
+// File access of tinygltf. Its own expands paths through the shell's rules, command substitution included, which no
+// file from elsewhere may reach, and looks in the working directory too.
+bool fileExists(const std::string& file, void* data) {
+  const Reading& reading = *static_cast<Reading*>(data);
+  return mayRead(reading.folder, file, reading.access);
+}
+
 std::string rightPath(const std::string& file, void* data) {
   for (const auto& [wrong, right] : static_cast<Reading*>(data)->uris)
     if (file.ends_with(wrong)) return file.substr(0, file.size() - wrong.size()) + right;
   return file;
 }
 bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
-  auto& [budget, uris, files] = *static_cast<Reading*>(data);
+  auto& [budget, folder, access, uris, files] = *static_cast<Reading*>(data);
   try {
+    if (!mayRead(folder, file, access)) throw InputError(file, "no such file"); // also for who does not ask before
     std::error_code none;
     const size_t size = fs::file_size(file, none);
     if (files.insert(fs::weakly_canonical(file, none).string()).second) {
@@ -283,13 +286,13 @@ float number(const tinygltf::Value& object, const char* key, float otherwise) {
   return float(object.Get(key).GetNumberAsDouble());
 }
 
-Document readDocument(const fs::path& file) {
+Document readDocument(const fs::path& file, FileAccess access) {
   Document doc;
   doc.file = file;
   const std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
-  Reading reading{&doc.budget, {}, {}};
+  Reading reading{&doc.budget, file.parent_path(), access, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[decoded(uri, true)] = decoded(uri, false);
 
@@ -308,7 +311,12 @@ Document readDocument(const fs::path& file) {
     error = e.what();
   }
   checkExtensions(doc); // before the parser's own errors, which such an extension may be the cause of
-  if (!parsed) throw InputError(file.string(), "is not a usable glTF file: " + firstLine(error));
+  const bool outside = access == FileAccess::Within && std::ranges::any_of(json.uris, [](const std::string& uri) {
+                         return !uri.starts_with("data:") && leadsOutside(decoded(uri, false));
+                       });
+  const char* hint = outside ? " (it names files outside of its folder, which --allow-outside lets it read)" : "";
+  if (!parsed) throw InputError(file.string(), "is not a usable glTF file: " + firstLine(error) + hint);
+  if (outside) doc.warn(std::string("what cannot be read is left out") + hint);
   if (!error.empty()) doc.warn("the file departs from glTF: " + firstLine(error));
   if (doc.model.asset.version.rfind("2.", 0) != 0)
     throw InputError(file.string(), "is glTF version '" + doc.model.asset.version + "' (2.0 expected)");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/scene/components.h"
+#include "engine/scene/file_access.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -62,7 +63,7 @@ struct Document {
 };
 
 /// Reads and parses .gltf or .glb with its buffers and encoded images. Refuses what it does not support.
-Document readDocument(const std::filesystem::path& file);
+Document readDocument(const std::filesystem::path& file, FileAccess access);
 
 /// A member of an object of the file that is a number; else `otherwise`.
 float number(const tinygltf::Value& object, const char* key, float otherwise);

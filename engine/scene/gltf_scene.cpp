@@ -175,12 +175,13 @@ void findOrigin(Scene& scene) {
 
 } // namespace
 
-Scene loadScene(const std::filesystem::path& file, const std::string& sceneName, const LoadStep& step) {
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName, const LoadStep& step,
+                FileAccess access) {
   gltf::Import import;
   import.step = step;
   try {
     import.tell("file", 0, gltf::Import::kRead, 0, 1);
-    import.doc = gltf::readDocument(file);
+    import.doc = gltf::readDocument(file, access);
     gltf::importNodes(import, sceneName);
     gltf::importAnimations(import);
     gltf::decodeImages(import);

@@ -2,13 +2,22 @@
 
 #include "engine/core/error.h"
 
+#include <deque>
 #include <unordered_set>
+
+#include <nlohmann/json.hpp>
 
 namespace lambent {
 
 namespace {
 
 constexpr size_t kMaxNesting = 200; // real files nest about ten deep
+
+/// A string as parsers have it.
+std::string unescaped(std::string_view inside) {
+  const nlohmann::json text = nlohmann::json::parse('"' + std::string(inside) + '"', nullptr, false);
+  return text.is_string() ? text.get<std::string>() : std::string(inside); // what is none is left to the parser
+}
 
 bool isSpace(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
@@ -17,6 +26,7 @@ bool isSpace(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
   JsonText out;
   std::vector<std::unordered_set<std::string_view>> open; // keys of the objects (of lists: none) around
+  std::deque<std::string> written;                        // of keys that are written with escapes
   std::string_view key;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -28,12 +38,12 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
       size_t next = i + 1;
       while (next < text.size() && isSpace(text[next])) ++next;
       if (next < text.size() && text[next] == ':') {
-        key = inside;
+        key = inside.find('\\') == inside.npos ? inside : written.emplace_back(unescaped(inside));
         if (!open.empty() && !open.back().insert(key).second)
           throw InputError(file.string(),
                            "gives the key '" + std::string(key) + "' twice in one object (once expected)");
       } else if (key == "uri" && !inside.starts_with("data:")) {
-        out.uris.emplace_back(inside);
+        out.uris.push_back(unescaped(inside));
       }
     } else if (c == '[' || c == '{') {
       if (open.size() >= kMaxNesting)

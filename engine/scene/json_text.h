@@ -10,7 +10,7 @@
 namespace lambent {
 
 struct JsonText {
-  std::vector<std::string> uris; // values of keys "uri" that are not data themselves, as written
+  std::vector<std::string> uris; // values of keys "uri" that are not data themselves
 };
 /// Checks the text. Throws InputError. Whether it is JSON at all is left to the parser.
 JsonText checkJson(const std::filesystem::path& file, std::string_view text);

@@ -5,6 +5,7 @@
 #include "engine/ecs/registry.h"
 #include "engine/scene/components.h"
 #include "engine/scene/deform.h"
+#include "engine/scene/file_access.h"
 #include "engine/view/assets.h"
 #include "engine/view/view_changes.h"
 
@@ -43,8 +44,9 @@ struct Scene {
 using LoadStep = std::function<void(const char* at, float share)>;
 
 /// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).
-/// Throws InputError naming file, place and reason.
-Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {}, const LoadStep& step = {});
+/// `access`: of the files that it names. Throws InputError naming file, place and reason.
+Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {}, const LoadStep& step = {},
+                FileAccess access = FileAccess::Within);
 
 /// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
 void animate(Scene& scene, double time);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lambent {
@@ -120,11 +121,40 @@ class Identity {
   uint64_t value_ = next();
 };
 
+/// Who reads something on another thread, which whoever changes it waits for. A copy has readers of its own.
+class Readers {
+ public:
+  Readers() = default;
+  Readers(const Readers&) {}
+  Readers& operator=(const Readers&) { return *this; }
+
+  /// One of them, while it lives.
+  class Reading {
+   public:
+    explicit Reading(const Readers& of) : of_(&of) { ++of.count_; }
+    Reading(Reading&& from) noexcept : of_(std::exchange(from.of_, nullptr)) {}
+    ~Reading() {
+      if (of_ && --of_->count_ == 0) of_->count_.notify_all();
+    }
+
+   private:
+    const Readers* of_;
+  };
+  /// Waits until nobody reads.
+  void wait() const {
+    for (int n; (n = count_) > 0;) count_.wait(n);
+  }
+
+ private:
+  mutable std::atomic<int> count_ = 0;
+};
+
 /// What is in use never changes under the same identity. What nothing uses may come and go: `revision` then grows,
 /// `meshRevision` with meshes, and numbers stay. What has gone has no triangles, or no texels.
 struct SceneAssets {
   Identity identity;
   uint64_t revision = 0, meshRevision = 0;
+  Readers readers; // beside the thread that owns it
   std::vector<Mesh> meshes;
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;

@@ -43,10 +43,10 @@ class GiFrame {
 
   /// Computes one frame of `view` into textures of the view's size. The first frame warms the VPL set up. Where nothing
   /// changed and the technique has converged, nothing is computed and the last outputs stay. With frame.overlap the
-  /// VPLs of this view are still being updated when it returns. The state of the context is left as it was. `progress`
-  /// (may be empty) is called during the warm-up with done and total iterations. With `host` the surfaces are not drawn
-  /// but taken over; they must be those of the view. Throws InputError where settings contradict each other, or a
-  /// host's texture does not fit.
+  /// VPLs of this view are still being updated when it returns, and its assets read (SceneAssets::readers). The
+  /// state of the context is left as it was. `progress` (may be empty) is called during the warm-up with done and total
+  /// iterations. With `host` the surfaces are not drawn but taken over; they must be those of the view. Throws
+  /// InputError where settings contradict each other, or a host's texture does not fit.
   const FrameStats& run(const SceneView& view, const std::function<void(int, int)>& progress = {},
                         const HostSurfaces* host = nullptr);
 

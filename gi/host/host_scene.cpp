@@ -69,6 +69,7 @@ uint32_t HostScene::addTexture(TextureImage image) {
   glm::dvec4 sum(0);
   for (const u8vec4& t : image.texels) sum += glm::dvec4(decodeTexel(t, image.srgb));
   image.averageLinear = vec4(sum / double(image.texels.size()));
+  assets_.readers.wait();
   assets_.images.push_back(std::move(image));
   textures_.push_back(true);
   ++assets_.revision;
@@ -82,6 +83,7 @@ void HostScene::removeTexture(uint32_t texture) {
     if (materials_[i] && (m.baseColorTexture.image == texture || m.emissiveTexture.image == texture))
       refuse("texture", "is used by a material (destroy that first, or set another)");
   }
+  assets_.readers.wait();
   assets_.images[texture] = {};
   textures_[texture] = false;
   ++assets_.revision;
@@ -106,6 +108,7 @@ void HostScene::require(const Material& material) const {
 
 uint32_t HostScene::addMaterial(const Material& material) {
   require(material);
+  assets_.readers.wait();
   assets_.materials.push_back(material);
   materials_.push_back(true);
   ++assets_.revision;
@@ -115,6 +118,7 @@ uint32_t HostScene::addMaterial(const Material& material) {
 void HostScene::setMaterial(uint32_t material, const Material& as) {
   if (!hasMaterial(material)) refuse("material", "is not there");
   require(as);
+  assets_.readers.wait();
   assets_.materials[material] = as;
   assetsChanged();
 }
@@ -124,6 +128,7 @@ void HostScene::removeMaterial(uint32_t material) {
   for (const Mesh& mesh : assets_.meshes)
     for (const Primitive& p : mesh.primitives)
       if (p.material == material) refuse("material", "is that of a mesh (destroy that first)");
+  assets_.readers.wait();
   assets_.materials[material] = {};
   materials_[material] = false;
   ++assets_.revision;
@@ -165,6 +170,7 @@ uint32_t HostScene::addMesh(const HostMesh& in) {
     mesh.boundsObject.add(primitive.boundsObject);
   }
   if (covered != in.triangles.size()) refuse(which, "has triangles that are of no part");
+  assets_.readers.wait();
   assets_.meshes.push_back(std::move(mesh));
   meshes_.push_back(true);
   meshesCameOrWent();
@@ -176,6 +182,7 @@ void HostScene::removeMesh(uint32_t mesh) {
   for (const auto& [id, instance] : instances_)
     if (instance.mesh == mesh)
       refuse("mesh " + assets_.meshes[mesh].name, "is shown by an instance (destroy that first)");
+  assets_.readers.wait();
   assets_.meshes[mesh] = {};
   meshes_[mesh] = false;
   meshesCameOrWent();

@@ -26,7 +26,8 @@ struct HostMesh {
 };
 
 /// Numbers of textures, materials, meshes, instances and lights count from 0 and are not given again.
-/// Every call throws InputError, with nothing changed, where what it is told cannot be.
+/// Every call throws InputError, with nothing changed, where what it is told cannot be. Calls for textures, materials and
+/// meshes wait for an update of lights that still reads them (frame.overlap).
 class HostScene {
  public:
   HostScene();

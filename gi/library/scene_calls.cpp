@@ -9,12 +9,6 @@ using namespace lambent::library;
 
 namespace {
 
-/// Before textures, materials or meshes change: views may still work with them beside the GPU.
-void settle(lambent_device& device, lambent_scene scene) {
-  for (const auto& [id, view] : device.views)
-    if (view->scene == scene) view->gi.vpls();
-}
-
 /// Takes a thing out of its scene.
 template <Kind kind>
 lambent_status destroy(lambent_device* device, lambent_scene scene, uint64_t id, const char* what,
@@ -22,7 +16,6 @@ lambent_status destroy(lambent_device* device, lambent_scene scene, uint64_t id,
   return call(device, Gl::NotNeeded, [&] {
     HostScene& host = sceneOf(*device, scene).host;
     const uint32_t number = numberOf(kind, scene, id, what, host, has);
-    if (kind != Kind::Instance && kind != Kind::Light) settle(*device, scene);
     (host.*remove)(number);
   });
 }
@@ -97,7 +90,6 @@ lambent_status lambent_texture_create(lambent_device* device, lambent_scene scen
     require(texture != nullptr, "texture is NULL");
     requireWithin(d.wrap_u, 3, "texture: wrap_u");
     requireWithin(d.wrap_v, 3, "texture: wrap_v");
-    settle(*device, scene);
     TextureImage image;
     image.width = d.width;
     image.height = d.height;
@@ -129,7 +121,6 @@ lambent_status lambent_material_create(lambent_device* device, lambent_scene sce
     Scene& s = sceneOf(*device, scene);
     const Material m = materialOf(s, scene, desc);
     require(material != nullptr, "material is NULL");
-    settle(*device, scene);
     *material = idOf(Kind::Material, serialOf(scene), s.host.addMaterial(m));
   });
 }
@@ -140,7 +131,6 @@ lambent_status lambent_material_set(lambent_device* device, lambent_scene scene,
     Scene& s = sceneOf(*device, scene);
     const uint32_t number = numberOf(Kind::Material, scene, material, "material", s.host, &HostScene::hasMaterial);
     const Material m = materialOf(s, scene, desc);
-    settle(*device, scene);
     s.host.setMaterial(number, m);
   });
 }
@@ -164,7 +154,6 @@ lambent_status lambent_mesh_create(lambent_device* device, lambent_scene scene, 
     std::vector<HostMesh::Part> parts;
     for (const lambent_submesh& part : std::span(d.submeshes, d.submesh_count))
       parts.push_back({part.first_triangle, part.triangle_count, materialOf(part.material)});
-    settle(*device, scene);
     const uint32_t number = s.host.addMesh({.name = d.name ? std::string(d.name).substr(0, 200) : std::string(),
                                             .positions = spanOf<vec3>(d.positions, d.vertex_count),
                                             .normals = spanOf<vec3>(d.normals, d.vertex_count),

@@ -80,7 +80,9 @@ VirtualLights SampledSource::run(const FrameWorld& in, const Needs& needs, Frame
   if (overlapped)
     running_ = std::async(std::launch::async, [work = std::move(kept_), task = taskOf(in), copy = ViewCopy(world.view),
                                                rays = &world.rays, shining = world.lights,
+                                               reading = Readers::Reading(world.view.assets->readers),
                                                workers = Workers::current()]() mutable {
+      const Readers::Reading until = std::move(reading); // the end of this, not of who waits for it
       shining.view = &copy.view();
       VplWork done;
       const auto update = [&] { done = updated(std::move(work), task, copy.view(), *rays, shining, {}); };

@@ -14,8 +14,12 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <atomic>
+#include <chrono>
+#include <functional>
 #include <map>
 #include <set>
+#include <thread>
 
 namespace lambent::test::streaming_test {
 
@@ -269,6 +273,42 @@ TEST_F(Streaming, RaysOnTheGpuMeetWhatCame) {
                           expected = fresh.read(fresh.gi.directIrradiance());
   EXPECT_LT(apart(now, expected), 0.01);
   EXPECT_GT(apart(before, expected), 0.1);
+}
+
+/// An update of lights beside the GPU reads meshes and materials until it ends: what changes them waits.
+TEST_F(Streaming, ChangesWaitForWhoReadsBesideTheGpu) {
+  World world(World::settings());
+  TextureImage image;
+  image.width = image.height = 1;
+  image.texels = {u8vec4(255)};
+  uint32_t texture = 0, material = 0, mesh = 0;
+  const std::vector<std::function<void()>> calls{[&] { texture = world.scene.addTexture(image); },
+                                                 [&] { material = world.scene.addMaterial({}); },
+                                                 [&] { mesh = addBox(world.scene, 0.1f, false, material); },
+                                                 [&] { world.scene.setMaterial(material, {}); },
+                                                 [&] { world.scene.removeMesh(mesh); },
+                                                 [&] { world.scene.removeMaterial(material); },
+                                                 [&] { world.scene.removeTexture(texture); }};
+  CameraView camera = lookAt({0, 0.1f, 0.9f}, {0, 0, 0}, 1.2f);
+  const SceneAssets& assets = *world.scene.view(world.changes, camera, 0).assets;
+  for (size_t i = 0; i < calls.size(); ++i) {
+    std::atomic<bool> reads = false, over = false;
+    std::thread reader([&] {
+      const Readers::Reading reading(assets.readers);
+      reads = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      over = true;
+    });
+    while (!reads) std::this_thread::yield();
+    calls[i]();
+    EXPECT_TRUE(over) << i;
+    reader.join();
+  }
+  // And it is told when it reads: nobody does once its lights have come.
+  world.gi.settings().frame.overlap = true;
+  world.run(3);
+  world.gi.vpls();
+  calls[0](); // else it waits for ever
 }
 
 /// A room told call by call at random, and what of it is there, so that another can be told the same.

@@ -277,6 +277,8 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   const std::string own = command.option_defaults()->get_group();
   command.option_defaults()->group("Scene, view, light and settings");
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
+  command.add_flag("--allow-outside", options.outside,
+                   "let a file read what it names outside of its folder: for files that you trust");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
   command.add_option("--target", options.target, "look at x,y,z");
@@ -362,7 +364,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
-  stage->scene = loadScene(file, options.sceneName, step);
+  stage->scene = loadScene(file, options.sceneName, step, options.outside ? FileAccess::Anywhere : FileAccess::Within);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

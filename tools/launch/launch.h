@@ -22,6 +22,7 @@ class Props;
 struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
   std::string sceneName; // of several in the file
+  bool outside = false;  // it may read files outside of its folder
   std::string camera, eye, target, size, sky, daylight, technique, preset;
   std::optional<float> fovDegrees, sunSize; // sunSize: degrees across
   std::vector<std::string> set, suns, points;

@@ -1,0 +1,17 @@
+// What a scene of somebody else's may read.
+#pragma once
+
+#include <filesystem>
+
+namespace lambent {
+
+enum class FileAccess { Within, Anywhere };
+
+/// Says whether a scene in `folder` may read a file: a regular one, and unless `access` is Anywhere one in that folder
+/// or below, wherever links on the way lead. What lies elsewhere is as if it were not there.
+bool mayRead(const std::filesystem::path& folder, const std::filesystem::path& file, FileAccess access);
+
+/// Says whether an address leads out of its folder by what it says, whether there is anything or not.
+bool leadsOutside(const std::filesystem::path& address);
+
+} // namespace lambent
