@@ -75,8 +75,7 @@ App::~App() = default;
 
 void App::run() {
   if (options_.frames == 0) return; // tools/demo asks only whether a window can be opened
-  open(options_.launch.scene);
-  given_ = true;
+  open(options_.launch.scene, true);
   tellOfCutRecordings();
   auto before = Clock::now();
   while (!context_.shouldClose() && !interrupted && (!options_.frames || frames_ < *options_.frames)) {
@@ -100,6 +99,7 @@ void App::run() {
     else
       choose();
   }
+  endedInOrder();
   if (play_ && !options_.screenshot.empty()) play_->writeScreenshot(options_.screenshot);
   preferences_.save();
   if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty())
@@ -131,13 +131,15 @@ void App::keepPreferences(double seconds) {
 }
 
 /// Gives up what is there for another scene.
-void App::open(const std::string& file) {
+void App::open(const std::string& file, bool given) {
   cancelLoading();
   play_.reset();
   input_.release();
-  menu_ = given_ = preparing_ = false;
+  menu_ = preparing_ = false;
+  given_ = given;
   LaunchOptions launch = options_.launch;
   launch.scene = file;
+  launch.outside = launch.outside && given; // the command line trusts its own
   gap_ = {};
   loading_ = std::make_unique<Loading>(launch);
 }
@@ -163,10 +165,10 @@ void App::load() {
   gap_.add(loading->gap());
   try {
     prepare(loading->take());
-  } catch (const RunError& e) { // as settings that this driver has no memory for
-    if (!preferences_.now.chooseQuality()) throw;
-    beginWithDefaults(loading->file(), e.what());
+  } catch (const RunError& e) {
+    if (!beginsWithDefaults(loading->file(), e)) throw;
   } catch (const InputError& e) {
+    if (beginsWithDefaults(loading->file(), e)) return;
     if (given_) throw; // the command line asked for it
     hud_.say(e.what());
   } catch (const Cancelled&) {
@@ -175,17 +177,16 @@ void App::load() {
   }
 }
 
-/// What the person chose the last time must not keep a scene from being opened.
-void App::beginWithDefaults(const std::string& file, const std::string& why) {
-  const std::string line = "settings of the last time are left out: " + why;
+/// What the person chose the last time, and this machine has no memory for, must not keep a scene from being opened. It
+/// stays kept.
+bool App::beginsWithDefaults(const std::string& file, const std::exception& why) {
+  if (!play_ || options_.defaults || !preferences_.now.chooseQuality()) return false; // something else is wrong
+  const std::string line = std::string("settings of the last time are left out: ") + why.what();
   std::cerr << "warning: " << printable(line) << "\n";
-  Preferences& p = preferences_.now;
-  p.set.clear();
-  p.preset.clear(), p.technique.clear();
-  const bool given = given_;
-  open(file);
-  given_ = given;
+  options_.defaults = true;
+  open(file, given_);
   hud_.say(line);
+  return true;
 }
 
 /// Draws the first frames, the window going on between their parts.

@@ -22,12 +22,12 @@ class App {
   void run();
 
  private:
-  void open(const std::string& file);
+  void open(const std::string& file, bool given = false);
   void load();   // while a scene is on its way
   void choose(); // while there is none
   void play(double seconds);
   void prepare(LoadedScene loaded);
-  void beginWithDefaults(const std::string& file, const std::string& why);
+  bool beginsWithDefaults(const std::string& file, const std::exception& why);
   void obey(const MenuChoice& choice);
   void showProgress(const Progressed& progress);
   void cancelLoading();

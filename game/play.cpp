@@ -153,6 +153,7 @@ void Play::tellWhereItIsDark() {
 
 /// The stage's settings as the person left them the last time.
 Settings Play::preferred() {
+  if (options_.defaults) return stage_->settings;
   std::string complaint;
   const auto technique = [](Settings& s, const std::string& name) { applyTechnique(s, name); };
   const Settings settings = preferences_.over(stage_->settings, askedFor(options_.launch), technique, complaint);
@@ -241,7 +242,7 @@ void Play::frame(const Wishes& wishes, double seconds) {
   // What is recorded at fixed steps stands still as a whole where no time goes by: its replay knows nothing of that.
   const bool frozen =
       recorder_.recording() && options_.fps && recorder_.frames() > 0 && (model_.paused || seconds == 0);
-  if (!frozen) step(wishes, seconds);
+  if (!frozen) keeping([&] { step(wishes, seconds); });
   const FrameStats& stats = gi_.stats();
   const auto now = std::chrono::steady_clock::now();
   const std::chrono::duration<double> real = now - std::exchange(frameBegan_, now);
@@ -298,12 +299,28 @@ void Play::step(const Wishes& wishes, double seconds) {
   moved_ = pose != std::exchange(pose_, pose) || c.lights || c.geometry || c.instances;
 }
 
-/// Lights that are to stay do so for this frame: it is no setting that is kept or recorded.
+/// Settings that cannot be, or that this machine has no memory for, give way to those of the frame before.
 void Play::run(const SceneView& view) {
-  int& moves = gi_.settings().smc.moves;
-  const int wanted = std::exchange(moves, model_.lightsStay ? 0 : moves);
-  gi_.run(view);
-  moves = wanted;
+  const Settings wanted = gi_.settings();
+  const auto runWith = [&](const Settings& settings) {
+    gi_.settings() = settings;
+    if (model_.lightsStay) gi_.settings().smc.moves = 0; // for this frame: it is no setting that is kept or recorded
+    gi_.run(view);
+    gi_.settings().smc.moves = settings.smc.moves;
+    drawnWith_ = settings;
+  };
+  const auto goBack = [&](const std::exception& e) {
+    if (!drawnWith_ || *drawnWith_ == wanted) throw;
+    hud_.say(std::string(e.what()) + ": the settings are as before");
+    runWith(Settings(*drawnWith_));
+  };
+  try {
+    runWith(wanted);
+  } catch (const InputError& e) {
+    goBack(e);
+  } catch (const RunError& e) {
+    goBack(e);
+  }
 }
 
 void Play::obey(const Wishes& wishes, float seconds) {

@@ -26,6 +26,7 @@ struct GameOptions {
   std::optional<double> targetMs; // of a frame
   std::optional<double> fps;      // scene time goes by in steps of 1/fps, however long frames take
   bool fresh = false;             // neither takes nor keeps preferences
+  bool defaults = false;          // does not take settings from them
   std::optional<int> frames;      // for tests: quit after so many
   std::string screenshot;         // for tests: what the window shows at the end
   std::string truth;              // for tests: split or heat from the start
@@ -105,12 +106,13 @@ class Play {
   FrameTimes times_;
   float ownExposure_ = 1; // of the scene, without the person's
   PathRecorder recorder_;
-  FrameLog log_; // of what is recorded
-  std::optional<Shot> path_; // that F follows: of the shot, or recorded
-  bool cramped_ = false;     // something was where the player is
-  mat4 pose_{0};             // of the camera in the last frame
-  bool moved_ = false;       // anything, for the last frame
-  SceneView view_;           // of the last frame
+  FrameLog log_;                           // of what is recorded
+  std::optional<Settings> drawnWith_ = {}; // the last frame
+  std::optional<Shot> path_;               // that F follows: of the shot, or recorded
+  bool cramped_ = false;                   // something was where the player is
+  mat4 pose_{0};                           // of the camera in the last frame
+  bool moved_ = false;                     // anything, for the last frame
+  SceneView view_;                         // of the last frame
   std::chrono::steady_clock::time_point frameBegan_ = std::chrono::steady_clock::now();
   TruthView truth_;
   bool pausedBefore_ = false; // when the truth was asked for

@@ -1,11 +1,10 @@
 #include "engine/core/enough.h"
 
 #include "engine/core/error.h"
-#include "engine/core/parallel.h"
 
 #include <atomic>
+#include <exception>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -19,9 +18,10 @@ namespace {
 int threadsOf(int wanted) {
   std::atomic<bool> end = false;
   std::vector<std::jthread> threads;
+  threads.reserve(size_t(wanted));
   try {
     while (int(threads.size()) < wanted) threads.emplace_back([&] { end.wait(false); });
-  } catch (const std::system_error&) {
+  } catch (const std::exception&) { // no more
   }
   end = true;
   end.notify_all();
@@ -30,17 +30,16 @@ int threadsOf(int wanted) {
 
 } // namespace
 
-void requireThreadsAndMemory() {
+void requireThreadsAndMemory(int wanted) {
   constexpr size_t kAddresses = size_t(1) << 30; // what a small scene's frame takes on software Mesa
   void* const room = mmap(nullptr, kAddresses, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED)
     throw RunError("this process may not take 1 GB of memory (is there a limit? ulimit -v unlimited lifts it)");
   munmap(room, kAddresses);
-  const int wanted = 2 * threadCount() + 4; // loops, a driver's, and those that compile, trace beside frames and watch
   const int got = threadsOf(wanted);
   if (got < wanted)
     throw RunError("this process may make only " + std::to_string(got) + " of the " + std::to_string(wanted) +
-                   " threads it needs (raise the limit, ulimit -u, or lower --threads)");
+                   " threads it needs (raise the limits, ulimit -u and -v, or lower --threads)");
 }
 
 } // namespace lambent

@@ -90,8 +90,7 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
-  const TemporaryName name(file);
-  const fs::path temporary = file.parent_path() / (name.begin + std::to_string(std::random_device{}()) + name.end);
+  const fs::path temporary = temporaryFor(file);
   std::error_code ignored;
   checkWritable(file);
   const Unbroken whole;
@@ -115,6 +114,54 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
     out.close();
     if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
+}
+
+AppendedFile::AppendedFile(const fs::path& file)
+    : file_(file), descriptor_(open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
+  flock(descriptor_, LOCK_EX); // waits for who looks whether it was left
+}
+
+AppendedFile::~AppendedFile() { close(descriptor_); }
+
+void AppendedFile::append(std::string_view line) {
+  const off_t before = lseek(descriptor_, 0, SEEK_END);
+  const Unbroken whole;
+  try {
+    appendAll(descriptor_, line);
+  } catch (const std::system_error& e) {
+    const bool back = ftruncate(descriptor_, before) == 0;
+    throw RunError(file_.string() + ": cannot be written: " + e.code().message() +
+                   (back ? "" : " (its last line is torn)"));
+  }
+}
+
+bool withUnheld(const fs::path& file, const std::function<bool(int)>& with) {
+  const int descriptor = open(file.c_str(), O_RDWR | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  bool done = false;
+  try {
+    done = flock(descriptor, LOCK_EX | LOCK_NB) == 0 && with(descriptor);
+  } catch (...) {
+    close(descriptor);
+    throw;
+  }
+  close(descriptor);
+  return done;
+}
+
+void appendAll(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = write(descriptor, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw std::system_error(errno, std::generic_category());
+    bytes.remove_prefix(size_t(n));
+  }
+}
+
+fs::path temporaryFor(const fs::path& file) {
+  const TemporaryName name(file);
+  return file.parent_path() / (name.begin + std::to_string(std::random_device{}()) + name.end);
 }
 
 void removeLeftovers(const fs::path& named) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace lambent {
@@ -16,6 +17,31 @@ void checkWritable(const std::filesystem::path& file);
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
+
+/// A new file that grows line by line: whatever ends the program, it has all lines before. Locked while it lives, where
+/// the disk knows locks.
+class AppendedFile {
+ public:
+  /// Throws RunError, also where there is one by that name.
+  explicit AppendedFile(const std::filesystem::path& file);
+  ~AppendedFile();
+  AppendedFile(const AppendedFile&) = delete;
+
+  /// Throws RunError where the disk is full: the file then is as it was.
+  void append(std::string_view line);
+
+ private:
+  const std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
+/// Calls with(descriptor) for a file that no AppendedFile holds, while none can; returns what that does, else false.
+bool withUnheld(const std::filesystem::path& file, const std::function<bool(int)>& with);
+/// Appends all bytes. Throws std::system_error.
+void appendAll(int descriptor, std::string_view bytes);
+
+/// A name beside `file` for what is to take its place. removeLeftovers finds it.
+std::filesystem::path temporaryFor(const std::filesystem::path& file);
 
 /// Removes temporaries of `file` left by programs that were killed while they wrote. What another one writes stays.
 void removeLeftovers(const std::filesystem::path& file);

@@ -1,7 +1,9 @@
 #include "engine/core/interrupt.h"
 
+#include <algorithm>
 #include <csignal>
 #include <string_view>
+#include <thread>
 
 #include <sys/time.h>
 #include <unistd.h>
@@ -29,19 +31,27 @@ void cutOff(int) {
   _exit(1);
 }
 
-void request(int signal) {
+int cpuMs = 0; // of all threads
+
+void request(int) {
   interrupted = true;
-  std::signal(signal, SIG_DFL);
-  constexpr int kCpuMs = 1900, kMs = 10'000;
-  alarmIn(ITIMER_PROF, kCpuMs);
+  for (const int second : {SIGINT, SIGTERM}) std::signal(second, SIG_DFL);
+  constexpr int kMs = 10'000;
+  alarmIn(ITIMER_PROF, cpuMs);
   alarmIn(ITIMER_REAL, kMs);
 }
 
 } // namespace
 
 void endOnRequest() {
+  constexpr int kOfTwo = 1900; // threads: a second of each
+  cpuMs = kOfTwo * std::max(1, int(std::thread::hardware_concurrency()) / 2);
   for (const int signal : {SIGPROF, SIGALRM}) std::signal(signal, cutOff);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, request);
+}
+
+void endedInOrder() {
+  for (const int which : {ITIMER_PROF, ITIMER_REAL}) alarmIn(which, 0);
 }
 
 Unbroken::Unbroken() { ++unbroken; }

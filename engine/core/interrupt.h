@@ -8,10 +8,12 @@ namespace lambent {
 /// Somebody asked the program to end: work looks at this between its parts, and ends with what it has.
 extern std::atomic<bool> interrupted;
 
-/// From now on the first request sets `interrupted`. What is not at its end 2 s of CPU time later (10 s, where it
-/// waits) is cut off, exit code 1: files are written whole or not at all, and logs line by line. A second request ends
-/// it at once.
+/// From now on the first request sets `interrupted`. What is not at its end a second of work on all cores later (10 s,
+/// where it waits) is cut off, exit code 1: files are written whole or not at all, and logs line by line. A second
+/// request ends it at once.
 void endOnRequest();
+/// The work is done: what is left is not cut off.
+void endedInOrder();
 
 /// While one lives, such as while a file is written, work is not cut off.
 class Unbroken {

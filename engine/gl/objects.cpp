@@ -184,7 +184,7 @@ Texture::Rounding Texture::rounding() const {
   GLint bits = 0, type = 0;
   glGetTextureLevelParameteriv(name(), 0, depth ? GL_TEXTURE_DEPTH_SIZE : GL_TEXTURE_RED_SIZE, &bits);
   glGetTextureLevelParameteriv(name(), 0, depth ? GL_TEXTURE_DEPTH_TYPE : GL_TEXTURE_RED_TYPE, &type);
-  if (type == GL_FLOAT) return {0, bits >= 32 ? 0x1p-24f : bits >= 16 ? 0x1p-11f : 0x1p-7f};
+  if (type == GL_FLOAT) return {0, bits >= 32 ? 0x1p-24f : bits >= 16 ? 0x1p-10f : 0x1p-5f};
   return {std::ldexp(0.5f, type == GL_SIGNED_NORMALIZED ? 1 - bits : -bits), 0};
 }
 

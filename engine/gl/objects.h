@@ -85,7 +85,7 @@ class Texture : public detail::Object {
   bool readsOtherThanLevel0() const;
   /// Says whether it compares depths, where no sampler is bound beside it.
   bool comparesDepths() const;
-  /// What a depth, or a red, of value v may be off by: absolute + relative |v|.
+  /// What a depth, or a red, of value v may be off by: absolute + relative |v|. (GPUs may cut halves.)
   struct Rounding {
     float absolute = 0, relative = 0;
   };

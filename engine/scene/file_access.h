@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace lambent {
 
@@ -11,7 +12,11 @@ enum class FileAccess { Within, Anywhere };
 /// or below, wherever links on the way lead. What lies elsewhere is as if it were not there.
 bool mayRead(const std::filesystem::path& folder, const std::filesystem::path& file, FileAccess access);
 
-/// Says whether an address leads out of its folder by what it says, whether there is anything or not.
-bool leadsOutside(const std::filesystem::path& address);
+/// Says whether the way to a file leads out of a folder, by what it says or by a link on it, whether there is anything
+/// or not.
+bool leadsOutside(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+/// What an address in a file names: %XX are bytes (RFC 3986).
+std::string pathOfUri(const std::string& uri);
 
 } // namespace lambent

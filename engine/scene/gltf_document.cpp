@@ -83,33 +83,27 @@ struct Reading {
   Budget* budget;
   fs::path folder;
   FileAccess access;
+  bool outside;                            // it names files that lie elsewhere, and are not read
   std::map<std::string, std::string> uris; // decoded as the parser does → as RFC 3986 says
   std::set<std::string> files;             // read before
 };
 
-/// %XX as bytes; `spaces`: also + as a space, as in forms on the web, which the parser takes uris for.
-std::string decoded(const std::string& uri, bool spaces) {
-  const auto digit = [&](size_t i) {
-    const char c = i < uri.size() ? uri[i] : 'x';
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
-  std::string out;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    const bool escape = uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0;
-    out += escape ? char(16 * digit(i + 1) + digit(i + 2)) : spaces && uri[i] == '+' ? ' ' : uri[i];
-    if (escape) i += 2;
-  }
-  return out;
+/// As the parser takes addresses: + as a space, as in forms on the web.
+std::string asInForms(std::string uri) {
+  std::ranges::replace(uri, '+', ' ');
+  return pathOfUri(uri);
 }
 
 // File access of tinygltf. Its own expands paths through the shell's rules, command substitution included, which no
 // file from elsewhere may reach, and looks in the working directory too.
 bool fileExists(const std::string& file, void* data) {
-  const Reading& reading = *static_cast<Reading*>(data);
-  return mayRead(reading.folder, file, reading.access);
+  Reading& reading = *static_cast<Reading*>(data);
+  if (mayRead(reading.folder, file, reading.access)) return true;
+  // Which paths there are to look in is the parser's: this file's folder, and the working directory.
+  reading.outside =
+      reading.outside || (reading.access == FileAccess::Within && file.starts_with(reading.folder.string()) &&
+                          leadsOutside(reading.folder, file));
+  return false;
 }
 
 std::string rightPath(const std::string& file, void* data) {
@@ -118,7 +112,7 @@ std::string rightPath(const std::string& file, void* data) {
   return file;
 }
 bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
-  auto& [budget, folder, access, uris, files] = *static_cast<Reading*>(data);
+  auto& [budget, folder, access, outside, uris, files] = *static_cast<Reading*>(data);
   try {
     if (!mayRead(folder, file, access)) throw InputError(file, "no such file"); // also for who does not ask before
     std::error_code none;
@@ -292,9 +286,9 @@ Document readDocument(const fs::path& file, FileAccess access) {
   const std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
-  Reading reading{&doc.budget, file.parent_path(), access, {}, {}};
+  Reading reading{&doc.budget, file.parent_path(), access, false, {}, {}};
   for (const std::string& uri : json.uris)
-    if (uri.find('+') != std::string::npos) reading.uris[decoded(uri, true)] = decoded(uri, false);
+    if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);
 
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(keepEncoded, nullptr);
@@ -311,10 +305,9 @@ Document readDocument(const fs::path& file, FileAccess access) {
     error = e.what();
   }
   checkExtensions(doc); // before the parser's own errors, which such an extension may be the cause of
-  const bool outside = access == FileAccess::Within && std::ranges::any_of(json.uris, [](const std::string& uri) {
-                         return !uri.starts_with("data:") && leadsOutside(decoded(uri, false));
-                       });
-  const char* hint = outside ? " (it names files outside of its folder, which --allow-outside lets it read)" : "";
+  const bool outside = reading.outside;
+  const char* hint =
+      outside ? " (it names files outside of its folder, or through links, which --allow-outside lets it read)" : "";
   if (!parsed) throw InputError(file.string(), "is not a usable glTF file: " + firstLine(error) + hint);
   if (outside) doc.warn(std::string("what cannot be read is left out") + hint);
   if (!error.empty()) doc.warn("the file departs from glTF: " + firstLine(error));

@@ -42,6 +42,10 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
         if (!open.empty() && !open.back().insert(key).second)
           throw InputError(file.string(),
                            "gives the key '" + std::string(key) + "' twice in one object (once expected)");
+        do ++next;
+        while (next < text.size() && isSpace(text[next]));
+        if (key == "byteStride" && next < text.size() && text[next] == '-')
+          throw InputError(file.string(), "gives a byteStride below 0 (4 to 252 expected)"); // taken for none
       } else if (key == "uri" && !inside.starts_with("data:")) {
         out.uris.push_back(unescaped(inside));
       }

@@ -1,5 +1,5 @@
-// What parsers of JSON let pass: text nested so deeply that they run out of stack, and keys given twice, of which one
-// would silently win.
+// What parsers of JSON let pass: text nested so deeply that they run out of stack, keys given twice, of which one would
+// silently win, and negative numbers where they read none.
 #pragma once
 
 #include <filesystem>

@@ -2,9 +2,11 @@
 // shot file. Unknown keys are errors that name the nearest known key.
 #pragma once
 
+#include "engine/core/files.h"
 #include "engine/scene/scene.h"
 
 #include <map>
+#include <memory>
 
 namespace lambent {
 
@@ -73,7 +75,6 @@ class ShotWriter {
   /// Makes a new file of what `shot` holds beside camera, played and seconds. Throws RunError, also where there is one.
   ShotWriter(const Shot& shot, const std::filesystem::path& file);
   ~ShotWriter();
-  ShotWriter(const ShotWriter&) = delete;
 
   /// Appends a key, and what was played from the key before on until then. Throws RunError where the disk is full: the
   /// file then is as it was.
@@ -82,15 +83,12 @@ class ShotWriter {
   void end(double seconds);
 
  private:
-  void append(const std::string& line);
-
-  const std::filesystem::path file_;
-  int descriptor_ = -1; // locked while it is written
+  std::unique_ptr<AppendedFile> file_;
   bool first_ = true;
 };
 
 /// Ends shots walk-N.json in a folder that a program began and was killed at; returns those. What somebody still writes
-/// is left alone.
+/// is left alone, and what has no frame goes.
 std::vector<std::filesystem::path> endCutShots(const std::filesystem::path& folder);
 
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and

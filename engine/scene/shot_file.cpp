@@ -7,18 +7,13 @@
 #include "engine/view/scene_view.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string_view>
-#include <system_error>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace lambent {
 
@@ -291,6 +286,15 @@ json headOf(const Shot& shot, const fs::path& file) {
   return out;
 }
 
+/// Throws RunError for names that are no UTF-8.
+std::string textOf(const json& shot, const fs::path& file) {
+  try {
+    return shot.dump();
+  } catch (const json::exception&) {
+    throw RunError(file.string() + ": cannot be written: a name in it, or the scene's, is not UTF-8");
+  }
+}
+
 // Lines of a file that a ShotWriter writes: the head, a key each, the end.
 constexpr const char *kKeysBegin = ",\"camera\":{\"keys\":[\n", *kKeysEnd = "]}";
 std::string endLine(double seconds) { return std::string(kKeysEnd) + ",\"seconds\":" + json(seconds).dump() + "}\n"; }
@@ -303,16 +307,7 @@ std::optional<size_t> cutAt(const std::string& text) {
     return {};
   const size_t whole = text.rfind('\n') + 1, last = text.rfind('\n', whole - 2) + 1;
   if (text.compare(last, std::strlen(kKeysEnd), kKeysEnd) == 0) return {};
-  return whole;
-}
-
-void writeAll(int descriptor, std::string_view bytes) {
-  for (size_t done = 0; done < bytes.size();) {
-    const ssize_t n = write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw std::system_error(errno, std::generic_category());
-    done += size_t(n);
-  }
+  return json::accept(text) ? std::nullopt : std::optional(whole); // somebody may have written on it
 }
 
 } // namespace
@@ -356,66 +351,72 @@ void saveShot(const Shot& shot, const fs::path& file) {
   writeAtomically(file, out.dump(2) + "\n");
 }
 
-ShotWriter::ShotWriter(const Shot& shot, const fs::path& file)
-    : file_(file), descriptor_(open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
-  flock(descriptor_, LOCK_EX | LOCK_NB);
-  std::string head = headOf(shot, file).dump();
+ShotWriter::ShotWriter(const Shot& shot, const fs::path& file) {
+  std::string head = textOf(headOf(shot, file), file);
   head.pop_back();
+  file_ = std::make_unique<AppendedFile>(file);
   try {
-    append(head + kKeysBegin);
+    file_->append(head + kKeysBegin);
   } catch (...) {
-    close(descriptor_);
     std::error_code ignored;
     fs::remove(file, ignored);
     throw;
   }
 }
 
-ShotWriter::~ShotWriter() { close(descriptor_); }
-
-void ShotWriter::append(const std::string& line) {
-  const off_t before = lseek(descriptor_, 0, SEEK_END);
-  try {
-    writeAll(descriptor_, line);
-  } catch (const std::system_error& e) {
-    const bool cut = ftruncate(descriptor_, before) == 0;
-    throw RunError(file_.string() + ": cannot be written: " + e.code().message() +
-                   (cut ? "" : " (its last line is torn)"));
-  }
-}
+ShotWriter::~ShotWriter() = default;
 
 void ShotWriter::add(const CameraKey& key, const std::vector<PlayedMoment>& played) {
   json line = toJson(key);
   for (const PlayedMoment& moment : played) line["played"].push_back(toJson(moment));
-  append((first_ ? "" : ",") + line.dump() + "\n");
+  file_->append((first_ ? "" : ",") + line.dump() + "\n");
   first_ = false;
 }
 
-void ShotWriter::end(double seconds) { append(endLine(seconds)); }
+void ShotWriter::end(double seconds) { file_->append(endLine(seconds)); }
+
+namespace {
+
+/// Whether its last bytes are those of a shot that has its end: what they are is seen without reading all of it.
+bool looksEnded(const fs::path& file) {
+  constexpr std::streamoff kTail = 256;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg(), begin = std::max<std::streamoff>(0, size - kTail);
+  std::string tail(size_t(std::max<std::streamoff>(0, size - begin)), '\0');
+  in.seekg(begin);
+  in.read(tail.data(), std::streamsize(tail.size()));
+  return tail.ends_with("\n}\n") || (tail.ends_with("}\n") && tail.find(std::string("\n") + kKeysEnd) != tail.npos);
+}
+
+/// Whether there was something to end. What has no frame goes.
+bool endCut(const fs::path& file, int descriptor) {
+  const std::optional<size_t> cut = cutAt(textOf(file));
+  if (!cut) return false;
+  const Shot shot = loadShot(file);
+  if (shot.camera.empty()) {
+    fs::remove(file);
+    return false;
+  }
+  if (ftruncate(descriptor, off_t(*cut)) != 0) return false;
+  appendAll(descriptor, endLine(shot.seconds));
+  return true;
+}
+
+} // namespace
 
 std::vector<fs::path> endCutShots(const fs::path& folder) {
   std::vector<fs::path> ended;
   std::error_code none;
-  for (const fs::directory_entry& e : fs::directory_iterator(folder, none)) {
-    const fs::path& file = e.path();
-    const std::string name = file.filename().string();
-    if (!name.starts_with("walk-") || file.extension() != ".json" || !fs::is_regular_file(e.symlink_status())) continue;
-    const int descriptor = open(file.c_str(), O_RDWR | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
-    if (descriptor < 0) continue;
+  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
+    const fs::path file = at->path();
+    std::error_code unseen;
+    if (!file.filename().string().starts_with("walk-") || file.extension() != ".json" ||
+        !fs::is_regular_file(fs::symlink_status(file, unseen)) || looksEnded(file))
+      continue;
     try {
-      const bool mine = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-      const std::optional<size_t> cut = mine ? cutAt(textOf(file)) : std::nullopt;
-      if (cut) {
-        const Shot shot = loadShot(file);
-        if (ftruncate(descriptor, off_t(*cut)) == 0) {
-          writeAll(descriptor, endLine(shot.seconds));
-          ended.push_back(file);
-        }
-      }
+      if (withUnheld(file, [&](int descriptor) { return endCut(file, descriptor); })) ended.push_back(file);
     } catch (const std::exception&) { // it stays as it is
     }
-    close(descriptor);
   }
   std::ranges::sort(ended);
   return ended;

@@ -125,6 +125,7 @@ class Identity {
 class Readers {
  public:
   Readers() = default;
+  ~Readers() { wait(); }
   Readers(const Readers&) {}
   Readers& operator=(const Readers&) { return *this; }
 
@@ -140,6 +141,7 @@ class Readers {
    private:
     const Readers* of_;
   };
+  bool any() const { return count_ > 0; }
   /// Waits until nobody reads.
   void wait() const {
     for (int n; (n = count_) > 0;) count_.wait(n);
@@ -154,10 +156,10 @@ class Readers {
 struct SceneAssets {
   Identity identity;
   uint64_t revision = 0, meshRevision = 0;
-  Readers readers; // beside the thread that owns it
   std::vector<Mesh> meshes;
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;
+  Readers readers; // beside the thread that owns it. Last: what goes waits for them first
 };
 
 /// Linear RGBA of one texel; alpha is never encoded.

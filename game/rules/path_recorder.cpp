@@ -74,6 +74,10 @@ bool PathRecorder::add(const CameraView& camera, const dvec3& origin, PlayedMome
 std::optional<Shot> PathRecorder::end() {
   const std::unique_ptr<ShotWriter> writer = std::move(writer_);
   const std::optional<Shot> walk = std::exchange(walk_, std::nullopt);
+  if (writer && frames_ == 0) { // the disk took the head alone
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+  }
   if (!writer || frames_ == 0) return {};
   writer->end(walk->seconds);
   return loadShot(file_);

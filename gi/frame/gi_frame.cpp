@@ -1,6 +1,7 @@
 #include "gi/frame/gi_frame.h"
 
 #include "engine/core/error.h"
+#include "engine/core/free_memory.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
@@ -9,6 +10,7 @@
 #include "gi/near/light_at_points.h"
 #include "gi/surfaces/surfaces.h"
 #include "gi/visibility/paraboloid_maps.h"
+#include "gi/vpl/asked_memory.h"
 
 #include <chrono>
 
@@ -33,6 +35,7 @@ struct GiFrame::Kept {
   DirectLight direct{context};
   std::unique_ptr<LightProvider> indirect; // below the world, which its update reads
   const Technique* indirectOf = nullptr;
+  double bytesOfLights = 0; // that were asked for last
 
   FrameOutputs outputs;
   FrameStats stats;
@@ -41,6 +44,7 @@ struct GiFrame::Kept {
       : settings(s), seed(seed_), programs(shaders), context{programs, profiler, makers} {}
 
   LightProvider& technique();
+  void refuseBeyondMemory(const Settings& asked);
   void begin(const SceneView& given);
   void end(Clock::time_point begin, const gl::Counts& before);
 };
@@ -69,6 +73,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const Settings settings = asGathered(k.settings);
   FrameStats& stats = k.stats;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
+  k.refuseBeyondMemory(settings);
   if (host) checkHost(*host, given.camera);
   const Clock::time_point begin = Clock::now();
   const gl::Counts before = gl::counts();
@@ -145,6 +150,13 @@ LightProvider& GiFrame::Kept::technique() {
     indirectOf = settings.own;
   }
   return *indirect;
+}
+
+/// Before more lights are asked for than memory holds.
+void GiFrame::Kept::refuseBeyondMemory(const Settings& asked) {
+  const double bytes = needsOf(asked).sampled() ? bytesOfVpls(asked.smc, asked.vpl) : 0;
+  if (bytes > bytesOfLights) lambent::refuseBeyondMemory(asked.smc, asked.vpl, freeMemory());
+  bytesOfLights = bytes;
 }
 
 /// New figures; the first time, how GPU times are taken; everything from scratch for another scene.

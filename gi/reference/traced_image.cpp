@@ -39,7 +39,12 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
       expected = std::min(expected, sums.samples * std::pow(error / plan.error, 2)); // it falls with the root
     }
     const auto start = Clock::now();
+    const ReferenceSums whole = in.stopped ? sums : ReferenceSums();
     addSamples(sums, in, std::min(perPass, plan.samples - sums.samples), out.rays);
+    if (in.stopped && *in.stopped) {
+      sums = whole;
+      break;
+    }
     seconds += std::chrono::duration<double>(Clock::now() - start).count();
     if (plan.progress) plan.progress(int(sums.samples), int(std::max<double>(sums.samples, expected)));
     // Killed, it loses a second, or as much more as keeps the time to save below a twentieth.
@@ -83,7 +88,8 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .bounces = settings.smc.bounces,
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
-                           .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr};
+                           .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr,
+                           .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);
   if (out.samples == 0) return out;

@@ -18,6 +18,7 @@ struct TracePlan {
   uint32_t seed = 1;                           // of all random numbers
   std::filesystem::path state = {};            // keep the sums in this file, and go on from it when it is there
   std::function<bool()> cancelled = {};        // asked about once a second; what was sampled so far is the image
+  const std::atomic<bool>* stopped = nullptr;  // as ReferenceInputs: the pass that it breaks off does not count
   std::function<void(int, int)> progress = {}; // samples taken, samples expected
 };
 

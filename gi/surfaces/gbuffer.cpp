@@ -21,19 +21,20 @@ float orthoFarFor(const CameraView& camera, const Aabb& scene) {
   return farthest * 1.01f;
 }
 
-/// CameraBlock::depthError of a host's depths.
+/// CameraBlock::depthError of a host's depths, in the corners of the image, where a place is off by most.
 vec4 depthErrorOf(const HostSurfaces& host, const CameraBlock& block) {
   const HostConventions& c = host.conventions;
   auto [absolute, relative] = gl::Texture::borrowed(host.depth).rounding();
-  if (c.depth == HostDepth::Linear) return {absolute, relative, 0, 0};
+  const bool ortho = block.lens.w > 0;
+  const float corner = ortho ? 1 : glm::length(vec3(block.lens.x, block.lens.y, 1));
+  if (c.depth == HostDepth::Linear) return corner * vec4(absolute, relative, 0, 0);
   constexpr float kSingle = 0x1p-24f; // of what is next to 1, as rasterisers compute it
   const float ofOne = relative + (c.depth == HostDepth::Forward ? kSingle : 0);
-  const bool far0 = c.depth == HostDepth::Reversed && !c.depthMinusOne; // what is far is stored as next to 0
+  const bool farIsZero = c.depth == HostDepth::Reversed && !c.depthMinusOne;
   if (c.depthMinusOne) absolute *= 0.5f;
   const float near = c.near > 0 ? c.near : block.lens.z;
-  const bool ortho = block.lens.w > 0;
   if (ortho) return {(absolute + ofOne) * ((c.near > 0 ? c.far : block.lens.w) - near), 0, 0, 0};
-  return far0 ? vec4(0, relative, absolute / near, 0) : vec4(0, 0, (absolute + ofOne) / near, 0);
+  return corner * (farIsZero ? vec4(0, relative, absolute / near, 0) : vec4(0, 0, (absolute + ofOne) / near, 0));
 }
 
 } // namespace

@@ -10,7 +10,7 @@ struct CameraBlock {
   // Orthographic: x, y = half width and height, metres; z = near plane; w = far plane, metres.
   vec4 lens;
   vec4 size; // x, y = width and height, pixels; z, w = their inverses
-  // A depth read at distance d along the view direction is off by up to x + y d + z d² metres, by how its texture stores it.
+  // A place read at distance d along the view direction is off by up to x + y d + z d² metres, by how its depth is stored.
   vec4 depthError;
 };
 

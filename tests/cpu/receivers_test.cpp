@@ -177,6 +177,9 @@ TEST(Receivers, FinishComesFromFactorsAndTexture) {
   EXPECT_LT(glm::length(r.diffuse - wanted.diffuse), 1e-6f);
   EXPECT_LT(glm::length(r.towardsViewer - wanted.towardsViewer), 1e-6f);
   hit.barycentric = {0.8f, 0.0f};
+  SceneView parallel = view;
+  parallel.camera.orthoHalfHeight = 1;
+  EXPECT_LT(glm::length(receiverOf(parallel, hit).towardsViewer - vec3(0, 0, 1)), 1e-6f) << "the same everywhere";
   r = receiverOf(view, hit);
   wanted = makeReceiver(kUp, wanted.towardsViewer, hit.albedo, 0.8f * 128 / 255, 0.5f);
   EXPECT_NEAR(r.alpha2, wanted.alpha2, 1e-6f);

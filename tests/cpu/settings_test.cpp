@@ -62,6 +62,11 @@ TEST(Settings, PresetsSetWhatTheySayAndNoMore) {
     EXPECT_EQ(said, (std::set<std::string>{"smc.vpls", "smc.points", "smc.paths", "shadow.resolution", "gather.near",
                                            "gather.mode"}));
   }
+  Settings back;
+  applyPreset(back, "low");
+  EXPECT_NE(back, Settings());
+  applyPreset(back, "default");
+  EXPECT_EQ(back, Settings());
   // A technique with a gather of its own keeps it.
   Settings isr;
   isr.vpl.source = VplSource::Isr;

@@ -123,4 +123,38 @@ TEST_F(PathRecorderTest, AWalkThatIsCutShortHasEveryWholeFrame) {
   }
 }
 
+/// A file that has its end is not touched, whatever somebody has written on it since.
+TEST_F(PathRecorderTest, WhatHasItsEndStaysAsItIs) {
+  PathRecorder recorder;
+  recorder.begin("a.gltf", nullptr, 30, {}, folder_);
+  for (int i = 0; i < 3; ++i) recorder.add(at(i / 30.0), dvec3(0), playedIn(i));
+  const fs::path file = recorder.end()->file;
+  const std::string text = readBytes(file), pretty = nlohmann::json::parse(text).dump(2);
+  for (const std::string& now : {text, text + "\n", text + "\n\n", text.substr(0, text.size() - 1), pretty,
+                                 pretty + "\n", text.substr(0, text.size() - 2) + ",\n\"pixels\":[]}\n"}) {
+    writeBytes(file, now);
+    EXPECT_EQ(loadShot(file).camera.size(), 3u) << now;
+    EXPECT_NEAR(loadShot(file).seconds, 0.1, 1e-9);
+    EXPECT_TRUE(endCutShots(folder_).empty()) << now;
+    EXPECT_EQ(readBytes(file), now);
+  }
+}
+
+/// Nothing of a recording without a frame stays, whoever ended it.
+TEST_F(PathRecorderTest, AFileWithoutAFrameGoes) {
+  fs::create_directory(folder_);
+  Shot shot;
+  shot.scene = "a.gltf";
+  { ShotWriter cut(shot, folder_ / "walk-1.json"); }
+  ASSERT_TRUE(fs::exists(folder_ / "walk-1.json"));
+  EXPECT_TRUE(endCutShots(folder_).empty());
+  EXPECT_FALSE(fs::exists(folder_ / "walk-1.json"));
+  writeBytes(folder_ / "walk-2.json", "something else");
+  EXPECT_TRUE(endCutShots(folder_).empty());
+  EXPECT_TRUE(fs::exists(folder_ / "walk-2.json"));
+  shot.scene = "\xff.gltf";
+  EXPECT_THROW(ShotWriter(shot, folder_ / "walk-3.json"), RunError) << "no UTF-8";
+  EXPECT_FALSE(fs::exists(folder_ / "walk-3.json"));
+}
+
 } // namespace lambent::test::path_recorder_test

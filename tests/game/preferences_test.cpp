@@ -163,4 +163,23 @@ TEST_F(PreferencesTest, AreLeftOutWithAReasonWhereTheyNoLongerFit) {
   EXPECT_NE(complaint, "");
 }
 
+TEST_F(PreferencesTest, SettingsOfATechniqueThatIsLeftGoWithIt) {
+  Preferences p;
+  p.set = {{"glow.strength", "2"}, {"smc.vpls", "64"}, {"image.toneMapper", "filmic"}};
+  Settings before, after;
+  before.ownValues = {{"glow.strength", 2}};
+  before.smc.vpls = 64;
+  after.smc.vpls = 128; // the technique sets it
+  p.choseTechnique("ir", before, after);
+  EXPECT_EQ(p.technique, "ir");
+  EXPECT_EQ(p.set, (std::map<std::string, std::string>{{"image.toneMapper", "filmic"}}));
+}
+
+TEST_F(PreferencesTest, AWindowIsOneThatCanBeOpened) {
+  write(R"({"kind": "lambent walkthrough", "window": [1, 99999]})");
+  EXPECT_EQ(loadPreferences(file_).window, std::pair(160, 16384));
+  write(R"({"kind": "lambent walkthrough", "exposure": 1e9})");
+  EXPECT_THROW(loadPreferences(file_), InputError) << "all white";
+}
+
 } // namespace lambent::test::preferences_test

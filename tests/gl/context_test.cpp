@@ -145,6 +145,8 @@ TEST_F(ContextTest, BlocksLieInMemoryAsTheShadersReadThem) {
   EXPECT_EQ(offsetOf(gather, "camera.worldFromView"), int(offsetof(CameraBlock, worldFromView)));
   EXPECT_EQ(offsetOf(gather, "camera.lens"), int(offsetof(CameraBlock, lens)));
   EXPECT_EQ(offsetOf(gather, "camera.size"), int(offsetof(CameraBlock, size)));
+  const gl::Program& doubts = programs.get({.fragment = "direct.frag", .defines = {"SPOT_MAPS", "DOUBTS"}});
+  EXPECT_EQ(offsetOf(doubts, "camera.depthError"), int(offsetof(CameraBlock, depthError)));
 
   const gl::Program& direct = programs.get({.fragment = "direct.frag", .defines = {"SPOT_MAPS"}});
   EXPECT_EQ(offsetOf(direct, "lights[0].directionTexel"), int(offsetof(LightRecord, directionTexel)));

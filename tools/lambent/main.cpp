@@ -6,8 +6,10 @@ int main(int argc, char** argv) {
   using namespace lambent;
   prepareStreams();
   endOnRequest();
-  return finishStreams(runCommand(argc, argv, "lambent " LAMBENT_VERSION,
+  const int status = runCommand(argc, argv, "lambent " LAMBENT_VERSION,
                                   {declareDoctor, declareInspect, declareRender, declareRecord, declareAccuracy,
                                    declareReference, declareCompare, declareStability, declareBench, declareSoak,
-                                   declareContent, declareSettings, declareTechniques}));
+                                   declareContent, declareSettings, declareTechniques});
+  endedInOrder();
+  return finishStreams(status);
 }

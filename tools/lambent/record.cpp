@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <thread>
 
 namespace lambent {
 
@@ -91,7 +93,13 @@ bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path&
       _exit(kNotInstalled);
     }
     int status = 0;
-    const bool ended = child >= 0 && waitpid(child, &status, 0) == child && WIFEXITED(status);
+    pid_t done = child < 0 ? -1 : 0;
+    while (done == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (interrupted) kill(child, SIGKILL); // its film is of no use
+      done = waitpid(child, &status, WNOHANG);
+    }
+    const bool ended = done == child && WIFEXITED(status);
     if (ended && WEXITSTATUS(status) == 0) return;
     if (ended && WEXITSTATUS(status) == kNotInstalled) throw NotInstalled();
     throw RunError(video.string() + ": ffmpeg failed (the frames are written)");
@@ -119,12 +127,18 @@ std::string videoCommand(const fs::path& folder, double fps) {
          quoted(fs::absolute(folder / "video.mp4").string());
 }
 
-/// Whether a picture is one that record wrote, to its end: nobody has emptied it, or put something else in its place.
+/// Whether a picture is one that record wrote, to its end: nobody has emptied or cut it, or put something else in its
+/// place.
 bool isPicture(const fs::path& file) {
   std::error_code none;
   if (!fs::is_regular_file(fs::symlink_status(file, none))) return false;
-  const std::string text = readText(file), begin = file.extension() == ".png" ? "\x89PNG" : "v/1\x01";
-  return text.starts_with(begin) && (file.extension() != ".png" || text.ends_with(std::string("IEND\xae\x42\x60\x82")));
+  try {
+    if (file.extension() == ".exr") return readExr(file).width > 0;
+    const std::string text = readText(file);
+    return text.starts_with("\x89PNG") && text.ends_with("IEND\xae\x42\x60\x82");
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 /// One technique that is recorded: alone, or one of two beside each other.
@@ -222,9 +236,7 @@ void record(const RecordOptions& options) {
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
   const RecordingMark mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)));
   const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
-  int kept = 0;
-  for (const int marked = options.resume ? mark.kept() : 0; kept < marked; ++kept) // as far as none is missing
-    if (!isPicture(picture(kept))) break;
+  const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
   if (options.resume) removeLeftovers(picture(kept));
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
@@ -252,9 +264,10 @@ void record(const RecordOptions& options) {
         if (done == 0 && i == 0 && sides.size() > 1) sides[1].gi->settings().image.exposure = gi.exposure(); // one eye
       }
       const auto begin = std::chrono::steady_clock::now();
-      if (options.format != "none" && done >= kept) { // frames of before are computed: later ones build on them
+      // Frames of before are computed: later ones build on them.
+      if (options.format != "none" && !(done < kept && isPicture(picture(done)))) {
         writeFrame(picture(done), sides, options, done, whole);
-        mark.write(done + 1);
+        mark.write(std::max(kept, done + 1));
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
       for (Side& side : sides) side.log.add(t, *side.stats, writing.count(), governor ? &*governor : nullptr);
@@ -269,9 +282,12 @@ void record(const RecordOptions& options) {
   }
   for (Side& side : sides) side.log.end();
   if (const Image8 all = sheet.sheet(); all.width > 0) writePng(folder / "contact-sheet.png", all);
-  const bool filmed = options.video && done > 0 && encodeVideo(folder, done, opened->shot->fps, folder / "video.mp4");
+  const fs::path video = folder / "video.mp4";
+  const bool films = options.video && done > 0 && !interrupted;
+  if (films) removeLeftovers(video);
+  const bool filmed = films && encodeVideo(folder, done, opened->shot->fps, video);
   tell(options, sides, folder, done, total, filmed);
-  if (options.video && done > 0 && !filmed && !options.output.quiet)
+  if (films && !filmed && !options.output.quiet)
     std::printf("ffmpeg is not installed: the film stays a sequence of pictures (%s makes it)\n",
                 videoCommand(folder, opened->shot->fps).c_str());
   if (interrupted)

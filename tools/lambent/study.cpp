@@ -74,6 +74,7 @@ TracedImage trace(const SceneView& view, const Settings& settings, TracePlan pla
                   bool quiet) {
   Progress progress(doing, quiet);
   plan.cancelled = [] { return interrupted.load(); };
+  plan.stopped = &interrupted;
   plan.progress = [&](int done, int total) { progress.update(done, total); };
   return traceImage(view, settings, plan);
 }

@@ -342,7 +342,7 @@ SceneView LaunchContext::at(double t) {
 void useThreads(int threads) {
   setThreadCount(threads);
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
-  requireThreadsAndMemory();
+  requireThreadsAndMemory(threadCount() + 1); // of loops, and one that traces beside frames
 }
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
@@ -364,7 +364,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
-  stage->scene = loadScene(file, options.sceneName, step, options.outside ? FileAccess::Anywhere : FileAccess::Within);
+  stage->scene = loadScene(file, options.sceneName, step, accessOf(options));
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

@@ -32,6 +32,9 @@ struct LaunchOptions {
   int threads = 0; // 0 = all cores
 };
 
+/// Of the files that a scene names.
+inline FileAccess accessOf(const LaunchOptions& o) { return o.outside ? FileAccess::Anywhere : FileAccess::Within; }
+
 /// Refuses "nan" and "inf" for every option of the command that takes a number: ranges let the first pass.
 void refuseNotANumber(CLI::App& command);
 /// Declares the common options on a command. `options` must outlive the parse.

@@ -272,6 +272,12 @@ TEST_F(BadInput, AKeyGivenTwiceWithEscapesIsRefused) {
   expectError("twice.gltf", text, "gives the key 'abc' twice");
 }
 
+TEST_F(BadInput, ANegativeStrideIsRefused) {
+  json j = json::parse(oneTriangle().text());
+  j["bufferViews"][0]["byteStride"] = -1;
+  expectError("stride.gltf", j.dump(2), "byteStride");
+}
+
 TEST_F(BadInput, CyclesAndTwoParents) {
   GltfBuilder cycle = oneTriangle();
   cycle.push("nodes", {{"children", {0}}});

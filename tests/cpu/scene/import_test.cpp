@@ -378,4 +378,54 @@ TEST_F(Import, MatrixNodesAreTakenApartUnlessSheared) {
   EXPECT_TRUE(scene.registry.get<Transform>(Entity(0, 0)).matrix);
 }
 
+/// All roots are shown then, and children with them.
+TEST_F(Import, AFileWithoutScenesShowsEachNodeOnce) {
+  GltfBuilder b = oneTriangle();
+  b.json.erase("scenes");
+  b.json.erase("scene");
+  b.json["nodes"][0]["children"] = {1};
+  b.push("nodes", {{"name", "child"}, {"mesh", 0}, {"translation", {0, 0, 5}}});
+  scene = b.load(folder);
+  SceneExtractor extractor;
+  EXPECT_EQ(extractor.extract(scene, {}, 0).instances.size(), 2u);
+  EXPECT_TRUE(findByName(scene, "child"));
+}
+
+TEST_F(Import, AnimationsOfNodesOfAnotherSceneAreLeftOut) {
+  GltfBuilder b = oneTriangle();
+  const int other = b.push("nodes", {{"name", "elsewhere"}});
+  b.push("scenes", {{"nodes", {other}}});
+  b.animate(other, "translation", b.floats({0, 1}), b.floats({0, 0, 0, 1, 1, 1}, "VEC3"));
+  b.json["scene"] = 0;
+  scene = b.load(folder);
+  EXPECT_NO_THROW(animate(scene, 0.5));
+  EXPECT_FALSE(findByName(scene, "elsewhere"));
+}
+
+TEST_F(Import, NegativeLightIsLeftOutAndSaid) {
+  GltfBuilder b = oneTriangle();
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"color", {1, -0.5, 0}}, {"intensity", 10}}};
+  b.addRoot({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  scene = b.load(folder);
+  SceneExtractor extractor;
+  expectNear(extractor.extract(scene, {}, 0).lights[0].intensity, {10, 0, 0});
+  EXPECT_TRUE(hasWarning(scene, "negative light"));
+}
+
+/// KHR_texture_transform: rotation turns counter-clockwise from +u away from +v, which runs down.
+TEST_F(Import, TextureTransformsTurn) {
+  GltfBuilder b = oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["images"] = {{{"bufferView", b.view(png({255, 0, 188, 255}))}, {"mimeType", "image/png"}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"rotation", kPi / 2}}}}}}}}}}};
+  scene = b.load(folder);
+  const mat3& turn = scene.assets.materials[0].baseColorTexture.uvTransform;
+  expectNear(turn * vec3(1, 0, 1), {0, -1, 1});
+  expectNear(turn * vec3(0, 1, 1), {1, 0, 1});
+}
+
 } // namespace lambent::test::import_test

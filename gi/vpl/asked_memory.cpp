@@ -1,0 +1,44 @@
+#include "gi/vpl/asked_memory.h"
+
+#include "engine/core/error.h"
+#include "gi/vpl/kept_paths.h"
+#include "gi/vpl/smc.h"
+
+#include <algorithm>
+
+namespace lambent {
+
+namespace {
+
+/// Of paths that are kept: all of the lights', half as many of the sampler's for each light, and as many in its pool.
+double bytesOfPaths(const SmcSettings& smc) {
+  const double paths = (smc.cache ? 2.0 * smc.vpls : 1.0) * smc.paths; // else those of one light at a time
+  return paths * std::max(smc.bounces, 1) * sizeof(KeptVertex);
+}
+
+double bytesOfCandidates(const SmcSettings& smc, const VplSettings& vpl) {
+  constexpr double kSearched = 200; // while neighbours are looked for: points, tree, weights, areas
+  const double rays = vpl.source == VplSource::Mir   ? double(smc.vpls) * vpl.mirCandidates
+                      : vpl.source == VplSource::Smc ? double(smc.vpls) * smc.candidateRays
+                                                     : double(smc.vpls);
+  return rays * (sizeof(CandidateHit) + kSearched);
+}
+
+} // namespace
+
+double bytesOfVpls(const SmcSettings& smc, const VplSettings& vpl) {
+  return bytesOfPaths(smc) + bytesOfCandidates(smc, vpl);
+}
+
+void refuseBeyondMemory(const SmcSettings& smc, const VplSettings& vpl, size_t free) {
+  const double paths = bytesOfPaths(smc), candidates = bytesOfCandidates(smc, vpl);
+  if (paths + candidates <= double(free)) return;
+  const std::string names = paths > candidates             ? "smc.vpls, smc.paths and smc.bounces"
+                            : vpl.source == VplSource::Mir ? "smc.vpls and vpl.mirCandidates"
+                                                           : "smc.vpls and smc.candidateRays";
+  throw InputError("settings", names + " ask for " + std::to_string(size_t((paths + candidates) / 1e9) + 1) +
+                                   " GB of memory, more than is left (lower one of them" +
+                                   (paths > candidates && smc.cache ? ", or smc.cache=off)" : ")"));
+}
+
+} // namespace lambent
