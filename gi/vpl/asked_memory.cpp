@@ -2,7 +2,7 @@
 
 #include "engine/core/error.h"
 #include "gi/vpl/kept_paths.h"
-#include "gi/vpl/smc.h"
+#include "gi/vpl/sources.h"
 
 #include <algorithm>
 
@@ -18,9 +18,7 @@ double bytesOfPaths(const SmcSettings& smc) {
 
 double bytesOfCandidates(const SmcSettings& smc, const VplSettings& vpl) {
   constexpr double kSearched = 200; // while neighbours are looked for: points, tree, weights, areas
-  const double rays = vpl.source == VplSource::Mir   ? double(smc.vpls) * vpl.mirCandidates
-                      : vpl.source == VplSource::Smc ? double(smc.vpls) * smc.candidateRays
-                                                     : double(smc.vpls);
+  const double rays = double(smc.vpls) * candidatesAsked(smc, vpl).perSlot;
   return rays * (sizeof(CandidateHit) + kSearched);
 }
 
@@ -33,9 +31,8 @@ double bytesOfVpls(const SmcSettings& smc, const VplSettings& vpl) {
 void refuseBeyondMemory(const SmcSettings& smc, const VplSettings& vpl, size_t free) {
   const double paths = bytesOfPaths(smc), candidates = bytesOfCandidates(smc, vpl);
   if (paths + candidates <= double(free)) return;
-  const std::string names = paths > candidates             ? "smc.vpls, smc.paths and smc.bounces"
-                            : vpl.source == VplSource::Mir ? "smc.vpls and vpl.mirCandidates"
-                                                           : "smc.vpls and smc.candidateRays";
+  const std::string names = paths > candidates ? "smc.vpls, smc.paths and smc.bounces"
+                                               : std::string("smc.vpls and ") + candidatesAsked(smc, vpl).setting;
   throw InputError("settings", names + " ask for " + std::to_string(size_t((paths + candidates) / 1e9) + 1) +
                                    " GB of memory, more than is left (lower one of them" +
                                    (paths > candidates && smc.cache ? ", or smc.cache=off)" : ")"));

@@ -40,6 +40,12 @@ VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpda
   return updateVpls(set, in, log, progress);
 }
 
+CandidatesAsked candidatesAsked(const SmcSettings& smc, const VplSettings& vpl) {
+  if (vpl.source == VplSource::Mir) return {vpl.mirCandidates, "vpl.mirCandidates"};
+  if (vpl.source == VplSource::Smc) return {smc.candidateRays, "smc.candidateRays"};
+  return {1, "smc.vpls"};
+}
+
 PlacedVpl::PlacedVpl(const SurfaceHit& hit, const vec3& flux)
     : position(hit.position), normal(hit.normal), geometricNormal(hit.geometricNormal), albedo(hit.albedo),
       power(flux * hit.albedo / kPi), instance(hit.instance) {}

@@ -12,6 +12,13 @@ namespace lambent {
 VplChanges placeVpls(VplSource source, VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                      const std::function<void(int, int)>& progress = {});
 
+/// Rays that look for places in a frame, for each slot, and the setting that says so.
+struct CandidatesAsked {
+  int perSlot;
+  const char* setting;
+};
+CandidatesAsked candidatesAsked(const SmcSettings& smc, const VplSettings& vpl);
+
 /// Instant radiosity (Keller 1997): photons from the lights leave a VPL at each of their first B hits. The sequence of
 /// photons is the same in every frame, so a static scene gives the same set. Photons that leave the scene leave slots
 /// empty.
