@@ -65,4 +65,14 @@ std::vector<uint32_t> spreadOrder(uint32_t count, double step) {
   return order;
 }
 
+uint32_t alongCurve(const uvec3& cell) {
+  const auto spread = [](uint32_t v) { // ten bits to every third
+    v = (v | v << 16) & 0x030000ff;
+    v = (v | v << 8) & 0x0300f00f;
+    v = (v | v << 4) & 0x030c30c3;
+    return (v | v << 2) & 0x09249249;
+  };
+  return spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2;
+}
+
 } // namespace lambent

@@ -54,4 +54,7 @@ vec3 additiveRecurrence3(uint32_t i, const vec3& shift);
 /// so are the places of neighbouring numbers.
 std::vector<uint32_t> spreadOrder(uint32_t count, double step);
 
+/// Number of a cell along a Morton curve, which fills a cube of 1024³ cells: cells near along it are near in space.
+uint32_t alongCurve(const uvec3& cell);
+
 } // namespace lambent

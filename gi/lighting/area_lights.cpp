@@ -1,6 +1,7 @@
 #include "gi/lighting/area_lights.h"
 
 #include "engine/core/rng.h"
+#include "engine/core/sampling.h"
 #include "gi/lighting/area_pieces.h"
 
 #include <algorithm>
@@ -14,13 +15,10 @@ namespace lambent {
 
 namespace {
 
-/// Number of the cell that a place in [0,1]³ lies in along a curve that fills the cube (Morton).
-uint32_t alongCurve(const vec3& place) {
+/// Number of the cell that a place in [0,1]³ lies in along a curve that fills the cube.
+uint32_t numberOf(const vec3& place) {
   const uvec3 cell = uvec3(glm::clamp(place, 0.0f, 0.999f) * 1024.0f);
-  uint32_t number = 0;
-  for (int bit = 9; bit >= 0; --bit)
-    for (int axis = 0; axis < 3; ++axis) number = number << 1 | (cell[axis] >> bit & 1);
-  return number;
+  return alongCurve(uvec3(cell.z, cell.y, cell.x));
 }
 
 bool textured(const LightSet& lights, const Emitter& emitter) {
@@ -78,7 +76,7 @@ std::vector<SurfaceLight> pointsOf(const LightSet& lights, const Emitter& emitte
   }
   const vec3 size = glm::max(box.size(), vec3(maxComponent(box.size()) * 1e-3f + 1e-30f));
   std::vector<std::pair<uint32_t, uint32_t>> order;
-  for (uint32_t i = 0; i < count; ++i) order.emplace_back(alongCurve((points[i].position - box.lo) / size), i);
+  for (uint32_t i = 0; i < count; ++i) order.emplace_back(numberOf((points[i].position - box.lo) / size), i);
   std::sort(order.begin(), order.end());
   std::vector<SurfaceLight> sorted;
   for (const auto& [place, i] : order) sorted.push_back(points[i]);
@@ -118,7 +116,7 @@ std::vector<vec2> netsOf(uint32_t count) {
     std::vector<std::pair<uint32_t, vec2>> net;
     for (uint32_t i = 0; i < rays; ++i) {
       const vec2 at = vec2(float(i) / float(rays), bitsReversed(i ^ other)) + 0.5f / float(rays);
-      net.emplace_back(alongCurve(vec3(at, 0)), at);
+      net.emplace_back(numberOf(vec3(at, 0)), at);
     }
     std::ranges::sort(net, {}, &std::pair<uint32_t, vec2>::first);
     for (uint32_t k = 0; k < rays; ++k) places[(2 * k + 1) * (count / rays / 2)] = net[k].second;

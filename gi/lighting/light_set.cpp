@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace lambent {
 
@@ -19,6 +20,20 @@ vec3 emissionAt(const SceneView& view, const Emitter& e, uint32_t meshTriangle, 
   const uvec3 t = mesh.triangles[primitive.firstTriangle + meshTriangle];
   const vec2 at = uv[t.x] * (1 - bary.x - bary.y) + uv[t.y] * bary.x + uv[t.z] * bary.y;
   return material.emission * vec3(sampleTexture(*view.assets, material.emissiveTexture, at));
+}
+
+/// Emitters one after another along a curve through their places.
+std::vector<uint32_t> orderOf(std::span<const Emitter> emitters) {
+  Aabb box;
+  for (const Emitter& e : emitters) box.add(e.bounds.centre);
+  const vec3 scale = vec3(1023) / glm::max(box.size(), vec3(1e-30f));
+  std::vector<std::pair<uint32_t, uint32_t>> order;
+  for (uint32_t i = 0; i < emitters.size(); ++i)
+    order.emplace_back(alongCurve(uvec3((emitters[i].bounds.centre - box.lo) * scale)), i);
+  std::ranges::sort(order);
+  std::vector<uint32_t> indices;
+  for (const auto& [place, i] : order) indices.push_back(i);
+  return indices;
 }
 
 } // namespace
@@ -167,20 +182,32 @@ float pdfEmitterArea(const LightSet& lights, const Emitter& emitter, uint32_t me
 }
 
 std::vector<EmitterPatch> emitterPatches(const LightSet& lights, int count) {
+  std::vector<EmitterPatch> patches;
+  const auto add = [&](const Emitter& e, float place, uint32_t i, float power) {
+    const vec3 spread = additiveRecurrence3(i, vec3(0.5f));
+    const EmitterPoint p = sampleEmitter(lights, e, {place, spread.x, spread.y});
+    const EmitterTriangle& t = lights.triangles[e.firstTriangle + e.byPower.sample(place)];
+    // Radiance of the triangle rather than of the point: a texel that happens to be black must not darken the patch.
+    const float area = power / luminance(t.radiance);
+    patches.push_back({p.position, p.normal, t.radiance, area});
+    if (e.doubleSided) patches.push_back({p.position, -p.normal, t.radiance, area});
+  };
   float total = 0;
   for (const Emitter& e : lights.emitters) total += e.power;
-  std::vector<EmitterPatch> patches;
+  if (lights.emitters.size() > kMostEmitterPatches) {
+    const std::vector<uint32_t> order = orderOf(lights.emitters);
+    std::vector<float> powers;
+    for (const uint32_t e : order) powers.push_back(lights.emitters[e].power);
+    const Distribution byPower(powers);
+    for (uint32_t i = 0; i < kMostEmitterPatches; ++i) {
+      const auto [at, place] = byPower.choose((float(i) + 0.5f) / float(kMostEmitterPatches));
+      add(lights.emitters[order[at]], place, i, total / float(kMostEmitterPatches));
+    }
+    return patches;
+  }
   for (const Emitter& e : lights.emitters) {
     const int share = std::max(1, int(std::lround(float(count) * e.power / total)));
-    for (int i = 0; i < share; ++i) {
-      const vec3 spread = additiveRecurrence3(uint32_t(i), vec3(0.5f));
-      const EmitterPoint p = sampleEmitter(lights, e, {(float(i) + 0.5f) / float(share), spread.x, spread.y});
-      const EmitterTriangle& t = lights.triangles[e.firstTriangle + e.byPower.sample((float(i) + 0.5f) / float(share))];
-      // Radiance of the triangle rather than of the point: a texel that happens to be black must not darken the patch.
-      const float area = e.power / float(share) / luminance(t.radiance);
-      patches.push_back({p.position, p.normal, t.radiance, area});
-      if (e.doubleSided) patches.push_back({p.position, -p.normal, t.radiance, area});
-    }
+    for (int i = 0; i < share; ++i) add(e, (float(i) + 0.5f) / float(share), uint32_t(i), e.power / float(share));
   }
   return patches;
 }

@@ -86,7 +86,11 @@ struct EmitterPatch {
 /// About `count` patches over all emitters (at least one each), in proportion to power, evenly spread over each
 /// emitter's surface, the same every time. Double-sided emitters give one patch per side. The patches of an emitter add
 /// up to its power exactly.
+///
+/// More than kMostEmitterPatches emitters share so many patches: along a Morton curve through their places each patch
+/// stands where an equal part of all power has its middle, in the colour of the emitter there.
 std::vector<EmitterPatch> emitterPatches(const LightSet& lights, int count);
+inline constexpr size_t kMostEmitterPatches = 1024; // of each side
 inline VirtualLight lightOf(const EmitterPatch& p) {
   return {p.position, p.normal, p.normal, p.radiance, p.area, true};
 }

@@ -2,6 +2,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
+#include "engine/core/sampling.h"
 #include "gi/lists/light_columns.h"
 #include "gi/vpl/smc.h"
 
@@ -21,15 +22,8 @@ constexpr float kLeastChance = 1 / 60000.0f; // its inverse is a half float
 constexpr int kMostTiles = 1024;             // of an image: its tiles grow until they are no more
 constexpr uint32_t kChunk = kLightsPerChunk;
 
-uint32_t spread(uint32_t v) { // ten bits to every third
-  v = (v | v << 16) & 0x030000ff;
-  v = (v | v << 8) & 0x0300f00f;
-  v = (v | v << 4) & 0x030c30c3;
-  return (v | v << 2) & 0x09249249;
-}
-
 /// Slots with light, chunk by chunk, along a Morton curve.
-std::vector<uint32_t> alongCurve(std::span<const VirtualLight> lights) {
+std::vector<uint32_t> orderOf(std::span<const VirtualLight> lights) {
   std::vector<uint32_t> order;
   vec3 low(kInfinity), high(-kInfinity);
   for (uint32_t slot = 0; slot < lights.size(); ++slot) {
@@ -42,8 +36,7 @@ std::vector<uint32_t> alongCurve(std::span<const VirtualLight> lights) {
   const vec3 scale = vec3(1023) / glm::max(high - low, vec3(1e-20f));
   std::vector<uint32_t> codes(lights.size());
   for (const uint32_t slot : order) {
-    const glm::uvec3 p((lights[slot].position - low) * scale);
-    codes[slot] = spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2;
+    codes[slot] = alongCurve(uvec3((lights[slot].position - low) * scale));
   }
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     return std::tuple(a / kChunk, codes[a], a) < std::tuple(b / kChunk, codes[b], b);
@@ -204,7 +197,7 @@ void chooseLights(const ListInputs& in, ListTable& table, uint64_t& rays) {
   const size_t tiles = size_t(table.tiles.x) * size_t(table.tiles.y);
   table.texels.resize(table.row() * tiles);
   table.places.resize(tiles * kPlaces);
-  const std::vector<uint32_t> order = alongCurve(in.lights);
+  const std::vector<uint32_t> order = orderOf(in.lights);
   const LightColumns columns = columnsOf(in.lights, order, in.gather.disk);
   constexpr size_t kGrain = 8;
   parallelCount(tiles, kGrain, rays, [&](size_t begin, size_t end, uint64_t& count) {

@@ -177,4 +177,32 @@ TEST(Lights, PatchesAddUpToTheEmittersPower) {
   EXPECT_NEAR(power[1], 0.1 * 2, 1e-5);
 }
 
+// A map for each of many thousand lamps took gigabytes.
+TEST(Lights, ManyEmittersShareTheirPatches) {
+  LightSet lights;
+  Rng rng(3, Stream::Test, 6);
+  double powers[2] = {0, 0};
+  for (uint32_t i = 0; i < 5000; ++i) { // two halls of lamps, those of one three times as bright
+    const bool far = i % 4 == 0;
+    const vec3 at(rng.next() * 10 + (far ? 100 : 0), rng.next(), rng.next() * 10);
+    const float radiance = (far ? 3 : 1) * (0.5f + rng.next());
+    addEmitter(lights, i, 0, {makeEmitterTriangle(at, at + vec3(0, 0, 0.1f), at + vec3(0.1f, 0, 0), vec3(radiance))},
+               false);
+    powers[far] += double(lights.emitters.back().power);
+  }
+  const std::vector<EmitterPatch> patches = emitterPatches(lights, 16);
+  EXPECT_EQ(patches.size(), kMostEmitterPatches);
+  double shares[2] = {0, 0}, along[2] = {0, 0};
+  for (const EmitterPatch& p : patches) {
+    const double power = double(luminance(p.radiance)) * p.area;
+    shares[p.position.x > 50] += power;
+    along[p.position.x > 50] += power * (p.position.x > 50 ? p.position.x - 100 : p.position.x);
+    EXPECT_FLOAT_EQ(p.normal.y, 1);
+  }
+  for (const int hall : {0, 1}) {
+    EXPECT_NEAR(shares[hall] / powers[hall], 1, 2.0 / double(kMostEmitterPatches) + 1e-3);
+    EXPECT_NEAR(along[hall] / shares[hall], 5, 0.5); // they stand all over their hall
+  }
+}
+
 } // namespace lambent::test::sampling_test
