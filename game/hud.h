@@ -125,6 +125,7 @@ class Hud {
   void drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth, const FrameStats& stats);
   void drawQuality(HudModel& model, Viewer& gi);
   void drawStages(const FrameStats& stats);
+  void drawMemory();
   void drawEffects(Settings& settings, const FrameStats& stats);
   void drawFigures(const FrameStats& stats);
   void drawSettings(Settings& settings);

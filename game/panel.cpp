@@ -2,6 +2,8 @@
 #include "game/hud.h"
 
 #include "engine/core/error.h"
+#include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 #include "gi/plan/presets.h"
 
 #include <imgui/imgui.h>
@@ -207,6 +209,7 @@ void Hud::drawPanel(HudModel& model, Scene& scene, Viewer& gi, TruthView& truth,
   if (section("Speed and quality", true)) drawQuality(model, gi);
   if (truth.mode() != TruthMode::Off && section("Truth", true)) drawTruthFigures(truth);
   if (section("Where the time goes", false)) drawStages(stats);
+  if (section("Who holds memory", false)) drawMemory();
   if (section("What the scene calls for", false)) drawEffects(gi.settings(), stats);
   if (section("Figures", false)) drawFigures(stats);
   if (section("All settings", false)) drawSettings(gi.settings());
@@ -262,6 +265,27 @@ void Hud::drawFigures(const FrameStats& stats) {
   if (!stats.makerTimes.empty()) ImGui::TextWrapped("%s", stats.makerTimes.c_str());
   if (!stats.cubeMakerTimes.empty()) ImGui::TextWrapped("hemicubes: %s", stats.cubeMakerTimes.c_str());
   if (!stats.areaTracer.empty()) ImGui::TextWrapped("area rays: %s", stats.areaTracer.c_str());
+}
+
+/// Who holds memory, of the program and of OpenGL, and what is left.
+void Hud::drawMemory() {
+  const auto mebibytes = [](uint64_t bytes) { return double(bytes) / (1 << 20); };
+  ImGui::Text("%.0f MiB left", mebibytes(freeMemory()));
+  if (!ImGui::BeginTable("memory", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return;
+  ImGui::TableSetupColumn("held by", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("of", ImGuiTableColumnFlags_WidthFixed, 60 * scale_);
+  ImGui::TableSetupColumn("MiB", ImGuiTableColumnFlags_WidthFixed, 60 * scale_);
+  ImGui::TableHeadersRow();
+  for (const MemoryAccount::Row& row : MemoryAccount::current().rows()) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(row.owner.c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(row.gpu ? "OpenGL" : "program");
+    ImGui::TableNextColumn();
+    ImGui::Text("%6.1f", mebibytes(row.bytes));
+  }
+  ImGui::EndTable();
 }
 
 void Hud::drawStages(const FrameStats& stats) {

@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 
 #include <algorithm>
 
@@ -121,8 +122,8 @@ void CheckedReader::strided(void* first, size_t each, size_t count, const ByteLa
 
 void CheckedReader::refuseBeyondMemory(uint64_t bytes) const { // a file with holes may be larger than memory
   if (bytes > freeMemory())
-    throw RunError(file_.string() + ": needs " + std::to_string(bytes / 1'000'000'000 + 1) +
-                   " GB of memory, more than is left (" + name_ + "; end other programs, or begin again without it)");
+    throw RunError(file_.string() + ": needs " +
+                   moreThanIsLeft(double(bytes), name_ + "; end other programs, or begin again without it"));
 }
 
 void CheckedReader::end() {

@@ -4,10 +4,12 @@
 #include "engine/core/interrupt.h"
 
 #include <cerrno>
+#include <chrono>
 #include <climits>
 #include <fstream>
 #include <random>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -114,6 +116,17 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
     out.close();
     if (!out) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
+}
+
+FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  for (int tries = 0; tries < 100; ++tries) {
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 AppendedFile::AppendedFile(const fs::path& file)

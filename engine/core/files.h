@@ -18,6 +18,18 @@ void writeAtomically(const std::filesystem::path& file, const std::function<void
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
+/// Keeps others who ask for it out of a folder while it lives. Waits a second for them at most, and then no longer: a
+/// program that is stopped holds nobody up. Nothing where the disk knows no locks.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 /// A new file that grows line by line: whatever ends the program, it has all lines before. Locked while it lives, where
 /// the disk knows locks.
 class AppendedFile {

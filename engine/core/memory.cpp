@@ -1,5 +1,8 @@
 #include "engine/core/memory.h"
 
+#include <algorithm>
+#include <functional>
+
 namespace lambent {
 
 namespace {
@@ -26,5 +29,28 @@ MemoryAccount& MemoryAccount::current() {
 
 MemoryAccount::Scope::Scope(MemoryAccount& account) : before_(accountAround) { accountAround = &account; }
 MemoryAccount::Scope::~Scope() { accountAround = before_; }
+
+void HeldMemory::now(uint64_t bytes) {
+  if (bytes == bytes_) return;
+  if (!account_) account_ = &MemoryAccount::current();
+  account_->enter(owner_, false, int64_t(bytes - bytes_));
+  bytes_ = bytes;
+}
+
+std::string moreThanIsLeft(double bytes, const std::string& cure) {
+  constexpr uint64_t kWorthNaming = 100'000'000;
+  constexpr size_t kMostNamed = 4;
+  std::vector<MemoryAccount::Row> rows = MemoryAccount::current().rows();
+  std::erase_if(rows, [](const MemoryAccount::Row& row) { return row.bytes < kWorthNaming; });
+  std::ranges::sort(rows, std::greater(), &MemoryAccount::Row::bytes);
+  rows.resize(std::min(rows.size(), kMostNamed));
+  std::string held;
+  for (const MemoryAccount::Row& row : rows) {
+    const uint64_t tenths = row.bytes / kWorthNaming;
+    held += (held.empty() ? "; held: " : ", ") + row.owner + " " + std::to_string(tenths / 10) + "." +
+            std::to_string(tenths % 10) + " GB";
+  }
+  return std::to_string(uint64_t(bytes / 1e9) + 1) + " GB of memory, more than is left (" + cure + held + ")";
+}
 
 } // namespace lambent

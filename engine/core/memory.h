@@ -1,4 +1,5 @@
-// What large memory is held, by owner: textures and buffers of the GPU, hierarchies of the ray tracer.
+// What large memory is held, by owner: textures and buffers of the GPU, hierarchies of the ray tracer, scenes, virtual
+// lights, cubes.
 #pragma once
 
 #include <cstdint>
@@ -47,5 +48,23 @@ class MemoryAccount {
   std::map<std::pair<std::string, bool>, uint64_t> bytes_;
   std::function<bool(int64_t)> mayGrow_;
 };
+
+/// What one owner holds of the program's memory, in the account of the thread that says so first. The account must
+/// outlive it.
+class HeldMemory {
+ public:
+  explicit HeldMemory(std::string owner) : owner_(std::move(owner)) {}
+  ~HeldMemory() { now(0); }
+  HeldMemory(const HeldMemory&) = delete;
+  void now(uint64_t bytes);
+
+ private:
+  std::string owner_;
+  MemoryAccount* account_ = nullptr;
+  uint64_t bytes_ = 0;
+};
+
+/// "N GB of memory, more than is left (CURE)" for an error, with who holds most of what is taken.
+std::string moreThanIsLeft(double bytes, const std::string& cure);
 
 } // namespace lambent

@@ -162,6 +162,9 @@ struct SceneAssets {
   Readers readers; // beside the thread that owns it. Last: what goes waits for them first
 };
 
+/// Bytes of its meshes and textures.
+uint64_t bytesOf(const SceneAssets& assets);
+
 /// Linear RGBA of one texel; alpha is never encoded.
 vec4 decodeTexel(const u8vec4& texel, bool srgb);
 

@@ -46,6 +46,15 @@ std::pair<int, int> windowOf(const nlohmann::json& j) {
   return {std::clamp(size[0], kSmallest, kLargest), std::clamp(size[1], kSmallest, kLargest)};
 }
 
+/// What a file holds, and `instead` where it is none of preferences.
+Preferences heldBy(const fs::path& file, const Preferences& instead) {
+  try {
+    return loadPreferences(file);
+  } catch (const InputError&) {
+    return instead;
+  }
+}
+
 double between(double low, double value, double high) {
   if (!(value >= low && value <= high)) throw std::out_of_range("a number is out of range");
   return value;
@@ -92,6 +101,20 @@ Settings Preferences::over(const Settings& settings, const AskedFor& asked, cons
     complaint = std::string("settings of the last time are left out: ") + e.what();
   }
   return settings;
+}
+
+Preferences Preferences::with(const Preferences& before, const Preferences& after) const {
+  Preferences p = *this;
+  const auto take = [&](auto member) {
+    if (before.*member != after.*member) p.*member = after.*member;
+  };
+  take(&Preferences::preset), take(&Preferences::technique), take(&Preferences::exposure), take(&Preferences::panel);
+  take(&Preferences::folded), take(&Preferences::speed), take(&Preferences::window);
+  for (const auto& [name, value] : before.set)
+    if (!after.set.contains(name)) p.set.erase(name);
+  for (const auto& [name, value] : after.set)
+    if (const auto had = before.set.find(name); had == before.set.end() || had->second != value) p.set[name] = value;
+  return p;
 }
 
 bool Preferences::chooseQuality() const {
@@ -153,7 +176,7 @@ KeptPreferences::KeptPreferences(fs::path file) : file_(std::move(file)) {
   } catch (const InputError& e) {
     complaint_ = std::string(e.what()) + ": begun without; what you change takes its place";
   }
-  saved_ = seen_ = now;
+  inFile_ = saved_ = seen_ = now;
 }
 
 void KeptPreferences::passed(double seconds) {
@@ -166,7 +189,9 @@ void KeptPreferences::save() {
   if (file_.empty() || now == saved_) return;
   saved_ = now; // also where it fails: reported once, tried again when something else changes
   try {
-    savePreferences(now, file_);
+    const FolderLock alone(file_.parent_path());
+    savePreferences(heldBy(file_, now).with(inFile_, now), file_);
+    inFile_ = now;
   } catch (const RunError& e) {
     complaint_ = std::string("settings are not kept: ") + e.what();
   }

@@ -40,6 +40,8 @@ struct Preferences {
   using ApplyTechnique = std::function<void(Settings&, const std::string&)>;
   Settings over(const Settings& settings, const AskedFor& asked, const ApplyTechnique& apply,
                 std::string& complaint) const;
+  /// These with what was changed between `before` and `after`, and with nothing else of either.
+  Preferences with(const Preferences& before, const Preferences& after) const;
   /// Whether they say how good images are to be, so that nothing else chooses.
   bool chooseQuality() const;
 };
@@ -63,7 +65,7 @@ class KeptPreferences {
 
   /// `seconds` went by. Saves what has not changed for two of them.
   void passed(double seconds);
-  /// Saves what has changed since the last time.
+  /// Saves what has changed since the last time into what the file holds by now: another window's changes stay.
   void save();
   /// What went wrong since the last call, one line; empty: nothing.
   std::string takeComplaint() { return std::exchange(complaint_, {}); }
@@ -71,6 +73,7 @@ class KeptPreferences {
  private:
   std::filesystem::path file_;
   Preferences saved_, seen_;
+  Preferences inFile_; // what of this window's the file holds
   double still_ = 0; // seconds that `now` has been as it was last seen
   std::string complaint_;
 };

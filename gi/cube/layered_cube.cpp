@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 #include "engine/core/parallel.h"
 #include "gi/vpl/smc.h"
 
@@ -52,8 +53,8 @@ size_t memoryFor(const CubeInputs& in) { return in.memory == 0 ? freeMemory() : 
 /// Throws RunError where there are not so many bytes.
 void refuseBeyond(size_t memory, double needed) {
   if (needed <= double(memory)) return;
-  throw RunError("the layered depth cube needs " + std::to_string(int(needed / 1e9) + 1) +
-                 " GB of memory, more than is left (lower cube.resolution, cube.levels, cube.hemicube or smc.vpls)");
+  throw RunError("the layered depth cube needs " +
+                 moreThanIsLeft(needed, "lower cube.resolution, cube.levels, cube.hemicube or smc.vpls"));
 }
 
 } // namespace

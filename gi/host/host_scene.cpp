@@ -284,12 +284,7 @@ SceneView HostScene::view(ViewChanges& changes, const CameraView& camera, double
 }
 
 uint64_t HostScene::bytes() const {
-  uint64_t sum = 0;
-  for (const Mesh& m : assets_.meshes)
-    sum += m.positions.size() * sizeof(vec3) + m.normals.size() * sizeof(vec3) +
-           (m.uv0.size() + m.uv1.size()) * sizeof(vec2) + m.colors.size() * sizeof(vec4) +
-           m.triangles.size() * sizeof(uvec3);
-  for (const TextureImage& i : assets_.images) sum += i.texels.size() * sizeof(u8vec4);
+  uint64_t sum = bytesOf(assets_);
   for (const auto& [id, v] : instances_) {
     sum += sizeof(InstanceView);
     if (v.deformed) sum += 2 * v.deformed->positions.size() * sizeof(vec3);

@@ -4,6 +4,7 @@
 #include "engine/core/parallel.h"
 #include "engine/view/view_copy.h"
 #include "gi/contract/figures.h"
+#include "gi/vpl/asked_memory.h"
 
 #include <algorithm>
 #include <chrono>
@@ -101,6 +102,7 @@ void SampledSource::wait() {
 /// Figures of the update that this frame shows.
 void SampledSource::report(const EffectPlan& plan, FrameStats& stats) {
   arrived_ = false;
+  held_.now(bytesHeld(kept_.set));
   VplUpdateLog& log = kept_.log;
   const VplChanges& changes = kept_.changes;
   stats.stages.insert(stats.stages.end(), log.stages.begin(), log.stages.end());

@@ -1,6 +1,7 @@
 // Lights that gi/vpl samples on the CPU: the sequential Monte Carlo set and the samplers it is compared with.
 #pragma once
 
+#include "engine/core/memory.h"
 #include "gi/contract/light_source.h"
 #include "gi/contract/pass_context.h"
 #include "gi/sources/packed_lights.h"
@@ -35,6 +36,7 @@ class SampledSource : public LightSource {
   PackedLightBuffer buffer_;
   std::vector<VirtualLight> shown_;
   VplWork kept_;
+  HeldMemory held_{"virtual lights"};
   bool arrived_ = false;
   std::future<VplWork> running_;
 };

@@ -1,6 +1,7 @@
 #include "gi/vpl/asked_memory.h"
 
 #include "engine/core/error.h"
+#include "engine/core/memory.h"
 #include "gi/vpl/kept_paths.h"
 #include "gi/vpl/sources.h"
 
@@ -33,9 +34,19 @@ void refuseBeyondMemory(const SmcSettings& smc, const VplSettings& vpl, size_t f
   if (paths + candidates <= double(free)) return;
   const std::string names = paths > candidates ? "smc.vpls, smc.paths and smc.bounces"
                                                : std::string("smc.vpls and ") + candidatesAsked(smc, vpl).setting;
-  throw InputError("settings", names + " ask for " + std::to_string(size_t((paths + candidates) / 1e9) + 1) +
-                                   " GB of memory, more than is left (lower one of them" +
-                                   (paths > candidates && smc.cache ? ", or smc.cache=off)" : ")"));
+  const std::string cure =
+      paths > candidates && smc.cache ? "lower one of them, or smc.cache=off" : "lower one of them";
+  throw InputError("settings", names + " ask for " + moreThanIsLeft(paths + candidates, cure));
+}
+
+uint64_t bytesHeld(const VplSet& set) {
+  uint64_t sum = (set.slots.size() + set.pool.size()) * sizeof(Vpl) + set.cells.size() * sizeof(VplCell);
+  for (const VplCell& cell : set.cells) sum += cell.points.size() * sizeof(cell.points[0]);
+  for (const std::vector<KeptPaths>* all : {&set.samplerPaths, &set.lightPaths, &set.poolPaths})
+    for (const KeptPaths& k : *all)
+      sum += sizeof(KeptPaths) + k.vertices.size() * sizeof(KeptVertex) + k.lengths.size() +
+             k.emitters.size() * sizeof(KeptPaths::EmitterHit);
+  return sum;
 }
 
 } // namespace lambent

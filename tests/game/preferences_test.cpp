@@ -1,9 +1,12 @@
 // What the window keeps from one run to the next: a round trip, files that are something else, and who wins.
 #include "game/rules/preferences.h"
 
+#include "engine/core/files.h"
 #include "gi/plan/presets.h"
 
 #include "tests/support/files.h"
+
+#include <thread>
 
 namespace lambent::test::preferences_test {
 
@@ -85,6 +88,68 @@ TEST_F(PreferencesTest, AreSavedOnceTheyHaveSettled) {
   EXPECT_FALSE(fs::exists(file_));
   for (int i = 0; i < 25; ++i) kept.passed(0.1);
   EXPECT_NEAR(loadPreferences(file_).speed, 3.9, 1e-9);
+}
+
+TEST_F(PreferencesTest, TwoWindowsKeepEachOthersChanges) {
+  savePreferences(some(), file_);
+  KeptPreferences one(file_), other(file_);
+  one.now.speed = 4;
+  one.now.set["smc.vpls"] = "128";
+  one.now.set.erase("image.toneMapper");
+  other.now.panel = true;
+  other.now.set["gather.mode"] = "full";
+  one.save();
+  other.save();
+  Preferences both = some();
+  both.speed = 4;
+  both.panel = true;
+  both.set = {{"smc.vpls", "128"}, {"gather.mode", "full"}};
+  EXPECT_EQ(loadPreferences(file_), both);
+  one.now.speed = 1; // and again: only this
+  one.save();
+  both.speed = 1;
+  EXPECT_EQ(loadPreferences(file_), both);
+}
+
+TEST_F(PreferencesTest, WhatCouldNotBeWrittenComesWithTheNextChange) {
+  savePreferences({}, file_);
+  KeptPreferences kept(file_);
+  kept.now.speed = 3;
+  fs::rename(file_, folder_ / "aside");
+  fs::create_directory(file_); // a folder by its name
+  kept.save();
+  EXPECT_NE(kept.takeComplaint(), "");
+  fs::remove(file_);
+  fs::rename(folder_ / "aside", file_);
+  kept.now.panel = false;
+  kept.save();
+  EXPECT_EQ(loadPreferences(file_).speed, 3);
+}
+
+TEST_F(PreferencesTest, ManyWindowsAtOnceLoseNothing) {
+  savePreferences({}, file_);
+  std::vector<std::thread> windows;
+  for (int w = 0; w < 4; ++w)
+    windows.emplace_back([&, w] {
+      KeptPreferences kept(file_);
+      for (int i = 0; i < 25; ++i) {
+        kept.now.set["name." + std::to_string(w) + "." + std::to_string(i)] = "on";
+        kept.save();
+      }
+      EXPECT_EQ(kept.takeComplaint(), "");
+    });
+  for (std::thread& w : windows) w.join();
+  EXPECT_EQ(loadPreferences(file_).set.size(), 100);
+}
+
+// A program that is stopped while it saves must not stop the others.
+TEST_F(PreferencesTest, WaitForNobodyForLong) {
+  savePreferences({}, file_);
+  const FolderLock stopped(file_.parent_path());
+  KeptPreferences kept(file_);
+  kept.now.speed = 3;
+  kept.save();
+  EXPECT_EQ(loadPreferences(file_).speed, 3);
 }
 
 TEST_F(PreferencesTest, WithoutAPlaceNothingIsKept) {

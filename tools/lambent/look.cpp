@@ -2,6 +2,8 @@
 // with its reason; warnings; with --presets the presets, no scene. lambent doctor: what this machine offers, and
 // whether the whole pipeline runs on it.
 #include "engine/core/error.h"
+#include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 #include "engine/core/parallel.h"
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
@@ -168,6 +170,12 @@ void inspectPresets(const OutputOptions& output) {
   std::printf("of the default's, in hall, citadel and Cornell box together (docs/measurements/presets.md)\n");
 }
 
+std::string mebibytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f MiB", double(bytes) / (1 << 20));
+  return text;
+}
+
 void doctor(const OutputOptions& output) {
   GlContext context = GlContext::headless();
   Value j;
@@ -198,7 +206,16 @@ void doctor(const OutputOptions& output) {
   rows.emplace_back("GPU times by", stats.timing == "finish"
                                         ? "finishing each pass (timer queries lie here, or were not chosen)"
                                         : "timer queries");
+  rows.emplace_back("memory left", mebibytes(freeMemory()));
   for (const auto& [name, value] : rows) j[name] = value;
+  std::vector<Value> owners;
+  std::string held;
+  for (const MemoryAccount::Row& row : MemoryAccount::current().rows()) {
+    owners.push_back(Value::of("owner", row.owner, "of", row.gpu ? "OpenGL" : "program", "bytes", row.bytes));
+    held += (held.empty() ? "" : ", ") + row.owner + (row.gpu ? " (OpenGL) " : " ") + mebibytes(row.bytes);
+  }
+  j["memory held"] = owners;
+  rows.emplace_back("held for the box", held);
   const bool healthy = finite && indirect > 0 && glDebugErrors() == 0;
   j["pipeline"] = healthy;
   writeJson(output.json, j);

@@ -389,6 +389,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     stage->props = std::make_unique<Props>(stage->scene);
     stage->props->check(*stage->shot);
   }
+  stage->held.now(bytesOf(stage->scene.assets));
   return stage;
 }
 

@@ -1,6 +1,7 @@
 // Options that `lambent` and `walkthrough` share, and what they open with them: scene, shot, camera, lights, settings.
 #pragma once
 
+#include "engine/core/memory.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
 #include "gi/plan/settings.h"
@@ -53,6 +54,7 @@ class LaunchContext {
   Scene scene;
   std::optional<Shot> shot;
   std::unique_ptr<Props> props; // what somebody plays or, as the shot has it, played with; null: nobody
+  HeldMemory held{"scene"}; // its meshes and textures
   CameraView camera; // of the command line, the file or a default; the shot's camera comes first where it has one
   bool cameraGiven = false; // from the command line: overrides the shot's
   Settings settings;

@@ -1,6 +1,7 @@
 // Light of pixels from the layered depth cube.
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/memory.h"
 #include "engine/gl/ring.h"
 #include "gi/cube/cube_file.h"
 #include "gi/cube/draw/hemicube_pass.h"
@@ -39,6 +40,7 @@ class CubeGather : public Gather {
     stats.cubes = cube_.surfaces().cubes().size();
     stats.cubeBytes = entries_.buffer.bytes() + firsts_.buffer.bytes() + nodes_.buffer.bytes();
     stats.cubeKeptBytes = cube_.bytesKept() + near_.size() * sizeof(vec3);
+    held_.now(stats.cubeKeptBytes);
     const gl::PassScope scope = context_.scope(StageId::Gather);
     target_.fit(in.frame.surfaces);
     const gl::Program& program =
@@ -241,9 +243,10 @@ class CubeGather : public Gather {
   HemicubePass hemicubes_{context_};
   LayeredCube cube_;
   std::vector<vec3> near_; // by entry
-  bool uploaded_ = false;  // as the cube is now
-  bool opened_ = false;    // from a file, and not uploaded yet
-  float brightest_ = 1;    // W/m²
+  HeldMemory held_{"cube"};
+  bool uploaded_ = false; // as the cube is now
+  bool opened_ = false;   // from a file, and not uploaded yet
+  float brightest_ = 1;   // W/m²
   Texels firsts_, entries_, nodes_;
   gl::Ring changes_{"cube/changes"};
   LightTarget target_{"cube gather"};
