@@ -22,6 +22,7 @@ struct SoakOptions {
   LaunchOptions launch;
   OutputOptions output;
   int frames = 2000;
+  std::string record;
 };
 
 /// Random changes of what was opened, the same for the same seed.
@@ -132,12 +133,34 @@ struct Growth {
   bool flat(double slack, double share) const { return late <= (1 + share) * early + slack; }
 };
 
+/// The camera's way as a shot that grows by every frame, as a recorded walk does.
+class Recorded {
+ public:
+  Recorded(const LaunchOptions& launch, const std::string& file) {
+    if (file.empty()) return;
+    Shot shot;
+    shot.scene = std::filesystem::absolute(launch.scene);
+    writer_.emplace(shot, file);
+  }
+  void add(const CameraView& camera, const dvec3& origin, double t) {
+    const dvec3 eye = origin + dvec3(camera.position());
+    if (writer_) writer_->add({t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY}, {});
+  }
+  void end(double seconds) {
+    if (writer_) writer_->end(seconds);
+  }
+
+ private:
+  std::optional<ShotWriter> writer_;
+};
+
 void soak(const SoakOptions& options) {
   const auto opened = openAndSay(options.launch, options.output.quiet);
   needPunctualLight(*opened);
   GlContext context = GlContext::headless();
   Viewer gi(opened->settings, opened->seed);
   Edits edits(*opened, opened->seed);
+  Recorded recorded(options.launch, options.record);
   Growth program, openGl;
   int frame = 0;
   {
@@ -149,11 +172,13 @@ void soak(const SoakOptions& options) {
       gi.run(opened->at(frame / 30.0));
       if (const std::string defect = defectOf(gi, gi.settings()); !defect.empty()) throw RunError(at + defect);
       if (glDebugErrors() > 0) throw RunError(at + "OpenGL reported errors (logged above)");
+      recorded.add(opened->camera, opened->scene.origin, frame / 30.0);
       program.add(residentMiB(), frame, options.frames);
       openGl.add(openGlMiB(), frame, options.frames);
       progress.update(frame + 1, options.frames);
     }
   }
+  recorded.end(frame / 30.0);
   writeJson(options.output.json, Value::of("frames", frame, "program_mib", std::vector{program.early, program.late},
                                            "opengl_mib", std::vector{openGl.early, openGl.late}));
   if (!options.output.quiet)
@@ -175,6 +200,7 @@ void declareSoak(CLI::App& app) {
   command.launch(options->launch);
   command.output(options->output, "");
   command.number("--frames", &options->frames, 1, 100000000, "so many (2000)");
+  command.text("--record", options->record, "keep the camera of every frame in this new shot, as it goes");
   command.run([options] { soak(*options); });
 }
 
