@@ -105,9 +105,12 @@ TEST_F(PreferencesTest, TwoWindowsKeepEachOthersChanges) {
   both.panel = true;
   both.set = {{"smc.vpls", "128"}, {"gather.mode", "full"}};
   EXPECT_EQ(loadPreferences(file_), both);
-  one.now.speed = 1; // and again: only this
+  other.now.speed = 7;
+  other.save();
+  one.now.exposure = 2; // and again: only this
   one.save();
-  both.speed = 1;
+  both.speed = 7;
+  both.exposure = 2;
   EXPECT_EQ(loadPreferences(file_), both);
 }
 

@@ -263,13 +263,15 @@ TEST_F(Library, MemoryIsToldAndMayBeRefused) {
     room.ok(lambent_memory(room.device, nullptr, &count));
     std::vector<lambent_memory_row> rows(count);
     room.ok(lambent_memory(room.device, rows.data(), &count));
-    uint64_t rays = 0, gpu = 0;
+    uint64_t rays = 0, lights = 0, gpu = 0;
     for (const lambent_memory_row& row : rows) {
       if (std::string(row.owner) == "rays") rays = row.bytes;
+      if (std::string(row.owner) == "virtual lights") lights = row.bytes;
       if (row.gpu) gpu += row.bytes;
     }
     EXPECT_EQ(int64_t(rays), host.held);
     EXPECT_GT(gpu, 100000u);
+    EXPECT_GT(lights, 10000u);
     host.most = host.held; // nothing more from here on
     const lambent_view second = room.view();
     const lambent_frame f = Room::frame();
