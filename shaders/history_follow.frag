@@ -1,8 +1,9 @@
 #version 450
 // What history.frag found where light changes: its coarse part follows the filtered difference to this frame by
 // `follow`, its fine part is averaged on. Variants: GLOSSY; LIGHTS (how much the lights themselves changed is known, and
-// followed by that).
+// followed by that); SUBSETS (this frame's light is de-interleaved).
 #include "lib/gbuffer.glsl"
+#include "lib/subsets.glsl"
 #include "lib/variance.glsl"
 #include "shared/octahedral.h"
 
@@ -10,6 +11,7 @@ layout(binding = 2) uniform sampler2D kept;     // a: frames that its mean count
 layout(binding = 3) uniform sampler2D change;   // this frame - kept; a: frames in the variance
 layout(binding = 4) uniform sampler2D filtered; // of change
 layout(binding = 6) uniform sampler2D shares;   // history_tiles.frag: share, its noise, mean square
+layout(binding = 10) uniform sampler2D irradiance; // of this frame
 uniform float follow; // share of a coarse change
 uniform bool apart;   // pixels' noise is each its own: what exceeds it is followed wholly
 #ifdef LIGHTS
@@ -63,6 +65,9 @@ void main() {
     gain = max(gain, 1.0 - kCalm * noise / (brightness * brightness));
   vec3 brought = max(before.rgb + gain * coarse, 0.0);
   outIrradiance = vec4(mix(brought, before.rgb + difference.rgb, 1.0 / frames), frames);
+  // A mean that begins again is this frame: the sum may have none of its digits after light 10⁷ times as bright.
+  vec3 now = texelFetch(irradiance, placeOf(pixel), 0).rgb;
+  if (count == 0.0 && !any(isnan(now)) && !any(isinf(now))) outIrradiance.rgb = now;
   // Where the mean begins again the variance found so far is a guess; of light that became darker, a smaller one.
   float left = brightness < 0.0 ? 1.0 - tile.r : 1.0;
   outVariance *= mix(left * left, 1.0, stays);

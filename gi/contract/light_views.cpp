@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lambent {
 
@@ -22,8 +23,8 @@ vec2 coneFactors(const LightView& light) {
 }
 
 float inverseRange4(const LightView& light) {
-  const float range4 = light.range * light.range * light.range * light.range;
-  return std::isfinite(range4) && range4 > 0 ? 1 / range4 : 0;
+  const double range2 = double(light.range) * double(light.range); // of a short range 1/range⁴ is beyond a float
+  return range2 > 0 ? float(std::min(1 / (range2 * range2), double(std::numeric_limits<float>::max()))) : 0;
 }
 
 } // namespace lambent

@@ -113,6 +113,7 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
   foundVariance_.bind(8);
   if (in.change) defines.push_back("LIGHTS"), in.change->texture->bind(9);
+  if (in.gathered.deinterleaved) defines.push_back("SUBSETS");
   const gl::Program& program =
       context_.programs.get({.fragment = "history_follow.frag", .defines = std::move(defines)});
   program.use();
@@ -123,6 +124,8 @@ void HistoryPass::follow(const HistoryInputs& in, const Kept& now) {
   if (in.change) program.set("tileSide", float(in.change->tile));
   filtered.irradiance->bind(4);
   tiles_.bind(6);
+  in.gathered.irradiance->bind(10);
+  program.set("tileSize", tileSize(in.surfaces));
   now.framebuffer.bind();
   gl::PipelineState{.width = in.surfaces.width, .height = in.surfaces.height}.apply();
   gl::drawFullscreen();

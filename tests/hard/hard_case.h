@@ -1,5 +1,5 @@
 // Hard cases: scenes and edits on which global illumination goes wrong. Each is a row: what it is, why it is hard,
-// between what its light must lie, and the world. All run with every technique (hard_test.cpp).
+// between what its light must lie, and the world. hard_test.cpp runs them; rows stand in the files *_cases.cpp.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -35,10 +35,26 @@ struct HardBounds {
   bool leak = false;         // `most` is what may pass through walls: of techniques that know who sees a light
 };
 
+/// Another world that must show the same picture.
+struct HardTwin {
+  std::function<void(HardWorld&)> make; // null: there is none
+  bool mirrored = false;                // left is right in its picture
+  double apart = 0.08;                  // its light, of that of the other
+};
+
+/// Which techniques show a case: all, or those that differ in how they find lights. With LAMBENT_LONG, every one shows
+/// all.
+enum class ShownBy { All, OneOfEachKind };
+
 struct HardCase {
   const char *name, *reason;
   HardBounds bounds;
   std::function<void(HardWorld&)> make;
+  ShownBy shownBy = ShownBy::All;
+  bool tooFineForMaps = false, tooFineForVolumes = false; // reflective ones; light volumes: may show none of its light
+  HardTwin twin = {};
+
+  friend void PrintTo(const HardCase& c, std::ostream* out) { *out << c.name; }
 };
 const std::vector<HardCase>& hardCases();
 /// Those that take minutes: with LAMBENT_LONG alone.
