@@ -81,7 +81,7 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
     last = gi.read(Buffer::Irradiance);
   }
   const double mean = meanOf(last);
-  if (getenv("HARD_T")) const bool smc = std::string(technique) == "smc";
+  const bool smc = std::string(technique) == "smc";
   const Needs needs = needsOf(w.settings);
   const bool volume = axesOf(w.settings).gather == GatherMode::Volume, seen = needs.maps || needs.rayPerPair;
   const std::string name = c.name;
@@ -125,15 +125,13 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
   }
 }
 
-/// Lights of which each is followed, drawn anew, seen by lamps, spread over all surfaces; of each one that takes little
-/// time.
+/// How lights are found: followed from frame to frame, sent out by lamps, seen by lamps, spread over all surfaces.
 constexpr std::string_view kOneOfEachKind[] = {"smc", "ir", "rsm", "lpv"};
 
 TEST_P(HardTest, StaysWhole) {
   const bool all = isLong() || GetParam().shownBy == ShownBy::All;
   for (const Technique& t : techniqueTable()) {
-    if (const char* o = getenv("HARD_ONLY"); o && !strstr(o, (std::string(",") + t.name + ",").c_str()))
-      if (!all && std::ranges::find(kOneOfEachKind, t.name) == std::end(kOneOfEachKind)) continue;
+    if (!all && std::ranges::find(kOneOfEachKind, t.name) == std::end(kOneOfEachKind)) continue;
     run(GetParam(), t.name);
     if (HasFatalFailure()) return;
   }
