@@ -326,9 +326,9 @@ Shot loadShot(const fs::path& file) {
   if (root.has("fps")) shot.fps = root["fps"].number();
   if (!(shot.fps > 0 && shot.fps <= 1000)) root["fps"].fail("is out of range (frames per second, above 0 to 1000)");
   shot.seconds = root["seconds"].number();
-  if (!(shot.seconds >= 0 && shot.seconds <= 86400)) root["seconds"].fail("is out of range (0 to 86400)");
   if (root.has("camera")) shot.camera = readCamera(root["camera"], shot.played);
   if (cut && !shot.camera.empty()) shot.seconds = shot.camera.back().t + 1 / shot.fps;
+  if (!(shot.seconds >= 0 && shot.seconds <= 86400)) root["seconds"].fail("is out of range (0 to 86400)");
   if (root.has("lights")) shot.lights = readNodes(root["lights"], true);
   if (root.has("objects")) shot.objects = readNodes(root["objects"], false);
   if (root.has("played")) readPlayed(root["played"], shot.played);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lambent {
 
@@ -30,11 +31,11 @@ void add(Hash& hash, const LightView& light) {
 }
 
 /// Sums that so many samples may have, none below zero: the square of a sum is at least the sum of squares, and at most
-/// the samples times that.
+/// the samples times that. Pictures hold their means in single precision.
 bool possible(const PixelSums& p, uint32_t samples) {
-  constexpr double kRounding = 1 + 1e-6;
+  constexpr double kRounding = 1 + 1e-6, kMostMean = double(std::numeric_limits<float>::max()) / 4;
   const auto holds = [&](double sum, double squares) {
-    return sum >= 0 && squares >= 0 && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
+    return sum >= 0 && squares >= 0 && sum <= samples * kMostMean && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
            sum * sum <= samples * squares * kRounding && squares <= sum * sum * kRounding;
   };
   for (int c = 0; c < 3; ++c)

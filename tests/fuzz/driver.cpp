@@ -1,24 +1,34 @@
 // fuzz [TARGET...] [--runs N] [--seed S] [--seeds FOLDER]: targets.h with mutations of its seeds, without libFuzzer,
-// the same for the same numbers: what tests run. A finding ends the program; its input is fuzz-TARGET in the current
-// folder, and `fuzz TARGET --input FILE` runs that alone. --seeds writes the seeds, as a corpus to begin with.
+// the same for the same numbers: what tests run. A finding ends the program, so do more than kSeconds of one input and
+// more than kMost of memory; its input is fuzz-TARGET in the current folder, and `fuzz TARGET --input FILE` runs that
+// alone. --seeds writes the seeds, as a corpus to begin with.
+#include "engine/core/error.h"
 #include "engine/core/rng.h"
+#include "tests/fuzz/files.h"
 #include "tests/fuzz/targets.h"
+
+#include <sys/resource.h>
+#include <sys/time.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 namespace lambent::fuzz {
 
 namespace {
 
+constexpr size_t kLongest = 1 << 16; // bytes of an input
+constexpr int kSeconds = 60;         // of all threads together
+constexpr long kMost = 2048;         // MiB, under sanitizers too
+
 class Mutator {
  public:
-  Mutator(const Target& target, uint32_t seed) : target_(target), pool_(target.seeds()), rng_(seed, Stream::Test, 0) {}
+  Mutator(const Target& target, uint32_t seed) : target_(target), pool_(target.seeds()), rng_(seed, Stream::Test, 0) {
+    std::erase_if(pool_, [](const std::string& s) { return s.size() > kLongest / 2; }); // slow, and little to mutate
+  }
 
   std::string next() {
     std::string bytes = pool_[below(pool_.size())];
@@ -38,7 +48,7 @@ class Mutator {
   void mutate(std::string& bytes) {
     if (bytes.empty()) bytes = "x";
     const size_t at = below(bytes.size()), length = std::min(bytes.size() - at, 1 + below(16));
-    switch (below(7)) {
+    switch (below(9)) {
     case 0:
       bytes[at] = char(below(256));
       break;
@@ -63,12 +73,40 @@ class Mutator {
       bytes.replace(digit, end - digit, numbers[below(std::size(numbers))]);
       break;
     }
+    case 6: { // a word over what is there, where a number of so many bytes may lie
+      if (target_.words.empty()) break;
+      const std::string& word = target_.words[below(target_.words.size())];
+      bytes.replace(at / 4 * 4, word.size(), word);
+      break;
+    }
+    case 7: { // a value of JSON in the place of one
+      const auto [begin, end] = valueFrom(bytes, at);
+      const auto [other, otherEnd] = valueFrom(bytes, below(bytes.size()));
+      const bool word = !target_.words.empty() && below(2) == 0;
+      bytes.replace(begin, end - begin,
+                    word ? target_.words[below(target_.words.size())] : bytes.substr(other, otherEnd - other));
+      break;
+    }
     default: { // the end of another
       const std::string& other = pool_[below(pool_.size())];
       if (!other.empty()) bytes = bytes.substr(0, at) + other.substr(below(other.size()));
     }
     }
-    if (bytes.size() > 1 << 16) bytes.resize(1 << 16);
+    if (bytes.size() > kLongest) bytes.resize(kLongest);
+  }
+
+  /// Where the next value of a list or object begins and ends.
+  static std::pair<size_t, size_t> valueFrom(const std::string& text, size_t at) {
+    const size_t begin = std::min(text.find_first_of(":,[", at), text.size() - 1) + 1;
+    size_t end = begin;
+    for (int depth = 0; end < text.size(); ++end) {
+      const char c = text[end];
+      if (c == '"') end = std::min(text.find('"', end + 1), text.size() - 1);
+      if (c == '[' || c == '{') ++depth;
+      if (depth == 0 && (c == ',' || c == ']' || c == '}')) break;
+      if (c == ']' || c == '}') --depth;
+    }
+    return {begin, end};
   }
 
   const Target& target_;
@@ -76,19 +114,28 @@ class Mutator {
   Rng rng_;
 };
 
-void writeFile(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+/// Ends the program where a run does not end, or takes memory without bounds.
+void runBounded(const Target& target, const std::string& bytes) {
+  const itimerval limit{{}, {kSeconds, 0}};
+  setitimer(ITIMER_PROF, &limit, nullptr);
+  target.run(bytes);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  CHECK_LT(usage.ru_maxrss >> 10, kMost);
 }
 
 void run(const Target& target, long runs, uint32_t seed) {
   const auto begin = std::chrono::steady_clock::now();
   Mutator mutator(target, seed);
   const std::string found = std::string("fuzz-") + target.name;
-  for (const std::string& bytes : target.seeds()) target.run(bytes);
+  for (const std::string& bytes : target.seeds()) {
+    writeBytes(found, bytes); // there when it ends the program
+    runBounded(target, bytes);
+  }
   for (long i = 0; i < runs; ++i) {
     const std::string bytes = mutator.next();
-    writeFile(found, bytes); // there when it ends the program
-    target.run(bytes);
+    writeBytes(found, bytes);
+    runBounded(target, bytes);
   }
   std::filesystem::remove(found);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -124,10 +171,9 @@ int runAll(int argc, char** argv) {
       std::filesystem::create_directories(std::filesystem::path(seeds) / t->name);
       int n = 0;
       for (const std::string& bytes : t->seeds())
-        writeFile(std::filesystem::path(seeds) / t->name / std::to_string(n++), bytes);
+        writeBytes(std::filesystem::path(seeds) / t->name / std::to_string(n++), bytes);
     } else if (!input.empty()) {
-      std::ifstream in(input, std::ios::binary);
-      t->run(std::string{std::istreambuf_iterator<char>(in), {}});
+      t->run(readBytes(input));
     } else {
       run(*t, runs, seed);
     }

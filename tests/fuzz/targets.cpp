@@ -1,61 +1,16 @@
 #include "tests/fuzz/targets.h"
 
-#include "engine/core/error.h"
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/shot.h"
-#include "engine/trace/analytic_query.h"
-#include "gi/cube/cube_file.h"
-#include "gi/lighting/light_set.h"
 #include "gi/plan/presets.h"
-#include "gi/reference/state_file.h"
-#include "tests/support/checked.h"
+#include "tests/fuzz/files.h"
+#include "tests/fuzz/own_files.h"
 
-#include <fstream>
 #include <sstream>
-
-#include <unistd.h>
 
 namespace lambent::fuzz {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// In memory where there is such a folder.
-fs::path fileWith(std::string_view bytes, const std::string& extension) {
-  static const fs::path folder = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
-  const fs::path file = folder / ("lambent-fuzz-" + std::to_string(getpid()) + extension);
-  std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-  return file;
-}
-
-/// What `write` writes to a file.
-template <class Write> std::string written(const std::string& extension, const Write& write) {
-  const fs::path file = fileWith("", extension);
-  write(file);
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  fs::remove(file);
-  return bytes;
-}
-
-/// Runs a reader of a file and removes it.
-template <class Read> void reading(std::string_view bytes, const std::string& extension, const Read& read) {
-  const fs::path file = fileWith(bytes, extension);
-  try {
-    read(file);
-  } catch (const InputError&) {
-  } catch (const RunError&) {
-  }
-  fs::remove(file);
-}
-
-bool finite(const mat4& m) {
-  for (int c = 0; c < 4; ++c)
-    if (!isFinite(vec3(m[c]))) return false;
-  return true;
-}
 
 // glTF ----------------------------------------------------------------------------------------------------------------
 
@@ -123,10 +78,6 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-template <class T> void append(std::string& bytes, std::initializer_list<T> values) {
-  for (const T v : values) bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
-}
-
 std::vector<std::string> gltfSeeds() {
   std::string bytes;
   append<float>(bytes, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});                         // positions
@@ -148,28 +99,7 @@ std::vector<std::string> gltfSeeds() {
   return {text, glb, R"({"asset":{"version":"2.0"}})"};
 }
 
-// Shots, settings, pictures, states -----------------------------------------------------------------------------------
-
-void shot(std::string_view bytes) {
-  reading(bytes, ".json", [](const fs::path& file) {
-    const Shot shot = loadShot(file);
-    CHECK(shot.frameCount() >= 1);
-    if (shot.camera.empty()) return;
-    for (const double t : {0.0, 0.3, shot.seconds}) {
-      const CameraView view = shotCamera(shot, t, dvec3(0));
-      CHECK(finite(view.worldFromView) && view.fovY > 0 && view.fovY < kPi);
-    }
-  });
-}
-
-std::vector<std::string> shotSeeds() {
-  return {R"({"shot": 1, "scene": "room.glb", "fps": 24, "seconds": 2.5,
-  "camera": {"keys": [{"t": 0, "eye": [0, 1, 5], "target": [0, 1, 0], "fov": 60}, {"t": 2, "eye": [4, 1, 5], "target": [0, 1, 0]},
-                      {"t": 3, "eye": [4, 1, 6], "target": [0, 1, 1]}]},
-  "lights": {"lamp": {"keys": [{"t": 0, "intensity": [0, 0, 0], "direction": [0, -1, 0]}, {"t": 2, "intensity": [4, 2, 0]}]}},
-  "objects": {"door": {"keys": [{"t": 1, "rotation": [0, 90, 0]}, {"t": 0.5e1, "position": [1, 2, 3]}]}},
-  "pixels": [[0.25, 0.75]], "set": {"smc.vpls": 4096, "vpl.source": "smc", "filter.on": true}})"};
-}
+// Settings, pictures --------------------------------------------------------------------------------------------------
 
 /// Lines of name=value, or names of presets.
 void settings(std::string_view bytes) {
@@ -211,88 +141,30 @@ std::vector<std::string> pictureSeeds() {
   return {pfm, grey, written(".exr", [](const fs::path& file) { writeExr(file, Image(5, 4, vec3(0.5f))); })};
 }
 
-/// Of a reference of this size, by this key.
-struct State {
-  AnalyticQuery rays;
-  LightSet lights;
-  CameraView camera;
-  ReferenceInputs in{rays, lights, camera};
-  static constexpr uint64_t kKey = 42;
-  State() { camera.width = 4, camera.height = 3; }
-};
-
-/// Behind its checksum.
-void state(std::string_view bytes) {
-  reading(test::mended(std::string(bytes)), ".state", [](const fs::path& file) {
-    const State s;
-    const ReferenceSums sums = loadReference(file, s.in, State::kKey);
-    CHECK_EQ(sums.pixels.size(), size_t(12));
-  });
-}
-
-std::vector<std::string> stateSeeds() {
-  ReferenceSums sums(4, 3);
-  sums.samples = 7;
-  return {written(".state", [&](const fs::path& file) { saveReference(file, sums, State::kKey); })};
-}
-
-/// Of a box, with two lights.
-struct Cube {
-  AnalyticQuery rays;
-  Aabb bounds{vec3(-1), vec3(1)};
-  CubeSettings settings{.resolution = 8, .levels = 1, .split = 0.3f};
-  GatherSettings gather;
-  std::vector<VirtualLight> lights;
-  static constexpr uint64_t kKey = 42;
-  Cube() {
-    rays.addBox(bounds.lo, bounds.hi, {vec3(0.5f)});
-    for (const float x : {0.0f, 0.5f}) lights.push_back({{x, -0.9f, 0}, {0, 1, 0}, {0, 1, 0}, vec3(3), 0.1f, true});
-  }
-  CubeInputs inputs(const DirtyRegion& moved) const {
-    return {bounds, rays, moved, false, lights, ~0u, settings, gather};
-  }
-};
-
-/// Behind its checksum: what is believed goes on, also where something moved.
-void cube(std::string_view bytes) {
-  reading(test::mended(std::string(bytes)), ".cube", [](const fs::path& file) {
-    const Cube c;
-    LayeredCube cube = loadCube(file, Cube::kKey);
-    const Aabb place{vec3(-0.2f), vec3(0.3f)};
-    cube.update(c.inputs(DirtyRegion(std::span(&place, 1))));
-    for (size_t e = 0; e < cube.surfaces().entries().size(); ++e) CHECK(isFinite(cube.irradiance(e)));
-  });
-}
-
-std::vector<std::string> cubeSeeds() {
-  const Cube c;
-  LayeredCube cube;
-  cube.update(c.inputs(kNothingMoved));
-  return {written(".cube", [&](const fs::path& file) { saveCube(file, cube, Cube::kKey); })};
-}
-
 } // namespace
 
 const std::vector<Target>& targets() {
-  static const std::vector<Target> all{
-      {"gltf",
-       gltf,
-       gltfSeeds,
-       {"\"count\":", "\"byteOffset\":", "\"byteStride\":", "\"componentType\":5125", "\"mode\":6", "\"uri\":", "null",
-        "[]", "{}", "-1", "4294967296", "1e39", "1e-39", "0.5", "\"MAT4\"", "\"CUBICSPLINE\"", "\"path\":\"weights\"",
-        "\"sparse\":"}},
-      {"shot", shot, shotSeeds, {"\"t\":", "\"fov\":", "null", "[]", "{}", "-1", "1e308", "1e-308", "180", "\"set\":"}},
-      {"settings",
-       settings,
-       settingsSeeds,
-       {"=on", "=off", "=-1", "=nan", "=inf", "=1e39", "=auto", "\n", "vpl.source=hisr"}},
-      {"picture",
-       picture,
-       pictureSeeds,
-       {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"}},
-      {"state", state, stateSeeds, {}},
-      {"cube", cube, cubeSeeds, {}},
-  };
+  static const std::vector<Target> all = [] {
+    std::vector<Target> all{
+        {"gltf",
+         gltf,
+         gltfSeeds,
+         {"\"count\":", "\"byteOffset\":", "\"byteStride\":", "\"componentType\":5125", "\"mode\":6",
+          "\"uri\":", "null", "[]", "{}", "-1", "4294967296", "1e39", "1e-39", "0.5", "\"MAT4\"", "\"CUBICSPLINE\"",
+          "\"path\":\"weights\"", "\"sparse\":"}},
+        {"settings",
+         settings,
+         settingsSeeds,
+         {"=on", "=off", "=-1", "=nan", "=inf", "=1e39", "=auto", "\n", "vpl.source=hisr"}},
+        {"picture",
+         picture,
+         pictureSeeds,
+         {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"}},
+    };
+    const std::vector<Target> own = ownFiles();
+    all.insert(all.end(), own.begin(), own.end());
+    return all;
+  }();
   return all;
 }
 

@@ -123,6 +123,22 @@ TEST_F(PathRecorderTest, AWalkThatIsCutShortHasEveryWholeFrame) {
   }
 }
 
+/// What could not be read once it has its end is not given one.
+TEST_F(PathRecorderTest, AWalkOfNoTimeThatAShotHasStaysAsItIs) {
+  fs::create_directory(folder_);
+  Shot shot;
+  shot.scene = "a.gltf";
+  for (const double t : {-1.0, 1e6}) {
+    const fs::path file = folder_ / "walk-1.json";
+    ShotWriter(shot, file).add({t, dvec3(0), dvec3(0, 0, -1), 1}, {});
+    const std::string text = readBytes(file);
+    EXPECT_NE(inputErrorOf([&] { loadShot(file); }).find("seconds: is out of range"), std::string::npos) << t;
+    EXPECT_TRUE(endCutShots(folder_).empty()) << t;
+    EXPECT_EQ(readBytes(file), text);
+    fs::remove(file);
+  }
+}
+
 /// A file that has its end is not touched, whatever somebody has written on it since.
 TEST_F(PathRecorderTest, WhatHasItsEndStaysAsItIs) {
   PathRecorder recorder;

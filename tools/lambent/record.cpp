@@ -4,6 +4,7 @@
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"
+#include "tools/kept/recording_mark.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/picture.h"
 #include "tools/launch/frame_log.h"
@@ -32,32 +33,6 @@ struct RecordOptions {
   int sheet = 0;  // pictures on the contact sheet; 0 = none
   bool video = false, captions = false, resume = false;
   std::optional<double> targetMs;
-};
-
-/// In the folder: whose pictures they are, and how many are whole.
-class RecordingMark {
- public:
-  RecordingMark(const fs::path& folder, std::string conditions)
-      : file_(folder / "recording.json"), conditions_(std::move(conditions)) {}
-
-  /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.
-  int kept() const {
-    removeLeftovers(file_);
-    const Value mark = Value::parsed(readText(file_));
-    if (!mark.has("conditions") || !(mark.numberOr("frames", -1) >= 0)) return 0;
-    if (mark["conditions"].text() != conditions_)
-      throw InputError("--resume", file_.parent_path().string() + " holds a recording of another shot, size, buffer, " +
-                                       "setting or program (without --resume it is recorded anew)");
-    return int(mark["frames"].number());
-  }
-
-  void write(int frames) const {
-    writeText(file_, Value::of("conditions", conditions_, "frames", frames).json(-1) + "\n");
-  }
-
- private:
-  const fs::path file_;
-  const std::string conditions_;
 };
 
 constexpr int kSheetWidth = 320; // pixels, of a picture on the contact sheet at most

@@ -1,7 +1,6 @@
 #include "tools/lambent/report.h"
 
 #include "engine/core/error.h"
-#include "engine/core/files.h"
 #include "engine/platform/gl_context.h"
 #include "tools/lambent/command_line.h"
 #include "tools/lambent/picture.h"
@@ -146,21 +145,8 @@ std::string machineText(const GlContext& context) {
   return format("%u threads of ", std::thread::hardware_concurrency()) + cpu + "; OpenGL: " + renderer + "; " + date;
 }
 
-void writeText(const fs::path& file, const std::string& text) {
-  writeAtomically(file, [&](const fs::path& temporary) {
-    std::ofstream out(temporary);
-    out << text;
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
-  });
-}
-
 void writeJson(const std::string& file, const Value& figures) {
   if (!file.empty()) writeText(file, figures.json(2) + "\n");
-}
-
-std::string readText(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void writeReport(const OutputOptions& output, const fs::path& folder, const std::string& name,

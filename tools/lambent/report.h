@@ -2,7 +2,8 @@
 #pragma once
 
 #include "engine/image/image.h"
-#include "tools/lambent/value.h"
+#include "tools/kept/text_file.h"
+#include "tools/kept/value.h"
 
 #include <filesystem>
 #include <string>
@@ -43,12 +44,8 @@ std::string htmlPicture(const std::filesystem::path& folder, const std::string& 
 /// Processor, OpenGL renderer, day.
 std::string machineText(const GlContext& context);
 
-/// In one step: the file is the old or the new one. Throws RunError.
-void writeText(const std::filesystem::path& file, const std::string& text);
 /// Writes figures for programs; nothing when `file` is empty.
 void writeJson(const std::string& file, const Value& figures);
-/// Everything in a file; empty where there is none.
-std::string readText(const std::filesystem::path& file);
 
 /// NAME.md with the heading and the text, NAME.csv, and the figures for programs, all in the folder; the text is
 /// printed too, unless quiet.

@@ -160,6 +160,13 @@ TEST_F(Room, DamagedStateIsRefused) {
   altered(kSamples, ~0u);
   for (const double sum : {std::nan(""), 1e300, -1.0, double(kInfinity)})
     for (int value = 0; value < 5; ++value) altered(kSums + size_t(value) * 3 * sizeof(double), sum);
+  { // sums and squares that agree, whose mean no picture holds
+    std::string bytes = whole;
+    const double sum = 1e100, squares = sum * sum / 2;
+    std::memcpy(&bytes[kSums], &sum, sizeof sum);
+    std::memcpy(&bytes[kSums + 3 * sizeof sum], &squares, sizeof squares);
+    refused(mended(bytes), "damaged");
+  }
   fs::remove(file_);
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
   EXPECT_NE(refusal(in).find("is not the state"), std::string::npos) << "a pipe that nobody writes";

@@ -1,4 +1,4 @@
-#include "tools/lambent/value.h"
+#include "tools/kept/value.h"
 
 #include "engine/core/error.h"
 
@@ -9,6 +9,8 @@ namespace lambent {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr int kMostNesting = 200; // as engine/scene/json_text.cpp
 
 Json jsonOf(const Value& value) {
   if (value.isNothing()) return {};
@@ -54,8 +56,10 @@ Value Value::ofPairs(std::initializer_list<Value> pairs) {
 }
 
 Value Value::parsed(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
-  return json.is_discarded() ? Value() : valueOf(json);
+  bool deep = false; // valueOf would run out of stack
+  const auto keep = [&](int depth, Json::parse_event_t, Json&) { return !(deep |= depth > kMostNesting); };
+  const Json json = Json::parse(text, keep, false);
+  return deep || json.is_discarded() ? Value() : valueOf(json);
 }
 
 std::string Value::json(int indentation) const {

@@ -35,7 +35,7 @@ class Value {
   /// Values by name: name, value, name, value…
   template <class... T> static Value of(T&&... fields) { return ofPairs({Value(std::forward<T>(fields))...}); }
 
-  /// Of JSON; nothing where it is none.
+  /// Of JSON; nothing where it is none, or nested more than 200 levels deep.
   static Value parsed(const std::string& json);
   /// As JSON: in one line (-1), or with so many spaces of indentation.
   std::string json(int indentation) const;

@@ -1,0 +1,43 @@
+// How far a recording got, as a file that anybody may have changed says it.
+#include "tools/kept/recording_mark.h"
+
+#include "tests/support/files.h"
+#include "tools/kept/value.h"
+
+namespace lambent::test::recording_mark_test {
+
+class RecordingMarkTest : public testing::Test {
+ protected:
+  int keptOf(const std::string& text) const {
+    writeBytes(folder_ / "recording.json", text);
+    return mark_.kept();
+  }
+
+  TemporaryFolder folder_;
+  const RecordingMark mark_{folder_.path(), "these"};
+};
+
+TEST_F(RecordingMarkTest, SaysHowManyPicturesAreWhole) {
+  EXPECT_EQ(mark_.kept(), 0) << "there is none";
+  mark_.write(17);
+  EXPECT_EQ(mark_.kept(), 17);
+  const RecordingMark other(folder_.path(), "others");
+  EXPECT_NE(inputErrorOf([&] { other.kept(); }).find("another shot"), std::string::npos);
+}
+
+TEST_F(RecordingMarkTest, WhatCountsNoFramesKeepsNone) {
+  for (const char* frames :
+       {"-1", "\"17\"", "null", "[17]", "2147483647", "4294967313", "18446744073709551615", "1e39"})
+    EXPECT_EQ(keptOf(std::string(R"({"conditions": "these", "frames": )") + frames + "}"), 0) << frames;
+  for (const char* text : {"", "{", "[]", "17", R"({"frames": 17})"}) EXPECT_EQ(keptOf(text), 0) << text;
+}
+
+/// Text is nested as deeply as somebody likes, a stack is not.
+TEST_F(RecordingMarkTest, DeeplyNestedTextIsNoValue) {
+  const auto nested = [](size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+  EXPECT_EQ(Value::parsed(nested(100)).json(-1), nested(100));
+  EXPECT_TRUE(Value::parsed(nested(200000)).isNothing());
+  EXPECT_EQ(keptOf(R"({"conditions": )" + nested(200000) + "}"), 0);
+}
+
+} // namespace lambent::test::recording_mark_test

@@ -1,0 +1,26 @@
+#include "tools/kept/text_file.h"
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+
+#include <fstream>
+#include <iterator>
+
+namespace lambent {
+
+namespace fs = std::filesystem;
+
+void writeText(const fs::path& file, const std::string& text) {
+  writeAtomically(file, [&](const fs::path& temporary) {
+    std::ofstream out(temporary);
+    out << text;
+    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+  });
+}
+
+std::string readText(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+} // namespace lambent

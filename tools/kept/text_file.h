@@ -1,0 +1,14 @@
+// Files of text, read and written in one piece.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace lambent {
+
+/// In one step: the file is the old or the new one. Throws RunError.
+void writeText(const std::filesystem::path& file, const std::string& text);
+/// Everything in a file; empty where there is none.
+std::string readText(const std::filesystem::path& file);
+
+} // namespace lambent
