@@ -20,14 +20,13 @@ namespace lambent::fuzz {
 
 namespace {
 
-constexpr size_t kLongest = 1 << 16; // bytes of an input
-constexpr int kSeconds = 60;         // of all threads together
-constexpr long kMost = 2048;         // MiB, under sanitizers too
+constexpr int kSeconds = 60; // of all threads together
+constexpr long kMost = 2048; // MiB, under sanitizers too
 
 class Mutator {
  public:
   Mutator(const Target& target, uint32_t seed) : target_(target), pool_(target.seeds()), rng_(seed, Stream::Test, 0) {
-    std::erase_if(pool_, [](const std::string& s) { return s.size() > kLongest / 2; }); // slow, and little to mutate
+    for (const std::string& bytes : pool_) longest_ = std::max(longest_, 2 * bytes.size());
   }
 
   std::string next() {
@@ -92,7 +91,7 @@ class Mutator {
       if (!other.empty()) bytes = bytes.substr(0, at) + other.substr(below(other.size()));
     }
     }
-    if (bytes.size() > kLongest) bytes.resize(kLongest);
+    if (bytes.size() > longest_) bytes.resize(longest_);
   }
 
   /// Where the next value of a list or object begins and ends.
@@ -111,6 +110,7 @@ class Mutator {
 
   const Target& target_;
   std::vector<std::string> pool_;
+  size_t longest_ = 1 << 16; // bytes
   Rng rng_;
 };
 
@@ -128,10 +128,11 @@ void run(const Target& target, long runs, uint32_t seed) {
   const auto begin = std::chrono::steady_clock::now();
   Mutator mutator(target, seed);
   const std::string found = std::string("fuzz-") + target.name;
-  for (const std::string& bytes : target.seeds()) {
-    writeBytes(found, bytes); // there when it ends the program
-    runBounded(target, bytes);
-  }
+  for (const std::vector<std::string>& all : {target.seeds(), target.probes})
+    for (const std::string& bytes : all) {
+      writeBytes(found, bytes); // there when it ends the program
+      runBounded(target, bytes);
+    }
   for (long i = 0; i < runs; ++i) {
     const std::string bytes = mutator.next();
     writeBytes(found, bytes);

@@ -151,15 +151,18 @@ const std::vector<Target>& targets() {
          gltfSeeds,
          {"\"count\":", "\"byteOffset\":", "\"byteStride\":", "\"componentType\":5125", "\"mode\":6",
           "\"uri\":", "null", "[]", "{}", "-1", "4294967296", "1e39", "1e-39", "0.5", "\"MAT4\"", "\"CUBICSPLINE\"",
-          "\"path\":\"weights\"", "\"sparse\":"}},
+          "\"path\":\"weights\"", "\"sparse\":"},
+         {}},
         {"settings",
          settings,
          settingsSeeds,
-         {"=on", "=off", "=-1", "=nan", "=inf", "=1e39", "=auto", "\n", "vpl.source=hisr"}},
+         {"=on", "=off", "=-1", "=nan", "=inf", "=1e39", "=auto", "\n", "vpl.source=hisr"},
+         {}},
         {"picture",
          picture,
          pictureSeeds,
-         {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"}},
+         {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"},
+         {}},
     };
     const std::vector<Target> own = ownFiles();
     all.insert(all.end(), own.begin(), own.end());

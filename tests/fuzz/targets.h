@@ -14,6 +14,7 @@ struct Target {
   void (*run)(std::string_view bytes);
   std::vector<std::string> (*seeds)(); // valid inputs, with as much of the format in them as fits
   std::vector<std::string> words;      // of its language
+  std::vector<std::string> probes;     // to be refused; run as they are
 };
 const std::vector<Target>& targets();
 
