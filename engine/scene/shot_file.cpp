@@ -104,10 +104,13 @@ class Field {
   std::string file_, path_;
 };
 
-/// Time of the key that follows `before`, which must lie after these.
+/// Time of the key that follows `before`, which must lie after these: so far, and no farther, that speeds are finite.
 template <class Key> double keyTime(const Field& key, const std::vector<Key>& before) {
+  constexpr double kLatest = 1e9, kShortest = 1e-12; // seconds
   const double t = key["t"].number();
-  if (!before.empty() && !(t > before.back().t)) key["t"].fail("is not after the key before it (keys go up in time)");
+  if (!(std::abs(t) <= kLatest)) key["t"].fail("is out of range (-1e9 to 1e9)");
+  if (!before.empty() && !(t - before.back().t >= kShortest))
+    key["t"].fail("is not after the key before it (keys go up in time)");
   return t;
 }
 
@@ -151,7 +154,9 @@ vec3 lightOf(const Field& field) {
 
 dvec3 directionOf(const Field& field) {
   const auto direction = field.vector<3, double>();
-  if (!(glm::length(direction) > 0)) field.fail("has no length");
+  const double length = glm::length(direction); // single precision takes its square, and differences
+  if (!(length >= 1e-12)) field.fail("has no length");
+  if (!(length <= 1e12)) field.fail("is longer than 1e12");
   return direction;
 }
 

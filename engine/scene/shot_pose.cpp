@@ -156,8 +156,9 @@ PlayedMoment playedAt(const Shot& shot, double t) {
     }
   if (now.torch && after->torch) {
     now.torch->position = between(now.torch->position, after->torch->position, float(u));
-    if (u > 0) // and to the bit what was recorded
-      now.torch->direction = glm::normalize(between(now.torch->direction, after->torch->direction, float(u)));
+    const vec3 mixed = between(now.torch->direction, after->torch->direction, float(u));
+    if (u > 0 && glm::length(mixed) > 0) // else to the bit what was recorded; opposite ones have no middle
+      now.torch->direction = glm::normalize(mixed);
   }
   if (now.hour && after->hour && *after->hour > *now.hour) now.hour = between(*now.hour, *after->hour, u);
   return now;

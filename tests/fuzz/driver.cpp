@@ -67,8 +67,9 @@ class Mutator {
       size_t digit = bytes.find_first_of("0123456789", at);
       if (digit == std::string::npos) break;
       const size_t end = std::min(bytes.find_first_not_of("0123456789.eE+-", digit), bytes.size());
-      constexpr const char* numbers[] = {"0",    "-1",    "1",  "255", "65536", "2147483648", "18446744073709551616",
-                                         "1e39", "1e-46", "0.1"};
+      constexpr const char* numbers[] = {
+          "0",    "-1",    "1",   "255",    "65536", "2147483648", "18446744073709551616",
+          "1e39", "1e-46", "0.1", "-1e308", "1e-308"};
       bytes.replace(digit, end - digit, numbers[below(std::size(numbers))]);
       break;
     }

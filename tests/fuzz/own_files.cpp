@@ -94,7 +94,7 @@ void checkPlaced(const SceneView& view) {
   CHECK(view.boundsWorld.empty() || (isFinite(view.boundsWorld.lo) && isFinite(view.boundsWorld.hi)));
   for (const InstanceView& i : view.instances) CHECK(finite(i.worldFromObject));
   for (const LightView& l : view.lights) {
-    CHECK(isFinite(l.position) && isFinite(l.intensity));
+    CHECK(isFinite(l.position) && isFinite(l.intensity) && maxComponent(l.intensity) <= kMostLight);
     CHECK(std::abs(glm::length(l.direction) - 1) < 1e-3f);
   }
 }
@@ -116,7 +116,13 @@ void show(const Shot& shot) {
       CHECK(finite(view.worldFromView) && view.fovY > 0 && view.fovY < kPi);
     }
     poseShot(scene, shot, t);
-    if (props) props->show(playedAt(shot, t), shot.file.string());
+    if (props) {
+      const PlayedMoment moment = playedAt(shot, t);
+      CHECK(!moment.torch || (isFinite(moment.torch->position) && isFinite(moment.torch->direction)));
+      for (const PlayedMoment::Thing& thing : moment.things) CHECK(isFinite(thing.centre) && std::isfinite(thing.yaw));
+      for (const auto& [name, at] : moment.movers) CHECK(std::isfinite(at));
+      props->show(moment, shot.file.string());
+    }
     checkPlaced(extractor.extract(scene, CameraView(), t));
   }
 }
@@ -398,6 +404,12 @@ std::vector<std::string> json(std::initializer_list<const char*> more) {
   return words;
 }
 
+std::string keysAt(const std::string& first, const std::string& second) {
+  return R"({"shot": 1, "scene": "a", "seconds": 1, "camera": {"keys": [{"t": )" + first +
+         R"(, "eye": [0, 0, 1], "target": [0, 0, 0]}, {"t": )" + second +
+         R"(, "eye": [9, 0, 1], "target": [0, 0, 0]}]}})";
+}
+
 } // namespace
 
 std::vector<Target> ownFiles() {
@@ -409,7 +421,7 @@ std::vector<Target> ownFiles() {
        shotSeeds,
        json({"\"t\":", "\"fov\":", "179.9", "0.1", "1e12", "1e-200", "[0,1e-50,0]", "\"set\":", "\"played\":", "86400",
              "\"cabin\"", "\"lamp\"", "\"white board\""}),
-       {nested(R"({"shot": 1, "scene": )", "}")}},
+       {nested(R"({"shot": 1, "scene": )", "}"), keysAt("-1e308", "1e308"), keysAt("0", "1e-308")}},
       {"walk", walk, walkSeeds, json({"\n", "}\n", "]}", ",\"seconds\":", "\"camera\":", "86400", "1e-300"}), {}},
       {"preferences",
        preferences,

@@ -95,6 +95,19 @@ TEST_F(ShotFile, ErrorsNamePlaceAndReason) {
   expectError(camera(R"({"t": 0, "eye": [0, 0, "x"], "target": [0, 0, 1]})"), "camera.keys[0].eye[2]: is not a number");
   expectError(camera(R"({"t": 0, "eye": [0, 0, 1], "target": [0, 0, 1]})"), "same point");
   expectError(camera(R"({"t": 0, "eye": [0, 0, 1], "target": [0, 0, 0], "fov": 180})"), "fov: is out of range");
+  for (const char* t : {"-1e308", "1e10"})
+    expectError(camera(std::string(R"({"t": )") + t + R"(, "eye": [0, 0, 1], "target": [0, 0, 0]})"),
+                "camera.keys[0].t: is out of range");
+  expectError(
+      camera(
+          R"({"t": 0, "eye": [0, 0, 1], "target": [0, 0, 0]}, {"t": 1e-308, "eye": [9, 0, 1], "target": [0, 0, 0]})"),
+      "camera.keys[1].t: is not after");
+  for (const char* direction : {"0", "1e-50", "1e20"})
+    expectError(R"({"shot": 1, "scene": "a", "seconds": 1, "played": [{"t": 0, "torch": {"at": [0, 0, 0],
+                "direction": [0, 0, )" +
+                    std::string(direction) + R"(], "intensity": [1, 1, 1]}}]})",
+                std::string("played[0].torch.direction: ") +
+                    (direction == std::string("1e20") ? "is longer" : "has no"));
   expectError(
       camera(R"({"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]}, {"t": 1, "eye": [0, 0, 1], "target": [0, 0, 0]})"),
       "camera.keys[1].t: is not after");
@@ -104,6 +117,18 @@ TEST_F(ShotFile, ErrorsNamePlaceAndReason) {
   expectError(
       R"({"shot": 1, "scene": "a", "seconds": 1, "lights": {"x": {"keys": [{"t": 0, "intensity": [1, -1, 1]}]}}})",
       "negative");
+}
+
+/// Between two directions that are opposite there is none: the first holds.
+TEST(PlayedAt, ATorchThatTurnsRoundHasADirection) {
+  Shot shot;
+  for (const float z : {-1.0f, 1.0f}) {
+    PlayedMoment moment;
+    moment.t = double(z);
+    moment.torch = PlayedMoment::Torch{.direction = {0, 0, z}};
+    shot.played.push_back(moment);
+  }
+  for (const double t : {-1.0, -0.5, 0.0, 0.5, 1.0}) EXPECT_EQ(std::abs(playedAt(shot, t).torch->direction.z), 1) << t;
 }
 
 TEST(ShotCamera, PassesThroughItsKeysAndHoldsOutside) {
