@@ -18,7 +18,7 @@ void addPlaceCases(const Add& add, const Add& some) {
   some("AHouseAtAThousandKilometres", "40 m at 1000 km: positions in steps of 6 cm", {0.6, 1.1},
        [](HardWorld& w) { roomOf(w, 20, vec3(1e6f, 0, 0)); });
   // Views of lamps begin 10⁻⁴ of the world's size off: 14 m here, behind the walls. Rays start 2⁻¹⁹ of the world's size
-  // off a surface, which are 10 cm here. With a world of 1000 km they are 2 m, and the room is black.
+  // off a surface, which are 10 cm here. With a world of 1000 km they would be 2 m, as far as the room is high.
   HardCase& landscape =
       some("ARoomInALandscape", "2 m in a world of 100 km: what is small to the world is large in the room", kRoom,
            [](HardWorld& w) {
