@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace lambent {
 
@@ -84,6 +85,16 @@ void addPunctual(Import& import, Entity e, const tinygltf::Node& node, const std
   nameAfter(import, e, node, in.name);
 }
 
+/// What light paths keep of a triangle that shines, for each instance of its mesh.
+constexpr size_t kBytesPerEmitter = 96;
+
+size_t emittingTriangles(const SceneAssets& assets, uint32_t mesh) {
+  size_t count = 0;
+  for (const Primitive& p : assets.meshes[mesh].primitives)
+    if (assets.materials[p.material].emits()) count += p.triangleCount;
+  return count;
+}
+
 } // namespace
 
 void importNodes(Import& import, const std::string& sceneName) {
@@ -123,7 +134,8 @@ void importNodes(Import& import, const std::string& sceneName) {
   }
 
   size_t done = 0;
-  for (const int index : order) { // after all nodes are placed, because skins refer to joints anywhere
+  std::map<uint32_t, size_t> emitting; // triangles, by mesh
+  for (const int index : order) {      // after all nodes are placed, because skins refer to joints anywhere
     import.tell("meshes", Import::kRead, Import::kMeshes, done++, order.size());
     const tinygltf::Node& node = doc.model.nodes[size_t(index)];
     const std::string place = label("node", size_t(index), node.name);
@@ -135,6 +147,9 @@ void importNodes(Import& import, const std::string& sceneName) {
     const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0);
     if (mesh == kNone) continue;
     registry.emplace<MeshInstance>(e, mesh);
+    const auto [shining, first] = emitting.try_emplace(mesh, 0);
+    if (first) shining->second = emittingTriangles(import.scene.assets, mesh);
+    doc.spend(shining->second, kBytesPerEmitter, place);
     importDeformation(import, index, mesh);
   }
 }

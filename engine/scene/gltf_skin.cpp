@@ -62,6 +62,7 @@ void addMorphWeights(Import& import, int node, uint32_t slot) {
     doc.fail(own ? label("node", size_t(node), in.name) : label("mesh", size_t(in.mesh), mesh.name),
              "has " + std::to_string(weights.size()) + " weights for " + std::to_string(targets) + " morph targets");
   if (targets == 0) return;
+  doc.spend(targets, 2 * sizeof(float), label("node", size_t(node), in.name)); // with those of its own pose
   weights.resize(targets, 0.0f);
   import.scene.registry.emplace<MorphWeights>(import.entities[size_t(node)], std::move(weights));
 }

@@ -377,6 +377,22 @@ TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
   for (int i = 0; i < 200; ++i) morphs.addRoot({{"mesh", 0}});
   expectError(morphs, "needs more memory than a file of");
 
+  GltfBuilder weights = oneTriangle(); // a list of weights for each node
+  weights.json["meshes"][0]["primitives"][0]["targets"] =
+      json(size_t(8000), {{"POSITION", weights.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]}});
+  for (int i = 0; i < 10000; ++i) weights.addRoot({{"mesh", 0}});
+  expectError(weights, "needs more memory than a file of");
+
+  GltfBuilder shining = oneTriangle(); // triangles that are lights, for each node
+  std::vector<uint16_t> corners;
+  for (int i = 0; i < 6000; ++i) corners.insert(corners.end(), {0, 1, 2});
+  shining.json["meshes"][0]["primitives"][0]["indices"] = shining.indices(corners);
+  shining.json["meshes"][0]["primitives"][0]["material"] = shining.push("materials", {{"emissiveFactor", {1, 1, 1}}});
+  for (int i = 0; i < 50; ++i) shining.addRoot({{"mesh", 0}});
+  shining.load(folder);
+  for (int i = 0; i < 1200; ++i) shining.addRoot({{"mesh", 0}});
+  expectError(shining, "needs more memory than a file of");
+
   writeBytes(folder / "data.bin", std::string(32 << 20, '\0'));
   json j = json::parse(oneTriangle().text());
   for (int i = 0; i < 90; ++i) j["buffers"].push_back({{"uri", "data.bin"}, {"byteLength", 32 << 20}});
