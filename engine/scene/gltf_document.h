@@ -16,8 +16,8 @@ namespace lambent::gltf {
 
 /// Memory that reading a file may ask for: a few bytes can name millions of elements or texels, and one buffer can be
 /// read for every primitive. Counted is what is decoded: elements of accessors, triangles, vertices of one's own,
-/// texels, triangles that shine and weights of targets by
-/// node, and files read again. The program needs up to four times as much for a moment.
+/// texels, files read again; and for every node its triangles that shine and its weights of targets. The program needs
+/// up to four times as much for a moment.
 struct Budget {
   static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
   size_t read = 0;  // bytes of the file and of those that it names, each once
