@@ -31,14 +31,15 @@ class Mutator {
 
   std::string next() {
     std::string bytes = pool_[below(pool_.size())];
-    for (size_t times = 1 + below(6); times > 0; --times) mutate(bytes);
-    if (below(8) == 0) { // builds on what it found
-      if (pool_.size() < 64)
-        pool_.push_back(bytes);
-      else
-        pool_[8 + below(56)] = bytes;
-    }
+    for (size_t times = 1 + below(1 + below(6)); times > 0; --times) mutate(bytes);
     return bytes;
+  }
+  /// Builds on what a reader took: what it refuses says nothing of what is behind.
+  void keep(const std::string& bytes) {
+    if (pool_.size() < 64)
+      pool_.push_back(bytes);
+    else
+      pool_[8 + below(56)] = bytes;
   }
 
  private:
@@ -111,18 +112,19 @@ class Mutator {
 
   const Target& target_;
   std::vector<std::string> pool_;
-  size_t longest_ = 1 << 16; // bytes
+  size_t longest_ = 1 << 12; // bytes: of short ones more can be tried
   Rng rng_;
 };
 
 /// Ends the program where a run does not end, or takes memory without bounds.
-void runBounded(const Target& target, const std::string& bytes) {
+bool runBounded(const Target& target, const std::string& bytes) {
   const itimerval limit{{}, {kSeconds, 0}};
   setitimer(ITIMER_PROF, &limit, nullptr);
-  target.run(bytes);
+  const bool taken = target.run(bytes);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   CHECK_LT(usage.ru_maxrss >> 10, kMost);
+  return taken;
 }
 
 void run(const Target& target, long runs, uint32_t seed) {
@@ -134,14 +136,17 @@ void run(const Target& target, long runs, uint32_t seed) {
       writeBytes(found, bytes); // there when it ends the program
       runBounded(target, bytes);
     }
+  long taken = 0;
   for (long i = 0; i < runs; ++i) {
     const std::string bytes = mutator.next();
     writeBytes(found, bytes);
-    runBounded(target, bytes);
+    if (!runBounded(target, bytes)) continue;
+    ++taken;
+    mutator.keep(bytes);
   }
   std::filesystem::remove(found);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::printf("%s: %ld runs, seed %u, %.1f s, nothing found\n", target.name, runs, seed, seconds);
+  std::printf("%s: %ld runs (%ld taken), seed %u, %.1f s, nothing found\n", target.name, runs, taken, seed, seconds);
 }
 
 int runAll(int argc, char** argv) {

@@ -41,21 +41,24 @@ template <class Write> std::string written(const std::string& extension, const W
   return bytes;
 }
 
-/// Runs what may refuse.
-template <class Run> void refusing(const Run& run) {
+/// Runs what may refuse; says whether it did not.
+template <class Run> bool takes(const Run& run) {
   try {
     run();
+    return true;
   } catch (const InputError&) {
   } catch (const RunError&) {
   }
+  return false;
 }
 
-/// Runs a reader of a file and removes it.
-template <class Read> void reading(std::string_view bytes, const std::string& extension, const Read& read) {
+/// Runs a reader of a file and removes it; says whether it took it.
+template <class Read> bool reading(std::string_view bytes, const std::string& extension, const Read& read) {
   const fs::path file = scratch(extension);
   writeBytes(file, bytes);
-  refusing([&] { read(file); });
+  const bool taken = takes([&] { read(file); });
   fs::remove(file);
+  return taken;
 }
 
 /// A folder for the files of one run.

@@ -127,8 +127,8 @@ void show(const Shot& shot) {
   }
 }
 
-void shot(std::string_view bytes) {
-  reading(bytes, ".json", [](const fs::path& file) {
+bool shot(std::string_view bytes) {
+  return reading(bytes, ".json", [](const fs::path& file) {
     const Shot shot = loadShot(file);
     const fs::path again = scratch("-again.json");
     saveShot(shot, again);
@@ -168,11 +168,11 @@ std::vector<std::string> shotSeeds() {
 
 std::optional<Shot> taken(const fs::path& file) {
   std::optional<Shot> shot;
-  refusing([&] { shot = loadShot(file); });
+  takes([&] { shot = loadShot(file); });
   return shot;
 }
 
-void walk(std::string_view bytes) {
+bool walk(std::string_view bytes) {
   const Folder folder("-walks");
   const fs::path file = folder / "walk-1.json";
   writeBytes(file, bytes);
@@ -180,17 +180,17 @@ void walk(std::string_view bytes) {
   const bool ended = !endCutShots(folder.path()).empty();
   if (!fs::exists(file)) {
     CHECK(!ended && before && before->camera.empty());
-    return;
+    return true;
   }
   if (!ended) {
     CHECK(readBytes(file) == bytes);
-    return;
+    return before.has_value();
   }
   const std::optional<Shot> after = taken(file);
   CHECK(before && after);
   checkSame(*before, *after);
   CHECK(endCutShots(folder.path()).empty());
-  refusing([&] { show(*after); });
+  return takes([&] { show(*after); });
 }
 
 std::vector<std::string> walkSeeds() {
@@ -227,15 +227,15 @@ void applyTechnique(Settings& settings, const std::string& name) {
 
 bool isLine(std::string_view text) { return text.find('\n') == text.npos; }
 
-void preferences(std::string_view bytes) {
-  reading(bytes, ".json", [](const fs::path& file) {
+bool preferences(std::string_view bytes) {
+  return reading(bytes, ".json", [](const fs::path& file) {
     const bool refused = !KeptPreferences(file).takeComplaint().empty();
     Preferences p;
     try {
       p = loadPreferences(file);
     } catch (const InputError& e) {
       CHECK(refused && isLine(e.what()));
-      return;
+      throw;
     }
     CHECK(!refused);
     CHECK(std::abs(p.exposure) <= 24 && p.speed >= 0.1 && p.speed <= 10);
@@ -263,11 +263,11 @@ std::vector<std::string> preferencesSeeds() {
 
 // How far a recording got ---------------------------------------------------------------------------------------------
 
-void recording(std::string_view bytes) {
+bool recording(std::string_view bytes) {
   const Folder folder("-recording");
   const RecordingMark mark(folder.path(), "0123456789abcdef");
   writeBytes(folder / "recording.json", bytes);
-  refusing([&] {
+  const bool taken = takes([&] {
     const int kept = mark.kept();
     CHECK(kept >= 0 && kept < std::numeric_limits<int>::max()); // one frame more can be counted
     mark.write(kept);
@@ -275,6 +275,7 @@ void recording(std::string_view bytes) {
   });
   const std::string text = Value::parsed(std::string(bytes)).json(-1);
   CHECK_EQ(Value::parsed(text).json(-1), text);
+  return taken && text != "null";
 }
 
 std::vector<std::string> recordingSeeds() {
@@ -298,9 +299,9 @@ struct State {
 };
 
 /// Behind its checksum: its pictures are drawn, and it goes on.
-void state(std::string_view bytes) {
+bool state(std::string_view bytes) {
   const std::string whole = test::mended(std::string(bytes));
-  reading(whole, ".state", [&](const fs::path& file) {
+  return reading(whole, ".state", [&](const fs::path& file) {
     const State s;
     ReferenceSums sums = loadReference(file, s.in, State::kKey);
     CHECK_EQ(sums.pixels.size(), size_t(12));
@@ -360,9 +361,9 @@ std::string writtenCube(const LayeredCube& cube) {
 }
 
 /// Behind its checksum: what is believed goes on, also where something moved.
-void cube(std::string_view bytes) {
+bool cube(std::string_view bytes) {
   const std::string whole = test::mended(std::string(bytes));
-  reading(whole, ".cube", [&](const fs::path& file) {
+  return reading(whole, ".cube", [&](const fs::path& file) {
     const Cube c;
     LayeredCube cube = loadCube(file, Cube::kKey);
     const std::string again = writtenCube(cube); // as the file, but for bytes that say nothing

@@ -14,8 +14,8 @@ namespace {
 
 // glTF ----------------------------------------------------------------------------------------------------------------
 
-void gltf(std::string_view bytes) {
-  reading(bytes, bytes.starts_with("glTF") ? ".glb" : ".gltf", [](const fs::path& file) {
+bool gltf(std::string_view bytes) {
+  return reading(bytes, bytes.starts_with("glTF") ? ".glb" : ".gltf", [](const fs::path& file) {
     Scene scene = loadScene(file);
     SceneExtractor extractor;
     for (const double t : {0.0, 0.7}) {
@@ -102,14 +102,16 @@ std::vector<std::string> gltfSeeds() {
 // Settings, pictures --------------------------------------------------------------------------------------------------
 
 /// Lines of name=value, or names of presets.
-void settings(std::string_view bytes) {
+bool settings(std::string_view bytes) {
   std::istringstream lines{std::string(bytes)};
   Settings settings;
+  bool taken = true;
   for (std::string line; std::getline(lines, line);) try {
       const size_t equals = line.find('=');
       equals == std::string::npos ? applyPreset(settings, line)
                                   : applySetting(settings, line.substr(0, equals), line.substr(equals + 1));
     } catch (const InputError&) {
+      taken = false;
     }
   for (const SettingRow& row : settingsTable()) { // what was taken can be said and taken again
     Settings again = settings;
@@ -117,6 +119,7 @@ void settings(std::string_view bytes) {
     CHECK(again == settings);
   }
   (void)whyNot(settings);
+  return taken;
 }
 
 std::vector<std::string> settingsSeeds() {
@@ -126,8 +129,8 @@ std::vector<std::string> settingsSeeds() {
   return {all, "low\nsmc.vpls=1\ngather.clamp=0.5\nshadow.bias=1e1\n"};
 }
 
-void picture(std::string_view bytes) {
-  reading(bytes, bytes.starts_with("P") ? ".pfm" : ".exr", [&](const fs::path& file) {
+bool picture(std::string_view bytes) {
+  return reading(bytes, bytes.starts_with("P") ? ".pfm" : ".exr", [&](const fs::path& file) {
     const Image image = bytes.starts_with("P") ? readPfm(file) : readExr(file);
     CHECK_EQ(image.pixels.size(), size_t(image.width) * size_t(image.height));
   });

@@ -11,7 +11,7 @@ namespace lambent::fuzz {
 
 struct Target {
   const char* name;
-  void (*run)(std::string_view bytes);
+  bool (*run)(std::string_view bytes); // says whether the reader took them: more is tried from there
   std::vector<std::string> (*seeds)(); // valid inputs, with as much of the format in them as fits
   std::vector<std::string> words;      // of its language
   std::vector<std::string> probes;     // to be refused; run as they are
