@@ -6,8 +6,12 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 
 namespace lambent {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -87,6 +91,46 @@ void checkCommand(const CLI::App& app, int argc, char** argv) {
   throw InputError("command line", "no command " + name + " (" + guessOrHelp(name, known, "lambent --help") + ")");
 }
 
+/// Of what was asked for on the command line.
+struct NamedFile {
+  std::string option, name;
+  bool written;
+};
+
+/// The files that a command reads, as what stands without a name, and those that it writes.
+void collectFiles(const CLI::App& command, std::vector<NamedFile>& files) {
+  static const std::array kWritten{"out", "json", "errors", "state", "cube-file", "difference", "pixels", "record"};
+  for (const CLI::Option* option : command.get_options()) {
+    const bool read = option->get_positional(),
+               written =
+                   !read && std::ranges::any_of(kWritten, [&](const char*name) { return option->check_lname(name); });
+    if (!read && !written) continue;
+    for (const std::string& name : option->results())
+      if (!name.empty()) files.push_back({option->get_name(), name, written});
+  }
+  for (const CLI::App* group : command.get_subcommands({}))
+    if (group->get_name().empty()) collectFiles(*group, files);
+}
+
+bool sameFile(const fs::path& a, const fs::path& b) {
+  std::error_code none;
+  if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
+  const fs::path there = fs::weakly_canonical(a, none), other = fs::weakly_canonical(b, none);
+  return !there.empty() && there == other;
+}
+
+/// Throws InputError where one of two results, or what is read, would be lost.
+void refuseSameFiles(const CLI::App& command) {
+  std::vector<NamedFile> files;
+  collectFiles(command, files);
+  for (size_t i = 0; i < files.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if ((files[i].written || files[k].written) && files[i].option != files[k].option &&
+          sameFile(files[i].name, files[k].name))
+        throw InputError("command line", files[k].option + " and " + files[i].option + " are one file, " +
+                                             files[i].name + ": what it holds would be lost");
+}
+
 /// What CLI11 found wrong, in one line that says where help is; of an unknown option, with the nearest name.
 std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
   std::string help = "lambent --help";
@@ -150,7 +194,12 @@ void Command::flag(const std::string& name, const std::function<void()>& given, 
 
 void Command::beginForms() { to_ = command_->add_option_group("Forms", "at most one")->require_option(0, 1); }
 void Command::footer(const std::string& text) { command_->footer(text); }
-void Command::run(const std::function<void()>& run) { command_->callback(run); }
+void Command::run(const std::function<void()>& run) {
+  command_->callback([command = command_, run] {
+    refuseSameFiles(*command);
+    run();
+  });
+}
 
 int runCommand(int argc, char** argv, const char* version, std::initializer_list<void (*)(CLI::App&)> commands) {
   CLI::App app{"Lambent: global illumination for moving worlds", "lambent"};
