@@ -35,7 +35,8 @@ void add(Hash& hash, const LightView& light) {
 bool possible(const PixelSums& p, uint32_t samples) {
   constexpr double kRounding = 1 + 1e-6, kMostMean = double(std::numeric_limits<float>::max()) / 4;
   const auto holds = [&](double sum, double squares) {
-    return sum >= 0 && squares >= 0 && sum <= samples * kMostMean && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
+    if (!(sum <= samples * kMostMean)) return false;                                         // NaN too
+    return sum >= 0 && squares >= 0 && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
            sum * sum <= samples * squares * kRounding && squares <= sum * sum * kRounding;
   };
   for (int c = 0; c < 3; ++c)
