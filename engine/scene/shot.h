@@ -91,6 +91,9 @@ class ShotWriter {
 /// is left alone, and what has no frame goes.
 std::vector<std::filesystem::path> endCutShots(const std::filesystem::path& folder);
 
+/// A camera as a key of a shot. `origin`: the scene's.
+CameraKey keyOf(const CameraView& camera, const dvec3& origin, double t);
+
 /// Camera of the shot at time t: eye and target on a Catmull-Rom spline through the keys, held before the first and
 /// after the last, counted from `origin`: the scene's. Requires shot.camera not empty.
 CameraView shotCamera(const Shot& shot, double t, const dvec3& origin);

@@ -132,6 +132,11 @@ vec3 mixDirections(const Neighbours<vec3>& b) {
 
 int Shot::frameCount() const { return std::max(1, int(std::lround(fps * seconds))); }
 
+CameraKey keyOf(const CameraView& camera, const dvec3& origin, double t) {
+  const dvec3 eye = origin + dvec3(camera.position());
+  return {t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY};
+}
+
 CameraView shotCamera(const Shot& shot, double t, const dvec3& origin) {
   CHECK(!shot.camera.empty());
   const dvec3 eye = spline(shot.camera, t, [](const CameraKey& k) { return k.eye; });

@@ -46,8 +46,7 @@ bool PathRecorder::add(const CameraView& camera, const dvec3& origin, PlayedMome
     writer_ = std::make_unique<ShotWriter>(*walk_, file);
     file_ = file;
   }
-  const dvec3 eye = origin + dvec3(camera.position());
-  const CameraKey key{t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY};
+  const CameraKey key = keyOf(camera, origin, t);
   std::vector<PlayedMoment> now;
   std::vector<PlayedMoment>& played = walk_->played; // the last
   const auto same = [&](const PlayedMoment& other) { // but for the time

@@ -189,6 +189,8 @@ void KeptPreferences::save() {
   if (file_.empty() || now == saved_) return;
   saved_ = now; // also where it fails: reported once, tried again when something else changes
   try {
+    std::error_code toldBySaving;
+    fs::create_directories(file_.parent_path(), toldBySaving);
     const FolderLock alone(file_.parent_path());
     savePreferences(heldBy(file_, now).with(inFile_, now), file_);
     inFile_ = now;

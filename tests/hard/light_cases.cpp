@@ -116,11 +116,10 @@ void addLightCases(const Add& add, const Add& some) {
     w.room();
     w.lamp({1, 0.3f, 0.2f});
   });
-  some("LampAtTheEye", "what the camera sees is what the lamp lights, and both are one point", {0.55, 1.1},
-       [](HardWorld& w) {
-         w.room();
-         w.lamp(w.scene.camera.position());
-       });
+  some("LampAtTheEye", "the camera sees what the lamp lights, from the same point", {0.55, 1.1}, [](HardWorld& w) {
+    w.room();
+    w.lamp(w.scene.camera.position());
+  });
   // Of the truth, 0.223, smc has 0.14 on the mean of eight seeds, with 64 lights as with 1024.
   some("LampBehindAGrille", "of what falls on a grille, holes of 4 cm let 4 % through", {0.08, 0.3, kInfinity, true},
        [](HardWorld& w) { grille(w, 0.2f); });
@@ -162,15 +161,14 @@ void addLightCases(const Add& add, const Add& some) {
     w.settings.rsm.resolution = 16;
   });
   // Of the truth, 0.015, 64 lights have 0.009 on the mean of eight seeds, 1024 have 0.013.
-  some("ShaftUnderTheSun", "a shaft of 2 m by 10 m, open above: the sun shines on a stripe high up", {0.004, 0.025},
-       [](HardWorld& w) {
-         w.scene.box({-1, -5, -1}, {1, 5, 1}, w.scene.material(vec3(0.7f)), true);
-         w.scene.instances.erase(w.scene.instances.begin() + 3); // the upper side
-         LightView& sun = w.lamp(vec3(0), 10);
-         sun.type = LightType::Directional;
-         sun.direction = glm::normalize(vec3(1, -1, 0));
-         w.scene.camera = look({0.1f, -4.8f, 0.9f}, {0, -4.5f, -1});
-       });
+  some("ShaftUnderTheSun", "a shaft 10 m deep: the sun lights a stripe high up", {0.004, 0.025}, [](HardWorld& w) {
+    w.scene.box({-1, -5, -1}, {1, 5, 1}, w.scene.material(vec3(0.7f)), true);
+    w.scene.instances.erase(w.scene.instances.begin() + 3); // the upper side
+    LightView& sun = w.lamp(vec3(0), 10);
+    sun.type = LightType::Directional;
+    sun.direction = glm::normalize(vec3(1, -1, 0));
+    w.scene.camera = look({0.1f, -4.8f, 0.9f}, {0, -4.5f, -1});
+  });
   some("SunAlongTheFloor", "the sun's way lies in the plane of the floor: a wall alone is lit", {0.8, 1.25},
        [](HardWorld& w) {
          const uint32_t white = w.scene.material(vec3(0.7f));

@@ -117,12 +117,11 @@ void addMovingCases(const Add& add, const Add& some) {
     w.frames = 6;
     w.step = [&w](int frame) { w.scene.lights[0].intensity = vec3(frame % 2 ? 0.0f : 1.0f); };
   });
-  some("LightOf1e12ThenOf1e-12", "what a frame keeps of the one before is 10²⁴ times its light", {0.65e-12, 1.05e-12},
-       [](HardWorld& w) {
-         roomOf(w, 1);
-         w.frames = 6;
-         w.step = [&w](int frame) { w.scene.lights[0].intensity = vec3(frame % 2 ? 1e-12f : 1e12f); };
-       });
+  some("LightOf1e12ThenOf1e-12", "what a frame keeps is 10²⁴ times its light", {0.65e-12, 1.05e-12}, [](HardWorld& w) {
+    roomOf(w, 1);
+    w.frames = 6;
+    w.step = [&w](int frame) { w.scene.lights[0].intensity = vec3(frame % 2 ? 1e-12f : 1e12f); };
+  });
   some("SunGoesRound", "a quarter of a turn with every frame, over a yard", {1, 1.8}, [](HardWorld& w) {
     w.room();
     w.scene.instances.erase(w.scene.instances.begin() + 3);
@@ -177,16 +176,15 @@ void addMovingCases(const Add& add, const Add& some) {
                  w.step = [&w](int) { w.scene.move(6, {0.1f, 0, 0}, 12); };
                },
                true};
-  some("TurnedInsideOutAndBack", "walls and a block change the sign of their scale with every frame", kRoom,
-       [](HardWorld& w) {
-         roomOf(w, 1);
-         w.scene.box(vec3(-0.15f), vec3(0.15f), w.scene.material(vec3(0.7f)), false);
-         w.frames = 6;
-         w.step = [&w](int frame) {
-           for (uint32_t i = 0; i < 12; ++i)
-             w.scene.place(i, glm::scale(mat4(1), vec3(frame % 2 ? -1 : 1, 1, frame % 3 ? 1 : -1)));
-         };
-       });
+  some("TurnedInsideOutAndBack", "scales change their sign with every frame", kRoom, [](HardWorld& w) {
+    roomOf(w, 1);
+    w.scene.box(vec3(-0.15f), vec3(0.15f), w.scene.material(vec3(0.7f)), false);
+    w.frames = 6;
+    w.step = [&w](int frame) {
+      for (uint32_t i = 0; i < 12; ++i)
+        w.scene.place(i, glm::scale(mat4(1), vec3(frame % 2 ? -1 : 1, 1, frame % 3 ? 1 : -1)));
+    };
+  });
   some("GrowsFromNothing", "a block of scale 0, 0.2, 0.4, …: the first has no inverse", {0.5, 0.95}, [](HardWorld& w) {
     roomOf(w, 1);
     w.scene.box(vec3(-0.2f), vec3(0.2f), w.scene.material(vec3(0.5f)), false);
@@ -270,22 +268,21 @@ void addMovingCases(const Add& add, const Add& some) {
       w.scene.reshape(floor, waves(w.scene.assets.meshes.back(), 0.15f, float(frame)));
     };
   });
-  some("CollapsesToAPoint", "a sheet whose corners are one point in every other frame, at last too", kRoom,
-       [](HardWorld& w) {
-         roomOf(w, 1);
-         const uint32_t cloth =
-             w.scene.add(sheet(4, w.scene.material(vec3(0.7f), vec3(0), true)), glm::scale(mat4(1), vec3(0.3f)));
-         w.frames = 6;
-         w.step = [&w, cloth](int frame) {
-           std::vector<vec3> positions = w.scene.assets.meshes.back().positions;
-           if (frame % 2)
-             for (vec3& p : positions) p = vec3(0.1f);
-           w.scene.reshape(cloth, std::move(positions));
-           auto shape = std::make_shared<DeformedMesh>(*w.scene.instances[cloth].deformed);
-           shape->normals.assign(shape->normals.size(), vec3(0, 0, 1)); // as deform() leaves those without a length
-           w.scene.instances[cloth].deformed = shape;
-         };
-       });
+  some("CollapsesToAPoint", "a sheet's corners are one point in every other frame", kRoom, [](HardWorld& w) {
+    roomOf(w, 1);
+    const uint32_t cloth =
+        w.scene.add(sheet(4, w.scene.material(vec3(0.7f), vec3(0), true)), glm::scale(mat4(1), vec3(0.3f)));
+    w.frames = 6;
+    w.step = [&w, cloth](int frame) {
+      std::vector<vec3> positions = w.scene.assets.meshes.back().positions;
+      if (frame % 2)
+        for (vec3& p : positions) p = vec3(0.1f);
+      w.scene.reshape(cloth, std::move(positions));
+      auto shape = std::make_shared<DeformedMesh>(*w.scene.instances[cloth].deformed);
+      shape->normals.assign(shape->normals.size(), vec3(0, 0, 1)); // as deform() leaves those without a length
+      w.scene.instances[cloth].deformed = shape;
+    };
+  });
   some("SparksFly", "a hundred glowing specks, each somewhere else in every frame", {0.5, 0.95}, [](HardWorld& w) {
     w.room();
     const uint32_t spark = w.scene.material(vec3(0), vec3(4 / (2 * 100 * 1e-6f)), true);

@@ -65,8 +65,8 @@ void addSurfaceCases(const Add& add, const Add& some) {
     w.scene.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, w.scene.material(vec3(0.1f)));
   });
   // As LampBehindAGrille: 0.14 of 0.225.
-  some("MaskedGrille", "a wall of which masks leave 96 %: of 25 texels one is cut out, a hundred times",
-       {0.08, 0.3, kInfinity, true}, [](HardWorld& w) {
+  some("MaskedGrille", "of a wall masks cut one texel in 25, a hundred times", {0.08, 0.3, kInfinity, true},
+       [](HardWorld& w) {
          w.room({-1, -1, -1}, {1, 1, 3});
          const uint32_t mask = w.scene.material(vec3(0.7f), vec3(0), true);
          std::vector<u8vec4> texels(25, {255, 255, 255, 255});

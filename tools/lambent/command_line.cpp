@@ -101,9 +101,8 @@ struct NamedFile {
 void collectFiles(const CLI::App& command, std::vector<NamedFile>& files) {
   static const std::array kWritten{"out", "json", "errors", "state", "cube-file", "difference", "pixels", "record"};
   for (const CLI::Option* option : command.get_options()) {
-    const bool read = option->get_positional(),
-               written =
-                   !read && std::ranges::any_of(kWritten, [&](const char*name) { return option->check_lname(name); });
+    const auto isThis = [&](const char* name) { return option->check_lname(name); };
+    const bool read = option->get_positional(), written = !read && std::ranges::any_of(kWritten, isThis);
     if (!read && !written) continue;
     for (const std::string& name : option->results())
       if (!name.empty()) files.push_back({option->get_name(), name, written});

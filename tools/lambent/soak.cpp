@@ -142,9 +142,8 @@ class Recorded {
     shot.scene = std::filesystem::absolute(launch.scene);
     writer_.emplace(shot, file);
   }
-  void add(const CameraView& camera, const dvec3& origin, double t) {
-    const dvec3 eye = origin + dvec3(camera.position());
-    if (writer_) writer_->add({t, eye, eye - dvec3(camera.worldFromView[2]), camera.fovY}, {});
+  void add(const CameraKey& key) {
+    if (writer_) writer_->add(key, {});
   }
   void end(double seconds) {
     if (writer_) writer_->end(seconds);
@@ -172,7 +171,7 @@ void soak(const SoakOptions& options) {
       gi.run(opened->at(frame / 30.0));
       if (const std::string defect = defectOf(gi, gi.settings()); !defect.empty()) throw RunError(at + defect);
       if (glDebugErrors() > 0) throw RunError(at + "OpenGL reported errors (logged above)");
-      recorded.add(opened->camera, opened->scene.origin, frame / 30.0);
+      recorded.add(keyOf(opened->camera, opened->scene.origin, frame / 30.0));
       program.add(residentMiB(), frame, options.frames);
       openGl.add(openGlMiB(), frame, options.frames);
       progress.update(frame + 1, options.frames);
