@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 
 namespace lambent {
 
@@ -36,6 +37,10 @@ void requireThreadsAndMemory(int wanted) {
   if (room == MAP_FAILED)
     throw RunError("this process may not take 1 GB of memory (is there a limit? ulimit -v unlimited lifts it)");
   munmap(room, kAddresses);
+  constexpr rlim_t kStack = 256 * 1024; // of each thread too; half did
+  rlimit stack{};
+  if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kStack)
+    throw RunError("this process may not take 256 KB of stack (is there a limit? ulimit -s 8192 lifts it)");
   const int got = threadsOf(wanted);
   if (got < wanted)
     throw RunError("this process may make only " + std::to_string(got) + " of the " + std::to_string(wanted) +

@@ -3,8 +3,8 @@
 
 namespace lambent {
 
-/// Throws RunError where this process may not make so many more threads, or take the address space, that drivers,
-/// Embree and our own loops take: without, they end the program or wait for ever.
+/// Throws RunError where this process may not make so many more threads, or take the address space or stack, that
+/// drivers, Embree and our own loops take: without, they end the program or wait for ever.
 void requireThreadsAndMemory(int threads);
 
 } // namespace lambent

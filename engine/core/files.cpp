@@ -85,6 +85,13 @@ void checkWritable(const fs::path& named) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
 }
 
+bool sameFile(const fs::path& a, const fs::path& b) {
+  std::error_code none;
+  if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
+  const fs::path there = fs::weakly_canonical(a, none), other = fs::weakly_canonical(b, none);
+  return !there.empty() && there == other;
+}
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code none;
   const fs::path file = followed(named);
@@ -123,6 +130,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str()
     if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  held_ = false;
 }
 
 FolderLock::~FolderLock() {

@@ -12,6 +12,9 @@ namespace lambent {
 /// writable, a folder by its name.
 void checkWritable(const std::filesystem::path& file);
 
+/// Whether two names are of one file, or would be once it is written.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
 /// the folder cannot be written.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
@@ -26,8 +29,12 @@ class FolderLock {
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
 
+  /// False where somebody else kept it for all of the second.
+  bool held() const { return held_; }
+
  private:
   int descriptor_;
+  bool held_ = true;
 };
 
 /// A new file that grows line by line: whatever ends the program, it has all lines before. Locked while it lives, where

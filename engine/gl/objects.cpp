@@ -1,6 +1,9 @@
 #include "engine/gl/objects.h"
 
 #include "engine/core/error.h"
+#include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
+#include "engine/gl/context.h"
 
 #include <cmath>
 #include <limits>
@@ -24,8 +27,17 @@ template <class Create> GLuint make(Create create) {
   return name;
 }
 
+/// A driver that draws on the CPU grants whatever is asked for; the machine then has nothing left when it is drawn to.
+void refuseBeyondMemory(const TextureDesc& desc, const std::string& label) {
+  constexpr uint64_t kSmall = uint64_t(64) << 20; // asking takes time
+  const uint64_t bytes = bytesOf(desc);
+  if (bytes > kSmall && drawnByCpu() && bytes > freeMemory())
+    throw RunError("graphics memory: " + label + " needs " + moreThanIsLeft(double(bytes), "fewer lights or texels"));
+}
+
 /// Throws RunError when the GPU has no room for it.
 GLuint makeTexture(const TextureDesc& desc, const std::string& label) {
+  refuseBeyondMemory(desc, label);
   GLuint name = 0;
   glCreateTextures(kTargets[int(desc.kind)], 1, &name);
   if (desc.kind != TextureKind::Flat)

@@ -314,6 +314,8 @@ Document readDocument(const fs::path& file, FileAccess access) {
   if (doc.model.asset.version.rfind("2.", 0) != 0)
     throw InputError(file.string(), "is glTF version '" + doc.model.asset.version + "' (2.0 expected)");
 
+  doc.files.assign(reading.files.begin(), reading.files.end());
+  doc.files.push_back(file);
   checkMaterials(doc);
   checkNodes(doc);
   checkCamerasAndLights(doc);

@@ -205,6 +205,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   }
   Scene scene = std::move(import.scene);
   scene.file = file;
+  scene.files = std::move(import.doc.files);
   if (scene.assets.materials.empty()) scene.assets.materials.emplace_back().name = "default";
   scene.warnings = std::move(import.doc.warnings);
   for (const auto& [text, count] : import.counted) scene.warnings.push_back(std::to_string(count) + " " + text);

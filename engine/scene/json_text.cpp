@@ -60,4 +60,11 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
   return out;
 }
 
+std::string reasonOf(const std::exception& ofParser) {
+  std::string reason = ofParser.what();
+  if (const size_t end = reason.find("] "); reason.starts_with("[json.exception.") && end != reason.npos)
+    reason.erase(0, end + 2);
+  return reason;
+}
+
 } // namespace lambent

@@ -62,6 +62,8 @@ struct Shot {
   int frameCount() const;
 };
 
+constexpr double kLongestShot = 86400; // seconds
+
 /// Loads a shot. Throws InputError for a missing file, bad JSON (with line), unknown key, wrong type, keys out of time
 /// order. Of one that a ShotWriter was not able to end it has all whole frames.
 Shot loadShot(const std::filesystem::path& file);
@@ -76,14 +78,16 @@ class ShotWriter {
   ShotWriter(const Shot& shot, const std::filesystem::path& file);
   ~ShotWriter();
 
-  /// Appends a key, and what was played from the key before on until then. Throws RunError where the disk is full: the
-  /// file then is as it was.
+  /// Appends a key, and what was played from the key before on until then. Throws RunError where the disk is full, and
+  /// where the shot would be longer than loadShot takes: the file then is as it was.
   void add(const CameraKey& key, const std::vector<PlayedMoment>& played);
   /// Throws likewise.
   void end(double seconds);
 
  private:
   std::unique_ptr<AppendedFile> file_;
+  const std::string name_;
+  const double last_; // seconds: the latest key
   bool first_ = true;
 };
 

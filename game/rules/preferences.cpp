@@ -148,7 +148,7 @@ Preferences loadPreferences(const fs::path& file) {
     p.speed = between(0.1, j.value("speed", 1.0), 10);
     if (j.contains("window")) p.window = windowOf(j["window"]);
   } catch (const std::exception& e) {
-    throw InputError(file.string(), "holds no settings of the walkthrough (" + std::string(e.what()) + ")");
+    throw InputError(file.string(), "holds no settings of the walkthrough (" + reasonOf(e) + ")");
   }
   return p;
 }

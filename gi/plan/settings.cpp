@@ -400,7 +400,11 @@ SettingRow settingRow(std::string_view name, const Settings& settings) {
 void applySetting(Settings& settings, std::string_view name, std::string_view value) {
   const SettingRow row = settingRow(name, settings);
   const std::optional<double> v = valueOf(row, value);
-  if (!v) throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + row.range() + ")");
+  if (!v) {
+    const bool endless = row.kind != SettingKind::Flag && row.choices.empty() && row.high >= kNoLimit;
+    const std::string range = endless ? row.text(row.low) + ".." + row.text(row.high) : row.range();
+    throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + range + ")");
+  }
   row.set(settings, *v);
 }
 

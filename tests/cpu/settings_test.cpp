@@ -3,7 +3,7 @@
 
 #include "gi/plan/presets.h"
 
-#include "tests/support/test.h"
+#include "tests/support/files.h"
 
 namespace lambent::test::settings_test {
 
@@ -35,6 +35,9 @@ TEST(Settings, RangesReadAsTheyAreTyped) {
   EXPECT_EQ(settingRow("smc.vpls").range(), "1..65536");
   EXPECT_EQ(settingRow("gather.clamp").range(), "at least 0");
   EXPECT_EQ(settingRow("smc.cache").range(), "on|off");
+  Settings s;
+  const std::string said = inputErrorOf([&] { applySetting(s, "gather.clamp", "3e38"); });
+  EXPECT_NE(said.find("(0..1e+30)"), std::string::npos) << said;
   EXPECT_EQ(settingRow("vpl.visibility").range(), "maps|rays|none");
   EXPECT_EQ(settingRow("filter.distance").range(), "1e-06..10");
   EXPECT_EQ(settingText({}, "multires.depth"), "0.02");

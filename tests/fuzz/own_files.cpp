@@ -15,10 +15,12 @@
 #include "tests/fuzz/files.h"
 #include "tests/support/checked.h"
 #include "tools/kept/recording_mark.h"
+#include "tools/kept/run_log.h"
 #include "tools/kept/value.h"
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace lambent::fuzz {
 
@@ -283,6 +285,32 @@ std::vector<std::string> recordingSeeds() {
           R"({"conditions":"0123456789abcdef","frames":1,"list":[1,-2.5,true,null,"text",{"a":[]}]})"};
 }
 
+// What an accuracy report has measured --------------------------------------------------------------------------------
+
+/// Behind each line's checksum.
+bool runs(std::string_view bytes) {
+  const Folder folder("-runs");
+  const fs::path file = folder.path() / "runs.jsonl";
+  std::string text;
+  std::istringstream in{std::string(bytes)};
+  for (std::string line; std::getline(in, line);) {
+    const Value run = Value::parsed(line);
+    text += (run.isObject() ? lineOf(run) : line) + "\n";
+  }
+  writeBytes(file, text);
+  RunLog log(file, "0123456789abcdef");
+  const size_t before = log.runs().size();
+  log.add("another", Value::of("ms", 1));
+  CHECK(log.has("another"));
+  CHECK_EQ(RunLog(file, "0123456789abcdef").runs().size(), before + 1);
+  return before > 0;
+}
+
+std::vector<std::string> runsSeeds() {
+  const std::string line = R"({"conditions":"0123456789abcdef","key":"smc seed 0","session":1,"moving":{"ms":2.5}})";
+  return {line + "\n", line + "\n\n" + line + "\n"};
+}
+
 // Sums of a reference -------------------------------------------------------------------------------------------------
 
 /// Of a reference of this size, by this key.
@@ -434,6 +462,11 @@ std::vector<Target> ownFiles() {
        recordingSeeds,
        json({"2147483647", "2147483648", "1e39", "\"frames\":", "17"}),
        {nested(kept, "}"), kept + "4294967297}", kept + "1e39}"}},
+      {"runs",
+       runs,
+       runsSeeds,
+       json({"\n", "\"check\":", "\"key\":", "\"conditions\":", "\"0123456789abcdef\"", "\"session\":", "1e300"}),
+       {nested(R"({"conditions":"0123456789abcdef","key":)", "}")}},
       {"state", state, stateSeeds, numbers(), {stateOf(1, 1e150, 0)}},
       {"cube", cube, cubeSeeds, numbers(), {}},
   };

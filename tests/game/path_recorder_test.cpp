@@ -70,6 +70,17 @@ TEST_F(PathRecorderTest, KeepsWhatMovesAndOverwritesNothing) {
   }
 }
 
+TEST_F(PathRecorderTest, EndsAfterADayWithWhatIsRead) {
+  PathRecorder recorder;
+  recorder.begin("a.gltf", nullptr, 30, {}, folder_);
+  EXPECT_TRUE(recorder.add(at(0), dvec3(0), momentAt(0)));
+  EXPECT_TRUE(recorder.add(at(1), dvec3(0), momentAt(kLongestShot - 2.0 / 30)));
+  EXPECT_THROW(recorder.add(at(2), dvec3(0), momentAt(kLongestShot - 1.0 / 30)), RunError);
+  const std::optional<Shot> walk = recorder.end();
+  ASSERT_TRUE(walk.has_value());
+  EXPECT_EQ(loadShot(walk->file).camera.size(), 2u);
+}
+
 TEST_F(PathRecorderTest, SaysWhereItCannotWriteAndWritesNothingWithoutAFrame) {
   PathRecorder recorder;
   recorder.begin("a.gltf", nullptr, 30, {}, folder_);
@@ -128,10 +139,12 @@ TEST_F(PathRecorderTest, AWalkOfNoTimeThatAShotHasStaysAsItIs) {
   fs::create_directory(folder_);
   Shot shot;
   shot.scene = "a.gltf";
-  for (const double t : {-1.0, 1e6}) {
+  for (const char* t : {"-1.0", "1000000.0"}) {
     const fs::path file = folder_ / "walk-1.json";
-    ShotWriter(shot, file).add({t, dvec3(0), dvec3(0, 0, -1), 1}, {});
-    const std::string text = readBytes(file);
+    ShotWriter(shot, file).add({-1, dvec3(0), dvec3(0, 0, -2), 1}, {});
+    std::string text = readBytes(file);
+    text.replace(text.find("-1.0"), 4, t);
+    writeBytes(file, text);
     EXPECT_NE(inputErrorOf([&] { loadShot(file); }).find("seconds: is out of range"), std::string::npos) << t;
     EXPECT_TRUE(endCutShots(folder_).empty()) << t;
     EXPECT_EQ(readBytes(file), text);

@@ -62,6 +62,7 @@ TEST_F(PreferencesTest, AFileThatIsSomethingElseStaysUntilSomethingChanges) {
     const std::string complaint = kept.takeComplaint();
     EXPECT_NE(complaint.find(file_.string()), std::string::npos) << complaint;
     EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
+    EXPECT_EQ(complaint.find("json.exception"), std::string::npos) << "words of a parser: " << complaint;
     kept.save();
     EXPECT_EQ(text(), bad) << "left alone";
     kept.now.speed = 3;

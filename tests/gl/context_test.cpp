@@ -1,7 +1,9 @@
 // Context, objects, programs, profiler.
+#include "engine/gl/context.h"
 #include "gl_fixture.h"
 #include "shader_copy.h"
 #include "shaders/shared/light_record.h"
+#include "tests/support/files.h"
 
 namespace lambent::test::context_test {
 
@@ -46,6 +48,15 @@ TEST_F(ContextTest, CountsMemoryByOwner) {
     EXPECT_EQ(bytesOf("memory test"), 8u * 8 * 4 * 12 + 100);
   }
   EXPECT_EQ(bytesOf("memory test"), 0u);
+}
+
+TEST_F(ContextTest, DriversOnTheCpuAreNotAskedForMoreThanIsThere) {
+  if (!gl::drawnByCpu()) GTEST_SKIP() << "a device has memory of its own";
+  const std::string said = messageOf<RunError>([] {
+    gl::Texture("memory test/maps",
+                {.kind = gl::TextureKind::Array, .format = GL_RGBA32F, .width = 8192, .height = 8192, .layers = 2048});
+  });
+  EXPECT_NE(said.find("memory test/maps needs 2200 GB of memory, more than is left"), std::string::npos) << said;
 }
 
 TEST_F(ContextTest, ProfilerTimesPassesInOrder) {

@@ -53,6 +53,7 @@ struct HardCase {
   ShownBy shownBy = ShownBy::All;
   bool tooFineForMaps = false, tooFineForVolumes = false; // reflective ones; light volumes: may show none of its light
   HardTwin twin = {};
+  double leastOfPresets = 1, mostOfPresets = 1; // factors on the bounds, where the document says why
 
   friend void PrintTo(const HardCase& c, std::ostream* out) { *out << c.name; }
 };

@@ -111,15 +111,8 @@ void collectFiles(const CLI::App& command, std::vector<NamedFile>& files) {
     if (group->get_name().empty()) collectFiles(*group, files);
 }
 
-bool sameFile(const fs::path& a, const fs::path& b) {
-  std::error_code none;
-  if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
-  const fs::path there = fs::weakly_canonical(a, none), other = fs::weakly_canonical(b, none);
-  return !there.empty() && there == other;
-}
-
-/// Throws InputError where one of two results, or what is read, would be lost.
-void refuseSameFiles(const CLI::App& command) {
+/// Names of what is written. Throws InputError where one of two results, or what is read, would be lost.
+std::vector<std::string> writtenFiles(const CLI::App& command) {
   std::vector<NamedFile> files;
   collectFiles(command, files);
   for (size_t i = 0; i < files.size(); ++i)
@@ -128,6 +121,10 @@ void refuseSameFiles(const CLI::App& command) {
           sameFile(files[i].name, files[k].name))
         throw InputError("command line", files[k].option + " and " + files[i].option + " are one file, " +
                                              files[i].name + ": what it holds would be lost");
+  std::vector<std::string> written;
+  for (const NamedFile& file : files)
+    if (file.written) written.push_back(file.name);
+  return written;
 }
 
 /// What CLI11 found wrong, in one line that says where help is; of an unknown option, with the nearest name.
@@ -150,7 +147,10 @@ std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
 Command::Command(CLI::App& app, const std::string& name, const std::string& help)
     : command_(app.add_subcommand(name, help)), to_(command_) {}
 
-void Command::launch(LaunchOptions& options) { addLaunchOptions(*command_, options); }
+void Command::launch(LaunchOptions& options) {
+  addLaunchOptions(*command_, options);
+  launch_ = &options;
+}
 
 void Command::output(OutputOptions& options, const std::string& outHelp) {
   if (!outHelp.empty()) text("--out", options.out, outHelp);
@@ -194,8 +194,9 @@ void Command::flag(const std::string& name, const std::function<void()>& given, 
 void Command::beginForms() { to_ = command_->add_option_group("Forms", "at most one")->require_option(0, 1); }
 void Command::footer(const std::string& text) { command_->footer(text); }
 void Command::run(const std::function<void()>& run) {
-  command_->callback([command = command_, run] {
-    refuseSameFiles(*command);
+  command_->callback([command = command_, launch = launch_, run] {
+    std::vector<std::string> written = writtenFiles(*command);
+    if (launch) launch->written = std::move(written);
     run();
   });
 }

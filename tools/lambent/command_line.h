@@ -53,6 +53,7 @@ class Command {
 
  private:
   CLI::App *command_, *to_;
+  LaunchOptions* launch_ = nullptr;
 };
 
 /// Parses and runs one of the commands that these functions declare; the exit code.

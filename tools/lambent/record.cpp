@@ -54,8 +54,7 @@ std::string forFfmpeg(const fs::path& path) {
 
 struct NotInstalled {};
 
-/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder: an earlier, longer recording may have
-/// left more. False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
+/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder. False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
 bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
   const auto encode = [&](const fs::path& temporary) {
     const pid_t child = fork();
@@ -209,7 +208,7 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
-  const RecordingMark mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)));
+  RecordingMark mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)));
   const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
   if (options.resume) removeLeftovers(picture(kept));
@@ -256,6 +255,7 @@ void record(const RecordOptions& options) {
     }
   }
   for (Side& side : sides) side.log.end();
+  if (options.format != "none" && !interrupted) mark.end(std::max(kept, total));
   if (const Image8 all = sheet.sheet(); all.width > 0) writePng(folder / "contact-sheet.png", all);
   const fs::path video = folder / "video.mp4";
   const bool films = options.video && done > 0 && !interrupted;

@@ -4,6 +4,7 @@
 #include "engine/core/progress.h"
 #include "gi/measure/stability.h"
 #include "gi/plan/techniques.h"
+#include "tools/kept/run_log.h"
 
 #include <algorithm>
 #include <fstream>
@@ -18,44 +19,6 @@ constexpr const char* kGoesOn = "interrupted: the same command goes on";
 constexpr int kGrid = 16;            // watched pixels besides the shot's own, squared
 constexpr int kBetweenControls = 10; // runs
 constexpr int kControlSeeds = 4;     // of the default: what chance does to an error
-
-/// Lines of JSON that are kept as they come. A line that a kill left half written is left out.
-class RunLog {
- public:
-  RunLog(fs::path file, std::string conditions) : file_(std::move(file)), conditions_(std::move(conditions)) {
-    std::ifstream in(file_);
-    int session = 0;
-    for (std::string line; std::getline(in, line);) {
-      const Value run = Value::parsed(line);
-      if (!run.isObject()) continue;
-      session = std::max(session, int(run.numberOr("session", 0)));
-      if (run.has("conditions") && run["conditions"].text() == conditions_) runs_.push_back(run);
-    }
-    session_ = session + 1;
-  }
-
-  bool has(const std::string& key) const {
-    return std::ranges::any_of(runs_, [&](const Value& run) { return run["key"].text() == key; });
-  }
-
-  void add(const std::string& key, Value run) {
-    run.update(Value::of("key", key, "session", session_, "conditions", conditions_));
-    std::ofstream out(file_, std::ios::app);
-    out << (begun_ ? "" : "\n") << run.json(-1) << '\n'; // not behind half a line
-    if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
-    begun_ = true;
-    runs_.push_back(std::move(run));
-  }
-
-  const Value::List& runs() const { return runs_; }
-
- private:
-  const fs::path file_;
-  const std::string conditions_;
-  Value::List runs_;
-  int session_ = 1;
-  bool begun_ = false;
-};
 
 class SceneSweep {
  public:

@@ -118,6 +118,7 @@ void reference(const ReferenceOptions& options) {
                   out.c_str(), picture.mean.width, picture.mean.height, options.buffer.c_str(), traced.bounces,
                   traced.samples, 100 * picture.relativeError, 100 * picture.relativeErrorOfMean, seconds);
   }
+  if (interrupted && traced.samples == 0) throw RunError("interrupted before there was a sample: nothing is written");
   if (interrupted)
     throw RunError("interrupted: " + std::to_string(traced.samples) + " samples per pixel are kept" +
                    (options.state.empty() ? " in the picture" : "; the same command goes on"));

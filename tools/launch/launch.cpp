@@ -4,6 +4,7 @@
 
 #include "engine/core/enough.h"
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
 #include "engine/core/text.h"
@@ -365,6 +366,10 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
   stage->scene = loadScene(file, options.sceneName, step, accessOf(options));
+  for (const fs::path& read : stage->scene.files)
+    for (const std::string& written : options.written)
+      if (sameFile(read, written))
+        throw InputError(written, "and what the scene is read from are one file: what it holds would be lost");
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

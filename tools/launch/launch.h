@@ -29,6 +29,7 @@ struct LaunchOptions {
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;
   std::string cube; // file
+  std::vector<std::string> written; // results: none may be a file that the scene is read from
   uint32_t seed = 1;
   int threads = 0; // 0 = all cores
 };
