@@ -54,7 +54,9 @@ std::string forFfmpeg(const fs::path& path) {
 
 struct NotInstalled {};
 
-/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder. False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
+/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder: what was recorded there before may
+/// have left more, where this one is not the whole. False where ffmpeg is not installed. Runs it without a shell.
+/// Throws RunError where it fails.
 bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
   const auto encode = [&](const fs::path& temporary) {
     const pid_t child = fork();
