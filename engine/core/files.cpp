@@ -72,6 +72,12 @@ bool abandoned(const fs::path& temporary) {
 }
 } // namespace
 
+void makeFolder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
+}
+
 void checkWritable(const fs::path& named) {
   std::error_code none;
   const fs::path file = followed(named);
@@ -88,8 +94,8 @@ void checkWritable(const fs::path& named) {
 bool sameFile(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
-  const fs::path there = fs::weakly_canonical(a, none), other = fs::weakly_canonical(b, none);
-  return !there.empty() && there == other;
+  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(followed(file)), none); };
+  return !a.empty() && !b.empty() && there(a) == there(b);
 }
 
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
@@ -126,9 +132,9 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
 }
 
 FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  for (int tries = 0; tries < 100; ++tries) {
+  for (int tries = 0; tries < 500; ++tries) {
     if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   held_ = false;
 }

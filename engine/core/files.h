@@ -8,6 +8,9 @@
 
 namespace lambent {
 
+/// Makes a folder and those above it where they are missing. Throws RunError.
+void makeFolder(const std::filesystem::path& folder);
+
 /// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
 /// writable, a folder by its name.
 void checkWritable(const std::filesystem::path& file);

@@ -34,7 +34,8 @@ enum class Stream : uint32_t {
   SamplerSkyLight,
   SurfaceSamples,
   NearLightTurns,
-  LightLists
+  LightLists,
+  Crowding
 };
 
 /// A sequence of numbers addressed by what they are for.

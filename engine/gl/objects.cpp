@@ -27,9 +27,9 @@ template <class Create> GLuint make(Create create) {
   return name;
 }
 
-/// A driver that draws on the CPU grants whatever is asked for; the machine then has nothing left when it is drawn to.
+/// A CPU driver grants any size and takes the memory only when drawn to: then it is too late to refuse.
 void refuseBeyondMemory(const TextureDesc& desc, const std::string& label) {
-  constexpr uint64_t kSmall = uint64_t(64) << 20; // asking takes time
+  constexpr uint64_t kSmall = uint64_t(64) << 20; // reading /proc takes time
   const uint64_t bytes = bytesOf(desc);
   if (bytes > kSmall && drawnByCpu() && bytes > freeMemory())
     throw RunError("graphics memory: " + label + " needs " + moreThanIsLeft(double(bytes), "fewer lights or texels"));

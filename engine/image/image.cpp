@@ -36,6 +36,8 @@ void writePng(const fs::path& file, const Image8& image) {
 }
 
 Image readPfm(const fs::path& file) {
+  std::error_code none;
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none)) throw InputError(file.string(), "is not a file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(file.string(), "cannot be read (no such file?)");
   std::string kind;

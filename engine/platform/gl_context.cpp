@@ -1,8 +1,8 @@
 #include "engine/platform/gl_context.h"
 
-#include "engine/core/enough.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/core/resources.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 
@@ -170,7 +170,7 @@ std::vector<DeviceDescription> GlContext::devices() {
 }
 
 GlContext GlContext::headless(DebugOutput debug) {
-  requireThreadsAndMemory(kThreadsOfDriver + threadCount());
+  requireResources(kThreadsOfDriver + threadCount());
   const std::vector<EGLDeviceEXT> devices = eglDevices();
   const std::vector<DeviceDescription> descriptions = GlContext::devices();
   const DeviceWish wish = deviceWish(std::getenv("LAMBENT_DEVICE"), std::getenv("LIBGL_ALWAYS_SOFTWARE"));
@@ -192,7 +192,7 @@ GlContext GlContext::headless(DebugOutput debug) {
 }
 
 GlContext GlContext::window(const std::string& title, int width, int height, bool asIs, DebugOutput debug) {
-  requireThreadsAndMemory(kThreadsOfDriver + threadCount());
+  requireResources(kThreadsOfDriver + threadCount());
   static std::string lastError;
   glfwSetErrorCallback([](int, const char* text) { lastError = text; });
   if (!glfwInit()) throw RunError("no window system (" + lastError + "); use the headless commands, or xvfb-run -a");

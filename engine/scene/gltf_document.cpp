@@ -137,10 +137,9 @@ bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, 
   return true;
 }
 
-/// First line of a parser's message, without the library's own tag in front.
+/// First line of what a parser says is wrong.
 std::string firstLine(std::string text) {
-  if (!text.empty() && text.front() == '[')
-    if (const size_t end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
+  text = reasonOf(std::move(text));
   return text.substr(0, text.find('\n'));
 }
 

@@ -39,7 +39,7 @@ struct MaterialFactors {
 
 struct Document {
   std::filesystem::path file;
-  std::vector<std::filesystem::path> files; // read: that one and those that it names
+  std::vector<std::filesystem::path> files; // all that were read: the document itself, and those it names
   mutable Budget budget;
   tinygltf::Model model; // images are still encoded, and empty where their data is in a buffer view or cannot be read
   // Of the model's elements with the same index, checked.

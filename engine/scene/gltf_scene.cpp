@@ -1,10 +1,12 @@
 // glTF nodes to entities, and the importer's entry point.
 
+#include "engine/scene/crowding.h"
 #include "engine/scene/gltf_import.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 namespace lambent {
 
@@ -188,6 +190,18 @@ void findOrigin(Scene& scene) {
   scene.origin = step * glm::floor(middle / step + 0.29); // not a half: middles of scenes often are whole numbers
 }
 
+/// Every ray there would meet them all: a first picture would take minutes.
+void refuseCrowds(const Scene& scene) {
+  constexpr int kMost = 192; // see decisions.md; the fullest scenes that we know have 90
+  if (const std::optional<vec3> place = crowdedPlace(scene, kMost)) {
+    const dvec3 at = dvec3(*place) + scene.origin;
+    std::ostringstream text;
+    text << "has more than " << kMost << " triangles in one place, at " << at.x << ", " << at.y << ", " << at.z
+         << ": every ray there would meet them all (spread them)";
+    throw InputError(scene.file.string(), text.str());
+  }
+}
+
 } // namespace
 
 Scene loadScene(const std::filesystem::path& file, const std::string& sceneName, const LoadStep& step,
@@ -212,6 +226,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
+  refuseCrowds(scene);
   size_t far = 0;
   scene.registry.each<MeshInstance, WorldTransform>(
       [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });

@@ -60,11 +60,9 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
   return out;
 }
 
-std::string reasonOf(const std::exception& ofParser) {
-  std::string reason = ofParser.what();
-  if (const size_t end = reason.find("] "); reason.starts_with("[json.exception.") && end != reason.npos)
-    reason.erase(0, end + 2);
-  return reason;
+std::string reasonOf(std::string message) {
+  const size_t end = message.find("] ");
+  return message.starts_with("[json.exception.") && end != message.npos ? message.substr(end + 2) : message;
 }
 
 } // namespace lambent

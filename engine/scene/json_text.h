@@ -2,7 +2,6 @@
 // silently win, and negative numbers where they read none.
 #pragma once
 
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,7 +15,7 @@ struct JsonText {
 /// Checks the text. Throws InputError. Whether it is JSON at all is left to the parser.
 JsonText checkJson(const std::filesystem::path& file, std::string_view text);
 
-/// What is wrong with JSON, without the name that the parser gives to its exception.
-std::string reasonOf(const std::exception& ofParser);
+/// What a parser says is wrong with JSON, without the name that it gives to its exception.
+std::string reasonOf(std::string message);
 
 } // namespace lambent

@@ -29,7 +29,7 @@ struct Scene {
   /// m, of less in scenes below half a metre, of 1000 m above 60 m.
   dvec3 origin{0};
   std::filesystem::path file;
-  std::vector<std::filesystem::path> files; // that it was read from: that one, and those that it names
+  std::vector<std::filesystem::path> files; // all that were read: the one above, and those it names
 
   vec3 fromOrigin(const dvec3& position) const { return vec3(position - origin); }
   mat4 fromOrigin(const dmat4& worldFromNode) const {

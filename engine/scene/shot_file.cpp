@@ -231,7 +231,7 @@ json parse(const fs::path& file, const std::string& text) {
   try {
     return json::parse(text);
   } catch (const json::exception& e) {
-    throw InputError(file.string(), "is not JSON: " + reasonOf(e));
+    throw InputError(file.string(), "is not JSON: " + reasonOf(e.what()));
   }
 }
 
@@ -331,7 +331,8 @@ Shot loadShot(const fs::path& file) {
   shot.seconds = root["seconds"].number();
   if (root.has("camera")) shot.camera = readCamera(root["camera"], shot.played);
   if (cut && !shot.camera.empty()) shot.seconds = shot.camera.back().t + 1 / shot.fps;
-  if (!(shot.seconds >= 0 && shot.seconds <= kLongestShot)) root["seconds"].fail("is out of range (0 to 86400)");
+  if (!(shot.seconds >= 0 && shot.seconds <= kLongestShot))
+    root["seconds"].fail("is out of range (0 to " + std::to_string(int(kLongestShot)) + ")");
   if (root.has("lights")) shot.lights = readNodes(root["lights"], true);
   if (root.has("objects")) shot.objects = readNodes(root["objects"], false);
   if (root.has("played")) readPlayed(root["played"], shot.played);
@@ -355,7 +356,8 @@ void saveShot(const Shot& shot, const fs::path& file) {
 }
 
 ShotWriter::ShotWriter(const Shot& shot, const fs::path& file)
-    : name_(file.string()), last_(kLongestShot - 2 / shot.fps) { // a frame, and what rounds
+    : name_(file.string()),
+      last_(kLongestShot - 2 / shot.fps) { // so that the last frame too ends within it, however it is rounded
   std::string head = textOf(headOf(shot, file), file);
   head.pop_back();
   file_ = std::make_unique<AppendedFile>(file);
@@ -371,7 +373,7 @@ ShotWriter::ShotWriter(const Shot& shot, const fs::path& file)
 ShotWriter::~ShotWriter() = default;
 
 void ShotWriter::add(const CameraKey& key, const std::vector<PlayedMoment>& played) {
-  if (key.t > last_) throw RunError(name_ + ": is a day long, and no shot is longer");
+  if (key.t > last_) throw RunError(name_ + ": is a day long, the longest that a shot may be (begin another)");
   json line = toJson(key);
   for (const PlayedMoment& moment : played) line["played"].push_back(toJson(moment));
   file_->append((first_ ? "" : ",") + line.dump() + "\n");

@@ -12,9 +12,8 @@ namespace {
 
 /// Makes the folder too.
 fs::path newFileIn(const fs::path& folder) {
+  makeFolder(folder);
   std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
   int number = 1;
   const auto name = [&] { return folder / ("walk-" + std::to_string(number) + ".json"); };
   while (fs::exists(fs::symlink_status(name(), failure))) ++number;

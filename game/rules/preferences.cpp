@@ -148,7 +148,7 @@ Preferences loadPreferences(const fs::path& file) {
     p.speed = between(0.1, j.value("speed", 1.0), 10);
     if (j.contains("window")) p.window = windowOf(j["window"]);
   } catch (const std::exception& e) {
-    throw InputError(file.string(), "holds no settings of the walkthrough (" + reasonOf(e) + ")");
+    throw InputError(file.string(), "holds no settings of the walkthrough (" + reasonOf(e.what()) + ")");
   }
   return p;
 }
@@ -160,9 +160,7 @@ void savePreferences(const Preferences& p, const fs::path& file) {
   if (!p.set.empty()) j["set"] = p.set;
   if (p.folded) j["folded"] = *p.folded;
   if (p.window) j["window"] = {p.window->first, p.window->second};
-  std::error_code failure;
-  fs::create_directories(file.parent_path(), failure);
-  if (failure) throw RunError(file.parent_path().string() + ": cannot make this folder (" + failure.message() + ")");
+  makeFolder(file.parent_path());
   writeAtomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
     out << j.dump(2) << "\n";
@@ -189,8 +187,7 @@ void KeptPreferences::save() {
   if (file_.empty() || now == saved_) return;
   saved_ = now; // also where it fails: reported once, tried again when something else changes
   try {
-    std::error_code toldBySaving;
-    fs::create_directories(file_.parent_path(), toldBySaving);
+    makeFolder(file_.parent_path());
     const FolderLock alone(file_.parent_path());
     savePreferences(heldBy(file_, now).with(inFile_, now), file_);
     inFile_ = now;

@@ -15,7 +15,7 @@ namespace lambent {
 
 namespace {
 
-constexpr double kNoLimit = 1e30; // ranges up to here are said to have no end
+constexpr double kNoLimit = 1e30; // far above what anything calls for
 using enum Scale;
 using enum ChangeCost;
 
@@ -339,7 +339,7 @@ std::string SettingRow::range() const {
   std::string range;
   for (const std::string& c : choices) range += (range.empty() ? "" : "|") + c;
   if (!range.empty()) return range;
-  return high >= kNoLimit ? "at least " + text(low) : text(low) + ".." + text(high);
+  return text(low) + ".." + text(high);
 }
 
 const std::vector<SettingRow>& settingsTable() {
@@ -400,11 +400,7 @@ SettingRow settingRow(std::string_view name, const Settings& settings) {
 void applySetting(Settings& settings, std::string_view name, std::string_view value) {
   const SettingRow row = settingRow(name, settings);
   const std::optional<double> v = valueOf(row, value);
-  if (!v) {
-    const bool endless = row.kind != SettingKind::Flag && row.choices.empty() && row.high >= kNoLimit;
-    const std::string range = endless ? row.text(row.low) + ".." + row.text(row.high) : row.range();
-    throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + range + ")");
-  }
+  if (!v) throw InputError("setting " + row.name, "cannot be '" + std::string(value) + "' (" + row.range() + ")");
   row.set(settings, *v);
 }
 

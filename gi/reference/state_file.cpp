@@ -35,8 +35,7 @@ void add(Hash& hash, const LightView& light) {
 bool possible(const PixelSums& p, uint32_t samples) {
   constexpr double kRounding = 1 + 1e-6, kMostMean = double(std::numeric_limits<float>::max()) / 4;
   const auto holds = [&](double sum, double squares) {
-    if (!(sum <= samples * kMostMean)) return false;                                         // NaN too
-    return sum >= 0 && squares >= 0 && std::isfinite(sum * sum) && std::isfinite(squares) && // false for NaN
+    return sum >= 0 && sum <= samples * kMostMean && squares >= 0 && // comparisons are false for NaN
            sum * sum <= samples * squares * kRounding && squares <= sum * sum * kRounding;
   };
   for (int c = 0; c < 3; ++c)

@@ -4,6 +4,8 @@
 #include "gi/visibility/paraboloid_maps.h"
 
 #include "engine/core/error.h"
+#include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 #include "engine/core/parallel.h"
 #include "engine/gl/profiler.h"
 #include "engine/gl/pulse.h"
@@ -138,6 +140,11 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   const size_t needed = (in.poses.size() + kLayersPerArray - 1) / kLayersPerArray;
   const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
   arrays_.clear();
+  // Each array alone may fit: together they are filled frame by frame, when it is too late to refuse.
+  const double bytes = 2.0 * double(in.poses.size()) * in.resolution * in.resolution;
+  if (gl::drawnByCpu() && bytes > double(freeMemory()))
+    throw RunError("graphics memory: shadow maps of " + std::to_string(in.poses.size()) + " lights need " +
+                   moreThanIsLeft(bytes, "fewer lights or texels"));
   for (size_t i = 0; i < needed; ++i)
     arrays_.emplace_back(name_ + "/array " + std::to_string(i),
                          gl::TextureDesc{.kind = gl::TextureKind::Array,

@@ -287,6 +287,32 @@ TEST(LayeredCube, WhatMovesAndDoesNotFitIsRefused) {
   }
 }
 
+/// Bytes of an entry while things move: 80 of itself; 24 of its light, and a bit for each light that it may see.
+TEST(LayeredCube, EntriesAndWhatTheySeeCountAgainstMemoryEach) {
+  struct Row {
+    size_t lights, bytes;
+  };
+  for (const auto& [slots, bytes] : {Row{64, 60}, Row{1024, 130}}) {
+    RandomWorld world(0.01f);
+    const SceneView& first = world.step(0);
+    VplSet set;
+    std::vector<VirtualLight> lights = photonLights(first, world.rays(), set);
+    lights.resize(slots);
+    Aabb room;
+    room.add(vec3(-4, -1, -4)), room.add(vec3(4, 4, 4));
+    const GatherSettings gather;
+    const CubeSettings settings = smallCube(CubeVisibility::Rays, 16);
+    LayeredCube cube;
+    cube.update({room, world.rays(), kNothingMoved, true, lights, ~0u, settings, gather});
+    const DirtyRegion moved(world.step(2));
+    CubeInputs in{room, world.rays(), moved, false, lights, ~0u, settings, gather};
+    in.memory = cube.surfaces().entries().size() * bytes;
+    EXPECT_THROW(cube.update(in), RunError) << slots;
+    in.memory = cube.surfaces().entries().size() * 10 + 10'000'000;
+    EXPECT_NO_THROW(cube.update(in)) << slots;
+  }
+}
+
 TEST(LayeredCube, LightsMayBePutInAFewAtATime) {
   LitWorld w;
   const CubeSettings settings = smallCube();

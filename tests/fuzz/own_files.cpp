@@ -14,7 +14,7 @@
 #include "gi/reference/state_file.h"
 #include "tests/fuzz/files.h"
 #include "tests/support/checked.h"
-#include "tools/kept/recording_mark.h"
+#include "tools/kept/recording_folder.h"
 #include "tools/kept/run_log.h"
 #include "tools/kept/value.h"
 
@@ -267,21 +267,25 @@ std::vector<std::string> preferencesSeeds() {
 
 bool recording(std::string_view bytes) {
   const Folder folder("-recording");
-  const RecordingMark mark(folder.path(), "0123456789abcdef");
-  writeBytes(folder / "recording.json", bytes);
+  writeBytes(folder.path() / "recording.json", bytes);
+  for (const char* name : {"000000.png", "000017.png", "000017.exr"}) writeBytes(folder.path() / name, "x");
+  RecordingFolder mark(folder.path(), "0123456789abcdef", "png");
   const bool taken = takes([&] {
     const int kept = mark.kept();
     CHECK(kept >= 0 && kept < std::numeric_limits<int>::max()); // one frame more can be counted
     mark.write(kept);
     CHECK_EQ(mark.kept(), kept);
   });
+  mark.end(1);
+  CHECK(fs::exists(mark.picture(0)) && fs::exists(folder.path() / "000017.exr"));
   const std::string text = Value::parsed(std::string(bytes)).json(-1);
   CHECK_EQ(Value::parsed(text).json(-1), text);
   return taken && text != "null";
 }
 
 std::vector<std::string> recordingSeeds() {
-  return {R"({"conditions":"0123456789abcdef","frames":17})", R"({"conditions":"fedcba9876543210","frames":17.5})",
+  return {R"({"conditions":"0123456789abcdef","frames":17,"format":"png","before_png":18})",
+          R"({"conditions":"fedcba9876543210","frames":17.5})",
           R"({"conditions":"0123456789abcdef","frames":1,"list":[1,-2.5,true,null,"text",{"a":[]}]})"};
 }
 

@@ -176,9 +176,12 @@ const std::vector<Target>& targets() {
 
 } // namespace lambent::fuzz
 
-#ifdef FUZZ_TARGET // of libFuzzer: an index
+#ifdef FUZZ_TARGET // of libFuzzer: a name
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  lambent::fuzz::targets()[FUZZ_TARGET].run({reinterpret_cast<const char*>(data), size});
+  using namespace lambent::fuzz;
+  static const auto named = [](const Target& target) { return std::string_view(target.name) == FUZZ_TARGET; };
+  static const Target& target = *std::ranges::find_if(targets(), named);
+  target.run({reinterpret_cast<const char*>(data), size});
   return 0;
 }
 #endif

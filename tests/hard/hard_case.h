@@ -51,7 +51,8 @@ struct HardCase {
   HardBounds bounds;
   std::function<void(HardWorld&)> make;
   ShownBy shownBy = ShownBy::All;
-  bool tooFineForMaps = false, tooFineForVolumes = false; // reflective ones; light volumes: may show none of its light
+  // Reflective maps, light volumes, layered cubes: may show none of its light.
+  bool tooFineForMaps = false, tooFineForVolumes = false, tooFineForCubes = false;
   HardTwin twin = {};
   double leastOfPresets = 1, mostOfPresets = 1; // factors on the bounds, where the document says why
 

@@ -102,10 +102,8 @@ void run(const HardCase& c, const char* technique, const char* preset = nullptr)
     const bool tooDark = technique == std::string("tcas") ? name == "PaperWall"
                          : needs.lights == LightSupply::Fixed
                              ? name == "AllLightsRide" || name == "Slit" || name == "LongCorridor"
-                         : needs.stored // a cube's columns are as wide as that hole, and wider than those rooms
-                             ? name == "SkyThroughAHole" || name == "ARoomInALandscape" || name == "AMatchboxInAHall"
-                             : false;
-    if (needs.sampled() && !tooDark && !(volume && c.tooFineForVolumes)) {
+                             : (volume && c.tooFineForVolumes) || (needs.stored && c.tooFineForCubes);
+    if (needs.sampled() && !tooDark) {
       EXPECT_GE(mean, kLeastOfOthers * c.bounds.least) << "too little light";
     }
     // One map for a light, and few lights for many maps; along a corridor its few texels see little.

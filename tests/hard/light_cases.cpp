@@ -197,7 +197,7 @@ void addLightCases(const Add& add, const Add& some) {
         w.scene.quad({-0.1f, 1, 0.1f}, {0.2f, 0, 0}, {0, 0, 0.9f}, white);
         w.scene.sky = Sky(vec3(100));
       });
-  hole.tooFineForVolumes = true;
+  hole.tooFineForVolumes = hole.tooFineForCubes = true;
   // All walls send 1 W/(m² sr): π a (1 + a + a²) W/m² by indirect light, wherever one looks.
   some("Furnace", "every point is a lamp and a mirror of all others", {2.6, 2.9, 0.3},
        [](HardWorld& w) { w.scene.box(vec3(-1), vec3(1), w.scene.material(vec3(0.5f), vec3(1)), true); });

@@ -117,7 +117,7 @@ void addMovingCases(const Add& add, const Add& some) {
     w.frames = 6;
     w.step = [&w](int frame) { w.scene.lights[0].intensity = vec3(frame % 2 ? 0.0f : 1.0f); };
   });
-  some("LightOf1e12ThenOf1e-12", "what a frame keeps is 10²⁴ times its light", {0.65e-12, 1.05e-12}, [](HardWorld& w) {
+  some("LightOf1e12ThenOf1e-12", "the frame before had 10²⁴ times the light", {0.65e-12, 1.05e-12}, [](HardWorld& w) {
     roomOf(w, 1);
     w.frames = 6;
     w.step = [&w](int frame) { w.scene.lights[0].intensity = vec3(frame % 2 ? 1e-12f : 1e12f); };

@@ -65,19 +65,18 @@ void addSurfaceCases(const Add& add, const Add& some) {
     w.scene.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, w.scene.material(vec3(0.1f)));
   });
   // As LampBehindAGrille: 0.14 of 0.225.
-  some("MaskedGrille", "of a wall masks cut one texel in 25, a hundred times", {0.08, 0.3, kInfinity, true},
-       [](HardWorld& w) {
-         w.room({-1, -1, -1}, {1, 1, 3});
-         const uint32_t mask = w.scene.material(vec3(0.7f), vec3(0), true);
-         std::vector<u8vec4> texels(25, {255, 255, 255, 255});
-         texels[12].w = 0;
-         w.scene.quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, mask);
-         w.scene.assets.meshes.back().uv0 = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
-         w.scene.assets.materials[mask].baseColorTexture = w.scene.texture(5, texels);
-         w.scene.assets.materials[mask].alphaMode = AlphaMode::Mask;
-         w.lamp({0.1f, 0.2f, 2.5f}, 20);
-         w.scene.camera = look({0, 0, 0.9f}, {0, 0, -1});
-       });
+  some("MaskedGrille", "a wall's mask cuts out one texel in 25", {0.08, 0.3, kInfinity, true}, [](HardWorld& w) {
+    w.room({-1, -1, -1}, {1, 1, 3});
+    const uint32_t mask = w.scene.material(vec3(0.7f), vec3(0), true);
+    std::vector<u8vec4> texels(25, {255, 255, 255, 255});
+    texels[12].w = 0;
+    w.scene.quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, mask);
+    w.scene.assets.meshes.back().uv0 = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    w.scene.assets.materials[mask].baseColorTexture = w.scene.texture(5, texels);
+    w.scene.assets.materials[mask].alphaMode = AlphaMode::Mask;
+    w.lamp({0.1f, 0.2f, 2.5f}, 20);
+    w.scene.camera = look({0, 0, 0.9f}, {0, 0, -1});
+  });
   some("AllCutOut", "a block whose mask asks for more than full alpha is not there", kRoom, [](HardWorld& w) {
     roomOf(w, 1);
     const uint32_t mask = w.scene.material(vec3(0.7f));

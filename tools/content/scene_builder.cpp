@@ -243,9 +243,7 @@ GeneratedScene SceneBuilder::write() const {
     }
   }
 
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot make this folder (" + failure.message() + ")");
+  makeFolder(folder);
   GeneratedScene scene{folder / (stem + ".gltf"), placedTriangles_, 0, {}};
   const auto put = [&](const std::string& name, const std::string& bytes) {
     const std::filesystem::path file = folder / name;

@@ -10,13 +10,12 @@ namespace lambent {
 
 class RunLog {
  public:
-  /// Holds the runs of this file that were measured under these conditions. Lines that were cut or changed are left
-  /// out.
+  /// Holds the file's runs of these conditions; lines that are cut, changed or without a checksum are skipped.
   RunLog(std::filesystem::path file, std::string conditions);
 
   bool has(const std::string& key) const;
-  /// Appends a run, with its key, conditions and session: how often a program has opened the file. Throws RunError
-  /// where it cannot be written.
+  /// Appends a run, with its key, conditions and session (1 for the first program that wrote to the file, then counted
+  /// up). Throws RunError where it cannot be written.
   void add(const std::string& key, Value run);
   const Value::List& runs() const { return runs_; }
 

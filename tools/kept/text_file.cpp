@@ -19,6 +19,8 @@ void writeText(const fs::path& file, const std::string& text) {
 }
 
 std::string readText(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return {};
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }

@@ -8,7 +8,7 @@ namespace lambent {
 
 /// In one step: the file is the old or the new one. Throws RunError.
 void writeText(const std::filesystem::path& file, const std::string& text);
-/// Everything in a file; empty where there is none.
+/// Everything in a regular file; empty where there is none.
 std::string readText(const std::filesystem::path& file);
 
 } // namespace lambent

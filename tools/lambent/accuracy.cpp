@@ -285,7 +285,7 @@ void declareAccuracy(CLI::App& app) {
   auto o = std::make_shared<AccuracyOptions>();
   Command command(app, "accuracy",
                   "what approximations cost in error: shadow maps of virtual lights, or a form of its own");
-  command.texts("SCENE", o->scenes, "glTF or shot file; several with --report", true);
+  command.reads("SCENE", o->scenes, "glTF or shot file; several with --report", true);
   command.launch(o->launch);
   command.output(o->output, "--report, --curve, --figure: folder (default out/accuracy, out/figure-N)");
   command.number("--lights", &o->slots, 1, 32768, "virtual lights to compare");

@@ -199,7 +199,7 @@ void refuseTechnique(const BenchOptions& options, const std::string& why) {
 void declareBench(CLI::App& app) {
   auto o = std::make_shared<BenchOptions>();
   Command command(app, "bench", "time per stage and work per frame, of one way or of several in turn");
-  command.texts("SCENE", o->scenes,
+  command.reads("SCENE", o->scenes,
                 "glTF or shot file; several with --multires, --table2, --equal-error, --area and --cube", true);
   command.launch(o->launch);
   command.output(o->output, "--table2, --growth, --equal-error: folder for tables and plots (default out/bench)");

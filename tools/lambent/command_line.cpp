@@ -6,12 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
 
 namespace lambent {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -91,42 +87,6 @@ void checkCommand(const CLI::App& app, int argc, char** argv) {
   throw InputError("command line", "no command " + name + " (" + guessOrHelp(name, known, "lambent --help") + ")");
 }
 
-/// Of what was asked for on the command line.
-struct NamedFile {
-  std::string option, name;
-  bool written;
-};
-
-/// The files that a command reads, as what stands without a name, and those that it writes.
-void collectFiles(const CLI::App& command, std::vector<NamedFile>& files) {
-  static const std::array kWritten{"out", "json", "errors", "state", "cube-file", "difference", "pixels", "record"};
-  for (const CLI::Option* option : command.get_options()) {
-    const auto isThis = [&](const char* name) { return option->check_lname(name); };
-    const bool read = option->get_positional(), written = !read && std::ranges::any_of(kWritten, isThis);
-    if (!read && !written) continue;
-    for (const std::string& name : option->results())
-      if (!name.empty()) files.push_back({option->get_name(), name, written});
-  }
-  for (const CLI::App* group : command.get_subcommands({}))
-    if (group->get_name().empty()) collectFiles(*group, files);
-}
-
-/// Names of what is written. Throws InputError where one of two results, or what is read, would be lost.
-std::vector<std::string> writtenFiles(const CLI::App& command) {
-  std::vector<NamedFile> files;
-  collectFiles(command, files);
-  for (size_t i = 0; i < files.size(); ++i)
-    for (size_t k = 0; k < i; ++k)
-      if ((files[i].written || files[k].written) && files[i].option != files[k].option &&
-          sameFile(files[i].name, files[k].name))
-        throw InputError("command line", files[k].option + " and " + files[i].option + " are one file, " +
-                                             files[i].name + ": what it holds would be lost");
-  std::vector<std::string> written;
-  for (const NamedFile& file : files)
-    if (file.written) written.push_back(file.name);
-  return written;
-}
-
 /// What CLI11 found wrong, in one line that says where help is; of an unknown option, with the nearest name.
 std::string textOf(const CLI::ParseError& error, const CLI::App& app) {
   std::string help = "lambent --help";
@@ -150,16 +110,49 @@ Command::Command(CLI::App& app, const std::string& name, const std::string& help
 void Command::launch(LaunchOptions& options) {
   addLaunchOptions(*command_, options);
   launch_ = &options;
+  files_.push_back({"--cube-file", [&options] { return std::vector{options.cube}; }, true});
 }
 
-void Command::output(OutputOptions& options, const std::string& outHelp) {
-  if (!outHelp.empty()) text("--out", options.out, outHelp);
-  to_->add_option("--json", options.json, "write the figures to this file, for programs")
-      ->check([](const std::string& file) { // before the work
-        checkWritable(file);
-        return std::string();
-      });
+void Command::output(OutputOptions& options, const std::string& outHelp, const std::string& standard) {
+  options.out = standard;
+  if (!outHelp.empty()) writes("--out", options.out, outHelp);
+  writes("--json", options.json, "write the figures to this file, for programs");
+  to_->get_option("--json")->check([](const std::string& file) { // before the work
+    checkWritable(file);
+    return std::string();
+  });
   flag("--quiet", options.quiet, "print nothing but errors");
+}
+
+void Command::reads(const std::string& name, std::string& file, const std::string& help, bool required) {
+  text(name, file, help, required);
+  files_.push_back({name, [&file] { return std::vector{file}; }, false});
+}
+void Command::reads(const std::string& name, std::vector<std::string>& files, const std::string& help, bool required) {
+  texts(name, files, help, required);
+  files_.push_back({name, [&files] { return files; }, false});
+}
+void Command::writes(const std::string& name, std::string& file, const std::string& help) {
+  text(name, file, help);
+  files_.push_back({name, [&file] { return std::vector{file}; }, true});
+}
+
+/// Names of what is written. Throws InputError where one of two results, or what is read, would be lost.
+std::vector<std::string> Command::writtenOf(const std::vector<NamedFiles>& files) {
+  std::vector<std::string> written;
+  const auto one = [](const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() && sameFile(a, b);
+  };
+  for (size_t i = 0; i < files.size(); ++i)
+    for (const std::string& name : files[i].names()) {
+      if (files[i].written && !name.empty()) written.push_back(name);
+      for (size_t k = 0; k < i; ++k)
+        for (const std::string& other : files[k].names())
+          if ((files[i].written || files[k].written) && one(name, other))
+            throw InputError(name, files[k].option + " and " + files[i].option +
+                                       " name this one file (give one of them another name)");
+    }
+  return written;
 }
 
 void Command::text(const std::string& name, std::string& value, const std::string& help, bool required) {
@@ -194,8 +187,8 @@ void Command::flag(const std::string& name, const std::function<void()>& given, 
 void Command::beginForms() { to_ = command_->add_option_group("Forms", "at most one")->require_option(0, 1); }
 void Command::footer(const std::string& text) { command_->footer(text); }
 void Command::run(const std::function<void()>& run) {
-  command_->callback([command = command_, launch = launch_, run] {
-    std::vector<std::string> written = writtenFiles(*command);
+  command_->callback([files = files_, launch = launch_, run] {
+    std::vector<std::string> written = writtenOf(files);
     if (launch) launch->written = std::move(written);
     run();
   });

@@ -25,9 +25,15 @@ class Command {
  public:
   Command(CLI::App& app, const std::string& name, const std::string& help);
 
-  /// The options that all share that draw; --out (unless its help is empty), --json, --quiet.
+  /// The options that all share that draw, but the scene.
   void launch(LaunchOptions& options);
-  void output(OutputOptions& options, const std::string& outHelp);
+  /// --out (unless its help is empty) with its standard, --json, --quiet.
+  void output(OutputOptions& options, const std::string& outHelp, const std::string& standard = {});
+
+  /// Files. The command is refused where one that is written is another one that is read or written.
+  void reads(const std::string& name, std::string& file, const std::string& help, bool required = false);
+  void reads(const std::string& name, std::vector<std::string>& files, const std::string& help, bool required = false);
+  void writes(const std::string& name, std::string& file, const std::string& help);
 
   /// Named without dashes: what stands without a name. Must be given where `required`.
   void text(const std::string& name, std::string& value, const std::string& help, bool required = false);
@@ -52,7 +58,15 @@ class Command {
   void run(const std::function<void()>& run);
 
  private:
+  struct NamedFiles {
+    std::string option;
+    std::function<std::vector<std::string>()> names; // once they are parsed
+    bool written;
+  };
+  static std::vector<std::string> writtenOf(const std::vector<NamedFiles>& files);
+
   CLI::App *command_, *to_;
+  std::vector<NamedFiles> files_;
   LaunchOptions* launch_ = nullptr;
 };
 

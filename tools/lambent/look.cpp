@@ -44,7 +44,7 @@ std::string lightsText(const FrameStats& stats, const Settings& settings) {
 
 void render(const RenderOptions& options) {
   const Buffer buffer = bufferByName(options.buffer);
-  const std::string out = options.output.out.empty() ? "lambent.png" : options.output.out;
+  const std::string& out = options.output.out;
   checkPictureName(out);
   const auto opened = openAndSay(options.launch, options.output.quiet);
   GlContext context = GlContext::headless();
@@ -190,6 +190,7 @@ void doctor(const OutputOptions& output) {
   LaunchOptions launch;
   launch.scene = (findContentFolder() / "cornell/cornell.gltf").string();
   launch.size = "64x64";
+  if (!output.json.empty()) launch.written = {output.json};
   launch.set = {"smc.vpls=256", "smc.warmup=10"};
   const auto opened = openLaunch(launch);
   Viewer gi(opened->settings);
@@ -234,9 +235,9 @@ void doctor(const OutputOptions& output) {
 void declareRender(CLI::App& app) {
   auto options = std::make_shared<RenderOptions>();
   Command command(app, "render", "one view of a scene as a picture");
-  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
+  command.reads("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
-  command.output(options->output, "picture, .png or linear .exr (default lambent.png)");
+  command.output(options->output, "picture, .png or linear .exr (default lambent.png)", "lambent.png");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "draw"));
   command.number(
       "--frames", &options->frames, 1, 1000000,
@@ -249,7 +250,7 @@ void declareInspect(CLI::App& app) {
   auto output = std::make_shared<OutputOptions>();
   auto presets = std::make_shared<bool>(false);
   Command command(app, "inspect", "what a scene holds and which effects it calls for");
-  command.text("SCENE", launch->scene, "glTF or shot file");
+  command.reads("SCENE", launch->scene, "glTF or shot file");
   command.launch(*launch);
   command.output(*output, "");
   command.flag("--presets", *presets, "what the presets set, cost and bring, as measured; without SCENE");

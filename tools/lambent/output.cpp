@@ -18,20 +18,6 @@ uint64_t hashOf(const std::string& text, uint64_t hash = 0) {
   return hash;
 }
 
-/// Buffers and images that a glTF file names, and may read: what it holds itself is of its own text.
-uint64_t hashOfNamedFiles(const fs::path& scene, FileAccess access, uint64_t hash) {
-  const Value document = Value::parsed(readText(scene)); // nothing of a .glb
-  for (const char* list : {"buffers", "images"}) {
-    if (!document.has(list)) continue;
-    for (const Value& entry : document[list].items())
-      if (entry.has("uri") && !entry["uri"].text().starts_with("data:")) {
-        const fs::path file = scene.parent_path() / pathOfUri(entry["uri"].text());
-        if (mayRead(scene.parent_path(), file, access)) hash = hashOf(readText(file), hash);
-      }
-  }
-  return hash;
-}
-
 /// The program with its shaders: what another one made is not ours.
 uint64_t hashOfProgram() {
   uint64_t hash = hashOf(readText("/proc/self/exe"));
@@ -106,15 +92,16 @@ Value figuresOf(const FrameStats& s) {
 }
 
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
-  std::string text = more + '\n' + o.scene + '\n' + readText(o.scene) + readText(opened.scene.file);
+  std::string text = more + '\n' + o.scene + '\n' + readText(o.scene);
   for (const std::string& option :
-       {std::string(o.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName, std::to_string(o.fovDegrees.value_or(0)),
-        std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
+       {std::string(o.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
+        std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
     text += '\n' + option;
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})
     for (const std::string& light : *list) text += '\n' + light;
-  const uint64_t hash = hashOf(text, hashOfNamedFiles(opened.scene.file, accessOf(o), hashOfProgram()));
+  uint64_t hash = hashOf(text, hashOfProgram());
+  for (const fs::path& file : opened.scene.files) hash = hashOf(readText(file), hash);
   return format("%016llx", static_cast<unsigned long long>(hash));
 }
 

@@ -4,7 +4,7 @@
 #include "engine/core/progress.h"
 #include "engine/platform/gl_context.h"
 #include "gi/plan/governor.h"
-#include "tools/kept/recording_mark.h"
+#include "tools/kept/recording_folder.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/picture.h"
 #include "tools/launch/frame_log.h"
@@ -54,9 +54,8 @@ std::string forFfmpeg(const fs::path& path) {
 
 struct NotInstalled {};
 
-/// Writes `video` from the first `frames` pictures (000000.png, …) of the folder: what was recorded there before may
-/// have left more, where this one is not the whole. False where ffmpeg is not installed. Runs it without a shell.
-/// Throws RunError where it fails.
+/// Writes `video` from the first `frames` pictures of the folder (with --resume and fewer --frames it holds more).
+/// False where ffmpeg is not installed. Runs it without a shell. Throws RunError where it fails.
 bool encodeVideo(const fs::path& folder, int frames, double fps, const fs::path& video) {
   const auto encode = [&](const fs::path& temporary) {
     const pid_t child = fork();
@@ -200,6 +199,16 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
   if (filmed) std::printf("video: %s\n", video.c_str());
 }
 
+/// Throws InputError where --json, or the shot itself, is a file that the recording writes into its folder.
+void refuseLosses(const RecordOptions& options, const fs::path& folder) {
+  for (const std::string& own :
+       {std::string("recording.json"), std::string("frames.csv"), "frames-" + options.beside + ".csv",
+        std::string("video.mp4"), std::string("contact-sheet.png")})
+    for (const std::string& other : {options.launch.scene, options.output.json})
+      if (!other.empty() && sameFile(folder / own, other))
+        throw InputError(other, "the recording writes this file itself (--out names another folder)");
+}
+
 void record(const RecordOptions& options) {
   checkOptions(options);
   const auto opened = openLaunch(options.launch);
@@ -210,10 +219,9 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
-  RecordingMark mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)));
-  const auto picture = [&](int frame) { return folder / format("%06d.%s", frame, options.format.c_str()); };
+  refuseLosses(options, folder);
+  RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format);
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
-  if (options.resume) removeLeftovers(picture(kept));
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
@@ -241,8 +249,8 @@ void record(const RecordOptions& options) {
       }
       const auto begin = std::chrono::steady_clock::now();
       // Frames of before are computed: later ones build on them.
-      if (options.format != "none" && !(done < kept && isPicture(picture(done)))) {
-        writeFrame(picture(done), sides, options, done, whole);
+      if (options.format != "none" && !(done < kept && isPicture(mark.picture(done)))) {
+        writeFrame(mark.picture(done), sides, options, done, whole);
         mark.write(std::max(kept, done + 1));
       }
       const std::chrono::duration<double, std::milli> writing = std::chrono::steady_clock::now() - begin;
@@ -277,7 +285,7 @@ void record(const RecordOptions& options) {
 void declareRecord(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   Command command(app, "record", "every frame of a shot: pictures, frames.csv, video");
-  command.text("SHOT", options->launch.scene, "shot file (.json)", true);
+  command.reads("SHOT", options->launch.scene, "shot file (.json)", true);
   command.launch(options->launch);
   command.output(options->output, "folder (default out/NAME)");
   command.text("--buffer", options->buffer, bufferHelp(options->buffer, "record"));

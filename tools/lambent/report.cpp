@@ -161,9 +161,7 @@ void writeReport(const OutputOptions& output, const fs::path& folder, const std:
 
 fs::path reportFolder(const std::string& out, const std::string& unnamed) {
   const fs::path folder = out.empty() ? unnamed : out;
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) throw RunError(folder.string() + ": cannot be made: " + failure.message());
+  makeFolder(folder);
   return folder;
 }
 

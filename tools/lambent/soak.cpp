@@ -195,11 +195,11 @@ void soak(const SoakOptions& options) {
 void declareSoak(CLI::App& app) {
   auto options = std::make_shared<SoakOptions>();
   Command command(app, "soak", "many frames in which anything changes: each is checked, memory must not grow");
-  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
+  command.reads("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
   command.output(options->output, "");
   command.number("--frames", &options->frames, 1, 100000000, "so many (2000)");
-  command.text("--record", options->record, "keep the camera of every frame in this new shot, as it goes");
+  command.writes("--record", options->record, "keep the camera of every frame in this new shot, as it goes");
   command.run([options] { soak(*options); });
 }
 

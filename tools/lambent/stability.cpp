@@ -250,7 +250,7 @@ void stability(const StabilityOptions& options) {
 void declareStability(CLI::App& app) {
   auto options = std::make_shared<StabilityOptions>();
   Command command(app, "stability", "errors of techniques over the frames of shots, against truth");
-  command.texts("SHOT", options->shots, "shot files (.json)", true);
+  command.reads("SHOT", options->shots, "shot files (.json)", true);
   command.launch(options->launch);
   command.output(options->output, "folder for the report (default out/stability)");
   command.list("--techniques", options->techniques, "comma-separated (default smc,ir,mir,tcas)");

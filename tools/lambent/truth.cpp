@@ -80,7 +80,7 @@ void trackPixels(const ReferenceOptions& options) {
 void reference(const ReferenceOptions& options) {
   if (!options.pixels.empty()) return trackPixels(options);
   const ReferenceBuffer buffer = referenceBufferByName(options.buffer);
-  const std::string out = options.output.out.empty() ? "reference.exr" : options.output.out;
+  const std::string& out = options.output.out;
   checkPictureName(out);
   if (!options.errors.empty()) checkPictureName(options.errors);
   if (!options.state.empty()) {
@@ -174,19 +174,19 @@ void compare(const CompareOptions& options) {
 void declareReference(CLI::App& app) {
   auto options = std::make_shared<ReferenceOptions>();
   Command command(app, "reference", "path-traced truth of one view; can be continued");
-  command.text("SCENE", options->launch.scene, "glTF or shot file", true);
+  command.reads("SCENE", options->launch.scene, "glTF or shot file", true);
   command.launch(options->launch);
-  command.output(options->output, "picture, linear .exr or .png (default reference.exr)");
+  command.output(options->output, "picture, linear .exr or .png (default reference.exr)", "reference.exr");
   command.text("--buffer", options->buffer, "beauty, direct, indirect or irradiance");
   command.number("--spp", &options->samples, 1, int(ReferenceSums::kMostSamples),
                  "samples per pixel in all (default 64; with --error no bound)");
   command.number("--error", &options->error, 1e-6, 1e6,
                  "stop at this standard error per pixel: its RMS over pixels and channels, over the picture's mean");
   command.number("--time", &options->time, 0, 0, "seconds into the shot or the scene's animation");
-  command.text("--state", options->state, "keep the sums in this file, and go on from it when it is there");
-  command.text("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
-  command.text("--pixels", options->pixels,
-               "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
+  command.writes("--state", options->state, "keep the sums in this file, and go on from it when it is there");
+  command.writes("--errors", options->errors, "write the standard error of each pixel (.exr or .png)");
+  command.writes("--pixels", options->pixels,
+                 "for a shot: write indirect radiance at its marked pixels and a grid, all frames (.csv)");
   command.number("--grid", &options->grid, 0, 256, "grid of so many by so many pixels (default 16)");
   command.flag("--clamped", options->clamped,
                "bound the geometry term between picture and first bounce as gather.clamp bounds virtual lights");
@@ -196,11 +196,11 @@ void declareReference(CLI::App& app) {
 void declareCompare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   Command command(app, "compare", "errors of picture A against B (linear .exr or .pfm)");
-  command.text("A", options->a, "picture to judge", true);
-  command.text("B", options->b, "picture to hold it to", true);
+  command.reads("A", options->a, "picture to judge", true);
+  command.reads("B", options->b, "picture to hold it to", true);
   command.text("--layer", options->layer, "layer of B to take, where it is an .exr with several");
-  command.text("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
-  command.text("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");
+  command.reads("--mask", options->mask, "compare only pixels where this picture (.exr or .pfm) is above 0");
+  command.writes("--difference", options->difference, "write |A-B|, linear .exr or .png (mean of B is mid grey)");
   command.output(options->output, "");
   command.run([options] { compare(*options); });
 }

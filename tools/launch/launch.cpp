@@ -2,11 +2,11 @@
 
 #include "gi/plan/techniques.h"
 
-#include "engine/core/enough.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
+#include "engine/core/resources.h"
 #include "engine/core/text.h"
 #include "engine/gl/program.h"
 #include "engine/trace/embree_query.h"
@@ -343,7 +343,7 @@ SceneView LaunchContext::at(double t) {
 void useThreads(int threads) {
   setThreadCount(threads);
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
-  requireThreadsAndMemory(threadCount() + 1); // of loops, and one that traces beside frames
+  requireResources(threadCount() + 1); // of loops, and one that traces beside frames
 }
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
@@ -369,7 +369,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   for (const fs::path& read : stage->scene.files)
     for (const std::string& written : options.written)
       if (sameFile(read, written))
-        throw InputError(written, "and what the scene is read from are one file: what it holds would be lost");
+        throw InputError(written, "the scene is read from this file (name another for the result)");
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

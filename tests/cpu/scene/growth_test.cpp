@@ -36,7 +36,8 @@ const Growing kGrowing[] = {
      }},
     {"children of one node",
      [](GltfBuilder& b, int i, int) {
-       const int node = i == 0 ? b.addRoot({{"name", "root"}}) : b.push("nodes", json{{"mesh", 0}});
+       const int node =
+           i == 0 ? b.addRoot({{"name", "root"}}) : b.push("nodes", json{{"mesh", 0}, {"translation", placed(i)}});
        if (i > 0) b.json["nodes"][size_t(node - i)]["children"].push_back(node);
      }},
     {"meshes",
@@ -44,18 +45,22 @@ const Growing kGrowing[] = {
        b.addRoot({{"mesh", b.push("meshes", json(b.json["meshes"][0]))}, {"translation", placed(i)}});
      }},
     {"primitives",
-     [](GltfBuilder& b, int, int) {
-       b.json["meshes"][0]["primitives"].push_back(json(b.json["meshes"][0]["primitives"][0]));
+     [](GltfBuilder& b, int i, int) {
+       json& primitives = b.json["meshes"][0]["primitives"];
+       json next = primitives[size_t(i % 100)]; // not all in one place
+       const float x = float(3 * i);
+       if (i < 100) next["attributes"]["POSITION"] = b.positions({{x, 0, 9}, {x + 1, 0, 9}, {x, 1, 9}});
+       primitives.push_back(next);
      }},
     {"materials",
-     [](GltfBuilder& b, int, int) {
+     [](GltfBuilder& b, int i, int) {
        json mesh = b.json["meshes"][0];
        mesh["primitives"][0]["material"] = b.push("materials", {{"emissiveFactor", {1, 1, 1}}});
-       b.addRoot({{"mesh", b.push("meshes", mesh)}});
+       b.addRoot({{"mesh", b.push("meshes", mesh)}, {"translation", placed(i)}});
      }},
     {"nodes of one name",
-     [](GltfBuilder& b, int, int) {
-       b.addRoot({{"name", "alike"}, {"mesh", 0}});
+     [](GltfBuilder& b, int i, int) {
+       b.addRoot({{"name", "alike"}, {"mesh", 0}, {"translation", placed(i)}});
      }},
     {"accessors and their views",
      [](GltfBuilder& b, int, int) {
@@ -77,10 +82,10 @@ const Growing kGrowing[] = {
      [](GltfBuilder& b, int i, int) {
        if (i == 0)
          b.push("animations",
-                {{"samplers", {{{"input", b.floats({0, 1})}, {"output", b.floats({0, 0, 0, 0, 1, 0}, "VEC3")}}}},
+                {{"samplers", {{{"input", b.floats({0, 1})}, {"output", b.floats({1, 1, 1, 2, 1, 1}, "VEC3")}}}},
                  {"channels", json::array()}});
-       b.json["animations"][0]["channels"].push_back(
-           {{"sampler", 0}, {"target", {{"node", b.addRoot({{"mesh", 0}})}, {"path", "translation"}}}});
+       const int node = b.addRoot({{"mesh", 0}, {"translation", placed(i)}});
+       b.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "scale"}}}});
      }},
     {"animations",
      [](GltfBuilder& b, int i, int) {

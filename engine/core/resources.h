@@ -5,6 +5,6 @@ namespace lambent {
 
 /// Throws RunError where this process may not make so many more threads, or take the address space or stack, that
 /// drivers, Embree and our own loops take: without, they end the program or wait for ever.
-void requireThreadsAndMemory(int threads);
+void requireResources(int threads);
 
 } // namespace lambent

@@ -1,4 +1,4 @@
-#include "engine/core/enough.h"
+#include "engine/core/resources.h"
 
 #include "engine/core/error.h"
 
@@ -31,13 +31,13 @@ int threadsOf(int wanted) {
 
 } // namespace
 
-void requireThreadsAndMemory(int wanted) {
+void requireResources(int wanted) {
   constexpr size_t kAddresses = size_t(1) << 30; // what a small scene's frame takes on software Mesa
   void* const room = mmap(nullptr, kAddresses, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED)
     throw RunError("this process may not take 1 GB of memory (is there a limit? ulimit -v unlimited lifts it)");
   munmap(room, kAddresses);
-  constexpr rlim_t kStack = 256 * 1024; // of each thread too; half did
+  constexpr rlim_t kStack = 256 * 1024; // each thread's default too; 128 KB were enough
   rlimit stack{};
   if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kStack)
     throw RunError("this process may not take 256 KB of stack (is there a limit? ulimit -s 8192 lifts it)");

@@ -1,0 +1,14 @@
+// Triangles in one place: every ray there meets them all, whatever traces it.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+#include <optional>
+
+namespace lambent {
+
+/// A place in world space that lies in the boxes of more than `most` triangles of the scene as it stands; none where
+/// fewer than one triangle in 500 lies so. Looks at the middles of 4096 triangles that are drawn at random.
+std::optional<vec3> crowdedPlace(const Scene& scene, int most);
+
+} // namespace lambent

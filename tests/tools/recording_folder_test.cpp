@@ -1,0 +1,93 @@
+// How far a recording got, as a file that anybody may have changed says it.
+#include "tools/kept/recording_folder.h"
+
+#include "tests/support/files.h"
+#include "tools/kept/value.h"
+
+#include <optional>
+
+namespace lambent::test::recording_folder_test {
+
+class RecordingFolderTest : public testing::Test {
+ protected:
+  int keptOf(const std::string& text) const {
+    writeBytes(folder_ / "recording.json", text);
+    return mark_->kept();
+  }
+
+  TemporaryFolder folder_;
+  std::optional<RecordingFolder> mark_{std::in_place, folder_.path(), "these", "png"};
+};
+
+TEST_F(RecordingFolderTest, SaysHowManyPicturesAreWhole) {
+  EXPECT_EQ(mark_->kept(), 0) << "there is none";
+  mark_->write(17);
+  EXPECT_EQ(mark_->kept(), 17);
+  mark_.reset();
+  const RecordingFolder other(folder_.path(), "others", "png");
+  EXPECT_NE(inputErrorOf([&] { other.kept(); }).find("another shot"), std::string::npos);
+}
+
+TEST_F(RecordingFolderTest, WhatCountsNoFramesKeepsNone) {
+  for (const char* frames :
+       {"-1", "\"17\"", "null", "[17]", "2147483647", "4294967313", "18446744073709551615", "1e39"})
+    EXPECT_EQ(keptOf(std::string(R"({"conditions": "these", "frames": )") + frames + "}"), 0) << frames;
+  for (const char* text : {"", "{", "[]", "17", R"({"frames": 17})"}) EXPECT_EQ(keptOf(text), 0) << text;
+}
+
+TEST_F(RecordingFolderTest, OneProgramRecordsIntoAFolder) {
+  EXPECT_THROW(RecordingFolder(folder_.path(), "these", "png"), RunError);
+  mark_.reset();
+  EXPECT_NO_THROW(RecordingFolder(folder_.path(), "these", "png"));
+}
+
+TEST_F(RecordingFolderTest, LeavesNoPicturesOfALongerOneBehindItsOwn) {
+  mark_->write(6);
+  mark_.emplace(folder_.path(), "these", "png");
+  mark_->write(0);
+  mark_.emplace(folder_.path(), "these", "png"); // the one between was cut short
+  fs::create_directory(folder_ / "000004.png");
+  for (const char* name : {"000001.png", "000002.exr", "000005.png", "000006.png", "00005.png", "frames.csv"})
+    writeBytes(folder_ / name, "x");
+  mark_->end(2);
+  EXPECT_FALSE(fs::exists(folder_ / "000005.png"));
+  for (const char* name : {"000001.png", "000002.exr", "000004.png", "000006.png", "00005.png", "frames.csv"})
+    EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+  EXPECT_EQ(mark_->kept(), 2);
+}
+
+TEST_F(RecordingFolderTest, KeepsPicturesOfAnotherFormat) {
+  mark_->write(6);
+  for (const char* name : {"000000.exr", "000005.exr", "000005.png"}) writeBytes(folder_ / name, "x");
+  mark_.emplace(folder_.path(), "these", "none");
+  mark_->write(0);
+  mark_.emplace(folder_.path(), "these", "exr");
+  EXPECT_EQ(mark_->picture(7), folder_ / "000007.exr");
+  mark_->write(6);
+  mark_->end(1);
+  EXPECT_TRUE(fs::exists(folder_ / "000005.exr")) << "nobody recorded it";
+  mark_.emplace(folder_.path(), "these", "png");
+  mark_->end(1);
+  EXPECT_FALSE(fs::exists(folder_ / "000005.png")) << "recorded before the other formats";
+}
+
+TEST_F(RecordingFolderTest, RemovesWhatAKillLeft) {
+  mark_.reset();
+  const char* left[] = {".recording.17.json", ".000003.4711.png"};
+  const char* others[] = {".000003.4711.exr", ".000003.x.png", ".notes.17.png"};
+  for (const char* name : left) writeBytes(folder_ / name, "x");
+  for (const char* name : others) writeBytes(folder_ / name, "x");
+  mark_.emplace(folder_.path(), "these", "png");
+  for (const char* name : left) EXPECT_FALSE(fs::exists(folder_ / name)) << name;
+  for (const char* name : others) EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+}
+
+/// Text is nested as deeply as somebody likes, a stack is not.
+TEST_F(RecordingFolderTest, DeeplyNestedTextIsNoValue) {
+  const auto nested = [](size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+  EXPECT_EQ(Value::parsed(nested(100)).json(-1), nested(100));
+  EXPECT_TRUE(Value::parsed(nested(200000)).isNothing());
+  EXPECT_EQ(keptOf(R"({"conditions": )" + nested(200000) + "}"), 0);
+}
+
+} // namespace lambent::test::recording_folder_test
