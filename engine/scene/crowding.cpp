@@ -12,7 +12,7 @@ namespace {
 constexpr uint64_t kPlaces = 4096; // at most
 constexpr int kCrowded = 8;        // of these: fewer are a spot that few rays meet
 
-struct Place {
+struct PlaceOnTriangle {
   vec3 at;
   int boxes = 0;
 };
@@ -37,7 +37,7 @@ template <class F> void forEachBox(const Scene& scene, std::span<const uint64_t>
 }
 
 /// In the order of their coordinates on `axis`, the one on which they lie farthest apart.
-std::vector<Place> somePlaces(const Scene& scene, int& axis) {
+std::vector<PlaceOnTriangle> somePlaces(const Scene& scene, int& axis) {
   uint64_t all = 0;
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { all += mesh.triangles.size(); });
   if (all == 0) return {};
@@ -47,12 +47,12 @@ std::vector<Place> somePlaces(const Scene& scene, int& axis) {
     drawn[i] = all <= kPlaces ? i : (uint64_t(random.nextUint()) << 32 | random.nextUint()) % all;
   std::ranges::sort(drawn);
 
-  std::vector<Place> places;
+  std::vector<PlaceOnTriangle> places;
   Aabb extent;
-  forEachBox(scene, drawn, [&](const Aabb& box) { extent.add(places.emplace_back(Place{box.centre()}).at); });
+  forEachBox(scene, drawn, [&](const Aabb& box) { extent.add(places.emplace_back(PlaceOnTriangle{box.centre()}).at); });
   const vec3 size = extent.size();
   axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  std::ranges::sort(places, {}, [&](const Place& p) { return p.at[axis]; });
+  std::ranges::sort(places, {}, [&](const PlaceOnTriangle& p) { return p.at[axis]; });
   return places;
 }
 
@@ -66,14 +66,15 @@ bool hasAnArea(const Aabb& box) {
 
 std::optional<vec3> crowdedPlace(const Scene& scene, int most) {
   int axis = 0, crowded = 0;
-  std::vector<Place> places = somePlaces(scene, axis);
+  std::vector<PlaceOnTriangle> places = somePlaces(scene, axis);
   std::optional<vec3> found;
   forEachBox(scene, {}, [&](const Aabb& box) {
     if (found || !hasAnArea(box)) return;
     const vec3 size = box.size();
     const vec3 near(0.01f * glm::max(glm::max(size.x, size.y), size.z)); // layers a hair apart are in one place
     const Aabb around{box.lo - near, box.hi + near};
-    auto place = std::ranges::lower_bound(places, around.lo[axis], {}, [&](const Place& p) { return p.at[axis]; });
+    auto place =
+        std::ranges::lower_bound(places, around.lo[axis], {}, [&](const PlaceOnTriangle& p) { return p.at[axis]; });
     for (; place != places.end() && place->at[axis] <= around.hi[axis]; ++place)
       if (around.contains(place->at) && ++place->boxes == most + 1 && ++crowded == kCrowded) found = place->at;
   });
