@@ -9,7 +9,7 @@ namespace lambent {
 
 namespace {
 
-constexpr uint64_t kPlaces = 4096; // at most
+constexpr uint64_t kMostPlaces = 4096;
 constexpr int kCrowded = 8;        // of these: fewer are a spot that few rays meet
 
 struct PlaceOnTriangle {
@@ -41,10 +41,10 @@ std::vector<PlaceOnTriangle> somePlaces(const Scene& scene, int& axis) {
   uint64_t all = 0;
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { all += mesh.triangles.size(); });
   if (all == 0) return {};
-  std::vector<uint64_t> drawn(size_t(std::min(all, kPlaces)));
+  std::vector<uint64_t> drawn(size_t(std::min(all, kMostPlaces)));
   Rng random(1, Stream::Crowding, 0);
   for (size_t i = 0; i < drawn.size(); ++i)
-    drawn[i] = all <= kPlaces ? i : (uint64_t(random.nextUint()) << 32 | random.nextUint()) % all;
+    drawn[i] = all <= kMostPlaces ? i : (uint64_t(random.nextUint()) << 32 | random.nextUint()) % all;
   std::ranges::sort(drawn);
 
   std::vector<PlaceOnTriangle> places;
