@@ -10,7 +10,7 @@ namespace lambent {
 namespace {
 
 constexpr uint64_t kMostPlaces = 4096;
-constexpr int kCrowded = 8;        // of these: fewer are a spot that few rays meet
+constexpr int kCrowded = 8; // of these: fewer are a spot that few rays meet
 
 struct PlaceOnTriangle {
   vec3 at;
