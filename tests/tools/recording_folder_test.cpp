@@ -6,6 +6,8 @@
 
 #include <optional>
 
+#include <sys/stat.h>
+
 namespace lambent::test::recording_folder_test {
 
 class RecordingFolderTest : public testing::Test {
@@ -69,6 +71,13 @@ TEST_F(RecordingFolderTest, KeepsPicturesOfAnotherFormat) {
   mark_.emplace(folder_.path(), "these", "png");
   mark_->end(1);
   EXPECT_FALSE(fs::exists(folder_ / "000005.png")) << "recorded before the other formats";
+}
+
+TEST_F(RecordingFolderTest, WaitsForNoPipe) {
+  mark_.reset();
+  ASSERT_EQ(mkfifo((folder_ / "recording.json").c_str(), 0600), 0);
+  EXPECT_NE(inputErrorOf([&] { RecordingFolder(folder_.path(), "these", "png"); }).find("is not a file"),
+            std::string::npos);
 }
 
 TEST_F(RecordingFolderTest, RemovesWhatAKillLeft) {

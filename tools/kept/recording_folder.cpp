@@ -51,6 +51,7 @@ RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::s
     : folder_(std::move(folder)), file_(folder_ / "recording.json"), alone_(folder_),
       conditions_(std::move(conditions)), format_(std::move(format)) {
   if (!alone_.held()) throw RunError(folder_.string() + ": another program records here (--out names another folder)");
+  requireFileOrNothing(file_);
   const Value mark = Value::parsed(readText(file_));
   for (const char* each : {"png", "exr"}) {
     const bool last = mark.has("format") && mark["format"].text() == each;

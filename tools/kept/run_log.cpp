@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "tools/kept/text_file.h"
 
 #include <algorithm>
 #include <fstream>
@@ -38,6 +39,7 @@ std::string lineOf(Value run) {
 
 RunLog::RunLog(std::filesystem::path file, std::string conditions)
     : file_(std::move(file)), conditions_(std::move(conditions)) {
+  requireFileOrNothing(file_);
   std::ifstream in(file_);
   int before = 0;
   for (std::string line; std::getline(in, line);) {

@@ -18,6 +18,12 @@ void writeText(const fs::path& file, const std::string& text) {
   });
 }
 
+void requireFileOrNothing(const fs::path& file) {
+  std::error_code none;
+  if (fs::exists(file, none) && !fs::is_regular_file(file, none))
+    throw InputError(file.string(), "is not a file (remove it, or name another folder)");
+}
+
 std::string readText(const fs::path& file) {
   std::error_code none;
   if (!fs::is_regular_file(file, none)) return {};
