@@ -7,8 +7,9 @@
 
 namespace lambent {
 
-/// A place in world space that lies in the boxes of more than `most` triangles of the scene as it stands; none where
-/// fewer than one triangle in 500 lies so. Looks at the middles of 4096 triangles that are drawn at random.
+/// A place in world space that lies on more than `most` triangles of the scene as it stands, or within 1 % of a
+/// triangle's size of it; none where fewer than one triangle in 500 lies so. Looks at the middles of 1024 triangles that
+/// are drawn at random.
 std::optional<vec3> crowdedPlace(const Scene& scene, int most);
 
 } // namespace lambent

@@ -48,6 +48,18 @@ TEST(Crowding, PointsAndLinesAreNone) {
   EXPECT_FALSE(isCrowded(b, 2));
 }
 
+/// Boxes of what is long and slanted lie over one another, and no ray meets them all.
+TEST(Crowding, SlantedBoardsAreNone) {
+  GltfBuilder b;
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions({{0, 0, 0}, {4, 0, 0}, {0, 0, 0.09f}})}}}});
+  const float half = 0.38268343f; // of 45 degrees
+  for (int i = 0; i < 400; ++i)
+    b.addRoot({{"mesh", 0},
+               {"rotation", {0, half, 0, 0.92387953f}},
+               {"translation", {0.0707f * float(i), 0, 0.0707f * float(i)}}});
+  EXPECT_FALSE(isCrowded(b, 10));
+}
+
 TEST(Crowding, InstancesOfACrowdCountEachAndTooManyAreRefused) {
   GltfBuilder b = oneTriangle();
   for (int i = 0; i < 31; ++i) b.json["meshes"][0]["primitives"].push_back(b.json["meshes"][0]["primitives"][0]);
