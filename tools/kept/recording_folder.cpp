@@ -61,6 +61,8 @@ RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::s
   for (const fs::path& picture : tornPictures(folder_, format_)) removeLeftovers(picture);
 }
 
+bool RecordingFolder::isNamedAsPicture(const fs::path& file) { return frameOf(file, "png") || frameOf(file, "exr"); }
+
 fs::path RecordingFolder::picture(int frame) const {
   char name[16];
   std::snprintf(name, sizeof name, "%06d", frame);

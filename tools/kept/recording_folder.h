@@ -16,6 +16,8 @@ class RecordingFolder {
   /// the folder.
   RecordingFolder(std::filesystem::path folder, std::string conditions, std::string format);
 
+  /// Whether a file is named as a frame's picture is.
+  static bool isNamedAsPicture(const std::filesystem::path& file);
   /// Of a frame, whether it is there or not.
   std::filesystem::path picture(int frame) const;
   /// Pictures that an interrupted recording left here. Throws InputError where they are another one's.

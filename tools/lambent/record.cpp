@@ -199,14 +199,30 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
   if (filmed) std::printf("video: %s\n", video.c_str());
 }
 
-/// Throws InputError where --json, or the shot itself, is a file that the recording writes into its folder.
-void refuseLosses(const RecordOptions& options, const fs::path& folder) {
-  for (const std::string& own :
-       {std::string("recording.json"), std::string("frames.csv"), "frames-" + options.beside + ".csv",
-        std::string("video.mp4"), std::string("contact-sheet.png")})
-    for (const std::string& other : {options.launch.scene, options.output.json})
-      if (!other.empty() && sameFile(folder / own, other))
-        throw InputError(other, "the recording writes this file itself (--out names another folder)");
+/// Throws InputError where what is read, or another result, is a file that the recording writes into its folder, or
+/// that a link there leads to.
+void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::path& folder) {
+  std::vector<fs::path> others = scene.files;
+  for (const std::string& named : {options.launch.scene, options.launch.cube, options.output.json})
+    if (!named.empty()) others.emplace_back(named);
+  const auto isOwn = [&](const fs::path& name) {
+    const fs::path log = "frames-" + options.beside + ".csv";
+    return name == "recording.json" || name == "frames.csv" || name == log || name == "video.mp4" ||
+           name == "contact-sheet.png" || RecordingFolder::isNamedAsPicture(name);
+  };
+  const auto refuse = [&](const fs::path& file) {
+    throw InputError(file.string(), "the recording writes this file itself (--out names another folder)");
+  };
+  std::error_code none;
+  for (const fs::path& other : others)
+    if (isOwn(other.filename()) && fs::equivalent(fs::absolute(other).parent_path(), folder, none)) refuse(other);
+  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
+    std::error_code gone;
+    if (!isOwn(at->path().filename())) continue;
+    if (fs::is_fifo(at->status(gone))) throw InputError(at->path().string(), "is a pipe (remove it)"); // waits for ever
+    for (const fs::path& other : others)
+      if (sameFile(at->path(), other)) refuse(other);
+  }
 }
 
 void record(const RecordOptions& options) {
@@ -219,7 +235,7 @@ void record(const RecordOptions& options) {
 
   const int total =
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
-  refuseLosses(options, folder);
+  refuseLosses(options, opened->scene, folder);
   RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format);
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
   if (kept == 0) mark.write(0);
