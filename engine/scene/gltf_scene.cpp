@@ -192,7 +192,7 @@ void findOrigin(Scene& scene) {
 
 /// Every ray there would meet them all: a first picture would take minutes.
 void refuseCrowds(const Scene& scene) {
-  constexpr int kMost = 192; // see decisions.md; the fullest scenes that we know have 90
+  constexpr int kMost = 192; // see decisions.md; the fullest scene that we know has fewer than 65
   if (const std::optional<vec3> place = crowdedPlace(scene, kMost)) {
     const dvec3 at = dvec3(*place) + scene.origin;
     std::ostringstream text;
