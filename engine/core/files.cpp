@@ -7,7 +7,9 @@
 #include <chrono>
 #include <climits>
 #include <fstream>
+#include <mutex>
 #include <random>
+#include <set>
 #include <system_error>
 #include <thread>
 
@@ -70,6 +72,32 @@ bool abandoned(const fs::path& temporary) {
   close(file);
   return free;
 }
+/// See keepFromReplacing.
+class KeptFiles {
+ public:
+  static KeptFiles& all() {
+    static KeptFiles files;
+    return files;
+  }
+  void keep(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    kept_.insert(placeOf(file));
+  }
+  bool holds(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    return !kept_.empty() && kept_.contains(placeOf(file));
+  }
+
+ private:
+  /// Without links. By place, not by what lies there: a rename leaves what else leads to that alone.
+  static fs::path placeOf(const fs::path& file) {
+    std::error_code none;
+    return fs::weakly_canonical(fs::absolute(file), none);
+  }
+  std::mutex mutex_;
+  std::set<fs::path> kept_;
+};
+
 } // namespace
 
 void makeFolder(const fs::path& folder) {
@@ -98,9 +126,13 @@ bool sameFile(const fs::path& a, const fs::path& b) {
   return !a.empty() && !b.empty() && there(a) == there(b);
 }
 
+void keepFromReplacing(const fs::path& file) { KeptFiles::all().keep(file); }
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code none;
   const fs::path file = followed(named);
+  if (KeptFiles::all().holds(file))
+    throw RunError(named.string() + ": is not replaced: it is read, or another result (name another folder or file)");
   if (fs::exists(file, none) && !fs::is_regular_file(file, none) && !fs::is_directory(file, none))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some

@@ -18,8 +18,12 @@ void checkWritable(const std::filesystem::path& file);
 /// Whether two names are of one file, or would be once it is written.
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
+/// Has writeAtomically refuse to replace this file for the rest of the program: it is read, or is a result already. The
+/// files of a report have many names, and none of them may cost a scene its texture. Any thread.
+void keepFromReplacing(const std::filesystem::path& file);
+
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
-/// the folder cannot be written.
+/// the folder cannot be written, and where the file is kept.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);

@@ -46,8 +46,8 @@ void writeExr(const std::filesystem::path& file, const Image& image) {
       header.channels().insert(kChannels[c], Imf::Channel(Imf::FLOAT));
       frame.insert(kChannels[c], slice(image.pixels.data(), c, image.width));
     }
+    std::ofstream stream(temporary, std::ios::binary);
     try {
-      std::ofstream stream(temporary, std::ios::binary);
       {
         Imf::StdOFStream to(stream, temporary.c_str());
         Imf::OutputFile out(to, header);
@@ -55,10 +55,10 @@ void writeExr(const std::filesystem::path& file, const Image& image) {
         out.writePixels(image.height);
       } // its destructor writes the table of lines, and reports nothing when it cannot
       stream.close();
-      if (!stream) throw RunError("is the folder writable, the disk full?");
     } catch (const std::exception& e) {
-      throw RunError(file.string() + ": cannot be written: " + e.what());
+      if (stream) throw RunError(file.string() + ": cannot be written: " + e.what()); // else it names the temporary
     }
+    if (!stream) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
 }
 

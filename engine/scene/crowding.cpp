@@ -1,7 +1,7 @@
 #include "engine/scene/crowding.h"
 
 #include "engine/core/rng.h"
-#include "engine/scene/deform.h"
+#include "engine/scene/placed_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -12,37 +12,13 @@ namespace lambent {
 namespace {
 
 constexpr uint64_t kMostPlaces = 1024;
-constexpr int kCrowded = 2; // of these: fewer are a spot that few rays meet
+constexpr int kCrowded = 2;    // of these: fewer are a spot that few rays meet
+constexpr float kNear = 0.01f; // of a triangle's size: layers a hair apart are in one place
 
 using Corners = std::array<vec3, 3>;
 
-struct PlaceOnTriangle {
-  vec3 at;
-  int triangles = 0;
-};
-
-/// Calls f(corners) for triangles of `wanted` (in order; all, where it is empty) as they stand in the world.
-template <class F> void forEachTriangle(const Scene& scene, std::span<const uint64_t> wanted, F&& f) {
-  const bool all = wanted.empty();
-  uint64_t first = 0; // of the instance
-  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
-    const std::vector<vec3>& positions = deformed ? deformed->positions : mesh.positions;
-    const auto visit = [&](size_t triangle) {
-      Corners corners;
-      for (int c = 0; c < 3; ++c)
-        corners[size_t(c)] = vec3(worldFromObject * vec4(positions[mesh.triangles[triangle][c]], 1));
-      f(corners);
-    };
-    if (all)
-      for (size_t i = 0; i < mesh.triangles.size(); ++i) visit(i);
-    for (; !wanted.empty() && wanted[0] < first + mesh.triangles.size(); wanted = wanted.subspan(1))
-      visit(size_t(wanted[0] - first));
-    first += mesh.triangles.size();
-  });
-}
-
-/// In the order of their coordinates on `axis`, the one on which they lie farthest apart.
-std::vector<PlaceOnTriangle> somePlaces(const Scene& scene, int& axis) {
+/// The middles of triangles that are drawn at random.
+std::vector<vec3> somePlaces(const Scene& scene) {
   uint64_t all = 0;
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { all += mesh.triangles.size(); });
   if (all == 0) return {};
@@ -51,52 +27,127 @@ std::vector<PlaceOnTriangle> somePlaces(const Scene& scene, int& axis) {
   for (size_t i = 0; i < drawn.size(); ++i)
     drawn[i] = all <= kMostPlaces ? i : (uint64_t(random.nextUint()) << 32 | random.nextUint()) % all;
   std::ranges::sort(drawn);
-
-  std::vector<PlaceOnTriangle> places;
-  Aabb extent;
-  forEachTriangle(scene, drawn, [&](const Corners& t) {
-    extent.add(places.emplace_back(PlaceOnTriangle{(t[0] + t[1] + t[2]) / 3.0f}).at);
+  std::vector<vec3> places;
+  uint64_t first = 0; // of the instance
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
+    while (places.size() < drawn.size() && drawn[places.size()] < first + mesh.triangles.size()) {
+      const size_t triangle = size_t(drawn[places.size()] - first);
+      const Corners t = TriangleBlock{mesh, deformed, worldFromObject, triangle, triangle + 1, {}}.corners(triangle);
+      places.push_back((t[0] + t[1] + t[2]) / 3.0f);
+    }
+    first += mesh.triangles.size();
   });
-  const vec3 size = extent.size();
-  axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  std::ranges::sort(places, {}, [&](const PlaceOnTriangle& p) { return p.at[axis]; });
   return places;
 }
 
-/// Whether a place lies within `near` of a triangle: in front of it, and inside its edges grown by as much. Not of one
-/// that is a point or a line, which rays seldom meet.
-bool liesOn(const Corners& t, const vec3& place, float near) {
+bool overlap(const Aabb& a, const Aabb& b) {
+  return glm::all(glm::lessThanEqual(a.lo, b.hi)) && glm::all(glm::lessThanEqual(b.lo, a.hi));
+}
+
+Aabb grown(const Aabb& box, float by) { return {box.lo - by, box.hi + by}; }
+
+/// Where a place lies on a triangle: no farther than `near` in front or behind, and inside its edges grown by as much.
+struct Prism {
+  float near = 0;
+  Aabb box;
+  vec3 corner{0}, normal{0};        // unit
+  std::array<vec3, 3> from, inward; // of the edges; unit
+
+  /// Whether some of a box may lie in it; exact for a box that is a point.
+  bool meets(const Aabb& b) const {
+    if (!overlap(b, box)) return false;
+    const vec3 middle = b.centre(), half = 0.5f * b.size();
+    if (std::abs(glm::dot(middle - corner, normal)) > near + glm::dot(half, glm::abs(normal))) return false;
+    for (size_t c = 0; c < 3; ++c)
+      if (glm::dot(middle - from[c], inward[c]) < -near - glm::dot(half, glm::abs(inward[c]))) return false;
+    return true;
+  }
+};
+
+/// Nothing for a triangle that is a point or a line, which rays seldom meet.
+std::optional<Prism> prismAround(const Corners& t) {
   const vec3 across = glm::cross(t[1] - t[0], t[2] - t[0]);
   const float doubleArea = glm::length(across);
-  if (!(doubleArea > 0)) return false;
-  const vec3 normal = across / doubleArea;
-  if (!(std::abs(glm::dot(place - t[0], normal)) <= near)) return false;
+  if (!(doubleArea > 0)) return {};
+  Prism prism;
+  for (const vec3& c : t) prism.box.add(c);
+  prism.near = kNear * maxComponent(prism.box.size());
+  prism.box = grown(prism.box, prism.near);
+  prism.corner = t[0];
+  prism.normal = across / doubleArea;
   for (size_t c = 0; c < 3; ++c) {
-    const vec3 edge = t[(c + 1) % 3] - t[c];
-    if (glm::dot(glm::cross(normal, edge), place - t[c]) < -near * glm::length(edge)) return false;
+    prism.from[c] = t[c];
+    prism.inward[c] = unitOr(glm::cross(prism.normal, t[(c + 1) % 3] - t[c]), vec3(0));
   }
-  return true;
+  return prism;
 }
+
+/// Places in a tree of boxes, each halved along its longest side down to single places: what a triangle lies on is then
+/// found without a look at the others, however long and slanted it is.
+class CountedPlaces {
+ public:
+  explicit CountedPlaces(std::vector<vec3> places) {
+    if (!places.empty()) build(places);
+  }
+  /// Calls f(place, count) for each place that `meets(box)` says yes to, and so all boxes around it; counted once more.
+  template <class Meets, class F> void count(const Meets& meets, const F& f) {
+    if (!nodes_.empty()) count(0, meets, f);
+  }
+  /// Whether `meets` says yes to a place.
+  template <class Meets> bool any(const Meets& meets) const { return !nodes_.empty() && any(0, meets); }
+
+ private:
+  struct Node {
+    Aabb box;
+    uint32_t second = 0; // half; the first follows its parent; 0: a single place
+    int triangles = 0;   // on a single place
+  };
+  void build(std::span<vec3> places) {
+    const size_t node = nodes_.size();
+    nodes_.emplace_back();
+    for (const vec3& p : places) nodes_[node].box.add(p);
+    if (places.size() == 1) return;
+    const vec3 size = nodes_[node].box.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const size_t half = places.size() / 2;
+    std::ranges::nth_element(places, places.begin() + std::ptrdiff_t(half), {}, [&](const vec3& p) { return p[axis]; });
+    build(places.first(half));
+    nodes_[node].second = uint32_t(nodes_.size());
+    build(places.subspan(half));
+  }
+  template <class Meets, class F> void count(uint32_t index, const Meets& meets, const F& f) {
+    Node& node = nodes_[index];
+    if (!meets(node.box)) return;
+    if (node.second == 0) return f(node.box.lo, ++node.triangles);
+    count(index + 1, meets, f);
+    count(node.second, meets, f);
+  }
+  template <class Meets> bool any(uint32_t index, const Meets& meets) const {
+    const Node& node = nodes_[index];
+    return meets(node.box) && (node.second == 0 || any(index + 1, meets) || any(node.second, meets));
+  }
+  std::vector<Node> nodes_; // the root first
+};
 
 } // namespace
 
 std::optional<vec3> crowdedPlace(const Scene& scene, int most) {
-  int axis = 0, crowded = 0;
-  std::vector<PlaceOnTriangle> places = somePlaces(scene, axis);
+  CountedPlaces places(somePlaces(scene));
+  int crowded = 0;
   std::optional<vec3> found;
-  forEachTriangle(scene, {}, [&](const Corners& t) {
-    if (found) return;
-    Aabb box;
-    for (const vec3& corner : t) box.add(corner);
-    const vec3 size = box.size();
-    const float near = 0.01f * glm::max(glm::max(size.x, size.y), size.z); // layers a hair apart are in one place
-    const Aabb around{box.lo - near, box.hi + near};
-    auto place =
-        std::ranges::lower_bound(places, around.lo[axis], {}, [&](const PlaceOnTriangle& p) { return p.at[axis]; });
-    for (; place != places.end() && place->at[axis] <= around.hi[axis]; ++place)
-      if (around.contains(place->at) && liesOn(t, place->at, near) && ++place->triangles == most + 1 &&
-          ++crowded == kCrowded)
-        found = place->at;
+  const auto holdsPlaces = [&](const Aabb& box) {
+    const Aabb around = grown(box, kNear * maxComponent(box.size()));
+    return !found && places.any([&](const Aabb& b) { return overlap(around, b); });
+  };
+  PlacedTriangles(scene).forEachBlock(holdsPlaces, [&](const TriangleBlock& block) {
+    for (size_t i = block.begin; i < block.end && !found; ++i) {
+      const std::optional<Prism> prism = prismAround(block.corners(i));
+      if (!prism) continue;
+      places.count([&](const Aabb& b) { return prism->meets(b); },
+                   [&](const vec3& place, int triangles) {
+                     if (triangles == most + 1 && ++crowded == kCrowded) found = place;
+                   });
+    }
   });
   return found;
 }

@@ -14,7 +14,7 @@
 // no tree that nothing else here needs, and the tracer belongs to a later layer.
 
 #include "engine/core/parallel.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/placed_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -34,41 +34,11 @@ struct Triangle {
   vec3 a, edge1, edge2;
 };
 
-/// All instances' triangles in world space, wound so that the cross product of the edges is the front.
-std::vector<Triangle> worldTriangles(const Scene& scene) {
-  std::vector<Triangle> triangles;
-  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
-    const std::vector<vec3>& positions = deformed ? deformed->positions : mesh.positions;
-    const bool mirrored = glm::determinant(mat3(worldFromObject)) < 0;
-    for (const uvec3& t : mesh.triangles) {
-      vec3 p[3];
-      for (int c = 0; c < 3; ++c) p[c] = vec3(worldFromObject * vec4(positions[t[c]], 1));
-      if (mirrored) std::swap(p[1], p[2]);
-      triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});
-    }
-  });
-  return triangles;
-}
-
-/// Triangles that follow one another.
+/// Triangles that follow one another, and the box around them.
 struct Box {
   vec3 lo, hi;
   size_t begin, end;
 };
-
-std::vector<Box> boxesOf(const std::vector<Triangle>& triangles, float diameter) {
-  constexpr size_t kTriangles = 32;
-  std::vector<Box> boxes;
-  for (size_t begin = 0; begin < triangles.size(); begin += kTriangles) {
-    const size_t end = std::min(begin + kTriangles, triangles.size());
-    Aabb bounds;
-    for (size_t i = begin; i < end; ++i)
-      for (const vec3& corner : {vec3(0), triangles[i].edge1, triangles[i].edge2}) bounds.add(triangles[i].a + corner);
-    const vec3 more(1e-5f * diameter); // more than what rounds off
-    boxes.push_back({bounds.lo - more, bounds.hi + more, begin, end});
-  }
-  return boxes;
-}
 
 struct Look {
   vec3 origin, direction;
@@ -107,13 +77,40 @@ bool mayMeet(const Look& look, const Box& box) {
   return from <= to;
 }
 
-void meetAll(std::vector<Look>& looks, const std::vector<Triangle>& triangles, const std::vector<Box>& boxes) {
+void meetSome(std::vector<Look>& looks, const std::vector<Triangle>& triangles, const std::vector<Box>& boxes) {
   parallelFor(looks.size(), 4, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (const Box& box : boxes)
         if (mayMeet(looks[i], box))
           for (size_t t = box.begin; t < box.end; ++t) meet(looks[i], triangles[t]);
   });
+}
+
+/// Tries the triangles that may be met, wound so that the cross product of the edges is the front; so many at a time
+/// that memory does not grow with how often a mesh is shown.
+void meetAll(std::vector<Look>& looks, PlacedTriangles& placed, float diameter) {
+  constexpr size_t kAtOnce = 1 << 16;
+  const vec3 more(1e-5f * diameter); // than what rounds off
+  std::vector<Triangle> triangles;
+  std::vector<Box> boxes;
+  const auto mayBeMet = [&](const Aabb& b) {
+    const Box box{b.lo - more, b.hi + more, 0, 0};
+    return std::ranges::any_of(looks, [&](const Look& look) { return mayMeet(look, box); });
+  };
+  placed.forEachBlock(mayBeMet, [&](const TriangleBlock& block) {
+    const size_t begin = triangles.size();
+    const bool mirrored = glm::determinant(mat3(block.worldFromObject)) < 0;
+    for (size_t t = block.begin; t < block.end; ++t) {
+      std::array<vec3, 3> p = block.corners(t);
+      if (mirrored) std::swap(p[1], p[2]);
+      triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});
+    }
+    boxes.push_back({block.box.lo - more, block.box.hi + more, begin, triangles.size()});
+    if (triangles.size() < kAtOnce) return;
+    meetSome(looks, triangles, boxes);
+    triangles.clear(), boxes.clear();
+  });
+  meetSome(looks, triangles, boxes);
 }
 
 /// Towards the faces, edges and corners of a cube, four of them level along the axes first: +X, -X, +Z, -Z.
@@ -134,7 +131,7 @@ struct Place {
   float reach[4] = {}; // level along +X, -X, +Z, -Z
 };
 
-std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb& bounds) {
+std::vector<Place> tryPlaces(PlacedTriangles& placed, const Aabb& bounds) {
   // Down and up from the middle of the height, to find floor and ceiling.
   std::vector<Look> vertical;
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
@@ -143,8 +140,7 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     vertical.push_back({middle, vec3(0, -1, 0)});
     vertical.push_back({middle, vec3(0, 1, 0)});
   }
-  const std::vector<Box> boxes = boxesOf(triangles, bounds.diameter());
-  meetAll(vertical, triangles, boxes);
+  meetAll(vertical, placed, bounds.diameter());
 
   const auto directions = lookDirections();
   std::vector<Place> places;
@@ -159,7 +155,7 @@ std::vector<Place> tryPlaces(const std::vector<Triangle>& triangles, const Aabb&
     places.push_back(place);
     for (const vec3& d : directions) looks.push_back({place.eye, d});
   }
-  meetAll(looks, triangles, boxes);
+  meetAll(looks, placed, bounds.diameter());
   for (size_t i = 0; i < places.size(); ++i) {
     const Look* own = &looks[i * directions.size()];
     size_t fronts = 0;
@@ -235,7 +231,8 @@ CameraView viewFromInside(const std::vector<Place>& places, const Aabb& bounds) 
 CameraView defaultView(const Scene& scene) {
   const Aabb bounds = worldBounds(scene);
   if (bounds.empty()) return lookAt(vec3(0, 0, 2), vec3(0), kFovY);
-  const std::vector<Place> places = tryPlaces(worldTriangles(scene), bounds);
+  PlacedTriangles placed(scene);
+  const std::vector<Place> places = tryPlaces(placed, bounds);
   if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; }))
     return viewFromOutside(bounds);
   if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);

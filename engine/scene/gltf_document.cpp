@@ -264,6 +264,13 @@ void Document::spend(size_t count, size_t each, const std::string& place) const 
                     std::to_string(budget.limit() >> 20) + " MiB in all)");
 }
 
+void Document::show(size_t triangles, const std::string& place) const {
+  budget.shown += triangles;
+  if (budget.shown > budget.shownLimit())
+    fail(place, "brings the triangles that nodes show to " + std::to_string(budget.shown) + ": more than a file of " +
+                    std::to_string(budget.read) + " bytes may ask for (" + std::to_string(budget.shownLimit()) + ")");
+}
+
 void Document::checkIndex(int index, size_t size, const char* what, const std::string& place) const {
   if (index < 0 || size_t(index) >= size)
     fail(place, std::string("refers to ") + what + " " + std::to_string(index) + ", but the file has " +

@@ -16,8 +16,8 @@ namespace lambent::gltf {
 
 /// Memory that reading a file may ask for: a few bytes can name millions of elements or texels, and one buffer can be
 /// read for every primitive. Counted is what is decoded: elements of accessors, triangles, vertices of one's own,
-/// texels, files read again; and for every node its triangles that shine and its weights of targets. The program needs
-/// up to four times as much for a moment.
+/// texels, files read again; what rays and OpenGL keep of triangles; and for every node its triangles that shine, its
+/// weights of targets, and all of its shape where it is posed.
 struct Budget {
   static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
   size_t read = 0;  // bytes of the file and of those that it names, each once
@@ -30,6 +30,12 @@ struct Budget {
     return fits;
   }
   size_t limit() const { return kBase + kPerByte * read; }
+
+  /// Triangles that nodes show, each as often as it is shown: they are drawn one by one, and a first picture of 160
+  /// million takes 33 s of CPU (software Mesa; an 0.8 MB file).
+  static constexpr size_t kShownBase = size_t(64) << 20, kShownPerByte = 8;
+  size_t shown = 0;
+  size_t shownLimit() const { return kShownBase + kShownPerByte * read; }
 };
 
 struct MaterialFactors {
@@ -53,6 +59,8 @@ struct Document {
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
   /// Takes from the budget, or throws InputError.
   void spend(size_t count, size_t each, const std::string& place) const;
+  /// Counts triangles that a node shows, or throws InputError.
+  void show(size_t triangles, const std::string& place) const;
   void warn(std::string text) { warnings.push_back(std::move(text)); }
 
   /// Returns items[index], or throws an InputError that says which index of `what` is out of range at `place`.

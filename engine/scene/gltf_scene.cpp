@@ -2,6 +2,7 @@
 
 #include "engine/scene/crowding.h"
 #include "engine/scene/gltf_import.h"
+#include "engine/scene/see_through.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,6 +149,7 @@ void importNodes(Import& import, const std::string& sceneName) {
     doc.checkIndex(node.mesh, doc.model.meshes.size(), "mesh", place);
     const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0);
     if (mesh == kNone) continue;
+    doc.show(import.scene.assets.meshes[mesh].triangles.size(), place);
     registry.emplace<MeshInstance>(e, mesh);
     const auto [shining, first] = emitting.try_emplace(mesh, 0);
     if (first) shining->second = emittingTriangles(import.scene.assets, mesh);
@@ -193,13 +195,18 @@ void findOrigin(Scene& scene) {
 /// Every ray there would meet them all: a first picture would take minutes.
 void refuseCrowds(const Scene& scene) {
   constexpr int kMost = 192; // see decisions.md; the fullest scene that we know has fewer than 65
-  if (const std::optional<vec3> place = crowdedPlace(scene, kMost)) {
-    const dvec3 at = dvec3(*place) + scene.origin;
+  constexpr float kMostSeenThrough = 64;
+  const auto refuse = [&](const std::string& what, const vec3& place) {
+    const dvec3 at = dvec3(place) + scene.origin;
     std::ostringstream text;
-    text << "has more than " << kMost << " triangles in one place, at " << at.x << ", " << at.y << ", " << at.z
-         << ": every ray there would meet them all (spread them)";
-    throw InputError(scene.file.string(), text.str());
-  }
+    text << what << ", at " << at.x << ", " << at.y << ", " << at.z;
+    throw InputError(scene.file.string(), text.str() + ": every ray there would meet them all (spread them)");
+  };
+  if (const std::optional<vec3> place = crowdedPlace(scene, kMost))
+    refuse("has more than " + std::to_string(kMost) + " triangles in one place", *place);
+  if (const SeeThrough through = seeThrough(scene, kMostSeenThrough); through.layers > kMostSeenThrough)
+    refuse("has more than " + std::to_string(int(kMostSeenThrough)) + " layers one behind the other that are cut out",
+           through.place);
 }
 
 } // namespace

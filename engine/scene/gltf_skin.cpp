@@ -6,6 +6,9 @@ namespace lambent::gltf {
 
 namespace {
 
+/// As measured, hierarchy and copies included: 1050 nodes of 7200 triangles took 4.5 GB.
+constexpr size_t kBytesPerPosedTriangle = 600;
+
 lambent::Skin readSkin(const Import& import, const tinygltf::Skin& in, const std::string& place) {
   const Document& doc = import.doc;
   lambent::Skin skin;
@@ -72,8 +75,11 @@ void addMorphWeights(Import& import, int node, uint32_t slot) {
 void importDeformation(Import& import, int node, uint32_t slot) {
   const tinygltf::Node& in = import.doc.model.nodes[size_t(node)];
   const lambent::Mesh& mesh = import.scene.assets.meshes[slot];
-  if (in.skin >= 0 || !mesh.morphTargets.empty()) // a shape of its own
-    import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3), label("node", size_t(node), in.name));
+  if (in.skin >= 0 || !mesh.morphTargets.empty()) { // a shape of its own, also for rays and OpenGL
+    const std::string place = label("node", size_t(node), in.name);
+    import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3), place);
+    import.doc.spend(mesh.triangles.size(), kBytesPerPosedTriangle, place);
+  }
   if (in.skin >= 0) addSkin(import, node, slot);
   addMorphWeights(import, node, slot);
 }

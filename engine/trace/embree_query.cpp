@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/memory.h"
 #include "engine/trace/surface_hit.h"
+#include "engine/view/surface_point.h"
 
 #if EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -40,9 +41,8 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
     ++alphaTests;
     if (material.alphaMode != AlphaMode::Mask) continue;
     const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
-    if (alphaAt(*data.assets, mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric) <
-        material.alphaCutoff)
-      args->valid[i] = 0;
+    const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
+    if (baseColourAt(*data.assets, mesh, material, place).w < material.alphaCutoff) args->valid[i] = 0;
   }
 }
 

@@ -4,28 +4,6 @@
 
 namespace lambent {
 
-namespace {
-
-/// `mean` (may be null) stands in for the texture.
-vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& c,
-                  const vec4* mean = nullptr) {
-  vec4 colour(material.baseColor, material.alpha);
-  if (mean)
-    colour *= *mean;
-  else if (material.baseColorTexture.image != kNone)
-    colour *= sampleTexture(assets, material.baseColorTexture, uvAt(mesh, c, material.baseColorTexture));
-  if (!mesh.colors.empty()) colour *= c.interpolate(mesh.colors);
-  return colour;
-}
-
-} // namespace
-
-float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
-              const vec2& barycentric) {
-  const TrianglePlace c = trianglePlace(mesh, primitive, triangle, barycentric);
-  return baseColourAt(assets, mesh, assets.materials[primitive.material], c).w;
-}
-
 SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, const TriangleMet& met, const Ray& ray,
                      bool textures, uint64_t& lookups) {
   const Mesh& mesh = instance.mesh;

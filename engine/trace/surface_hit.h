@@ -25,8 +25,4 @@ struct TriangleMet {
 SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, const TriangleMet& met, const Ray& ray,
                      bool textures, uint64_t& lookups);
 
-/// Returns alpha on a primitive's triangle: base colour's × texture's × vertices'.
-float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
-              const vec2& barycentric);
-
 } // namespace lambent

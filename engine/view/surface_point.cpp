@@ -4,6 +4,17 @@
 
 namespace lambent {
 
+vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place,
+                  const vec4* mean) {
+  vec4 colour(material.baseColor, material.alpha);
+  if (mean)
+    colour *= *mean;
+  else if (material.baseColorTexture.image != kNone)
+    colour *= sampleTexture(assets, material.baseColorTexture, uvAt(mesh, place, material.baseColorTexture));
+  if (!mesh.colors.empty()) colour *= place.interpolate(mesh.colors);
+  return colour;
+}
+
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_t primitiveIndex, uint32_t triangle,
                           vec2 barycentric) {
   CHECK_LT(instanceIndex, view.instances.size());

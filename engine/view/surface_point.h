@@ -29,6 +29,11 @@ inline vec2 uvAt(const Mesh& mesh, const TrianglePlace& place, const TextureRef&
   return uv.empty() ? vec2(0) : place.interpolate(uv);
 }
 
+/// Base colour, linear, and alpha: the material's × the texture's × the vertices'. `mean` (may be null) stands in for
+/// the texture.
+vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place,
+                  const vec4* mean = nullptr);
+
 /// World space. Both normals are unit and on the front side as glTF defines it (counter-clockwise, turned with a
 /// mirrored instance), unlike a hit's, which face the ray. Zero where the triangle has no area and so no side.
 struct SurfacePoint {

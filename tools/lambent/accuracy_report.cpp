@@ -338,13 +338,12 @@ std::string knobSection(const Report& r, const Value& verdicts) {
 } // namespace
 
 void accuracyReport(const AccuracyOptions& options) {
+  refuseNamesakes(options.scenes);
   const fs::path folder = reportFolder(options.output.out, "out/accuracy");
   const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};
   Report r;
   for (const std::string& file : options.scenes) {
     r.scenes.push_back(sweepScene(options, file, folder, frames));
-    if (std::ranges::count(r.names, r.scenes.back().name))
-      throw InputError(file, "another scene has this name (rename one: files are named by them)");
     r.names.push_back(r.scenes.back().name);
     r.figures.push_back(figuresOf(r.scenes.back()));
   }

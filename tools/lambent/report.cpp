@@ -1,6 +1,7 @@
 #include "tools/lambent/report.h"
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/platform/gl_context.h"
 #include "tools/lambent/command_line.h"
 #include "tools/lambent/picture.h"
@@ -146,7 +147,9 @@ std::string machineText(const GlContext& context) {
 }
 
 void writeJson(const std::string& file, const Value& figures) {
-  if (!file.empty()) writeText(file, figures.json(2) + "\n");
+  if (file.empty()) return;
+  writeText(file, figures.json(2) + "\n");
+  keepFromReplacing(file);
 }
 
 void writeReport(const OutputOptions& output, const fs::path& folder, const std::string& name,
@@ -157,6 +160,13 @@ void writeReport(const OutputOptions& output, const fs::path& folder, const std:
   writeText(page, escaped("# " + heading + "\n\n" + text));    // names of files may look like HTML
   const std::string printed = text.substr(0, text.find("![")); // pictures stand at the end, and are for the page
   if (!output.quiet) std::printf("%s\nreport: %s\n", printed.c_str(), page.c_str());
+}
+
+void refuseNamesakes(const std::vector<std::string>& files) {
+  for (size_t i = 0; i < files.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if (nameOf(files[i]) == nameOf(files[k]))
+        throw InputError(files[i], "is called as " + files[k] + " is (rename one: what is written is named by them)");
 }
 
 fs::path reportFolder(const std::string& out, const std::string& unnamed) {

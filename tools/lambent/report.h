@@ -44,13 +44,16 @@ std::string htmlPicture(const std::filesystem::path& folder, const std::string& 
 /// Processor, OpenGL renderer, day.
 std::string machineText(const GlContext& context);
 
-/// Writes figures for programs; nothing when `file` is empty.
+/// Writes figures for programs, and keeps the report's other files from replacing them; nothing when `file` is empty.
 void writeJson(const std::string& file, const Value& figures);
 
 /// NAME.md with the heading and the text, NAME.csv, and the figures for programs, all in the folder; the text is
 /// printed too, unless quiet.
 void writeReport(const OutputOptions& output, const std::filesystem::path& folder, const std::string& name,
                  const std::string& heading, const std::string& text, const std::string& csv, const Value& figures);
+
+/// Throws InputError where two files are called the same, wherever they lie: results are named by them.
+void refuseNamesakes(const std::vector<std::string>& files);
 
 /// The folder that a report goes to: `out`, or `unnamed` where that is empty; made where it lacks. Throws RunError.
 std::filesystem::path reportFolder(const std::string& out, const std::string& unnamed);

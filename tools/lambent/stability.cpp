@@ -220,6 +220,7 @@ void measureStill(const StabilityOptions& options, const std::string& file, std:
 
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) techniqueByName(name); // or a guess at what was meant
+  refuseNamesakes(options.shots);
   const fs::path folder = reportFolder(options.output.out, "out/stability");
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;

@@ -94,6 +94,7 @@ class SceneSweep {
       const std::string name = indirect ? "indirect" : "direct",
                         file = "truth-" + name_ + "-" + name + "-" + conditions_;
       const fs::path pace = folder_ / (file + ".ms");
+      requireFileOrNothing(pace);
       const TracedImage traced = trace(viewAt(frames_.moving - 1), opened_.settings,
                                        {.buffer = indirect ? ReferenceBuffer::Irradiance : ReferenceBuffer::Direct,
                                         .samples = uint32_t(indirect ? samples_ : std::max(samples_ / 8, 2)),

@@ -370,6 +370,8 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     for (const std::string& written : options.written)
       if (sameFile(read, written))
         throw InputError(written, "the scene is read from this file (name another for the result)");
+  for (const fs::path& read : stage->scene.files) keepFromReplacing(read);
+  if (stage->shot) keepFromReplacing(options.scene);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (!options.sky.empty())

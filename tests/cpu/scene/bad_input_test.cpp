@@ -355,6 +355,45 @@ TEST_F(BadInput, ZeroElementsWithoutDataAreBounded) {
   expectError(b, "more than this program reads");
 }
 
+/// 200 triangles of 1 mm in a row, shown by so many nodes.
+GltfBuilder shownRow(int nodes) {
+  GltfBuilder b;
+  std::vector<vec3> corners;
+  for (int i = 0; i < 200; ++i)
+    for (const vec3 corner : {vec3(0), vec3(1e-3f, 0, 0), vec3(0, 1e-3f, 0)}) corners.push_back(corner + vec3(i, 0, 0));
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions(corners)}}}});
+  for (int i = 1; i < nodes; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, i, 0}}});
+  return b;
+}
+
+/// They are drawn one by one: a file of 0.8 MB had shown 160 million.
+TEST_F(BadInput, AFewBytesCannotShowMillionsOfTriangles) {
+  if (kSanitized) GTEST_SKIP() << "reads 30 MB of JSON";
+  GltfBuilder b = shownRow(2);
+  std::vector<uint32_t> corners;
+  for (uint32_t i = 0; i < 600; ++i) corners.push_back(i);
+  nlohmann::json& primitive = b.json["meshes"][0]["primitives"][0];
+  primitive["indices"] = b.accessor(b.view(corners), 5125, "SCALAR", corners.size());
+  b.load(folder);
+  // 100 primitives of these 200 triangles: 20 000 a node, 3800 nodes.
+  b.json["meshes"][0]["primitives"] = nlohmann::json(size_t(100), primitive);
+  for (int i = 2; i < 3800; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, i, 0}}});
+  expectError(b, "brings the triangles that nodes show to");
+}
+
+/// A shape of its own for rays and OpenGL takes 600 bytes for each triangle, however few vertices it has.
+TEST_F(BadInput, PosedTrianglesCountForEachNode) {
+  GltfBuilder b = shownRow(1);
+  nlohmann::json& primitive = b.json["meshes"][0]["primitives"][0];
+  std::vector<uint32_t> corners;
+  for (uint32_t i = 0; i < 12000; ++i) corners.push_back(i % 600); // 4000 triangles
+  primitive["indices"] = b.accessor(b.view(corners), 5125, "SCALAR", corners.size());
+  for (int i = 1; i < 300; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, i, 0}}});
+  b.load(folder);
+  primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
+  expectError(b, "needs more memory than a file of");
+}
+
 /// One budget for the whole file, whatever asks for memory.
 TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
   if (kSanitized) GTEST_SKIP() << "fills a gigabyte, which takes sanitizers half a minute";

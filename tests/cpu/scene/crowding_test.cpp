@@ -1,6 +1,9 @@
-// Triangles in one place cost every ray: found, and refused where they are too many.
+// Triangles in one place, or cut-out ones behind one another, cost every ray: found, and refused where they are too
+// many.
 #include "engine/scene/crowding.h"
+#include "engine/scene/see_through.h"
 
+#include "engine/core/rng.h"
 #include "tests/cpu/scene/support.h"
 
 namespace lambent::test::crowding_test {
@@ -68,6 +71,55 @@ TEST(Crowding, InstancesOfACrowdCountEachAndTooManyAreRefused) {
   b.addRoot({{"mesh", 0}});
   const std::string said = inputErrorOf([&] { b.load(TemporaryFolder()); });
   EXPECT_NE(said.find("more than 192 triangles in one place, at "), std::string::npos) << said;
+}
+
+/// Needles from end to end of the scene have all places in their boxes. The check takes as long as they are many.
+TEST(Crowding, NeedlesThroughEverythingAreNone) {
+  GltfBuilder b;
+  std::vector<vec3> corners;
+  Rng random(3, Stream::Crowding, 0);
+  const auto next = [&] { return 10.0f * vec3(random.next(), random.next(), random.next()); };
+  for (int i = 0; i < 20000; ++i) {
+    const vec3 from = next(), to = next();
+    corners.insert(corners.end(), {from, to, to + vec3(0.01f, 0, 0.01f)});
+  }
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions(corners)}}}});
+  EXPECT_FALSE(isCrowded(b, 192));
+  EXPECT_TRUE(isCrowded(b, 2));
+}
+
+/// Squares of 1 m so many times, 3 cm apart; masked, with this alpha under a cutoff of a half.
+GltfBuilder layers(int count, float alpha) {
+  GltfBuilder b;
+  b.push("materials", {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}});
+  const std::vector<vec3> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions(corners)}}}, {"material", 0}});
+  for (int i = 1; i < count; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, 0, 0.03f * float(i)}}});
+  return b;
+}
+
+TEST(SeeThrough, CountsLayersThatAreCutOut) {
+  EXPECT_EQ(seeThrough(Scene{}, 1).layers, 0);
+  EXPECT_EQ(seeThrough(oneTriangle().load(TemporaryFolder()), 1000).layers, 0);
+  EXPECT_EQ(seeThrough(layers(50, 0.1f).load(TemporaryFolder()), 1000).layers, 50);
+  EXPECT_EQ(seeThrough(layers(50, 0.9f).load(TemporaryFolder()), 1000).layers, 0);
+}
+
+/// What stands in front of them hides those behind, as it does from rays.
+TEST(SeeThrough, EndsWhereItIsNotCutOut) {
+  GltfBuilder b = layers(50, 0.1f);
+  b.push("materials", {{"alphaMode", "MASK"}});
+  nlohmann::json whole = b.json["meshes"][0];
+  whole["primitives"][0]["material"] = 1;
+  b.push("meshes", whole);
+  for (int i = 0; i < 50; ++i) b.addRoot({{"mesh", 1}, {"translation", {0, 0, 0.03f * float(i) + 0.01f}}});
+  EXPECT_LT(seeThrough(b.load(TemporaryFolder()), 1000).layers, 2);
+}
+
+TEST(SeeThrough, TooManyAreRefused) {
+  layers(60, 0.1f).load(TemporaryFolder());
+  const std::string said = inputErrorOf([&] { layers(70, 0.1f).load(TemporaryFolder()); });
+  EXPECT_NE(said.find("more than 64 layers one behind the other that are cut out, at "), std::string::npos) << said;
 }
 
 } // namespace lambent::test::crowding_test

@@ -137,6 +137,17 @@ TEST(WriteAtomically, AFullDiskIsSaidAndKeepsTheOldFile) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full")) << "a file was put in the place of the device";
 }
 
+TEST(WriteAtomically, ReplacesNothingThatIsKept) {
+  TemporaryFolder folder;
+  writeBytes(folder / "texture.png", "old");
+  std::filesystem::create_symlink("texture.png", folder / "link.png");
+  keepFromReplacing(folder / "link.png");
+  for (const auto& file : {folder / "texture.png", folder / "link.png", folder / "." / "texture.png"})
+    EXPECT_THROW(writePng(file, Image8{1, 1, {1, 2, 3}}), RunError) << file;
+  EXPECT_EQ(readBytes(folder / "texture.png"), "old");
+  writePng(folder / "other.png", Image8{1, 1, {1, 2, 3}});
+}
+
 TEST(WriteAtomically, ALinkStaysOne) {
   TemporaryFolder folder;
   writeBytes(folder / "target.png", "old");
@@ -152,7 +163,9 @@ TEST(WriteAtomically, ALinkStaysOne) {
   EXPECT_EQ(readBytes(folder / "there/new.png").substr(1, 3), "PNG");
   fs::create_symlink("b.png", folder / "a.png");
   fs::create_symlink("a.png", folder / "b.png");
-  for (const auto& write : {std::function<void()>([&] { writePng(folder / "a.png", Image8{1, 1, {1, 2, 3}}); }),
+  for (const auto& write : {std::function<void()>([&] {
+                              writePng(folder / "a.png", Image8{1, 1, {1, 2, 3}});
+                            }),
                             std::function<void()>([&] { checkWritable(folder / "a.png"); }),
                             std::function<void()>([&] { checkWritable(folder / std::string(256, 'n')); })})
     EXPECT_NE(messageOf<RunError>(write).find("cannot be written: its"), std::string::npos);
