@@ -72,6 +72,7 @@ bool abandoned(const fs::path& temporary) {
   close(file);
   return free;
 }
+
 /// See keepFromReplacing.
 class KeptFiles {
  public:
@@ -94,6 +95,7 @@ class KeptFiles {
     std::error_code none;
     return fs::weakly_canonical(fs::absolute(file), none);
   }
+
   std::mutex mutex_;
   std::set<fs::path> kept_;
 };
