@@ -2,6 +2,9 @@
 
 #include "tests/cpu/scene/support.h"
 
+#include <algorithm>
+#include <random>
+
 namespace lambent::test::camera_test {
 
 CameraView tiltedCamera() {
@@ -135,29 +138,30 @@ TEST(DefaultView, RoomsAreSeenFromInsideAtEyeHeightAlongTheLongerAxis) {
   expectNear(-vec3(view.worldFromView[2]), {1, 0, 0});
 }
 
-/// Two shells about the same middle, one around the other, of many small triangles.
-GltfBuilder shells(bool outerFirst) {
+/// Two shells about the same middle, one around the other, of many small triangles. `mixed`: in no order.
+GltfBuilder shells(bool outerFirst, int cells = 8, bool mixed = false) {
   GltfBuilder b;
   std::vector<vec3> corners;
-  std::vector<uint16_t> indices;
-  constexpr int kCells = 8;
+  std::vector<uvec3> triangles;
   for (const bool outer : {outerFirst, !outerFirst})
     for (int side = 0; side < 6; ++side)
-      for (int i = 0; i < kCells * kCells; ++i) {
+      for (int i = 0; i < cells * cells; ++i) {
         const auto corner = [&](int u, int v) {
           vec3 p(0);
           p[side / 2] = side % 2 ? 1 : -1;
-          p[(side / 2 + 1) % 3] = 2 * float(i % kCells + u) / kCells - 1;
-          p[(side / 2 + 2) % 3] = 2 * float(i / kCells + v) / kCells - 1;
+          p[(side / 2 + 1) % 3] = 2 * float(i % cells + u) / float(cells) - 1;
+          p[(side / 2 + 2) % 3] = 2 * float(i / cells + v) / float(cells) - 1;
           return p * vec3(5, 2, 3) * (outer ? 1.25f : 1.0f);
         };
-        const auto first = uint16_t(corners.size());
+        const auto first = uint32_t(corners.size());
         for (const vec3& p : {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}) corners.push_back(p);
-        const std::vector<int> inwards = side % 2 ? std::vector{0, 2, 1, 0, 3, 2} : std::vector{0, 1, 2, 0, 2, 3};
-        for (const int k : inwards) indices.push_back(uint16_t(first + k));
+        for (const uvec3& t : {uvec3(0, 1, 2), uvec3(0, 2, 3)})
+          triangles.push_back(first + (side % 2 ? uvec3(t.x, t.z, t.y) : t));
       }
+  if (mixed) std::ranges::shuffle(triangles, std::minstd_rand(1));
   const int positions = b.positions(corners);
-  b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", b.indices(indices)}});
+  const int indices = b.accessor(b.view(triangles), 5125, "SCALAR", 3 * triangles.size());
+  b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
   return b;
 }
 
@@ -167,6 +171,13 @@ TEST(DefaultView, MeetsWhatIsNearestWhereverItStandsInTheFile) {
   EXPECT_EQ(near.worldFromView, far.worldFromView);
   EXPECT_LT(std::abs(near.position().x), 5) << "inside the inner one";
   EXPECT_GT(std::abs(near.position().x), 3);
+}
+
+/// Triangles in no order have boxes that every look may meet: more than are kept at once.
+TEST(DefaultView, IsTheSameWhereAllMayBeMet) {
+  TemporaryFolder folder;
+  const CameraView mixed = defaultView(shells(true, 60, true).load(folder));
+  EXPECT_EQ(mixed.worldFromView, defaultView(shells(true, 60).load(folder)).worldFromView);
 }
 
 TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {

@@ -73,6 +73,15 @@ TEST(Crowding, InstancesOfACrowdCountEachAndTooManyAreRefused) {
   EXPECT_NE(said.find("more than 192 triangles in one place, at "), std::string::npos) << said;
 }
 
+/// Large slanted sheets, one above the other: each holds the others' places in its box, and within its edges seen from
+/// above.
+TEST(Crowding, SheetsApartAreNone) {
+  GltfBuilder b;
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions({{0, 0, 0}, {0, 0, 5}, {5, 5, 0}})}}}});
+  for (int i = 1; i < 40; ++i) b.addRoot({{"mesh", 0}, {"translation", {-0.1f * float(i), 0.1f * float(i), 0}}});
+  EXPECT_FALSE(isCrowded(b, 2));
+}
+
 /// Needles from end to end of the scene have all places in their boxes. The check takes as long as they are many.
 TEST(Crowding, NeedlesThroughEverythingAreNone) {
   GltfBuilder b;
