@@ -125,7 +125,7 @@ bool sameFile(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
   const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(followed(file)), none); };
-  return !a.empty() && !b.empty() && there(a) == there(b);
+  return !a.empty() && !b.empty() && !there(a).empty() && there(a) == there(b);
 }
 
 void keepFromReplacing(const fs::path& file) { KeptFiles::all().keep(file); }

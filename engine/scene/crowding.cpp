@@ -1,6 +1,5 @@
 #include "engine/scene/crowding.h"
 
-#include "engine/core/rng.h"
 #include "engine/scene/placed_triangles.h"
 
 #include <algorithm>
@@ -13,7 +12,7 @@ namespace {
 
 constexpr uint64_t kMostPlaces = 1024;
 constexpr int kCrowded = 2;    // of these: fewer are a spot that few rays meet
-constexpr float kNear = 0.01f; // of a triangle's size: layers a hair apart are in one place
+constexpr float kNear = 0.01f; // of a triangle's height: layers a hair apart are in one place
 
 using Corners = std::array<vec3, 3>;
 
@@ -24,9 +23,9 @@ std::vector<vec3> somePlaces(const Scene& scene) {
   if (all == 0) return {};
   std::vector<uint64_t> drawn(size_t(std::min(all, kMostPlaces)));
   Rng random(1, Stream::Crowding, 0);
-  for (size_t i = 0; i < drawn.size(); ++i)
-    drawn[i] = all <= kMostPlaces ? i : (uint64_t(random.nextUint()) << 32 | random.nextUint()) % all;
+  for (size_t i = 0; i < drawn.size(); ++i) drawn[i] = all <= kMostPlaces ? i : drawnBelow(all, random);
   std::ranges::sort(drawn);
+  drawn.erase(std::ranges::unique(drawn).begin(), drawn.end());
   std::vector<vec3> places;
   uint64_t first = 0; // of the instance
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
@@ -71,7 +70,9 @@ std::optional<Prism> prismAround(const Corners& t) {
   if (!(doubleArea > 0)) return {};
   Prism prism;
   for (const vec3& c : t) prism.box.add(c);
-  prism.near = kNear * maxComponent(prism.box.size());
+  float longest = 0;
+  for (size_t c = 0; c < 3; ++c) longest = std::max(longest, glm::distance(t[c], t[(c + 1) % 3]));
+  prism.near = kNear * doubleArea / longest + 1e-6f * longest; // the rest: what rounds off
   prism.box = grown(prism.box, prism.near);
   prism.corner = t[0];
   prism.normal = across / doubleArea;

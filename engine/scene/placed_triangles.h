@@ -1,6 +1,7 @@
 // Triangles as they stand in the world, for questions that are asked of a scene once, when it is loaded.
 #pragma once
 
+#include "engine/core/rng.h"
 #include "engine/scene/scene.h"
 
 #include <array>
@@ -41,5 +42,11 @@ class PlacedTriangles {
   const Scene& scene_;
   std::unordered_map<const Mesh*, std::vector<Aabb>> boxesOfRigid_; // object space
 };
+
+/// Uniform integer in [0, n), n > 0.
+inline uint64_t drawnBelow(uint64_t n, Rng& random) {
+  const uint64_t high = random.nextUint();
+  return (high << 32 | random.nextUint()) % n;
+}
 
 } // namespace lambent

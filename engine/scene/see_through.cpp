@@ -1,6 +1,5 @@
 #include "engine/scene/see_through.h"
 
-#include "engine/core/rng.h"
 #include "engine/scene/placed_triangles.h"
 #include "engine/view/surface_point.h"
 
@@ -78,7 +77,7 @@ std::vector<LineAcross> drawnLines(const Scene& scene) {
   if (masked == 0) return {};
   std::vector<uint64_t> drawn(size_t(std::clamp<uint64_t>((uint64_t(1) << 24) / masked, 4, 64)));
   Rng random(1, Stream::Crowding, 1);
-  for (uint64_t& number : drawn) number = (uint64_t(random.nextUint()) << 32 | random.nextUint()) % masked;
+  for (uint64_t& number : drawn) number = drawnBelow(masked, random);
   std::ranges::sort(drawn);
   std::vector<LineAcross> lines;
   forEachMasked(scene, drawn, [&](const std::array<vec3, 3>& t) {

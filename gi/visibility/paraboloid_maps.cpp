@@ -140,9 +140,10 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   const size_t needed = (in.poses.size() + kLayersPerArray - 1) / kLayersPerArray;
   const int lastLayers = needed == 0 ? 0 : int(in.poses.size() - (needed - 1) * kLayersPerArray);
   arrays_.clear();
+  slots_ = 0, resolution_ = 0; // where they cannot be had, whoever goes on with less has them made
   // Each array alone may fit: together they are filled frame by frame, when it is too late to refuse.
   const double bytes = 2.0 * double(in.poses.size()) * in.resolution * in.resolution;
-  if (gl::drawnByCpu() && bytes > double(freeMemory()))
+  if (context_.drawnByCpu && bytes > double(freeMemory()))
     throw RunError("graphics memory: shadow maps of " + std::to_string(in.poses.size()) + " lights need " +
                    moreThanIsLeft(bytes, "fewer lights or texels"));
   for (size_t i = 0; i < needed; ++i)

@@ -76,6 +76,22 @@ TEST_F(MapsTest, MapsHoldTheDistanceToTheRoom) {
   }
 }
 
+/// Settings that were refused are taken back, and then the maps are those of before.
+TEST_F(MapsTest, GoesOnAfterMapsThatFitNoMemory) {
+  passes.drawnByCpu = true;
+  ParaboloidMapPass pass(passes, StageId::VplMaps);
+  const ParaboloidMapInputs in = inputs();
+  pass.run(in);
+  const std::vector<float> before = pass.readLayer(0);
+  const std::vector<MapPose> many(size_t(1) << 20, poses[0]);
+  ParaboloidMapInputs large = in;
+  large.poses = many;
+  large.resolution = 4096; // 32 TiB together; an array of them could be had
+  EXPECT_THROW(pass.run(large), RunError);
+  EXPECT_EQ(pass.run(in).arrays.size(), 1u);
+  EXPECT_EQ(pass.readLayer(0), before);
+}
+
 TEST_F(MapsTest, AutoMeasuresBothMakersOnce) {
   poses.resize(20, poses[0]);
   const ParaboloidMapInputs in = inputs();

@@ -1,6 +1,7 @@
 // lambent accuracy SCENE... --report: what accuracy costs in time. Measures the sweeps of gi/measure/runs/sweeps.h in
 // each scene (sweep.cpp), and writes one page with everything in it (index.html), and points.csv.
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/plot.h"
 #include "tools/lambent/sweep.h"
@@ -340,6 +341,8 @@ std::string knobSection(const Report& r, const Value& verdicts) {
 void accuracyReport(const AccuracyOptions& options) {
   refuseNamesakes(options.scenes);
   const fs::path folder = reportFolder(options.output.out, "out/accuracy");
+  const FolderLock alone(folder);
+  if (!alone.held()) throw RunError(folder.string() + ": another program measures here (--out names another folder)");
   const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};
   Report r;
   for (const std::string& file : options.scenes) {

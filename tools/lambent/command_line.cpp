@@ -115,7 +115,10 @@ void Command::launch(LaunchOptions& options) {
 
 void Command::output(OutputOptions& options, const std::string& outHelp, const std::string& standard) {
   options.out = standard;
-  if (!outHelp.empty()) writes("--out", options.out, outHelp);
+  if (!outHelp.empty()) {
+    writes("--out", options.out, outHelp);
+    to_->get_option("--out")->transform([standard](const std::string& out) { return out.empty() ? standard : out; });
+  }
   writes("--json", options.json, "write the figures to this file, for programs");
   to_->get_option("--json")->check([](const std::string& file) { // before the work
     checkWritable(file);

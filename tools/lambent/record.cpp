@@ -205,10 +205,13 @@ void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::pa
   std::vector<fs::path> others = scene.files;
   for (const std::string& named : {options.launch.scene, options.launch.cube, options.output.json})
     if (!named.empty()) others.emplace_back(named);
+  std::vector<fs::path> own = {"recording.json", "frames.csv"};
+  if (!options.beside.empty()) own.emplace_back("frames-" + options.beside + ".csv");
+  if (options.video) own.emplace_back("video.mp4");
+  if (options.sheet > 0) own.emplace_back("contact-sheet.png");
   const auto isOwn = [&](const fs::path& name) {
-    const fs::path log = "frames-" + options.beside + ".csv";
-    return name == "recording.json" || name == "frames.csv" || name == log || name == "video.mp4" ||
-           name == "contact-sheet.png" || RecordingFolder::isNamedAsPicture(name);
+    return std::ranges::count(own, name) > 0 ||
+           (name.extension() == "." + options.format && RecordingFolder::isNamedAsPicture(name));
   };
   const auto refuse = [&](const fs::path& file) {
     throw InputError(file.string(), "the recording writes this file itself (--out names another folder)");
@@ -216,10 +219,14 @@ void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::pa
   std::error_code none;
   for (const fs::path& other : others)
     if (isOwn(other.filename()) && fs::equivalent(fs::absolute(other).parent_path(), folder, none)) refuse(other);
+  for (const fs::path& other : others)
+    for (const fs::path& name : own)
+      if (sameFile(folder / name, other)) refuse(other); // by a link of its own to what is not there yet
   for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
     std::error_code gone;
     if (!isOwn(at->path().filename())) continue;
     if (fs::is_fifo(at->status(gone))) throw InputError(at->path().string(), "is a pipe (remove it)"); // waits for ever
+    if (!at->is_symlink(gone)) continue;
     for (const fs::path& other : others)
       if (sameFile(at->path(), other)) refuse(other);
   }

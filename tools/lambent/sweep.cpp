@@ -38,9 +38,6 @@ class SceneSweep {
   }
 
   SweptScene run() {
-    const FolderLock alone(folder_);
-    if (!alone.held())
-      throw RunError(folder_.string() + ": another program measures here (--out names another folder)");
     traceTruths();
     RunLog log(folder_ / ("runs-" + name_ + ".jsonl"), conditions_);
     std::vector<SweepPoint> points;
