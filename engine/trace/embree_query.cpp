@@ -378,8 +378,9 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
     alignas(64) std::array<int, 16> valid;
     const size_t count = std::min<size_t>(16, rays.size() - first);
     for (size_t j = 0; j < 16; ++j) {
-      const Ray ray = rays[first + std::min(j, count - 1)];
-      valid[j] = j < count && traceable(ray) ? -1 : 0;
+      const bool traced = j < count && traceable(rays[first + j]);
+      const Ray ray = traced ? rays[first + j] : Ray{}; // Embree looks at masked lanes too (AVX2, assertions on)
+      valid[j] = traced ? -1 : 0;
       packet.ray.org_x[j] = ray.origin.x;
       packet.ray.org_y[j] = ray.origin.y;
       packet.ray.org_z[j] = ray.origin.z;
