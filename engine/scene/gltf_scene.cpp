@@ -194,8 +194,8 @@ void findOrigin(Scene& scene) {
 
 /// Every ray there would meet them all: a first picture would take minutes.
 void refuseCrowds(const Scene& scene) {
-  constexpr int kMost = 192; // see decisions.md; the fullest scene that we know has fewer than 65
-  constexpr float kMostSeenThrough = 64;
+  constexpr int kMost = 192;              // see decisions.md; the fullest scene that we know has fewer than 65
+  constexpr float kMostSeenThrough = 256; // smoke of 150 cards is honest
   const auto refuse = [&](const std::string& what, const vec3& place) {
     const dvec3 at = dvec3(place) + scene.origin;
     std::ostringstream text;

@@ -155,9 +155,9 @@ TEST(SeeThrough, EndsWhereItIsNotCutOut) {
 }
 
 TEST(SeeThrough, TooManyAreRefused) {
-  layers(60, 0.1f).load(TemporaryFolder());
-  const std::string said = inputErrorOf([&] { layers(70, 0.1f).load(TemporaryFolder()); });
-  EXPECT_NE(said.find("more than 64 layers one behind the other that are cut out, at "), std::string::npos) << said;
+  layers(250, 0.1f).load(TemporaryFolder());
+  const std::string said = inputErrorOf([&] { layers(270, 0.1f).load(TemporaryFolder()); });
+  EXPECT_NE(said.find("more than 256 layers one behind the other that are cut out, at "), std::string::npos) << said;
 }
 
 } // namespace lambent::test::crowding_test
