@@ -65,16 +65,7 @@ void meet(Look& look, const Triangle& t) {
 
 /// Whether it may meet something in there that is nearer than what it met.
 bool mayMeet(const Look& look, const Box& box) {
-  float from = 0, to = look.distance;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float o = look.origin[axis], d = look.direction[axis];
-    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return false;
-    if (d == 0) continue;
-    const float a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
-    from = std::max(from, std::min(a, b));
-    to = std::min(to, std::max(a, b));
-  }
-  return from <= to;
+  return crosses({box.lo, box.hi}, look.origin, look.direction, 0, look.distance);
 }
 
 void meetSome(std::vector<Look>& looks, const std::vector<Triangle>& triangles, const std::vector<Box>& boxes) {

@@ -17,6 +17,18 @@ std::vector<Aabb> boxesOf(const Mesh& mesh, const std::vector<vec3>& positions) 
 
 } // namespace
 
+bool crosses(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float o = origin[axis], d = direction[axis];
+    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return false;
+    if (d == 0) continue;
+    const float a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  return from <= to;
+}
+
 void PlacedTriangles::forEachBlock(const std::function<bool(const Aabb&)>& wanted,
                                    const std::function<void(const TriangleBlock&)>& visit) {
   forEachPosed(scene_, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {

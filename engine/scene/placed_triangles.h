@@ -43,6 +43,9 @@ class PlacedTriangles {
   std::unordered_map<const Mesh*, std::vector<Aabb>> boxesOfRigid_; // object space
 };
 
+/// Whether a line is in a box between `from` and `to`, in units of its direction.
+bool crosses(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to);
+
 /// Uniform integer in [0, n), n > 0.
 inline uint64_t drawnBelow(uint64_t n, Rng& random) {
   const uint64_t high = random.nextUint();

@@ -17,19 +17,6 @@ struct LineAcross {
   uint64_t layers = 0;
 };
 
-bool mayMeetLine(const Aabb& box, const LineAcross& line) {
-  float from = -kInfinity, to = kInfinity;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float o = line.middle[axis], d = line.direction[axis];
-    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return false;
-    if (d == 0) continue;
-    const float a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
-    from = std::max(from, std::min(a, b));
-    to = std::min(to, std::max(a, b));
-  }
-  return from <= to;
-}
-
 /// Where a line meets a triangle, and the weights of its second and third corner.
 struct Crossing {
   float t;
@@ -92,7 +79,9 @@ template <class F>
 void forEachCrossing(PlacedTriangles& placed, const Scene& scene, std::vector<LineAcross>& lines, F&& f) {
   bool more = true;
   const auto wanted = [&](const Aabb& box) {
-    return more && std::ranges::any_of(lines, [&](const LineAcross& line) { return mayMeetLine(box, line); });
+    return more && std::ranges::any_of(lines, [&](const LineAcross& line) {
+             return crosses(box, line.middle, line.direction, -kInfinity, kInfinity);
+           });
   };
   placed.forEachBlock(wanted, [&](const TriangleBlock& block) {
     const std::vector<Primitive>& all = block.mesh.primitives; // in the order of their triangles

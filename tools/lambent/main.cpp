@@ -7,9 +7,9 @@ int main(int argc, char** argv) {
   prepareStreams();
   endOnRequest();
   const int status = runCommand(argc, argv, "lambent " LAMBENT_VERSION,
-                                {declareDoctor, declareInspect, declareRender, declareRecord, declareAccuracy,
-                                 declareReference, declareCompare, declareStability, declareBench, declareSoak,
-                                 declareContent, declareSettings, declareTechniques});
+                                  {declareDoctor, declareInspect, declareRender, declareRecord, declareAccuracy,
+                                   declareReference, declareCompare, declareStability, declareBench, declareSoak,
+                                   declareContent, declareSettings, declareTechniques});
   endedInOrder();
   return finishStreams(status);
 }
