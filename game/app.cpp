@@ -139,7 +139,7 @@ void App::open(const std::string& file, bool given) {
   given_ = given;
   LaunchOptions launch = options_.launch;
   launch.scene = file;
-  launch.outside = launch.outside && given; // the command line trusts its own
+  if (!given) launch.trust = {}; // the command line trusts its own
   gap_ = {};
   loading_ = std::make_unique<Loading>(launch);
 }

@@ -29,6 +29,8 @@ typedef uint32_t lambent_entity; /* of a world; a number that ended is not given
 LAMBENT_API lambent_status lambent_world_load(const char* file, const char* scene, lambent_world** world);
 /* Not 0: files loaded from now on, by any thread, may name others anywhere. For files that you trust. */
 LAMBENT_API void lambent_world_allow_outside(int allow);
+/* Not 0: they may ask for more memory and time than their size explains. For files that you trust. */
+LAMBENT_API void lambent_world_allow_large(int allow);
 /* What it told stays in its scenes. NULL does nothing. */
 LAMBENT_API void lambent_world_destroy(lambent_world* world);
 /* What the last failed call said; as lambent_message(). */

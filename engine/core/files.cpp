@@ -73,20 +73,16 @@ bool abandoned(const fs::path& temporary) {
   return free;
 }
 
-/// See keepFromReplacing.
-class KeptFiles {
+/// Places of files or folders, for all of the program.
+class Places {
  public:
-  static KeptFiles& all() {
-    static KeptFiles files;
-    return files;
-  }
-  void keep(const fs::path& file) {
+  void add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    kept_.insert(placeOf(file));
+    places_.insert(placeOf(file));
   }
-  bool holds(const fs::path& file) {
+  bool hold(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    return !kept_.empty() && kept_.contains(placeOf(file));
+    return !places_.empty() && places_.contains(placeOf(file));
   }
 
  private:
@@ -97,8 +93,33 @@ class KeptFiles {
   }
 
   std::mutex mutex_;
-  std::set<fs::path> kept_;
+  std::set<fs::path> places_;
 };
+
+/// See keepFromReplacing.
+Places& keptFiles() {
+  static Places files;
+  return files;
+}
+
+/// See refuseLinksIn.
+Places& foldersWithoutLinks() {
+  static Places folders;
+  return folders;
+}
+
+fs::path folderOf(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
+
+/// Opens a pipe for as long as the program runs, so that who opens it next need not wait. Waits for a reader for a
+/// second; throws RunError where there is none by then.
+void holdPipe(const fs::path& file) {
+  for (int tries = 0; tries < 50; ++tries) {
+    if (open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC) >= 0) return;
+    if (errno != ENXIO) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  throw RunError(file.string() + ": cannot be written: nobody reads this pipe (start its reader before)");
+}
 
 } // namespace
 
@@ -110,13 +131,18 @@ void makeFolder(const fs::path& folder) {
 
 void checkWritable(const fs::path& named) {
   std::error_code none;
+  if (fs::is_symlink(named, none) && foldersWithoutLinks().hold(folderOf(named)))
+    throw RunError(named.string() + ": is not written: it is a link (remove it, or name another folder)");
   const fs::path file = followed(named);
-  const fs::path folder = file.parent_path().empty() ? "." : file.parent_path();
+  const fs::path folder = folderOf(file);
   const auto refuse = [&](const std::string& why) { throw RunError(named.string() + ": cannot be written: " + why); };
   if (file.filename().string().size() > NAME_MAX)
     refuse("its name is longer than " + std::to_string(NAME_MAX) + " bytes");
   if (!fs::is_directory(folder, none)) refuse("there is no folder " + folder.string());
   if (fs::is_directory(file, none)) refuse("it is a folder");
+  if (keptFiles().hold(file))
+    throw RunError(named.string() + ": is not replaced: it is read, or another result (name another folder or file)");
+  if (fs::is_fifo(file, none)) holdPipe(file);
   if (fs::exists(file, none) && !fs::is_regular_file(file, none)) return; // a device or a pipe
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
 }
@@ -128,20 +154,19 @@ bool sameFile(const fs::path& a, const fs::path& b) {
   return !a.empty() && !b.empty() && !there(a).empty() && there(a) == there(b);
 }
 
-void keepFromReplacing(const fs::path& file) { KeptFiles::all().keep(file); }
+void keepFromReplacing(const fs::path& file) { keptFiles().add(file); }
+
+void refuseLinksIn(const fs::path& folder) { foldersWithoutLinks().add(folder); }
 
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
-  std::error_code none;
+  std::error_code ignored;
+  checkWritable(named);
   const fs::path file = followed(named);
-  if (KeptFiles::all().holds(file))
-    throw RunError(named.string() + ": is not replaced: it is read, or another result (name another folder or file)");
-  if (fs::exists(file, none) && !fs::is_regular_file(file, none) && !fs::is_directory(file, none))
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
   const fs::path temporary = temporaryFor(file);
-  std::error_code ignored;
-  checkWritable(file);
   const Unbroken whole;
   const Temporary held(temporary, file);
   try {
@@ -179,7 +204,9 @@ FolderLock::~FolderLock() {
 
 AppendedFile::AppendedFile(const fs::path& file)
     : file_(file), descriptor_(open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
+  if (descriptor_ < 0)
+    throw RunError(file.string() + ": cannot be written: " +
+                   (errno == EEXIST ? "it is there already (name another)" : std::generic_category().message(errno)));
   flock(descriptor_, LOCK_EX); // waits for who looks whether it was left
 }
 

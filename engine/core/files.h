@@ -12,18 +12,23 @@ namespace lambent {
 void makeFolder(const std::filesystem::path& folder);
 
 /// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
-/// writable, a folder by its name.
+/// writable, a folder by its name, a file that is kept, a pipe that nobody reads. Keeps a pipe open, or its reader would
+/// be at its end.
 void checkWritable(const std::filesystem::path& file);
 
 /// Whether two names are of one file, or would be once it is written.
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Has writeAtomically refuse to replace this file for the rest of the program: it is read, or is a result already. The
+/// Has checkWritable refuse to replace this file for the rest of the program: it is read, or is a result already. The
 /// files of a report have many names, and none of them may cost a scene its texture. Any thread.
 void keepFromReplacing(const std::filesystem::path& file);
 
-/// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws RunError when
-/// the folder cannot be written, and where the file is kept.
+/// Has checkWritable refuse what is written through a link that lies in this folder: names of what goes there are the program's, and
+/// nobody meant what they lead to. Any thread.
+void refuseLinksIn(const std::filesystem::path& folder);
+
+/// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws as
+/// checkWritable() does.
 void writeAtomically(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);

@@ -35,7 +35,7 @@ enum class Stream : uint32_t {
   SurfaceSamples,
   NearLightTurns,
   LightLists,
-  Crowding
+  RayWork
 };
 
 /// A sequence of numbers addressed by what they are for.

@@ -65,7 +65,7 @@ void meet(Look& look, const Triangle& t) {
 
 /// Whether it may meet something in there that is nearer than what it met.
 bool mayMeet(const Look& look, const Box& box) {
-  return crosses({box.lo, box.hi}, look.origin, look.direction, 0, look.distance);
+  return entry({box.lo, box.hi}, look.origin, look.direction, 0, look.distance).has_value();
 }
 
 void meetSome(std::vector<Look>& looks, const std::vector<Triangle>& triangles, const std::vector<Box>& boxes) {

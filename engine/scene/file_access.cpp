@@ -7,12 +7,12 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
-bool mayRead(const fs::path& folder, const fs::path& file, FileAccess access) {
+bool mayRead(const fs::path& folder, const fs::path& file, bool outside) {
   std::error_code failure;
   if (file.native().find('\0') != std::string::npos) return false; // the system reads the part before it
   const fs::path there = fs::canonical(file, failure);             // without links; fails where there is nothing
   if (failure || !fs::is_regular_file(there, failure)) return false;
-  if (access == FileAccess::Anywhere) return true;
+  if (outside) return true;
   const fs::path root = fs::canonical(folder.empty() ? "." : folder, failure);
   if (failure) return false;
   return std::mismatch(root.begin(), root.end(), there.begin(), there.end()).first == root.end();

@@ -1,4 +1,4 @@
-// What a scene of somebody else's may read.
+// What a scene of somebody else's may read and ask for.
 #pragma once
 
 #include <filesystem>
@@ -6,11 +6,15 @@
 
 namespace lambent {
 
-enum class FileAccess { Within, Anywhere };
+/// What a scene's file is trusted with.
+struct FileTrust {
+  bool outside = false; // it may read files outside of its folder
+  bool large = false;   // it may ask for more memory and time than its size explains
+};
 
-/// Says whether a scene in `folder` may read a file: a regular one, and unless `access` is Anywhere one in that folder
+/// Says whether a scene in `folder` may read a file: a regular one, and unless it may lie `outside` one in that folder
 /// or below, wherever links on the way lead. What lies elsewhere is as if it were not there.
-bool mayRead(const std::filesystem::path& folder, const std::filesystem::path& file, FileAccess access);
+bool mayRead(const std::filesystem::path& folder, const std::filesystem::path& file, bool outside);
 
 /// Says whether the way to a file leads out of a folder, by what it says or by a link on it, whether there is anything
 /// or not.

@@ -2,6 +2,7 @@
 
 #include "engine/scene/gltf_document.h"
 
+#include "engine/core/free_memory.h"
 #include "engine/scene/json_text.h"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ Container checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes
 struct Reading {
   Budget* budget;
   fs::path folder;
-  FileAccess access;
+  bool mayOutside;
   bool outside;                            // it names files that lie elsewhere, and are not read
   std::map<std::string, std::string> uris; // decoded as the parser does → as RFC 3986 says
   std::set<std::string> files;             // read before
@@ -98,11 +99,10 @@ std::string asInForms(std::string uri) {
 // file from elsewhere may reach, and looks in the working directory too.
 bool fileExists(const std::string& file, void* data) {
   Reading& reading = *static_cast<Reading*>(data);
-  if (mayRead(reading.folder, file, reading.access)) return true;
+  if (mayRead(reading.folder, file, reading.mayOutside)) return true;
   // Which paths there are to look in is the parser's: this file's folder, and the working directory.
-  reading.outside =
-      reading.outside || (reading.access == FileAccess::Within && file.starts_with(reading.folder.string()) &&
-                          leadsOutside(reading.folder, file));
+  reading.outside = reading.outside || (!reading.mayOutside && file.starts_with(reading.folder.string()) &&
+                                        leadsOutside(reading.folder, file));
   return false;
 }
 
@@ -112,15 +112,16 @@ std::string rightPath(const std::string& file, void* data) {
   return file;
 }
 bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
-  auto& [budget, folder, access, outside, uris, files] = *static_cast<Reading*>(data);
+  auto& [budget, folder, mayOutside, outside, uris, files] = *static_cast<Reading*>(data);
   try {
-    if (!mayRead(folder, file, access)) throw InputError(file, "no such file"); // also for who does not ask before
+    if (!mayRead(folder, file, mayOutside)) throw InputError(file, "no such file"); // also for who does not ask before
     std::error_code none;
     const size_t size = fs::file_size(file, none);
     if (files.insert(fs::weakly_canonical(file, none).string()).second) {
       budget->read += size;
     } else if (!budget->take(size, 1)) {
-      throw InputError(file, "is read so often that it needs more memory than the scene may ask for");
+      throw InputError(file,
+                       "is read so often that it needs more memory than the scene may ask for (--allow-large lets it)");
     }
     *out = readFileBytes(file);
     return true;
@@ -260,15 +261,18 @@ void Document::fail(const std::string& place, const std::string& reason) const {
 
 void Document::spend(size_t count, size_t each, const std::string& place) const {
   if (!budget.take(count, each))
-    fail(place, "needs more memory than a file of " + std::to_string(budget.read) + " bytes may ask for (" +
-                    std::to_string(budget.limit() >> 20) + " MiB in all)");
+    fail(place, "needs more memory than " +
+                    (budget.free ? "is free (" + std::to_string(*budget.free >> 20) + " MiB)"
+                                 : "a file of " + std::to_string(budget.read) + " bytes may ask for (" +
+                                       std::to_string(budget.limit() >> 20) + " MiB in all; --allow-large lets it)"));
 }
 
 void Document::show(size_t triangles, const std::string& place) const {
   budget.shown += triangles;
-  if (budget.shown > budget.shownLimit())
+  if (budget.showsTooMuch())
     fail(place, "brings the triangles that nodes show to " + std::to_string(budget.shown) + ": more than a file of " +
-                    std::to_string(budget.read) + " bytes may ask for (" + std::to_string(budget.shownLimit()) + ")");
+                    std::to_string(budget.read) + " bytes may ask for (" + std::to_string(budget.shownLimit()) +
+                    "; --allow-large lets it)");
 }
 
 void Document::checkIndex(int index, size_t size, const char* what, const std::string& place) const {
@@ -286,13 +290,14 @@ float number(const tinygltf::Value& object, const char* key, float otherwise) {
   return float(object.Get(key).GetNumberAsDouble());
 }
 
-Document readDocument(const fs::path& file, FileAccess access) {
+Document readDocument(const fs::path& file, FileTrust trust) {
   Document doc;
   doc.file = file;
   const std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
-  Reading reading{&doc.budget, file.parent_path(), access, false, {}, {}};
+  if (trust.large) doc.budget.free = freeMemory();
+  Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);
 

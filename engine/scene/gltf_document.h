@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,11 @@ namespace lambent::gltf {
 /// weights of targets, and all of its shape where it is posed.
 struct Budget {
   static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
-  size_t read = 0;  // bytes of the file and of those that it names, each once
-  size_t spent = 0; // bytes
+  // Beyond these many bytes each may ask for more: 10 MB of a few flat colours are honest textures of 1.3 GB.
+  static constexpr size_t kSmall = size_t(3) << 20, kPerByteBeyond = 256;
+  size_t read = 0;                 // bytes of the file and of those that it names, each once
+  size_t spent = 0;                // bytes
+  std::optional<size_t> free = {}; // bytes that the machine has left; set: whatever the file's size
   /// Takes from the budget; returns false where that is too much.
   bool take(size_t count, size_t each) {
     const size_t left = limit() - std::min(spent, limit());
@@ -29,12 +33,16 @@ struct Budget {
     spent = fits ? spent + count * each : limit() + 1;
     return fits;
   }
-  size_t limit() const { return kBase + kPerByte * read; }
+  size_t limit() const {
+    const size_t small = std::min(read, kSmall);
+    return free.value_or(kBase + kPerByte * small + kPerByteBeyond * (read - small));
+  }
 
   /// Triangles that nodes show, each as often as it is shown: they are drawn one by one, and a first picture of 160
   /// million takes 33 s of CPU (software Mesa; an 0.8 MB file).
   static constexpr size_t kShownBase = size_t(64) << 20, kShownPerByte = 8;
   size_t shown = 0;
+  bool showsTooMuch() const { return !free && shown > shownLimit(); }
   size_t shownLimit() const { return kShownBase + kShownPerByte * read; }
 };
 
@@ -73,7 +81,7 @@ struct Document {
 };
 
 /// Reads and parses .gltf or .glb with its buffers and encoded images. Refuses what it does not support.
-Document readDocument(const std::filesystem::path& file, FileAccess access);
+Document readDocument(const std::filesystem::path& file, FileTrust trust);
 
 /// A member of an object of the file that is a number; else `otherwise`.
 float number(const tinygltf::Value& object, const char* key, float otherwise);

@@ -17,16 +17,16 @@ std::vector<Aabb> boxesOf(const Mesh& mesh, const std::vector<vec3>& positions) 
 
 } // namespace
 
-bool crosses(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to) {
+std::optional<float> entry(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to) {
   for (int axis = 0; axis < 3; ++axis) {
     const float o = origin[axis], d = direction[axis];
-    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return false;
+    if (d == 0 && (o < box.lo[axis] || o > box.hi[axis])) return {};
     if (d == 0) continue;
     const float a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
-  return from <= to;
+  return from <= to ? std::optional(from) : std::nullopt;
 }
 
 void PlacedTriangles::forEachBlock(const std::function<bool(const Aabb&)>& wanted,

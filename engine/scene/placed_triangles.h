@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <unordered_map>
 
 namespace lambent {
@@ -33,8 +34,8 @@ class PlacedTriangles {
  public:
   explicit PlacedTriangles(const Scene& scene) : scene_(scene) {}
 
-  /// Calls `visit` for all blocks whose box is `wanted`; of instances whose box is not, none. In the order of instances
-  /// and their triangles.
+  /// Calls `visit` for all blocks whose box is `wanted`, each just after it was asked for; of instances whose box is
+  /// not, none. In the order of instances and their triangles.
   void forEachBlock(const std::function<bool(const Aabb&)>& wanted,
                     const std::function<void(const TriangleBlock&)>& visit);
 
@@ -43,8 +44,8 @@ class PlacedTriangles {
   std::unordered_map<const Mesh*, std::vector<Aabb>> boxesOfRigid_; // object space
 };
 
-/// Whether a line is in a box between `from` and `to`, in units of its direction.
-bool crosses(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to);
+/// Where a line enters a box between `from` and `to`, in units of its direction; nothing where it passes it by.
+std::optional<float> entry(const Aabb& box, const vec3& origin, const vec3& direction, float from, float to);
 
 /// Uniform integer in [0, n), n > 0.
 inline uint64_t drawnBelow(uint64_t n, Rng& random) {

@@ -45,9 +45,9 @@ struct Scene {
 using LoadStep = std::function<void(const char* at, float share)>;
 
 /// Reads .gltf/.glb. `sceneName` picks one of several scenes by name or index (empty: the file's default).
-/// `access`: of the files that it names. Throws InputError naming file, place and reason.
+/// Throws InputError naming file, place and reason.
 Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {}, const LoadStep& step = {},
-                FileAccess access = FileAccess::Within);
+                FileTrust trust = {});
 
 /// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
 void animate(Scene& scene, double time);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <atomic>
 
 using namespace lambent;
 using namespace lambent::library;
@@ -52,7 +51,7 @@ void requireMesh(const lambent_world& world, uint32_t mesh) {
     refuse("no mesh " + std::to_string(mesh) + " (there are " + std::to_string(world.scene.assets.meshes.size()) + ")");
 }
 
-std::atomic<bool> outsideAllowed = false;
+std::atomic<bool> outsideAllowed = false, largeAllowed = false;
 
 } // namespace
 
@@ -65,7 +64,7 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
     auto made = std::make_unique<lambent_world>();
     LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &made->sky);
     if (file) {
-      made->scene = loadScene(file, scene ? scene : "", {}, outsideAllowed ? FileAccess::Anywhere : FileAccess::Within);
+      made->scene = loadScene(file, scene ? scene : "", {}, FileTrust{outsideAllowed, largeAllowed});
       animate(made->scene, 0);
     }
     Live<lambent_world>::add(made.get());
@@ -74,6 +73,7 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
 }
 
 void lambent_world_allow_outside(int allow) { outsideAllowed = allow != 0; }
+void lambent_world_allow_large(int allow) { largeAllowed = allow != 0; }
 
 void lambent_world_destroy(lambent_world* world) {
   if (!Live<lambent_world>::has(world) || world->busy.exchange(true)) return;

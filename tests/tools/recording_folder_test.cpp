@@ -73,6 +73,26 @@ TEST_F(RecordingFolderTest, KeepsPicturesOfAnotherFormat) {
   EXPECT_FALSE(fs::exists(folder_ / "000005.png")) << "recorded before the other formats";
 }
 
+/// Somebody else's files are theirs, whatever they are called; a recording of before may be replaced.
+TEST_F(RecordingFolderTest, ReplacesNothingThatNoRecordingWrote) {
+  mark_.reset();
+  const auto refusal = [&](const char* format) {
+    return inputErrorOf([&] { RecordingFolder(folder_.path(), "these", format, {"frames.csv"}); });
+  };
+  for (const char* name : {"frames.csv", "000012.png", "recording.json"}) {
+    writeBytes(folder_ / name, "{}");
+    EXPECT_NE(refusal("png").find("was not recorded here"), std::string::npos) << name;
+    fs::remove(folder_ / name);
+  }
+  for (const char* name : {"notes.csv", "000012.exr", "12.png"}) writeBytes(folder_ / name, "x");
+  RecordingFolder(folder_.path(), "these", "none", {"frames.csv"}).write(0);
+  writeBytes(folder_ / "frames.csv", "x");
+  EXPECT_NO_THROW(RecordingFolder(folder_.path(), "others", "png", {"frames.csv"}));
+  EXPECT_EQ(RecordingFolder(folder_.path(), "others", "png").kept(), 0) << "of no pictures";
+  fs::create_symlink("elsewhere", folder_ / "000001.png");
+  EXPECT_NE(refusal("png").find("is a link"), std::string::npos);
+}
+
 TEST_F(RecordingFolderTest, WaitsForNoPipe) {
   mark_.reset();
   ASSERT_EQ(mkfifo((folder_ / "recording.json").c_str(), 0600), 0);

@@ -244,6 +244,7 @@ GeneratedScene SceneBuilder::write() const {
   }
 
   makeFolder(folder);
+  refuseLinksIn(folder);
   GeneratedScene scene{folder / (stem + ".gltf"), placedTriangles_, 0, {}};
   const auto put = [&](const std::string& name, const std::string& bytes) {
     const std::filesystem::path file = folder / name;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
-#include <vector>
 
 namespace lambent {
 
@@ -47,12 +46,23 @@ std::vector<fs::path> tornPictures(const fs::path& folder, const std::string& fo
 }
 } // namespace
 
-RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::string format)
+RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::string format,
+                                 const std::vector<std::string>& own)
     : folder_(std::move(folder)), file_(folder_ / "recording.json"), alone_(folder_),
       conditions_(std::move(conditions)), format_(std::move(format)) {
   if (!alone_.held()) throw RunError(folder_.string() + ": another program records here (--out names another folder)");
   requireFileOrNothing(file_);
   const Value mark = Value::parsed(readText(file_));
+  known_ = mark.has("conditions");
+  std::error_code none;
+  for (fs::directory_iterator at(folder_, none), end; !none && at != end; at.increment(none)) {
+    const std::string name = at->path().filename().string();
+    if (name != file_.filename() && std::ranges::count(own, name) == 0 && !frameOf(name, format_)) continue;
+    requireFileOrNothing(at->path());
+    if (!known_)
+      throw InputError(at->path().string(),
+                       "was not recorded here, and would be replaced (--out names another folder)");
+  }
   for (const char* each : {"png", "exr"}) {
     const bool last = mark.has("format") && mark["format"].text() == each;
     before_[each] = std::max(last ? countIn(mark, "frames") : 0, countIn(mark, before(each)));
@@ -79,7 +89,7 @@ int RecordingFolder::kept() const {
 }
 
 void RecordingFolder::write(int frames) const {
-  if (format_ == "none") return;
+  if (format_ == "none" && known_) return; // the pictures' mark stays
   Value mark = Value::of("conditions", conditions_, "format", format_, "frames", frames);
   for (const auto& [format, pictures] : before_) mark[before(format)] = pictures;
   writeText(file_, mark.json(-1) + "\n");

@@ -6,15 +6,18 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace lambent {
 
 /// Its state is in recording.json.
 class RecordingFolder {
  public:
-  /// `format`: "png" or "exr"; "none" where no pictures are written. Throws RunError while another program records into
-  /// the folder.
-  RecordingFolder(std::filesystem::path folder, std::string conditions, std::string format);
+  /// `format`: "png" or "exr"; "none" where no pictures are written. `own`: names of what else is. Throws RunError
+  /// while another program records into the folder; InputError where files lie there by these names that no recording
+  /// wrote, or what is no file.
+  RecordingFolder(std::filesystem::path folder, std::string conditions, std::string format,
+                  const std::vector<std::string>& own = {});
 
   /// Whether a file is named as a frame's picture is.
   static bool isNamedAsPicture(const std::filesystem::path& file);
@@ -31,6 +34,7 @@ class RecordingFolder {
   const std::filesystem::path folder_, file_;
   const FolderLock alone_;
   const std::string conditions_, format_;
+  bool known_ = false;                // it is a recording's
   std::map<std::string, int> before_; // pictures of each format that recordings before it may have left
 };
 

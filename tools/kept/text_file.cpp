@@ -20,8 +20,10 @@ void writeText(const fs::path& file, const std::string& text) {
 
 void requireFileOrNothing(const fs::path& file) {
   std::error_code none;
-  if (fs::exists(file, none) && !fs::is_regular_file(file, none))
-    throw InputError(file.string(), "is not a file (remove it, or name another folder)");
+  const fs::file_status status = fs::symlink_status(file, none);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw InputError(file.string(), (fs::is_symlink(status) ? "is a link" : "is not a file") +
+                                        std::string(" (remove it, or name another folder)"));
 }
 
 std::string readText(const fs::path& file) {

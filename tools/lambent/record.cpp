@@ -199,18 +199,24 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
   if (filmed) std::printf("video: %s\n", video.c_str());
 }
 
-/// Throws InputError where what is read, or another result, is a file that the recording writes into its folder, or
-/// that a link there leads to.
+/// What it writes into its folder, but the pictures and recording.json.
+std::vector<std::string> ownNames(const RecordOptions& options) {
+  std::vector<std::string> names = {"frames.csv"};
+  if (!options.beside.empty()) names.push_back("frames-" + options.beside + ".csv");
+  if (options.video) names.emplace_back("video.mp4");
+  if (options.sheet > 0) names.emplace_back("contact-sheet.png");
+  return names;
+}
+
+/// Throws InputError where what is read, or another result, is a file that the recording writes into its folder.
 void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::path& folder) {
   std::vector<fs::path> others = scene.files;
   for (const std::string& named : {options.launch.scene, options.launch.cube, options.output.json})
     if (!named.empty()) others.emplace_back(named);
-  std::vector<fs::path> own = {"recording.json", "frames.csv"};
-  if (!options.beside.empty()) own.emplace_back("frames-" + options.beside + ".csv");
-  if (options.video) own.emplace_back("video.mp4");
-  if (options.sheet > 0) own.emplace_back("contact-sheet.png");
+  std::vector<std::string> own = ownNames(options);
+  own.emplace_back("recording.json");
   const auto isOwn = [&](const fs::path& name) {
-    return std::ranges::count(own, name) > 0 ||
+    return std::ranges::count(own, name.string()) > 0 ||
            (name.extension() == "." + options.format && RecordingFolder::isNamedAsPicture(name));
   };
   const auto refuse = [&](const fs::path& file) {
@@ -220,16 +226,8 @@ void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::pa
   for (const fs::path& other : others)
     if (isOwn(other.filename()) && fs::equivalent(fs::absolute(other).parent_path(), folder, none)) refuse(other);
   for (const fs::path& other : others)
-    for (const fs::path& name : own)
+    for (const fs::path name : own)
       if (sameFile(folder / name, other)) refuse(other); // by a link of its own to what is not there yet
-  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
-    std::error_code gone;
-    if (!isOwn(at->path().filename())) continue;
-    if (fs::is_fifo(at->status(gone))) throw InputError(at->path().string(), "is a pipe (remove it)"); // waits for ever
-    if (!at->is_symlink(gone)) continue;
-    for (const fs::path& other : others)
-      if (sameFile(at->path(), other)) refuse(other);
-  }
 }
 
 void record(const RecordOptions& options) {
@@ -243,7 +241,8 @@ void record(const RecordOptions& options) {
   const int total =
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
   refuseLosses(options, opened->scene, folder);
-  RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format);
+  RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format,
+                       ownNames(options));
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();

@@ -172,6 +172,7 @@ void refuseNamesakes(const std::vector<std::string>& files) {
 fs::path reportFolder(const std::string& out, const std::string& unnamed) {
   const fs::path folder = out.empty() ? unnamed : out;
   makeFolder(folder);
+  refuseLinksIn(folder);
   return folder;
 }
 

@@ -136,10 +136,10 @@ struct Growth {
 /// The camera's way as a shot that grows by every frame, as a recorded walk does.
 class Recorded {
  public:
-  Recorded(const LaunchOptions& launch, const std::string& file) {
+  Recorded(const Scene& scene, const std::string& file) {
     if (file.empty()) return;
     Shot shot;
-    shot.scene = std::filesystem::absolute(launch.scene);
+    shot.scene = std::filesystem::absolute(scene.file);
     writer_.emplace(shot, file);
   }
   void add(const CameraKey& key) {
@@ -159,7 +159,7 @@ void soak(const SoakOptions& options) {
   GlContext context = GlContext::headless();
   Viewer gi(opened->settings, opened->seed);
   Edits edits(*opened, opened->seed);
-  Recorded recorded(options.launch, options.record);
+  Recorded recorded(opened->scene, options.record);
   Growth program, openGl;
   int frame = 0;
   {

@@ -278,8 +278,10 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   const std::string own = command.option_defaults()->get_group();
   command.option_defaults()->group("Scene, view, light and settings");
   command.add_option("--scene", options.sceneName, "which scene of a file with several, by name or index");
-  command.add_flag("--allow-outside", options.outside,
+  command.add_flag("--allow-outside", options.trust.outside,
                    "let a file read what it names outside of its folder: for files that you trust");
+  command.add_flag("--allow-large", options.trust.large,
+                   "let a file ask for more memory and time than its size explains: for files that you trust");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
   command.add_option("--target", options.target, "look at x,y,z");
@@ -365,7 +367,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
-  stage->scene = loadScene(file, options.sceneName, step, accessOf(options));
+  stage->scene = loadScene(file, options.sceneName, step, options.trust);
   for (const fs::path& read : stage->scene.files)
     for (const std::string& written : options.written)
       if (sameFile(read, written))

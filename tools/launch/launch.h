@@ -23,19 +23,16 @@ class Props;
 struct LaunchOptions {
   std::string scene;     // glTF file or shot file (.json)
   std::string sceneName; // of several in the file
-  bool outside = false;  // it may read files outside of its folder
+  FileTrust trust;       // in what it reads and asks for
   std::string camera, eye, target, size, sky, daylight, technique, preset;
   std::optional<float> fovDegrees, sunSize; // sunSize: degrees across
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;
-  std::string cube; // file
+  std::string cube;                 // file
   std::vector<std::string> written; // results: none may be a file that the scene is read from
   uint32_t seed = 1;
   int threads = 0; // 0 = all cores
 };
-
-/// Of the files that a scene names.
-inline FileAccess accessOf(const LaunchOptions& o) { return o.outside ? FileAccess::Anywhere : FileAccess::Within; }
 
 /// Refuses "nan" and "inf" for every option of the command that takes a number: ranges let the first pass.
 void refuseNotANumber(CLI::App& command);
@@ -55,7 +52,7 @@ class LaunchContext {
   Scene scene;
   std::optional<Shot> shot;
   std::unique_ptr<Props> props; // what somebody plays or, as the shot has it, played with; null: nobody
-  HeldMemory held{"scene"}; // its meshes and textures
+  HeldMemory held{"scene"};     // its meshes and textures
   CameraView camera; // of the command line, the file or a default; the shot's camera comes first where it has one
   bool cameraGiven = false; // from the command line: overrides the shot's
   Settings settings;

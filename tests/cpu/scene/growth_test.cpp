@@ -47,9 +47,9 @@ const Growing kGrowing[] = {
     {"primitives",
      [](GltfBuilder& b, int i, int) {
        json& primitives = b.json["meshes"][0]["primitives"];
-       json next = primitives[size_t(i % 100)]; // not all in one place
+       json next = primitives[size_t(i % 500)]; // not all in one place
        const float x = float(3 * i);
-       if (i < 100) next["attributes"]["POSITION"] = b.positions({{x, 0, 9}, {x + 1, 0, 9}, {x, 1, 9}});
+       if (i < 500) next["attributes"]["POSITION"] = b.positions({{x, 0, 9}, {x + 1, 0, 9}, {x, 1, 9}});
        primitives.push_back(next);
      }},
     {"materials",

@@ -9,7 +9,10 @@
 #include <cstring>
 #include <functional>
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -170,6 +173,36 @@ TEST(WriteAtomically, ALinkStaysOne) {
                             std::function<void()>([&] { checkWritable(folder / std::string(256, 'n')); })})
     EXPECT_NE(messageOf<RunError>(write).find("cannot be written: its"), std::string::npos);
   EXPECT_TRUE(fs::is_symlink(folder / "a.png"));
+}
+
+/// Names of what goes into a folder of results are the program's: nobody meant what a link there leads to.
+TEST(WriteAtomically, WritesThroughNoLinkInAFolderOfResults) {
+  TemporaryFolder folder;
+  writeBytes(folder / "outside.png", "old");
+  fs::create_directory(folder / "results");
+  fs::create_symlink("../outside.png", folder / "results/000000.png");
+  fs::create_directory_symlink("results", folder / "again");
+  refuseLinksIn(folder / "results");
+  for (const char* name : {"results/000000.png", "again/000000.png"})
+    EXPECT_NE(messageOf<RunError>([&] { writePng(folder / name, Image8{1, 1, {1, 2, 3}}); }).find("it is a link"),
+              std::string::npos);
+  EXPECT_EQ(readBytes(folder / "outside.png"), "old");
+  writePng(folder / "again/000001.png", Image8{1, 1, {1, 2, 3}});
+}
+
+TEST(WriteAtomically, APipeNeedsAReaderBeforeTheWork) {
+  TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_NE(messageOf<RunError>([&] { checkWritable(pipe); }).find("nobody reads this pipe"), std::string::npos);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  checkWritable(pipe);
+  char text[8] = {};
+  EXPECT_EQ(read(reader, text, sizeof text), -1) << "not yet at its end";
+  writeAtomically(pipe, "figures");
+  EXPECT_EQ(read(reader, text, sizeof text), 7);
+  close(reader);
 }
 
 TEST(Srgb, CodesAndLinearValuesAreInverse) {

@@ -55,10 +55,10 @@ void GltfBuilder::writeGlb(const fs::path& file) const {
   writeBytes(file, out);
 }
 
-Scene GltfBuilder::load(const TemporaryFolder& folder) const {
+Scene GltfBuilder::load(const TemporaryFolder& folder, FileTrust trust) const {
   const fs::path file = folder / "scene.gltf";
   writeGltf(file);
-  return loadScene(file);
+  return loadScene(file, {}, {}, trust);
 }
 
 GltfBuilder oneTriangle() {

@@ -60,7 +60,7 @@ struct GltfBuilder {
   void writeGltf(const std::filesystem::path& file) const;
   void writeGlb(const std::filesystem::path& file) const;
   /// Written into `folder` and loaded.
-  Scene load(const TemporaryFolder& folder) const;
+  Scene load(const TemporaryFolder& folder, FileTrust trust = {}) const;
 };
 
 /// The right triangle (0,0,0), (1,0,0), (0,1,0), whose front is +Z, without normals.
