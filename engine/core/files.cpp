@@ -79,6 +79,7 @@ class Places {
   void add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
     places_.insert(placeOf(file));
+    places_.erase(fs::path()); // one that cannot be looked at
   }
   bool hold(const fs::path& file) {
     const std::lock_guard lock(mutex_);
@@ -89,7 +90,7 @@ class Places {
   /// Without links. By place, not by what lies there: a rename leaves what else leads to that alone.
   static fs::path placeOf(const fs::path& file) {
     std::error_code none;
-    return fs::weakly_canonical(fs::absolute(file), none);
+    return fs::weakly_canonical(fs::absolute(file, none), none);
   }
 
   std::mutex mutex_;
@@ -110,12 +111,20 @@ Places& foldersWithoutLinks() {
 
 fs::path folderOf(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
 
-/// Opens a pipe for as long as the program runs, so that who opens it next need not wait. Waits for a reader for a
-/// second; throws RunError where there is none by then.
+/// Keeps a pipe open for as long as the program runs, so that its reader is not at its end before something is written.
+/// Waits for a reader for a second; throws RunError where there is none by then.
 void holdPipe(const fs::path& file) {
+  static std::mutex mutex;
+  static std::set<fs::path> held;
+  const std::lock_guard lock(mutex);
+  if (held.contains(file)) return;
   for (int tries = 0; tries < 50; ++tries) {
-    if (open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC) >= 0) return;
-    if (errno != ENXIO) break;
+    if (open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC) >= 0) {
+      held.insert(file);
+      return;
+    }
+    if (errno != ENXIO)
+      throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   throw RunError(file.string() + ": cannot be written: nobody reads this pipe (start its reader before)");
@@ -132,7 +141,7 @@ void makeFolder(const fs::path& folder) {
 void checkWritable(const fs::path& named) {
   std::error_code none;
   if (fs::is_symlink(named, none) && foldersWithoutLinks().hold(folderOf(named)))
-    throw RunError(named.string() + ": is not written: it is a link (remove it, or name another folder)");
+    throw InputError(named.string(), "is not written: it is a link (remove it, or name another folder)");
   const fs::path file = followed(named);
   const fs::path folder = folderOf(file);
   const auto refuse = [&](const std::string& why) { throw RunError(named.string() + ": cannot be written: " + why); };
@@ -141,7 +150,7 @@ void checkWritable(const fs::path& named) {
   if (!fs::is_directory(folder, none)) refuse("there is no folder " + folder.string());
   if (fs::is_directory(file, none)) refuse("it is a folder");
   if (keptFiles().hold(file))
-    throw RunError(named.string() + ": is not replaced: it is read, or another result (name another folder or file)");
+    throw InputError(named.string(), "is not replaced: it is read, or another result (name another folder or file)");
   if (fs::is_fifo(file, none)) holdPipe(file);
   if (fs::exists(file, none) && !fs::is_regular_file(file, none)) return; // a device or a pipe
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("the folder " + folder.string() + " is not writable");
@@ -161,7 +170,7 @@ void refuseLinksIn(const fs::path& folder) { foldersWithoutLinks().add(folder); 
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code ignored;
   checkWritable(named);
-  const fs::path file = followed(named);
+  const fs::path file = foldersWithoutLinks().hold(folderOf(named)) ? named : followed(named);
   if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some

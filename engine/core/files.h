@@ -12,8 +12,8 @@ namespace lambent {
 void makeFolder(const std::filesystem::path& folder);
 
 /// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
-/// writable, a folder by its name, a file that is kept, a pipe that nobody reads. Keeps a pipe open, or its reader would
-/// be at its end.
+/// writable, a folder by its name, a pipe that nobody reads within a second; InputError where it is kept, or a link in a
+/// folder of results. A pipe stays open until the program ends, or its reader would be at its end before.
 void checkWritable(const std::filesystem::path& file);
 
 /// Whether two names are of one file, or would be once it is written.
@@ -23,8 +23,8 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 /// files of a report have many names, and none of them may cost a scene its texture. Any thread.
 void keepFromReplacing(const std::filesystem::path& file);
 
-/// Has checkWritable refuse what is written through a link that lies in this folder: names of what goes there are the program's, and
-/// nobody meant what they lead to. Any thread.
+/// Has checkWritable refuse what is written through a link that lies in this folder: names of what goes there are the
+/// program's, and nobody meant what they lead to. Any thread.
 void refuseLinksIn(const std::filesystem::path& folder);
 
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws as

@@ -91,7 +91,7 @@ void meetAll(std::vector<Look>& looks, PlacedTriangles& placed, float diameter) 
   placed.forEachBlock(mayBeMet, [&](const TriangleBlock& block) {
     const size_t begin = triangles.size();
     const bool mirrored = glm::determinant(mat3(block.worldFromObject)) < 0;
-    for (size_t t = block.begin; t < block.end; ++t) {
+    for (const uint32_t t : block.triangles) {
       std::array<vec3, 3> p = block.corners(t);
       if (mirrored) std::swap(p[1], p[2]);
       triangles.push_back({p[0], p[1] - p[0], p[2] - p[0]});

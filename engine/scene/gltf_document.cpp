@@ -260,11 +260,12 @@ void Document::fail(const std::string& place, const std::string& reason) const {
 }
 
 void Document::spend(size_t count, size_t each, const std::string& place) const {
-  if (!budget.take(count, each))
-    fail(place, "needs more memory than " +
-                    (budget.free ? "is free (" + std::to_string(*budget.free >> 20) + " MiB)"
-                                 : "a file of " + std::to_string(budget.read) + " bytes may ask for (" +
-                                       std::to_string(budget.limit() >> 20) + " MiB in all; --allow-large lets it)"));
+  if (budget.take(count, each)) return;
+  const auto mebibytes = [](size_t bytes) { return std::to_string(bytes >> 20) + " MiB"; };
+  if (budget.trusted || budget.free < budget.bySize())
+    fail(place, "needs more memory than is left for it (" + mebibytes(budget.free) + ")");
+  fail(place, "needs more memory than a file of " + std::to_string(budget.read) + " bytes may ask for (" +
+                  mebibytes(budget.bySize()) + " in all; --allow-large lets it)");
 }
 
 void Document::show(size_t triangles, const std::string& place) const {
@@ -290,13 +291,17 @@ float number(const tinygltf::Value& object, const char* key, float otherwise) {
   return float(object.Get(key).GetNumberAsDouble());
 }
 
+/// Of what a file takes, how much is counted: 1.3 GB of textures that are counted took 1.7 GB.
+constexpr double kShareCounted = 0.75;
+
 Document readDocument(const fs::path& file, FileTrust trust) {
   Document doc;
   doc.file = file;
   const std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
-  if (trust.large) doc.budget.free = freeMemory();
+  doc.budget.free = size_t(kShareCounted * double(freeMemory()));
+  doc.budget.trusted = trust.large;
   Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);

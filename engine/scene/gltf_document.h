@@ -6,8 +6,8 @@
 #include "engine/scene/file_access.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,17 +15,18 @@
 
 namespace lambent::gltf {
 
-/// Memory that reading a file may ask for: a few bytes can name millions of elements or texels, and one buffer can be
-/// read for every primitive. Counted is what is decoded: elements of accessors, triangles, vertices of one's own,
-/// texels, files read again; what rays and OpenGL keep of triangles; and for every node its triangles that shine, its
-/// weights of targets, and all of its shape where it is posed.
+/// Memory that reading a file may ask for, and triangles that it may show: a few bytes can name millions of elements or
+/// texels, and one buffer can be read for every primitive. Counted is what is decoded: elements of accessors,
+/// triangles, vertices of one's own, texels, files read again; what rays and OpenGL keep of triangles; and for every
+/// node its triangles that shine, its weights of targets, and all of its shape where it is posed.
 struct Budget {
   static constexpr size_t kBase = size_t(512) << 20, kPerByte = 64;
   // Beyond these many bytes each may ask for more: 10 MB of a few flat colours are honest textures of 1.3 GB.
   static constexpr size_t kSmall = size_t(3) << 20, kPerByteBeyond = 256;
-  size_t read = 0;                 // bytes of the file and of those that it names, each once
-  size_t spent = 0;                // bytes
-  std::optional<size_t> free = {}; // bytes that the machine has left; set: whatever the file's size
+  size_t read = 0;        // bytes of the file and of those that it names, each once
+  size_t spent = 0;       // bytes
+  size_t free = SIZE_MAX; // bytes that the machine has left for what is counted
+  bool trusted = false;   // may ask for all of that, and show what it likes
   /// Takes from the budget; returns false where that is too much.
   bool take(size_t count, size_t each) {
     const size_t left = limit() - std::min(spent, limit());
@@ -33,16 +34,17 @@ struct Budget {
     spent = fits ? spent + count * each : limit() + 1;
     return fits;
   }
-  size_t limit() const {
+  size_t limit() const { return trusted ? free : std::min(free, bySize()); }
+  size_t bySize() const {
     const size_t small = std::min(read, kSmall);
-    return free.value_or(kBase + kPerByte * small + kPerByteBeyond * (read - small));
+    return kBase + kPerByte * small + kPerByteBeyond * (read - small);
   }
 
-  /// Triangles that nodes show, each as often as it is shown: they are drawn one by one, and a first picture of 160
-  /// million takes 33 s of CPU (software Mesa; an 0.8 MB file).
-  static constexpr size_t kShownBase = size_t(64) << 20, kShownPerByte = 8;
+  /// Triangles that nodes show, each as often as it is shown: they are drawn one by one, and a first picture of 60
+  /// million takes 29 s of CPU (software Mesa; an 0.8 MB file).
+  static constexpr size_t kShownBase = size_t(32) << 20, kShownPerByte = 8;
   size_t shown = 0;
-  bool showsTooMuch() const { return !free && shown > shownLimit(); }
+  bool showsTooMuch() const { return !trusted && shown > shownLimit(); }
   size_t shownLimit() const { return kShownBase + kShownPerByte * read; }
 };
 

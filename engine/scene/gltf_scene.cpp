@@ -193,12 +193,12 @@ void findOrigin(Scene& scene) {
 
 /// A first frame casts 30 million rays.
 void refuseSlowRays(const Scene& scene) {
-  constexpr float kMost = 64; // see decisions.md
+  constexpr float kMost = 80; // boxes; see decisions.md
   const RayWork work = rayWork(scene);
   if (work.sum() <= kMost) return;
   const dvec3 at = dvec3(work.place) + scene.origin;
   std::ostringstream text;
-  text << "every ray has to look at " << std::lround(work.boxes) << " triangles";
+  text << "every ray has to look into the boxes of " << std::lround(work.boxes) << " triangles";
   if (work.cutOut >= 1) text << ", and through " << std::lround(work.cutOut) << " that are cut out or blended,";
   text << " in the mean (most from " << at.x << ", " << at.y << ", " << at.z
        << "): a first picture would take minutes; thin them out, or --allow-large";

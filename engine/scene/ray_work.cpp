@@ -1,18 +1,21 @@
 #include "engine/scene/ray_work.h"
 
+#include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "engine/scene/placed_triangles.h"
 #include "engine/view/surface_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 
 namespace lambent {
 
 namespace {
 
-constexpr uint64_t kLookedAt = 1024;   // triangles that places are drawn among
 constexpr size_t kMostBoxes = 1 << 15; // that a ray counts: far more than is let pass, and little memory
+constexpr size_t kTries = 16;          // to begin where a triangle is not cut out
 constexpr int kSteps = 3;              // of a walk
 
 struct Ray {
@@ -50,11 +53,21 @@ std::optional<Meeting> meetingOf(const Ray& ray, const std::array<vec3, 3>& corn
   return Meeting{glm::dot(edge2, q) / det, {u, v}, glm::cross(edge1, edge2)};
 }
 
-/// Follows rays to their ends. What is nearer than `skipped` is what a ray begins on.
+/// Whether a triangle is masked, and cut out at a place of it.
+bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, const vec2& barycentric) {
+  const Primitive& p = *std::ranges::partition_point(mesh.primitives, [&](const Primitive& before) {
+    return before.firstTriangle + before.triangleCount <= triangle; // they are in the order of their triangles
+  });
+  const Material& material = assets.materials[p.material];
+  return material.alphaMode == AlphaMode::Mask &&
+         baseColourAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric)).w <
+             material.alphaCutoff;
+}
+
+/// Follows rays to their ends.
 class Tracing {
  public:
-  explicit Tracing(const Scene& scene)
-      : scene_(scene), placed_(scene), skipped_(1e-6f * worldBounds(scene).diameter()) {}
+  explicit Tracing(const Scene& scene) : assets_(scene.assets), placed_(scene) {}
 
   void operator()(std::vector<Ray>& rays) {
     std::vector<Ray*> near; // the box that was last asked for
@@ -65,16 +78,14 @@ class Tracing {
       return !near.empty();
     };
     placed_.forEachBlock(wanted, [&](const TriangleBlock& block) {
-      auto primitive = block.mesh.primitives.begin(); // in the order of their triangles
-      for (size_t i = block.begin; i < block.end; ++i) {
-        while (i >= size_t(primitive->firstTriangle) + primitive->triangleCount) ++primitive;
+      for (const uint32_t i : block.triangles) {
         const std::array<vec3, 3> corners = block.corners(i);
         Aabb box;
         for (const vec3& c : corners) box.add(c);
         for (Ray* ray : near)
           if (const std::optional<float> from = entry(box, ray->origin, ray->direction, 0, ray->end)) {
             ray->boxes.push_back(*from);
-            meet(*ray, block, *primitive, i, corners);
+            meet(*ray, block, i, corners);
           }
       }
       for (Ray* ray : near) {
@@ -87,57 +98,104 @@ class Tracing {
   }
 
  private:
-  void meet(Ray& ray, const TriangleBlock& block, const Primitive& p, size_t triangle,
-            const std::array<vec3, 3>& corners) const {
+  void meet(Ray& ray, const TriangleBlock& block, uint32_t triangle, const std::array<vec3, 3>& corners) const {
     const std::optional<Meeting> met = meetingOf(ray, corners);
-    if (!met || !(met->t > skipped_ && met->t < ray.end)) return;
-    const Material& material = scene_.assets.materials[p.material];
-    if (material.alphaMode == AlphaMode::Mask) {
-      const TrianglePlace place = trianglePlace(block.mesh, p, uint32_t(triangle - p.firstTriangle), met->barycentric);
-      if (baseColourAt(scene_.assets, block.mesh, material, place).w < material.alphaCutoff) {
-        ray.cutOut.push_back(met->t);
-        return;
-      }
+    const float longest = std::max(glm::distance(corners[0], corners[1]), glm::distance(corners[0], corners[2]));
+    const float skipped = 0x1p-16f * std::max(longest, maxComponent(glm::abs(ray.origin))); // what it begins on
+    if (!met || !(met->t > skipped && met->t < ray.end)) return;
+    if (isCutOut(assets_, block.mesh, triangle, met->barycentric)) {
+      ray.cutOut.push_back(met->t);
+    } else {
+      ray.end = met->t, ray.normal = met->normal;
     }
-    ray.end = met->t, ray.normal = met->normal;
   }
 
-  const Scene& scene_;
+  const SceneAssets& assets_;
   PlacedTriangles placed_;
-  float skipped_;
 };
 
-/// From in front of triangles: nobody looks into closed things.
-std::vector<Ray> firstRays(const Scene& scene, Rng& random) {
-  uint64_t all = 0;
-  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { all += mesh.triangles.size(); });
-  if (all == 0) return {};
-  std::vector<uint64_t> drawn(kLookedAt);
-  for (uint64_t& number : drawn) number = drawnBelow(all, random);
-  std::ranges::sort(drawn);
-  std::vector<std::array<vec3, 3>> triangles; // counter-clockwise, seen from in front
-  std::vector<float> areas;
-  uint64_t first = 0; // of the instance
+/// From in front of a triangle (its corners in world space), at a place of it.
+Ray rayFrom(std::array<vec3, 3> t, vec2 b, const mat4& worldFromObject, Rng& random) {
+  if (glm::determinant(mat3(worldFromObject)) < 0) std::swap(t[1], t[2]), std::swap(b.x, b.y);
+  const vec3 normal = unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), vec3(0, 1, 0));
+  Ray ray;
+  ray.origin = t[0] + b.x * (t[1] - t[0]) + b.y * (t[2] - t[0]);
+  ray.direction = sampleCosineHemisphere(normal, random.next2());
+  return ray;
+}
+
+/// Of one triangle, and of all of a mesh; object space.
+double areaOf(const Mesh& mesh, const std::vector<vec3>& positions, size_t triangle) {
+  const uvec3& t = mesh.triangles[triangle];
+  const dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
+  return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+double areaOf(const Mesh& mesh, const std::vector<vec3>& positions) {
+  double area = 0;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) area += areaOf(mesh, positions, i);
+  return area;
+}
+
+/// By how much areas grow, in the mean over three directions.
+double areaScale(const mat4& m) {
+  const dvec3 x(m[0]), y(m[1]), z(m[2]);
+  return (glm::length(glm::cross(x, y)) + glm::length(glm::cross(y, z)) + glm::length(glm::cross(z, x))) / 3;
+}
+
+/// Of each instance in turn, world space.
+std::vector<double> areasOfInstances(const Scene& scene) {
+  std::vector<double> areas;
+  std::unordered_map<const Mesh*, double> ofRigid; // object space
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
-    for (; triangles.size() < drawn.size() && drawn[triangles.size()] < first + mesh.triangles.size();) {
-      const size_t i = size_t(drawn[triangles.size()] - first);
-      auto t = TriangleBlock{mesh, deformed, worldFromObject, i, i + 1, {}}.corners(i);
-      if (glm::determinant(mat3(worldFromObject)) < 0) std::swap(t[1], t[2]);
-      areas.push_back(float(glm::length(glm::cross(dvec3(t[1] - t[0]), dvec3(t[2] - t[0])))));
-      triangles.push_back(t);
+    double area = 0;
+    if (deformed) {
+      area = areaOf(mesh, deformed->positions);
+    } else {
+      const auto [known, first] = ofRigid.try_emplace(&mesh, 0);
+      if (first) known->second = areaOf(mesh, mesh.positions);
+      area = known->second;
     }
-    first += mesh.triangles.size();
+    areas.push_back(area * areaScale(worldFromObject));
   });
-  const Distribution byArea{std::span<const float>(areas)};
-  if (!(byArea.total() > 0)) return {};
-  std::vector<Ray> rays(size_t(std::clamp<uint64_t>((uint64_t(1) << 24) / all, 16, 64)));
-  for (Ray& ray : rays) {
-    const auto& t = triangles[byArea.sample(random.next())];
-    const vec2 b = sampleTriangle(random.next2());
-    ray.origin = t[0] + b.x * (t[1] - t[0]) + b.y * (t[2] - t[0]);
-    ray.direction = sampleCosineHemisphere(unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), vec3(0, 1, 0)), random.next2());
-  }
-  return rays;
+  return areas;
+}
+
+/// From in front of triangles, drawn by their area: nobody looks into closed things. From where they are cut out, none.
+std::vector<Ray> firstRays(const Scene& scene, Rng& random) {
+  const std::vector<double> areas = areasOfInstances(scene);
+  uint64_t triangles = 0;
+  double all = 0;
+  for (const double area : areas) all += area;
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { triangles += mesh.triangles.size(); });
+  if (!(all > 0)) return {}; // nothing that light could fall on
+  const auto wanted = size_t(std::clamp<uint64_t>((uint64_t(1) << 28) / triangles, 64, 256));
+  std::vector<double> drawn(kTries * wanted);
+  for (double& d : drawn) d = all * double(random.next());
+  std::ranges::sort(drawn);
+  std::vector<Ray> rays;
+  auto next = drawn.begin();
+  double before = 0; // area of the instances before
+  auto area = areas.begin();
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject) {
+    const double own = *area++;
+    const std::vector<vec3>& positions = deformed ? deformed->positions : mesh.positions;
+    const double scale = areaScale(worldFromObject);
+    double passed = before;
+    for (uint32_t i = 0; i < mesh.triangles.size() && next != drawn.end() && *next < before + own; ++i) {
+      passed += scale * areaOf(mesh, positions, i);
+      for (; next != drawn.end() && *next < passed; ++next) {
+        const vec2 place = sampleTriangle(random.next2());
+        if (isCutOut(scene.assets, mesh, i, place)) continue;
+        rays.push_back(
+            rayFrom(TriangleBlock{mesh, deformed, worldFromObject, {}, {}}.corners(i), place, worldFromObject, random));
+      }
+    }
+    before += own;
+  });
+  if (rays.size() <= wanted) return rays;
+  std::vector<Ray> some;
+  for (size_t i = 0; i < wanted; ++i) some.push_back(rays[i * rays.size() / wanted]);
+  return some;
 }
 
 /// From where a ray ended, back into the space that it came through.

@@ -5,7 +5,8 @@
 
 namespace lambent {
 
-/// Means over rays, each from in front of a surface in a random direction to where it ends.
+/// Means over rays, each from in front of a surface in a random direction to where it ends. Rays that only lead to
+/// where others begin are not counted.
 struct RayWork {
   float boxes = 0;  // of triangles, which it enters: no tree of boxes can do without a look at what is in them
   float cutOut = 0; // triangles that it passes where they are cut out
@@ -16,8 +17,8 @@ struct RayWork {
   static constexpr float kCutOut = 7;
 };
 
-/// Of a scene as it stands. Draws 256 places on its triangles by their area, fewer (down to 16) where it has more than
-/// 65 536 of them, and goes on from each to what is met, twice: where many triangles share a place, only what can be
+/// Of a scene as it stands. Draws 256 places on its triangles by their area, fewer (down to 64) where it has more than
+/// a million of them, and goes on from each to what is met, twice: where many triangles share a place, only what can be
 /// seen of them counts.
 RayWork rayWork(const Scene& scene);
 

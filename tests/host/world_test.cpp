@@ -300,6 +300,22 @@ TEST_F(Worlds, ACameraBeyondAllPlacesIsRefused) {
   lambent_world_destroy(world);
 }
 
+TEST_F(Worlds, LargeFilesAreAllowedOnRequest) {
+  lambent_world* world = nullptr;
+  const TemporaryFolder folder; // twelve million points in 1 kB: a gigabyte
+  std::string many =
+      R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "accessors": [)";
+  many += R"({"componentType": 5126, "type": "VEC3", "count": 12582912}], "meshes": [{"primitives": [)";
+  for (int i = 0; i < 4; ++i) many += std::string(i ? "," : "") + R"({"attributes": {"POSITION": 0}})";
+  writeBytes(folder / "many.gltf", many + "]}]}");
+  EXPECT_EQ(lambent_world_load((folder / "many.gltf").c_str(), nullptr, &world), LAMBENT_INVALID_ARGUMENT);
+  EXPECT_NE(std::string(lambent_world_message(nullptr)).find("may ask for"), std::string::npos);
+  lambent_world_allow_large(1);
+  EXPECT_EQ(lambent_world_load((folder / "many.gltf").c_str(), nullptr, &world), LAMBENT_OK);
+  lambent_world_destroy(world);
+  lambent_world_allow_large(0);
+}
+
 TEST_F(Worlds, WrongCallsAreStatuses) {
   lambent_world* world = nullptr;
   EXPECT_EQ(lambent_world_load("no-such.gltf", nullptr, &world), LAMBENT_INVALID_ARGUMENT);

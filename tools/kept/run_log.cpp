@@ -1,6 +1,7 @@
 #include "tools/kept/run_log.h"
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "tools/kept/text_file.h"
 
@@ -40,6 +41,7 @@ std::string lineOf(Value run) {
 RunLog::RunLog(std::filesystem::path file, std::string conditions)
     : file_(std::move(file)), conditions_(std::move(conditions)) {
   requireFileOrNothing(file_);
+  checkWritable(file_);
   std::ifstream in(file_);
   int before = 0;
   for (std::string line; std::getline(in, line);) {

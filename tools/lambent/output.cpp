@@ -93,9 +93,9 @@ Value figuresOf(const FrameStats& s) {
 
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
   std::string text = more + '\n' + o.scene + '\n' + readText(o.scene);
-  for (const std::string& option :
-       {std::string(o.trust.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size, o.sky, o.daylight, o.sceneName,
-        std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
+  for (const std::string& option : {std::string(o.trust.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size,
+                                    o.sky, o.daylight, o.sceneName, std::to_string(o.fovDegrees.value_or(0)),
+                                    std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
     text += '\n' + option;
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})

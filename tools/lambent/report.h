@@ -55,7 +55,9 @@ void writeReport(const OutputOptions& output, const std::filesystem::path& folde
 /// Throws InputError where two files are called the same, wherever they lie: results are named by them.
 void refuseNamesakes(const std::vector<std::string>& files);
 
-/// The folder that a report goes to: `out`, or `unnamed` where that is empty; made where it lacks. Throws RunError.
-std::filesystem::path reportFolder(const std::string& out, const std::string& unnamed);
+/// The folder that results go to: --out, or `unnamed` where that is empty; made where it lacks, and nothing is written
+/// through links in it. Throws RunError, and InputError where --json may have the name of a result there: none of them
+/// ends in .json.
+std::filesystem::path reportFolder(const OutputOptions& output, const std::string& unnamed);
 
 } // namespace lambent

@@ -129,7 +129,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, const f
   refuseGlossy(opened->settings);
   if (!opened->shot) throw InputError(file, "not a shot (a .json file)");
   say(*opened, options.output.quiet);
-  checkStabilityResults(options.output.json, folder, nameOf(file));
+  checkStabilityResults(folder, nameOf(file));
 
   TrackedPixels tracked = trackedPixels(*opened->shot, options.grid);
   const CameraView camera = opened->at(0).camera;
@@ -222,7 +222,7 @@ void measureStill(const StabilityOptions& options, const std::string& file, cons
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) techniqueByName(name); // or a guess at what was meant
   refuseNamesakes(options.shots);
-  const fs::path folder = reportFolder(options.output.out, "out/stability");
+  const fs::path folder = reportFolder(options.output, "out/stability");
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
   for (const std::string& file : options.shots) {

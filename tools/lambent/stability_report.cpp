@@ -200,13 +200,10 @@ std::string stabilityRankings(const std::vector<ShotRun>& shots) {
 
 } // namespace
 
-void checkStabilityResults(const std::string& json, const fs::path& folder, const std::string& shot) {
+void checkStabilityResults(const fs::path& folder, const std::string& shot) {
   for (const std::string& name : {std::string("stability.csv"), std::string("stability.md"), "series-" + shot + ".csv",
-                                  "series-" + shot + ".svg", "marked-" + shot + ".png"}) {
+                                  "series-" + shot + ".svg", "marked-" + shot + ".png"})
     checkWritable(folder / name);
-    if (!json.empty() && sameFile(folder / name, json))
-      throw InputError("--json " + json, "the report writes this file itself (name another)");
-  }
 }
 
 void writeStabilityReport(const OutputOptions& output, const fs::path& folder, const std::vector<ShotRun>& shots,

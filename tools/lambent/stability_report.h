@@ -39,9 +39,8 @@ struct ShotRun {
   std::vector<TechniqueRun> techniques;
 };
 
-/// Before measuring: throws where a file that the report writes for a shot of this name is read, is that of the
-/// figures (`json`), or cannot be written.
-void checkStabilityResults(const std::string& json, const std::filesystem::path& folder, const std::string& shot);
+/// Before measuring: throws where a file that the report writes for a shot of this name is read, or cannot be written.
+void checkStabilityResults(const std::filesystem::path& folder, const std::string& shot);
 
 /// stability.csv, stability.md (tables, rankings) and of each shot series-SHOT.csv and of its marked pixels a picture
 /// and plots, each in one step.

@@ -1,6 +1,7 @@
 #include "tools/lambent/sweep.h"
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "engine/core/progress.h"
 #include "gi/measure/stability.h"
 #include "gi/plan/techniques.h"
@@ -34,7 +35,9 @@ class SceneSweep {
         opened_, study_.launch,
         format("%d %d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow, study_.launch.threads));
     out_.pictures = folder_ / ("pictures-" + name_ + "-" + conditions_); // not beside another program's
-    reportFolder(out_.pictures.string(), {});
+    makeFolder(out_.pictures);
+    refuseLinksIn(out_.pictures);
+    for (const char* name : {"index.html", "points.csv"}) checkWritable(folder_ / name); // before the work
   }
 
   SweptScene run() {

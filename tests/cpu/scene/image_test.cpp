@@ -146,7 +146,7 @@ TEST(WriteAtomically, ReplacesNothingThatIsKept) {
   std::filesystem::create_symlink("texture.png", folder / "link.png");
   keepFromReplacing(folder / "link.png");
   for (const auto& file : {folder / "texture.png", folder / "link.png", folder / "." / "texture.png"})
-    EXPECT_THROW(writePng(file, Image8{1, 1, {1, 2, 3}}), RunError) << file;
+    EXPECT_THROW(writePng(file, Image8{1, 1, {1, 2, 3}}), InputError) << file;
   EXPECT_EQ(readBytes(folder / "texture.png"), "old");
   writePng(folder / "other.png", Image8{1, 1, {1, 2, 3}});
 }
@@ -184,7 +184,9 @@ TEST(WriteAtomically, WritesThroughNoLinkInAFolderOfResults) {
   fs::create_directory_symlink("results", folder / "again");
   refuseLinksIn(folder / "results");
   for (const char* name : {"results/000000.png", "again/000000.png"})
-    EXPECT_NE(messageOf<RunError>([&] { writePng(folder / name, Image8{1, 1, {1, 2, 3}}); }).find("it is a link"),
+    EXPECT_NE(inputErrorOf([&] {
+                writePng(folder / name, Image8{1, 1, {1, 2, 3}});
+              }).find("it is a link"),
               std::string::npos);
   EXPECT_EQ(readBytes(folder / "outside.png"), "old");
   writePng(folder / "again/000001.png", Image8{1, 1, {1, 2, 3}});
