@@ -3,7 +3,6 @@
 #include "tests/cpu/scene/support.h"
 
 #include <algorithm>
-#include <random>
 
 namespace lambent::test::camera_test {
 
@@ -138,46 +137,48 @@ TEST(DefaultView, RoomsAreSeenFromInsideAtEyeHeightAlongTheLongerAxis) {
   expectNear(-vec3(view.worldFromView[2]), {1, 0, 0});
 }
 
-/// Two shells about the same middle, one around the other, of many small triangles. `mixed`: in no order.
-GltfBuilder shells(bool outerFirst, int cells = 8, bool mixed = false) {
+/// Shells of 10 x 4 x 6 m times each scale about the same middle, of many small triangles; in this order.
+GltfBuilder shells(const std::vector<float>& scales, int cells = 8) {
   GltfBuilder b;
   std::vector<vec3> corners;
-  std::vector<uvec3> triangles;
-  for (const bool outer : {outerFirst, !outerFirst})
-    for (int side = 0; side < 6; ++side)
-      for (int i = 0; i < cells * cells; ++i) {
-        const auto corner = [&](int u, int v) {
-          vec3 p(0);
-          p[side / 2] = side % 2 ? 1 : -1;
-          p[(side / 2 + 1) % 3] = 2 * float(i % cells + u) / float(cells) - 1;
-          p[(side / 2 + 2) % 3] = 2 * float(i / cells + v) / float(cells) - 1;
-          return p * vec3(5, 2, 3) * (outer ? 1.25f : 1.0f);
-        };
-        const auto first = uint32_t(corners.size());
-        for (const vec3& p : {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}) corners.push_back(p);
-        for (const uvec3& t : {uvec3(0, 1, 2), uvec3(0, 2, 3)})
-          triangles.push_back(first + (side % 2 ? uvec3(t.x, t.z, t.y) : t));
-      }
-  if (mixed) std::ranges::shuffle(triangles, std::minstd_rand(1));
-  const int positions = b.positions(corners);
-  const int indices = b.accessor(b.view(triangles), 5125, "SCALAR", 3 * triangles.size());
-  b.addMeshNode({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+  for (int side = 0; side < 6; ++side)
+    for (int i = 0; i < cells * cells; ++i) {
+      const auto corner = [&](int u, int v) {
+        vec3 p(0);
+        p[side / 2] = side % 2 ? 1 : -1;
+        p[(side / 2 + 1) % 3] = 2 * float(i % cells + u) / float(cells) - 1;
+        p[(side / 2 + 2) % 3] = 2 * float(i / cells + v) / float(cells) - 1;
+        return p * vec3(5, 2, 3);
+      };
+      const vec3 p00 = corner(0, 0), p10 = corner(1, 0), p11 = corner(1, 1), p01 = corner(0, 1);
+      if (side % 2)
+        corners.insert(corners.end(), {p00, p11, p10, p00, p01, p11});
+      else
+        corners.insert(corners.end(), {p00, p10, p11, p00, p11, p01});
+    }
+  const int mesh = b.push("meshes", {{"primitives", {{{"attributes", {{"POSITION", b.positions(corners)}}}}}}});
+  for (const float scale : scales) b.addRoot({{"mesh", mesh}, {"scale", {scale, scale, scale}}});
   return b;
 }
 
 TEST(DefaultView, MeetsWhatIsNearestWhereverItStandsInTheFile) {
   TemporaryFolder folder;
-  const CameraView near = defaultView(shells(false).load(folder)), far = defaultView(shells(true).load(folder));
+  const CameraView near = defaultView(shells({1, 1.25f}).load(folder)),
+                   far = defaultView(shells({1.25f, 1}).load(folder));
   EXPECT_EQ(near.worldFromView, far.worldFromView);
   EXPECT_LT(std::abs(near.position().x), 5) << "inside the inner one";
   EXPECT_GT(std::abs(near.position().x), 3);
 }
 
-/// Triangles in no order have boxes that every look may meet: more than are kept at once.
-TEST(DefaultView, IsTheSameWhereAllMayBeMet) {
+/// Those behind one another may be met by every look where the nearest comes last: more than are kept at once.
+TEST(DefaultView, IsTheSameOfMoreThanAreKeptAtOnce) {
   TemporaryFolder folder;
-  const CameraView mixed = defaultView(shells(true, 60, true).load(folder));
-  EXPECT_EQ(mixed.worldFromView, defaultView(shells(true, 60).load(folder)).worldFromView);
+  std::vector<float> scales;
+  for (int i = 0; i < 24; ++i) scales.push_back(1 + 0.01f * float(i));
+  const CameraView near = defaultView(shells(scales, 60).load(folder));
+  std::ranges::reverse(scales);
+  EXPECT_EQ(defaultView(shells(scales, 60).load(folder)).worldFromView, near.worldFromView);
+  EXPECT_LT(std::abs(near.position().x), 5);
 }
 
 TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {
