@@ -77,20 +77,52 @@ TEST_F(RecordingFolderTest, KeepsPicturesOfAnotherFormat) {
 TEST_F(RecordingFolderTest, ReplacesNothingThatNoRecordingWrote) {
   mark_.reset();
   const auto refusal = [&](const char* format) {
-    return inputErrorOf([&] { RecordingFolder(folder_.path(), "these", format, {"frames.csv"}); });
+    return inputErrorOf([&] { RecordingFolder(folder_.path(), "these", format, {13, {"frames.csv"}}); });
   };
   for (const char* name : {"frames.csv", "000012.png", "recording.json"}) {
     writeBytes(folder_ / name, "{}");
     EXPECT_NE(refusal("png").find("was not recorded here"), std::string::npos) << name;
     fs::remove(folder_ / name);
   }
-  for (const char* name : {"notes.csv", "000012.exr", "12.png"}) writeBytes(folder_ / name, "x");
-  RecordingFolder(folder_.path(), "these", "none", {"frames.csv"}).write(0);
+  for (const char* name : {"notes.csv", "000012.exr", "12.png", "000013.png"}) writeBytes(folder_ / name, "x");
+  RecordingFolder(folder_.path(), "these", "none", {0, {"frames.csv"}}).write(0);
   writeBytes(folder_ / "frames.csv", "x");
-  EXPECT_NO_THROW(RecordingFolder(folder_.path(), "others", "png", {"frames.csv"}));
+  EXPECT_NO_THROW(RecordingFolder(folder_.path(), "others", "png", {13, {"frames.csv"}}));
   EXPECT_EQ(RecordingFolder(folder_.path(), "others", "png").kept(), 0) << "of no pictures";
   fs::create_symlink("elsewhere", folder_ / "000001.png");
   EXPECT_NE(refusal("png").find("is a link"), std::string::npos);
+}
+
+/// A folder that recordings know is not theirs: what they wrote in it is.
+TEST_F(RecordingFolderTest, ReplacesInAKnownFolderWhatRecordingsWrote) {
+  const std::vector<std::string> log = {"frames.csv"}, more = {"frames.csv", "frames-ir.csv", "contact-sheet.png"};
+  const auto refused = [&](const char* name, const char* format, const std::vector<std::string>& names) {
+    writeBytes(folder_ / name, "mine");
+    bool thrown = false;
+    try {
+      RecordingFolder(folder_.path(), "these", format, {10, names});
+    } catch (const InputError&) {
+      thrown = true;
+    }
+    fs::remove(folder_ / name);
+    return thrown;
+  };
+  mark_.reset();
+  RecordingFolder(folder_.path(), "these", "none", {10, log}).write(0);
+  EXPECT_FALSE(refused("frames.csv", "png", log));
+  EXPECT_TRUE(refused("000000.png", "png", log)) << "no pictures were written";
+  EXPECT_TRUE(refused("frames-ir.csv", "png", more));
+  RecordingFolder(folder_.path(), "these", "png", {10, log}).write(4);
+  EXPECT_FALSE(refused("000003.png", "png", log));
+  EXPECT_FALSE(refused("000004.png", "png", log)) << "a kill may have come before its count";
+  EXPECT_TRUE(refused("000005.png", "png", log));
+  EXPECT_FALSE(refused("000010.png", "png", log)) << "is not written";
+  EXPECT_TRUE(refused("000002.exr", "exr", log));
+  RecordingFolder(folder_.path(), "these", "none", {10, more}).write(0);
+  EXPECT_FALSE(refused("contact-sheet.png", "png", more));
+  EXPECT_FALSE(refused("000003.png", "png", log)) << "the pictures' mark stays";
+  RecordingFolder(folder_.path(), "these", "png", {2, log}).end(2);
+  EXPECT_TRUE(refused("000003.png", "png", log)) << "the longer one's rest is gone";
 }
 
 TEST_F(RecordingFolderTest, WaitsForNoPipe) {

@@ -46,27 +46,36 @@ std::vector<fs::path> tornPictures(const fs::path& folder, const std::string& fo
 }
 } // namespace
 
-RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::string format,
-                                 const std::vector<std::string>& own)
+RecordingFolder::RecordingFolder(fs::path folder, std::string conditions, std::string format, RecordedFiles own)
     : folder_(std::move(folder)), file_(folder_ / "recording.json"), alone_(folder_),
       conditions_(std::move(conditions)), format_(std::move(format)) {
   if (!alone_.held()) throw RunError(folder_.string() + ": another program records here (--out names another folder)");
   requireFileOrNothing(file_);
   const Value mark = Value::parsed(readText(file_));
-  known_ = mark.has("conditions");
-  std::error_code none;
-  for (fs::directory_iterator at(folder_, none), end; !none && at != end; at.increment(none)) {
-    const std::string name = at->path().filename().string();
-    if (name != file_.filename() && std::ranges::count(own, name) == 0 && !frameOf(name, format_)) continue;
-    requireFileOrNothing(at->path());
-    if (!known_)
-      throw InputError(at->path().string(),
-                       "was not recorded here, and would be replaced (--out names another folder)");
-  }
   for (const char* each : {"png", "exr"}) {
     const bool last = mark.has("format") && mark["format"].text() == each;
     before_[each] = std::max(last ? countIn(mark, "frames") : 0, countIn(mark, before(each)));
   }
+  const bool known = mark.has("conditions");
+  if (known) names_.insert(file_.filename().string());
+  if (known && mark.has("files"))
+    for (const Value& name : mark["files"].items()) names_.insert(name.text());
+  else if (known)
+    names_.insert(own.names.begin(), own.names.end()); // a mark of before there were such lists
+  const bool same = known && mark.has("format") && mark["format"].text() == format_;
+  const int written = format_ == "none" ? 0 : before_[format_] + same; // and one that a kill came before the count of
+  own.names.push_back(file_.filename().string());
+  std::error_code none;
+  for (fs::directory_iterator at(folder_, none), end; !none && at != end; at.increment(none)) {
+    const std::string name = at->path().filename().string();
+    const std::optional<int> frame = frameOf(name, format_);
+    if (std::ranges::count(own.names, name) == 0 && !(frame && *frame < own.pictures)) continue;
+    requireFileOrNothing(at->path());
+    if (frame ? *frame >= written : !names_.contains(name))
+      throw InputError(at->path().string(),
+                       "was not recorded here, and would be replaced (--out names another folder)");
+  }
+  names_.insert(own.names.begin(), own.names.end());
   removeLeftovers(file_);
   for (const fs::path& picture : tornPictures(folder_, format_)) removeLeftovers(picture);
 }
@@ -89,9 +98,11 @@ int RecordingFolder::kept() const {
 }
 
 void RecordingFolder::write(int frames) const {
-  if (format_ == "none" && known_) return; // the pictures' mark stays
   Value mark = Value::of("conditions", conditions_, "format", format_, "frames", frames);
   for (const auto& [format, pictures] : before_) mark[before(format)] = pictures;
+  if (const Value last = Value::parsed(readText(file_)); format_ == "none" && last.has("conditions"))
+    mark = last; // the pictures' own stays
+  mark["files"] = std::vector<std::string>(names_.begin(), names_.end());
   writeText(file_, mark.json(-1) + "\n");
 }
 

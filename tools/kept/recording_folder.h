@@ -5,19 +5,24 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace lambent {
 
-/// Its state is in recording.json.
+/// What a recording writes besides its mark.
+struct RecordedFiles {
+  int pictures = 0;               // numbers below this
+  std::vector<std::string> names; // of what else
+};
+
+/// Its state is in recording.json: which pictures and other files recordings wrote, and how many pictures are whole.
 class RecordingFolder {
  public:
-  /// `format`: "png" or "exr"; "none" where no pictures are written. `own`: names of what else is. Throws RunError
-  /// while another program records into the folder; InputError where files lie there by these names that no recording
-  /// wrote, or what is no file.
-  RecordingFolder(std::filesystem::path folder, std::string conditions, std::string format,
-                  const std::vector<std::string>& own = {});
+  /// `format`: "png" or "exr"; "none" where no pictures are written. Throws RunError while another program records into
+  /// the folder; InputError where what would be replaced was written by no recording, or is no file.
+  RecordingFolder(std::filesystem::path folder, std::string conditions, std::string format, RecordedFiles own = {});
 
   /// Whether a file is named as a frame's picture is.
   static bool isNamedAsPicture(const std::filesystem::path& file);
@@ -34,7 +39,7 @@ class RecordingFolder {
   const std::filesystem::path folder_, file_;
   const FolderLock alone_;
   const std::string conditions_, format_;
-  bool known_ = false;                // it is a recording's
+  std::set<std::string> names_;       // that recordings wrote, this one included
   std::map<std::string, int> before_; // pictures of each format that recordings before it may have left
 };
 

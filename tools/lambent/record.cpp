@@ -242,7 +242,7 @@ void record(const RecordOptions& options) {
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();
   refuseLosses(options, opened->scene, folder);
   RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format,
-                       ownNames(options));
+                       {total, ownNames(options)});
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
   if (kept == 0) mark.write(0);
   GlContext context = GlContext::headless();
