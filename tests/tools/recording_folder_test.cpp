@@ -121,6 +121,7 @@ TEST_F(RecordingFolderTest, ReplacesInAKnownFolderWhatRecordingsWrote) {
   RecordingFolder(folder_.path(), "these", "none", {10, more}).write(0);
   EXPECT_FALSE(refused("contact-sheet.png", "png", more));
   EXPECT_FALSE(refused("000003.png", "png", log)) << "the pictures' mark stays";
+  EXPECT_EQ(RecordingFolder(folder_.path(), "these", "png").kept(), 4);
   RecordingFolder(folder_.path(), "these", "png", {2, log}).end(2);
   EXPECT_TRUE(refused("000003.png", "png", log)) << "the longer one's rest is gone";
 }
