@@ -7,6 +7,7 @@
 #include <chrono>
 #include <climits>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <random>
 #include <set>
@@ -32,23 +33,6 @@ struct TemporaryName {
   }
 };
 
-/// What a link leads to, whether it is there or not: that is written, and the link stays one. Throws RunError for links
-/// that lead to one another.
-fs::path followed(fs::path file) {
-  constexpr int kMostLinks = 40; // as Linux follows
-  std::error_code none;
-  if (fs::exists(file, none)) {
-    const fs::path there = fs::canonical(file, none); // has none where it is a pipe of the shell's
-    return there.empty() ? file : there;
-  }
-  const std::string named = file.string();
-  for (int i = 0; fs::is_symlink(file, none); ++i) {
-    if (i == kMostLinks) throw RunError(named + ": cannot be written: its links lead to one another");
-    file = file.parent_path() / fs::read_symlink(file, none);
-  }
-  return file;
-}
-
 /// Made by this program alone, and locked while it lives: a lock that can be had is that of a program that was killed.
 class Temporary {
  public:
@@ -73,6 +57,15 @@ bool abandoned(const fs::path& temporary) {
   return free;
 }
 
+fs::path folderOf(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
+
+/// A file's or folder's, without links. By place, not by what lies there: a rename leaves what else leads to that
+/// alone.
+fs::path placeOf(const fs::path& file) {
+  std::error_code none;
+  return fs::weakly_canonical(fs::absolute(file, none), none);
+}
+
 /// Places of files or folders, for all of the program.
 class Places {
  public:
@@ -85,14 +78,16 @@ class Places {
     const std::lock_guard lock(mutex_);
     return !places_.empty() && places_.contains(placeOf(file));
   }
-
- private:
-  /// Without links. By place, not by what lies there: a rename leaves what else leads to that alone.
-  static fs::path placeOf(const fs::path& file) {
-    std::error_code none;
-    return fs::weakly_canonical(fs::absolute(file, none), none);
+  /// Whether it lies in one of them, or below.
+  bool areAbove(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    if (places_.empty()) return false;
+    for (fs::path at = placeOf(folderOf(file)); at.has_relative_path(); at = at.parent_path())
+      if (places_.contains(at)) return true;
+    return false;
   }
 
+ private:
   std::mutex mutex_;
   std::set<fs::path> places_;
 };
@@ -109,7 +104,78 @@ Places& foldersWithoutLinks() {
   return folders;
 }
 
-fs::path folderOf(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
+/// Throws InputError where a file of a folder of results would be written through a link.
+void refuseLinks(const fs::path& named) {
+  std::error_code none;
+  for (fs::path at = named; at.has_filename(); at = at.parent_path())
+    if (fs::is_symlink(at, none) && foldersWithoutLinks().areAbove(at))
+      throw InputError(named.string(), "is not written: " + (at == named ? "it" : at.string()) +
+                                           " is a link (remove it, or name another folder)");
+}
+
+/// What this program wrote into folders whose other files it does not replace.
+class OwnResults {
+ public:
+  void begin(const fs::path& folder) {
+    const std::lock_guard lock(mutex_);
+    names_[placeOf(folder)] = listed(folder);
+  }
+
+  /// Whether the folder is one of these, and holds a file by that name that is not in its list.
+  bool wouldLose(const fs::path& file) {
+    std::error_code none;
+    const std::lock_guard lock(mutex_);
+    if (names_.empty() || !fs::exists(fs::symlink_status(file, none))) return false;
+    const auto found = names_.find(placeOf(folderOf(file)));
+    return found != names_.end() && !found->second.contains(file.filename().string());
+  }
+
+  /// In one piece, so that two programs may list theirs at once.
+  void add(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    if (names_.empty()) return;
+    const std::string name = file.filename().string();
+    const auto found = names_.find(placeOf(folderOf(file)));
+    if (found == names_.end() || !found->second.insert(name).second) return;
+    const fs::path list = folderOf(file) / kList;
+    const int descriptor =
+        open(list.c_str(), O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    const Unbroken whole;
+    try {
+      if (descriptor < 0) throw std::system_error(errno, std::generic_category());
+      appendAll(descriptor, "\n" + name); // not behind half a line
+    } catch (const std::system_error& e) {
+      if (descriptor >= 0) close(descriptor);
+      found->second.erase(name);
+      throw RunError(list.string() + ": cannot be written: " + e.code().message());
+    }
+    close(descriptor);
+  }
+
+ private:
+  static constexpr const char* kList = ".lambent-results";
+
+  static std::set<std::string> listed(const fs::path& folder) {
+    const fs::path list = folder / kList;
+    std::error_code none;
+    const fs::file_status status = fs::symlink_status(list, none);
+    if (fs::exists(status) && !fs::is_regular_file(status)) throw InputError(list.string(), "is not a file");
+    std::ifstream in(list);
+    std::set<std::string> names;
+    for (std::string line; std::getline(in, line);)
+      if (!line.empty() && line.size() <= NAME_MAX) names.insert(line);
+    return names;
+  }
+
+  std::mutex mutex_;
+  std::map<fs::path, std::set<std::string>> names_;
+};
+
+/// See replaceOnlyOwnIn.
+OwnResults& ownResults() {
+  static OwnResults results;
+  return results;
+}
 
 /// Keeps a pipe open for as long as the program runs, so that its reader is not at its end before something is written.
 /// Waits for a reader for a second; throws RunError where there is none by then.
@@ -140,9 +206,10 @@ void makeFolder(const fs::path& folder) {
 
 void checkWritable(const fs::path& named) {
   std::error_code none;
-  if (fs::is_symlink(named, none) && foldersWithoutLinks().hold(folderOf(named)))
-    throw InputError(named.string(), "is not written: it is a link (remove it, or name another folder)");
-  const fs::path file = followed(named);
+  refuseLinks(named);
+  if (ownResults().wouldLose(named))
+    throw InputError(named.string(), "is not replaced: no result that was written here (name another folder)");
+  const fs::path file = leadsTo(named);
   const fs::path folder = folderOf(file);
   const auto refuse = [&](const std::string& why) { throw RunError(named.string() + ": cannot be written: " + why); };
   if (file.filename().string().size() > NAME_MAX)
@@ -159,7 +226,7 @@ void checkWritable(const fs::path& named) {
 bool sameFile(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
-  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(followed(file)), none); };
+  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(leadsTo(file)), none); };
   return !a.empty() && !b.empty() && !there(a).empty() && there(a) == there(b);
 }
 
@@ -167,10 +234,32 @@ void keepFromReplacing(const fs::path& file) { keptFiles().add(file); }
 
 void refuseLinksIn(const fs::path& folder) { foldersWithoutLinks().add(folder); }
 
+void replaceOnlyOwnIn(const fs::path& folder) {
+  refuseLinksIn(folder);
+  ownResults().begin(folder);
+}
+
+void listAsOwn(const fs::path& file) { ownResults().add(file); }
+
+fs::path leadsTo(fs::path file) {
+  constexpr int kMostLinks = 40; // as Linux follows
+  std::error_code none;
+  if (fs::exists(file, none)) {
+    const fs::path there = fs::canonical(file, none); // has none where it is a pipe of the shell's
+    return there.empty() ? file : there;
+  }
+  const std::string named = file.string();
+  for (int i = 0; fs::is_symlink(file, none); ++i) {
+    if (i == kMostLinks) throw RunError(named + ": cannot be written: its links lead to one another");
+    file = file.parent_path() / fs::read_symlink(file, none);
+  }
+  return file;
+}
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code ignored;
   checkWritable(named);
-  const fs::path file = foldersWithoutLinks().hold(folderOf(named)) ? named : followed(named);
+  const fs::path file = foldersWithoutLinks().areAbove(named) ? named : leadsTo(named);
   if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
@@ -180,6 +269,7 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   const Temporary held(temporary, file);
   try {
     write(temporary);
+    listAsOwn(file); // before it is there: a kill between them loses nothing
     fs::rename(temporary, file);
   } catch (const fs::filesystem_error& e) {
     fs::remove(temporary, ignored);
@@ -262,7 +352,7 @@ fs::path temporaryFor(const fs::path& file) {
 }
 
 void removeLeftovers(const fs::path& named) {
-  const fs::path file = followed(named);
+  const fs::path file = leadsTo(named);
   const auto [begin, end] = TemporaryName(file);
   std::error_code ignored;
   for (const fs::directory_entry& e :

@@ -23,9 +23,20 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 /// files of a report have many names, and none of them may cost a scene its texture. Any thread.
 void keepFromReplacing(const std::filesystem::path& file);
 
-/// Has checkWritable refuse what is written through a link that lies in this folder: names of what goes there are the
-/// program's, and nobody meant what they lead to. Any thread.
+/// Has checkWritable refuse what is written through a link that lies in this folder or below: names of what goes there
+/// are the program's, and nobody meant what they lead to. Any thread.
 void refuseLinksIn(const std::filesystem::path& folder);
+
+/// The same, and has it refuse to replace what lies in this folder and is not in its list of what this program wrote
+/// there, .lambent-results. Throws InputError where that is no file. Any thread.
+void replaceOnlyOwnIn(const std::filesystem::path& folder);
+/// Takes a file into that list before it is written by another way than writeAtomically; nothing in other folders.
+/// Throws RunError.
+void listAsOwn(const std::filesystem::path& file);
+
+/// What a link leads to, whether it is there or not; other files themselves. Throws RunError for links that lead to one
+/// another.
+std::filesystem::path leadsTo(std::filesystem::path file);
 
 /// Calls write(temporary) and renames the temporary to `file`; removes it and rethrows on failure. Throws as
 /// checkWritable() does.

@@ -17,8 +17,14 @@ namespace {
 constexpr size_t kMostBoxes = 1 << 15; // that a ray counts: far more than is let pass, and little memory
 constexpr size_t kTries = 16;          // to begin where a triangle is not cut out
 constexpr int kSteps = 3;              // of a walk
+constexpr size_t kSent = 16;           // rays from each place that is seen
+
+/// Where walks begin: in front of surfaces, drawn by their area; at the camera. What is small beside a scene, but is
+/// what one looks at, is found by the second.
+enum Walk { kFromSurfaces, kFromCamera, kWalks };
 
 struct Ray {
+  Walk walk = kFromSurfaces;
   vec3 origin{0}, direction{0}; // unit
   float end = kInfinity;        // distance of the first surface that is not cut out
   vec3 normal{0};               // there; its length is of no account
@@ -60,7 +66,7 @@ bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, co
   });
   const Material& material = assets.materials[p.material];
   return material.alphaMode == AlphaMode::Mask &&
-         baseColourAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric)).w <
+         alphaAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric)) <
              material.alphaCutoff;
 }
 
@@ -202,35 +208,82 @@ std::vector<Ray> firstRays(const Scene& scene, Rng& random) {
 Ray onward(const Ray& ray, Rng& random) {
   const vec3 n = unitOr(ray.normal, -ray.direction);
   Ray next;
+  next.walk = ray.walk;
   next.origin = ray.origin + ray.end * ray.direction;
   next.direction = sampleCosineHemisphere(glm::dot(n, ray.direction) > 0 ? -n : n, random.next2());
   return next;
 }
+
+/// Through the picture that a file is first drawn as.
+std::vector<Ray> cameraRays(const Scene& scene, size_t count) {
+  const std::vector<NamedCamera> cameras = sceneCameras(scene);
+  const CameraView camera = cameras.empty() ? defaultView(scene) : cameras.front().view;
+  std::vector<Ray> rays(count);
+  for (size_t i = 0; i < count; ++i) {
+    const vec3 at = additiveRecurrence3(uint32_t(i), vec3(0));
+    const CameraRay through = cameraRay(camera, at.x, at.y);
+    rays[i].walk = kFromCamera;
+    rays[i].origin = through.origin, rays[i].direction = through.direction;
+  }
+  return rays;
+}
+
+/// As many as wanted of those from the camera, evenly, and all others.
+void keepSome(std::vector<Ray>& rays, size_t wanted) {
+  const auto from = std::ranges::stable_partition(rays, [](const Ray& ray) { return ray.walk != kFromCamera; }).begin();
+  const auto others = size_t(from - rays.begin()), count = rays.size() - others;
+  if (count <= wanted) return;
+  for (size_t i = 0; i < wanted; ++i) rays[others + i] = rays[others + i * count / wanted];
+  rays.resize(others + wanted);
+}
+
+/// Sums over the rays of a walk.
+struct Counted {
+  RayWork work;
+  float most = -1; // of one ray
+  size_t rays = 0;
+
+  void add(const Ray& ray) {
+    ++rays;
+    work.boxes += float(ray.boxes.size()), work.cutOut += float(ray.cutOut.size());
+    if (ray.sum() > most) most = ray.sum(), work.place = ray.origin;
+  }
+  RayWork mean() const {
+    RayWork mean = work;
+    if (rays > 0) mean.boxes /= float(rays), mean.cutOut /= float(rays);
+    return mean;
+  }
+};
 
 } // namespace
 
 RayWork rayWork(const Scene& scene) {
   Rng random(1, Stream::RayWork, 0);
   std::vector<Ray> rays = firstRays(scene, random);
+  const size_t wanted = rays.size();
+  if (wanted > 0) std::ranges::copy(cameraRays(scene, wanted), std::back_inserter(rays));
   Tracing trace(scene);
-  RayWork work;
-  float most = -1;
-  size_t counted = 0;
+  std::array<Counted, kWalks> walks;
   for (int step = 0; step < kSteps && !rays.empty(); ++step) {
     trace(rays);
     std::vector<Ray> next;
+    const auto ends = [](const Ray& ray) { return ray.end < kInfinity && !ray.full; };
+    const auto met =
+        size_t(std::ranges::count_if(rays, [&](const Ray& ray) { return ray.walk == kFromCamera && ends(ray); }));
     for (const Ray& ray : rays) {
-      const bool ended = ray.end < kInfinity && !ray.full;
-      if (ended) next.push_back(onward(ray, random));
-      if (step == 0 && ended) continue; // it leads to where light may be; one that leaves the scene, or is full, counts
-      ++counted;
-      work.boxes += float(ray.boxes.size()), work.cutOut += float(ray.cutOut.size());
-      if (ray.sum() > most) most = ray.sum(), work.place = ray.origin;
+      const bool ended = ends(ray);
+      // A walk's first ray leads to where light may be, unless it leaves the scene or is full. From the camera its
+      // second leads to where lights are put, since they shine on what is seen: many are sent, for few may meet
+      // anything.
+      const bool leads = ray.walk == kFromCamera ? step < 2 : step == 0 && ended;
+      if (!leads) walks[ray.walk].add(ray);
+      const size_t sent = ray.walk == kFromSurfaces ? 1 : step == 0 ? kSent : 1 + 2 * wanted / (1 + met);
+      for (size_t i = 0; ended && i < sent; ++i) next.push_back(onward(ray, random));
     }
+    if (step == 1) keepSome(next, wanted);
     rays = std::move(next);
   }
-  if (counted > 0) work.boxes /= float(counted), work.cutOut /= float(counted);
-  return work;
+  return std::ranges::max(walks[kFromSurfaces].mean(), walks[kFromCamera].mean(), {}, &RayWork::sum);
 }
 
 } // namespace lambent

@@ -42,7 +42,7 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
     if (material.alphaMode != AlphaMode::Mask) continue;
     const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
     const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
-    if (baseColourAt(*data.assets, mesh, material, place).w < material.alphaCutoff) args->valid[i] = 0;
+    if (alphaAt(*data.assets, mesh, material, place) < material.alphaCutoff) args->valid[i] = 0;
   }
 }
 

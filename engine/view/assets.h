@@ -171,5 +171,7 @@ vec4 decodeTexel(const u8vec4& texel, bool srgb);
 /// Bilinear (or nearest) lookup of a material's texture at mesh coordinates (before uvTransform), as linear RGBA.
 /// White when the reference has no image.
 vec4 sampleTexture(const SceneAssets& assets, const TextureRef& ref, vec2 uv);
+/// The last of these alone, to the bit.
+float sampleAlpha(const SceneAssets& assets, const TextureRef& ref, vec2 uv);
 
 } // namespace lambent

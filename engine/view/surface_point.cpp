@@ -15,6 +15,14 @@ vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& m
   return colour;
 }
 
+float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place) {
+  float alpha = material.alpha;
+  if (material.baseColorTexture.image != kNone)
+    alpha *= sampleAlpha(assets, material.baseColorTexture, uvAt(mesh, place, material.baseColorTexture));
+  if (!mesh.colors.empty()) alpha *= place.interpolate(mesh.colors).w;
+  return alpha;
+}
+
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_t primitiveIndex, uint32_t triangle,
                           vec2 barycentric) {
   CHECK_LT(instanceIndex, view.instances.size());

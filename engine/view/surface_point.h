@@ -33,6 +33,8 @@ inline vec2 uvAt(const Mesh& mesh, const TrianglePlace& place, const TextureRef&
 /// the texture.
 vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place,
                   const vec4* mean = nullptr);
+/// The last of these, without a mean: to the bit, and sooner.
+float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place);
 
 /// World space. Both normals are unit and on the front side as glTF defines it (counter-clockwise, turned with a
 /// mirrored instance), unlike a hit's, which face the ray. Zero where the triangle has no area and so no side.

@@ -20,14 +20,17 @@ vec4 decodeTexel(const u8vec4& texel, bool srgb) {
 
 namespace {
 
+/// `i` lies in [-1, 2 size + 1], as texelCoordinate leaves it.
 int wrapped(int i, int size, Wrap wrap) {
   switch (wrap) {
   case Wrap::Repeat:
-    return ((i % size) + size) % size;
-  case Wrap::MirroredRepeat: {
-    const int m = ((i % (2 * size)) + 2 * size) % (2 * size);
-    return m < size ? m : 2 * size - 1 - m;
-  }
+    if (i < 0) return i + size;
+    while (i >= size) i -= size;
+    return i;
+  case Wrap::MirroredRepeat:
+    if (i < 0) i += 2 * size;
+    while (i >= 2 * size) i -= 2 * size;
+    return i < size ? i : 2 * size - 1 - i;
   case Wrap::ClampToEdge:
     break;
   }
@@ -42,22 +45,32 @@ float texelCoordinate(float uv, int size, Wrap wrap) {
   return (uv - 2 * std::floor(0.5f * uv)) * float(size);
 }
 
-} // namespace
-
-vec4 sampleTexture(const SceneAssets& assets, const TextureRef& ref, vec2 uv) {
-  if (ref.image == kNone) return vec4(1);
-  const TextureImage& image = assets.images[ref.image];
+/// What `of` makes of the texels around a place, filtered.
+template <class Of> auto filtered(const TextureImage& image, const TextureRef& ref, vec2 uv, Of of) {
   const vec3 p = ref.uvTransform * vec3(uv, 1);
   const float x = texelCoordinate(p.x, image.width, ref.wrapU), y = texelCoordinate(p.y, image.height, ref.wrapV);
   const auto texel = [&](int i, int j) {
     const size_t column = size_t(wrapped(i, image.width, ref.wrapU)), row = size_t(wrapped(j, image.height, ref.wrapV));
-    return decodeTexel(image.texels[row * size_t(image.width) + column], image.srgb);
+    return of(image.texels[row * size_t(image.width) + column]);
   };
   if (ref.nearest) return texel(int(std::floor(x)), int(std::floor(y)));
   const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
   const int i = int(left), j = int(top);
   const float fx = x - 0.5f - left, fy = y - 0.5f - top;
   return glm::mix(glm::mix(texel(i, j), texel(i + 1, j), fx), glm::mix(texel(i, j + 1), texel(i + 1, j + 1), fx), fy);
+}
+
+} // namespace
+
+vec4 sampleTexture(const SceneAssets& assets, const TextureRef& ref, vec2 uv) {
+  if (ref.image == kNone) return vec4(1);
+  const TextureImage& image = assets.images[ref.image];
+  return filtered(image, ref, uv, [&](const u8vec4& texel) { return decodeTexel(texel, image.srgb); });
+}
+
+float sampleAlpha(const SceneAssets& assets, const TextureRef& ref, vec2 uv) {
+  if (ref.image == kNone) return 1;
+  return filtered(assets.images[ref.image], ref, uv, [](const u8vec4& texel) { return float(texel.w) / 255; });
 }
 
 } // namespace lambent

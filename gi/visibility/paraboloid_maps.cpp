@@ -103,9 +103,11 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   std::span<const MapJob> jobs = in.jobs;
   if (redrawsAll(in)) {
     allocate(in);
-    all.resize(in.poses.size());
-    for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
-    jobs = all;
+    if (!in.jobsAreAll) {
+      all.resize(in.poses.size());
+      for (uint32_t i = 0; i < all.size(); ++i) all[i] = {i, TexelRect::whole(in.resolution)};
+      jobs = all;
+    }
   }
   for (const MapJob& job : jobs) CHECK_LT(job.slot, in.poses.size());
 
@@ -119,8 +121,8 @@ ParaboloidMaps ParaboloidMapPass::run(const ParaboloidMapInputs& in) {
   return {arrays_, resolution_, in.farDistance};
 }
 
-/// A map of which little changed costs the GPU as much as a whole one, and rays next to nothing: of a hall in motion parts
-/// of 1300 maps are 0.2 million rays, and an H100's frame went from 976 to 694 ms.
+/// A map of which little changed costs the GPU as much as a whole one, and rays next to nothing: of a hall in motion
+/// parts of 1300 maps are 0.2 million rays, and an H100's frame went from 976 to 694 ms.
 void ParaboloidMapPass::draw(const ParaboloidMapInputs& in, std::span<const MapJob> jobs, bool partsByRays) {
   if (!maker_.gpu()) return drawRays(in, jobs);
   if (!partsByRays) return drawRaster(in, jobs);

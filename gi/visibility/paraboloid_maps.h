@@ -22,6 +22,7 @@ struct ParaboloidMapInputs {
   float farDistance = 1;             // scene diameter, metres
   int resolution = 128;              // all slots are redrawn when it, farDistance or their number changes
   ShadowMaker maker = ShadowMaker::Auto;
+  bool jobsAreAll = false; // slots without a job have no light, and are left out then too
 };
 
 /// Both makers' maps of one slot, distances in metres, row 0 at v = 0, kInfinity where nothing is met.

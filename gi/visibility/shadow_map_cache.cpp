@@ -27,11 +27,11 @@ ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& sta
                            .resolution = shadow.resolution,
                            .maker = shadow.maker};
   std::vector<MapJob> jobs;
-  if (!in.lights.mayWait) {
-    jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(), world.view.changes.first || old_,
-                      shadow.resolution);
-  } else if (pass_.redrawsAll(maps)) {
+  maps.jobsAreAll = pass_.redrawsAll(maps);
+  if (maps.jobsAreAll || !in.lights.mayWait) {
     schedule_.clear();
+    jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(),
+                      maps.jobsAreAll || world.view.changes.first || old_, shadow.resolution);
   } else {
     jobs = inTurn(in, stats);
   }

@@ -59,6 +59,7 @@ bool RunLog::has(const std::string& key) const {
 
 void RunLog::add(const std::string& key, Value run) {
   run.update(Value::of("key", key, "session", session_, "conditions", conditions_));
+  listAsOwn(file_);
   std::ofstream out(file_, std::ios::app);
   out << (begun_ ? "" : "\n") << lineOf(run) << '\n'; // not behind half a line
   if (!out.flush()) throw RunError(file_.string() + ": cannot be written");

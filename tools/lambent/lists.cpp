@@ -117,7 +117,7 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
                        "no such scene (" + guessText(name, known, "see lambent content --help") + ")");
     chosen.push_back(&*recipe);
   }
-  const std::filesystem::path base = output.out.empty() ? findContentFolder() : std::filesystem::path(output.out);
+  const std::filesystem::path base = resultFolder(output, output.out.empty() ? findContentFolder().string() : "");
   Value j = Value::list();
   for (const ContentRecipe* r : chosen) {
     const GeneratedScene made = r->write(base / r->name);

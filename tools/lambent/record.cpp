@@ -236,7 +236,7 @@ void record(const RecordOptions& options) {
   if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   const std::vector<Settings> settings = settingsOf(options, *opened);
   say(*opened, options.output.quiet);
-  const fs::path folder = reportFolder(options.output, "out/" + nameOf(options.launch.scene));
+  const fs::path folder = resultFolder(options.output, "out/" + nameOf(options.launch.scene));
 
   const int total =
       options.frames > 0 ? std::min(options.frames, opened->shot->frameCount()) : opened->shot->frameCount();

@@ -169,16 +169,24 @@ void refuseNamesakes(const std::vector<std::string>& files) {
         throw InputError(files[i], "is called as " + files[k] + " is (rename one: what is written is named by them)");
 }
 
-fs::path reportFolder(const OutputOptions& output, const std::string& unnamed) {
+fs::path resultFolder(const OutputOptions& output, const std::string& unnamed) {
   const fs::path folder = output.out.empty() ? unnamed : output.out;
   makeFolder(folder);
   refuseLinksIn(folder);
   if (output.json.empty()) return folder;
   checkWritable(output.json);
   std::error_code none;
-  const fs::path json = fs::weakly_canonical(fs::absolute(output.json, none), none);
-  if (json.extension() != ".json" && fs::equivalent(json.parent_path(), folder, none))
-    throw InputError("--json " + output.json, "may be a result's own name: in that folder, call it .json");
+  const fs::path json = fs::weakly_canonical(fs::absolute(leadsTo(output.json), none), none);
+  const fs::path below = json.lexically_relative(fs::canonical(folder, none));
+  if (json.extension() != ".json" && !below.empty() && *below.begin() != "..")
+    throw InputError("--json " + output.json, "may be a result's own name: in that folder, call it NAME.json");
+  return folder;
+}
+
+fs::path reportFolder(const OutputOptions& output, const std::string& unnamed) {
+  const fs::path folder = resultFolder(output, unnamed);
+  replaceOnlyOwnIn(folder);
+  if (!output.json.empty()) checkWritable(output.json);
   return folder;
 }
 

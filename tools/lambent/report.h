@@ -58,6 +58,8 @@ void refuseNamesakes(const std::vector<std::string>& files);
 /// The folder that results go to: --out, or `unnamed` where that is empty; made where it lacks, and nothing is written
 /// through links in it. Throws RunError, and InputError where --json may have the name of a result there: none of them
 /// ends in .json.
+std::filesystem::path resultFolder(const OutputOptions& output, const std::string& unnamed);
+/// The same, and in it only what earlier reports wrote there is replaced.
 std::filesystem::path reportFolder(const OutputOptions& output, const std::string& unnamed);
 
 } // namespace lambent

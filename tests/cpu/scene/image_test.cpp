@@ -3,6 +3,7 @@
 #include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "engine/image/image.h"
+#include "engine/view/surface_point.h"
 #include "tests/cpu/scene/support.h"
 
 #include <bit>
@@ -192,6 +193,45 @@ TEST(WriteAtomically, WritesThroughNoLinkInAFolderOfResults) {
   writePng(folder / "again/000001.png", Image8{1, 1, {1, 2, 3}});
 }
 
+/// Nor below it; a folder of results that is reached by a link is one.
+TEST(WriteAtomically, WritesThroughNoLinkedFolderInAFolderOfResults) {
+  TemporaryFolder folder;
+  fs::create_directory(folder / "outside");
+  fs::create_directory(folder / "results");
+  fs::create_directory_symlink("../outside", folder / "results/door");
+  refuseLinksIn(folder / "results");
+  EXPECT_NE(inputErrorOf([&] { writeAtomically(folder / "results/door/door.bin", "new"); }).find("door is a link"),
+            std::string::npos);
+  EXPECT_TRUE(fs::is_empty(folder / "outside"));
+}
+
+/// What lies in a report's folder and is not its own is somebody's, in this run of the program and in later ones.
+TEST(WriteAtomically, ReplacesOnlyItsOwnInAFolderOfReports) {
+  TemporaryFolder folder;
+  const fs::path report = folder / "report";
+  fs::create_directory(report);
+  writeBytes(report / "mine.csv", "mine");
+  replaceOnlyOwnIn(report);
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_NE(inputErrorOf([&] { checkWritable(report / "mine.csv"); }).find("is not replaced"), std::string::npos);
+    EXPECT_THROW(writeAtomically(report / "mine.csv", "new"), InputError);
+    writeAtomically(report / "own.csv", std::to_string(run));
+    writeAtomically(report / "own.csv", "again " + std::to_string(run));
+    listAsOwn(report / "log.jsonl");
+    writeBytes(report / "log.jsonl", "x");
+    EXPECT_NO_THROW(checkWritable(report / "log.jsonl"));
+    replaceOnlyOwnIn(report); // as the next run of the program does
+  }
+  EXPECT_EQ(readBytes(report / "mine.csv"), "mine");
+  EXPECT_EQ(readBytes(report / "own.csv"), "again 1");
+  EXPECT_EQ(readBytes(report / ".lambent-results"), "\nown.csv\nlog.jsonl") << "each once";
+  writeAtomically(folder / "elsewhere.csv", "x");
+  writeAtomically(folder / "elsewhere.csv", "y");
+  fs::remove(report / ".lambent-results");
+  ASSERT_EQ(mkfifo((report / ".lambent-results").c_str(), 0600), 0);
+  EXPECT_NE(inputErrorOf([&] { replaceOnlyOwnIn(report); }).find("is not a file"), std::string::npos);
+}
+
 TEST(WriteAtomically, APipeNeedsAReaderBeforeTheWork) {
   TemporaryFolder folder;
   const fs::path pipe = folder / "pipe";
@@ -266,6 +306,29 @@ TEST_F(TextureLookup, TransformSrgbAndStrangeCoordinates) {
     EXPECT_TRUE(isFinite(vec3(sampleTexture(assets, ref, {strange, 0.5f}))));
   ref.image = kNone;
   expectColor({0.3f, 0.3f}, vec4(1));
+}
+
+/// Rays ask for the alpha alone.
+TEST_F(TextureLookup, AlphaIsThatOfTheWholeLookup) {
+  Rng random(1, Stream::RayWork, 0);
+  assets.images[0] = {};
+  assets.images[0].width = 5, assets.images[0].height = 3;
+  for (int i = 0; i < 15; ++i) assets.images[0].texels.push_back(u8vec4(255.0f * vec4(random.next3(), random.next())));
+  Mesh mesh;
+  mesh.colors = {vec4(1, 1, 1, 0.3f), vec4(0.9f), vec4(0.7f)};
+  mesh.uv0.resize(3);
+  for (const Wrap wrapU : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge})
+    for (const Wrap wrapV : {Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge})
+      for (int i = 0; i < 200; ++i) {
+        ref.wrapU = wrapU, ref.wrapV = wrapV, ref.nearest = i % 2 == 0;
+        for (vec2& uv : mesh.uv0) uv = 8.0f * (random.next2() - 0.5f);
+        mesh.uv0[0] = vec2(i % 3 - 1, i % 5 - 2); // edges
+        EXPECT_EQ(sampleAlpha(assets, ref, mesh.uv0[0]), sampleTexture(assets, ref, mesh.uv0[0]).w);
+        Material material;
+        material.alpha = 0.8f, material.baseColorTexture = ref;
+        const TrianglePlace place{{0, 1, 2}, 0.5f, 0.25f, 0.25f};
+        EXPECT_EQ(alphaAt(assets, mesh, material, place), baseColourAt(assets, mesh, material, place).w);
+      }
 }
 
 TEST(Pictures, AHeaderAloneAsksForNoMemory) {

@@ -183,6 +183,17 @@ TEST(RayWork, IsTheSameFarOffAndBesideWhatIsFar) {
   EXPECT_NEAR(workOf(beside).sum(), alone, 0.2f * alone);
 }
 
+/// What is small beside the floor it stands on, but is what light is sent on from: by area it would count for nothing.
+TEST(RayWork, CountsWhereLightsArePut) {
+  GltfBuilder b;
+  std::vector<vec3> floor = {{-20, 0, -20}, {-20, 0, 20}, {20, 0, 20}, {-20, 0, -20}, {20, 0, 20}, {20, 0, -20}};
+  b.addRoot({{"mesh", meshOf(b, floor)}});
+  const int box = meshOf(b, sidesFromInside({-0.5f, 1, 0.5f})); // turned inside out
+  for (int i = 0; i < 150; ++i) b.addRoot({{"mesh", box}, {"translation", {0, 1, 0}}});
+  EXPECT_GT(workOf(b).boxes, 100) << "rays begin at a side that is there 150 times";
+  EXPECT_NE(refusalOf(b), "");
+}
+
 /// A tenth of a scene's area decides little, of however many triangles it is.
 TEST(RayWork, PlacesAreDrawnByArea) {
   GltfBuilder b = sheets(30, 0.1f, 0.1f);
