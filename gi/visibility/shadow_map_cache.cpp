@@ -18,7 +18,8 @@ ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& sta
   }
   std::vector<MapPose> poses;
   poses.reserve(in.lights.slots.size());
-  for (const VirtualLight& light : in.lights.slots) poses.push_back(light.pose(world.rays.rayEpsilon()));
+  for (const VirtualLight& light : in.lights.slots) // of none that lives: another pose than it has when it does
+    poses.push_back(light.pose(light.alive ? world.rays.rayEpsilon() : 0));
   std::swap(poses_, poses); // `poses` are those before
   ParaboloidMapInputs maps{.scene = world.gpu,
                            .rays = &world.rays,

@@ -114,6 +114,26 @@ TEST_F(FrameTest, StagesThatTheSceneDoesNotCallForDoNotRun) {
   for (const StageTime& s : dark.stages) EXPECT_FALSE(s.stage == key(StageId::Gather));
 }
 
+/// A floor alone sends light to nothing, and its slots stay empty; a wall that comes is lit as if it had been there.
+TEST_F(FrameTest, SlotsWithoutALightHaveNoMap) {
+  HandScene open;
+  open.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, open.material(vec3(0.7f)));
+  open.lamp({0.5f, 1.5f, 0.2f}, vec3(4));
+  open.camera = cameraAt({0, 1.2f, 2.5f}, {0, 0, -0.5f}, 1.2f, 96, 72);
+  Viewer gi(quick());
+  const FrameStats& stats = gi.run(open.view());
+  EXPECT_EQ(stats.vplsAlive, 0u);
+  EXPECT_EQ(stats.mapsDrawn, 0u);
+  open.quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, open.material(vec3(0.7f)));
+  const double later = meanLuminance(nextFrame(gi, open.view({.first = false}), Buffer::Irradiance));
+  EXPECT_GT(stats.vplsAlive, 100u);
+  EXPECT_EQ(stats.mapsDrawn, stats.vplsAlive);
+  Viewer other(quick());
+  const double fresh = meanLuminance(nextFrame(other, open.view(), Buffer::Irradiance));
+  EXPECT_GT(fresh, 0.01);
+  EXPECT_NEAR(later, fresh, 0.1 * fresh);
+}
+
 TEST_F(FrameTest, MovingObjectsAndLightsStayFinite) {
   Settings settings = quick();
   settings.smc.vpls = settings.smc.points = 256;
