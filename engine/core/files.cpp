@@ -127,14 +127,17 @@ class OwnResults {
     const std::lock_guard lock(mutex_);
     if (names_.empty() || !fs::exists(fs::symlink_status(file, none))) return false;
     const auto found = names_.find(placeOf(folderOf(file)));
-    return found != names_.end() && !found->second.contains(file.filename().string());
+    const std::string name = file.filename().string();
+    if (found == names_.end() || found->second.contains(name)) return false;
+    found->second.merge(listed(folderOf(file))); // another program writes here too
+    return !found->second.contains(name);
   }
 
   /// In one piece, so that two programs may list theirs at once.
   void add(const fs::path& file) {
     const std::lock_guard lock(mutex_);
-    if (names_.empty()) return;
     const std::string name = file.filename().string();
+    if (names_.empty() || name.find('\n') != name.npos) return;
     const auto found = names_.find(placeOf(folderOf(file)));
     if (found == names_.end() || !found->second.insert(name).second) return;
     const fs::path list = folderOf(file) / kList;

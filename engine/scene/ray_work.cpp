@@ -25,18 +25,19 @@ enum Walk { kFromSurfaces, kFromCamera, kWalks };
 
 struct Ray {
   Walk walk = kFromSurfaces;
+  bool leads = false;           // only to where it ends: it keeps no lists, of which there would be too many
   vec3 origin{0}, direction{0}; // unit
   float end = kInfinity;        // distance of the first surface that is not cut out
   vec3 normal{0};               // there; its length is of no account
   std::vector<float> boxes;     // distances at which it enters those of triangles
   std::vector<float> cutOut;    // distances of triangles that it passes
+  size_t entered = 0;           // boxes, those behind its end too
   bool full = false;            // has met so much that it looks no further
 
   void forgetBehindEnd() {
     std::erase_if(boxes, [&](float t) { return t > end; });
     std::erase_if(cutOut, [&](float t) { return t > end; });
   }
-  float sum() const { return float(boxes.size()) + RayWork::kCutOut * float(cutOut.size()); }
 };
 
 /// Where a ray meets a triangle, and the weights of its second and third corner.
@@ -90,11 +91,13 @@ class Tracing {
         for (const vec3& c : corners) box.add(c);
         for (Ray* ray : near)
           if (const std::optional<float> from = entry(box, ray->origin, ray->direction, 0, ray->end)) {
-            ray->boxes.push_back(*from);
+            if (!ray->leads) ray->boxes.push_back(*from);
+            ++ray->entered;
             meet(*ray, block, i, corners);
           }
       }
       for (Ray* ray : near) {
+        if (ray->leads) ray->full = ray->entered >= kMostBoxes;
         if (ray->boxes.size() < kMostBoxes) continue;
         ray->forgetBehindEnd();
         ray->full = ray->boxes.size() >= kMostBoxes / 2;
@@ -110,7 +113,7 @@ class Tracing {
     const float skipped = 0x1p-16f * std::max(longest, maxComponent(glm::abs(ray.origin))); // what it begins on
     if (!met || !(met->t > skipped && met->t < ray.end)) return;
     if (isCutOut(assets_, block.mesh, triangle, met->barycentric)) {
-      ray.cutOut.push_back(met->t);
+      if (!ray.leads) ray.cutOut.push_back(met->t);
     } else {
       ray.end = met->t, ray.normal = met->normal;
     }
@@ -167,14 +170,9 @@ std::vector<double> areasOfInstances(const Scene& scene) {
 }
 
 /// From in front of triangles, drawn by their area: nobody looks into closed things. From where they are cut out, none.
-std::vector<Ray> firstRays(const Scene& scene, Rng& random) {
-  const std::vector<double> areas = areasOfInstances(scene);
-  uint64_t triangles = 0;
+std::vector<Ray> surfaceRays(const Scene& scene, const std::vector<double>& areas, size_t wanted, Rng& random) {
   double all = 0;
   for (const double area : areas) all += area;
-  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { triangles += mesh.triangles.size(); });
-  if (!(all > 0)) return {}; // nothing that light could fall on
-  const auto wanted = size_t(std::clamp<uint64_t>((uint64_t(1) << 28) / triangles, 64, 256));
   std::vector<double> drawn(kTries * wanted);
   for (double& d : drawn) d = all * double(random.next());
   std::ranges::sort(drawn);
@@ -204,7 +202,7 @@ std::vector<Ray> firstRays(const Scene& scene, Rng& random) {
   return some;
 }
 
-/// From where a ray ended, back into the space that it came through.
+/// From where a ray ended, back into the space that it came through. It does not lead.
 Ray onward(const Ray& ray, Rng& random) {
   const vec3 n = unitOr(ray.normal, -ray.direction);
   Ray next;
@@ -222,7 +220,7 @@ std::vector<Ray> cameraRays(const Scene& scene, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     const vec3 at = additiveRecurrence3(uint32_t(i), vec3(0));
     const CameraRay through = cameraRay(camera, at.x, at.y);
-    rays[i].walk = kFromCamera;
+    rays[i].walk = kFromCamera, rays[i].leads = true;
     rays[i].origin = through.origin, rays[i].direction = through.direction;
   }
   return rays;
@@ -245,8 +243,9 @@ struct Counted {
 
   void add(const Ray& ray) {
     ++rays;
-    work.boxes += float(ray.boxes.size()), work.cutOut += float(ray.cutOut.size());
-    if (ray.sum() > most) most = ray.sum(), work.place = ray.origin;
+    const auto boxes = float(ray.leads ? ray.entered : ray.boxes.size()), cutOut = float(ray.cutOut.size());
+    work.boxes += boxes, work.cutOut += cutOut;
+    if (const float sum = boxes + RayWork::kCutOut * cutOut; sum > most) most = sum, work.place = ray.origin;
   }
   RayWork mean() const {
     RayWork mean = work;
@@ -258,10 +257,14 @@ struct Counted {
 } // namespace
 
 RayWork rayWork(const Scene& scene) {
+  const std::vector<double> areas = areasOfInstances(scene);
+  if (std::ranges::none_of(areas, [](double area) { return area > 0; })) return {}; // nothing for light to fall on
+  uint64_t triangles = 0;
+  forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { triangles += mesh.triangles.size(); });
+  const auto wanted = size_t(std::clamp<uint64_t>((uint64_t(1) << 28) / triangles, 64, 256));
   Rng random(1, Stream::RayWork, 0);
-  std::vector<Ray> rays = firstRays(scene, random);
-  const size_t wanted = rays.size();
-  if (wanted > 0) std::ranges::copy(cameraRays(scene, wanted), std::back_inserter(rays));
+  std::vector<Ray> rays = surfaceRays(scene, areas, wanted, random);
+  std::ranges::move(cameraRays(scene, wanted), std::back_inserter(rays));
   Tracing trace(scene);
   std::array<Counted, kWalks> walks;
   for (int step = 0; step < kSteps && !rays.empty(); ++step) {
@@ -271,14 +274,17 @@ RayWork rayWork(const Scene& scene) {
     const auto met =
         size_t(std::ranges::count_if(rays, [&](const Ray& ray) { return ray.walk == kFromCamera && ends(ray); }));
     for (const Ray& ray : rays) {
-      const bool ended = ends(ray);
       // A walk's first ray leads to where light may be, unless it leaves the scene or is full. From the camera its
       // second leads to where lights are put, since they shine on what is seen: many are sent, for few may meet
       // anything.
-      const bool leads = ray.walk == kFromCamera ? step < 2 : step == 0 && ended;
-      if (!leads) walks[ray.walk].add(ray);
-      const size_t sent = ray.walk == kFromSurfaces ? 1 : step == 0 ? kSent : 1 + 2 * wanted / (1 + met);
-      for (size_t i = 0; ended && i < sent; ++i) next.push_back(onward(ray, random));
+      const bool fromCamera = ray.walk == kFromCamera;
+      if (ray.full || (fromCamera ? step == 2 : step > 0 || !ends(ray))) walks[ray.walk].add(ray);
+      if (!ends(ray)) continue;
+      const size_t sent = !fromCamera ? 1 : step == 0 ? kSent : 1 + 2 * wanted / (1 + met);
+      for (size_t i = 0; i < sent; ++i) {
+        next.push_back(onward(ray, random));
+        next.back().leads = fromCamera && step == 0;
+      }
     }
     if (step == 1) keepSome(next, wanted);
     rays = std::move(next);

@@ -20,7 +20,7 @@ vec4 decodeTexel(const u8vec4& texel, bool srgb) {
 
 namespace {
 
-/// `i` lies in [-1, 2 size + 1], as texelCoordinate leaves it.
+/// `i` lies in [-1, 2 size + 1], in [-size - 1, 2 size] where it is clamped: as texelCoordinate leaves it.
 int wrapped(int i, int size, Wrap wrap) {
   switch (wrap) {
   case Wrap::Repeat:

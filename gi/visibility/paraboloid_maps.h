@@ -20,9 +20,9 @@ struct ParaboloidMapInputs {
   std::span<const MapPose> poses;    // all slots
   std::span<const MapJob> jobs = {}; // what to redraw; the rest keeps its texels. By slot, one each
   float farDistance = 1;             // scene diameter, metres
-  int resolution = 128;              // all slots are redrawn when it, farDistance or their number changes
+  int resolution = 128;              // no map is kept when it, farDistance or their number changes
   ShadowMaker maker = ShadowMaker::Auto;
-  bool jobsAreAll = false; // slots without a job have no light, and are left out then too
+  bool jobsAreAll = false; // where none is kept too, since slots without a job have no light; else all are drawn then
 };
 
 /// Both makers' maps of one slot, distances in metres, row 0 at v = 0, kInfinity where nothing is met.
@@ -37,7 +37,7 @@ class ParaboloidMapPass {
   ParaboloidMapPass(PassContext context, StageId stage) : context_(context), stage_(stage), name_(key(stage).name) {}
 
   ParaboloidMaps run(const ParaboloidMapInputs& in);
-  /// Says whether a run would draw every map, whatever its jobs.
+  /// Says whether a run would keep no map, whatever its jobs.
   bool redrawsAll(const ParaboloidMapInputs& in) const;
 
   uint32_t mapsDrawn() const { return mapsDrawn_; } // in the last run, in part or whole

@@ -29,8 +29,8 @@ ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& sta
                            .maker = shadow.maker};
   std::vector<MapJob> jobs;
   maps.jobsAreAll = pass_.redrawsAll(maps);
+  if (maps.jobsAreAll) schedule_.clear();
   if (maps.jobsAreAll || !in.lights.mayWait) {
-    schedule_.clear();
     jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(),
                       maps.jobsAreAll || world.view.changes.first || old_, shadow.resolution);
   } else {

@@ -114,14 +114,19 @@ TEST_F(FrameTest, StagesThatTheSceneDoesNotCallForDoNotRun) {
   for (const StageTime& s : dark.stages) EXPECT_FALSE(s.stage == key(StageId::Gather));
 }
 
-/// A floor alone sends light to nothing, and its slots stay empty; a wall that comes is lit as if it had been there.
+/// A floor under a sheet that is all cut out sends light to nothing, and its slots stay empty; a wall that comes is lit
+/// as if it had been there.
 TEST_F(FrameTest, SlotsWithoutALightHaveNoMap) {
   HandScene open;
   open.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, open.material(vec3(0.7f)));
+  const uint32_t sheet = open.material(vec3(0.7f), vec3(0), true);
+  open.assets.materials[sheet].alphaMode = AlphaMode::Mask, open.assets.materials[sheet].alpha = 0.1f;
+  open.quad({-1, 0.8f, 1}, {2, 0, 0}, {0, 0, -2}, sheet);
   open.lamp({0.5f, 1.5f, 0.2f}, vec3(4));
   open.camera = cameraAt({0, 1.2f, 2.5f}, {0, 0, -0.5f}, 1.2f, 96, 72);
   Viewer gi(quick());
   const FrameStats& stats = gi.run(open.view());
+  EXPECT_TRUE(stats.plan.on(EffectId::Indirect));
   EXPECT_EQ(stats.vplsAlive, 0u);
   EXPECT_EQ(stats.mapsDrawn, 0u);
   open.quad({-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, open.material(vec3(0.7f)));

@@ -49,11 +49,13 @@ TEST_F(RecordingFolderTest, LeavesNoPicturesOfALongerOneBehindItsOwn) {
   mark_->write(0);
   mark_.emplace(folder_.path(), "these", "png"); // the one between was cut short
   fs::create_directory(folder_ / "000004.png");
-  for (const char* name : {"000001.png", "000002.exr", "000005.png", "000006.png", "00005.png", "frames.csv"})
+  for (const char* name :
+       {"000001.png", "000002.exr", "000005.png", "000006.png", "00005.png", "0000005.png", "frames.csv"})
     writeBytes(folder_ / name, "x");
   mark_->end(2);
   EXPECT_FALSE(fs::exists(folder_ / "000005.png"));
-  for (const char* name : {"000001.png", "000002.exr", "000004.png", "000006.png", "00005.png", "frames.csv"})
+  for (const char* name :
+       {"000001.png", "000002.exr", "000004.png", "000006.png", "00005.png", "0000005.png", "frames.csv"})
     EXPECT_TRUE(fs::exists(folder_ / name)) << name;
   EXPECT_EQ(mark_->kept(), 2);
 }

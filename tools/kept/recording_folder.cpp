@@ -27,6 +27,7 @@ std::string before(const std::string& format) { return "before_" + format; }
 std::optional<int> frameOf(const fs::path& file, const std::string& format) {
   const std::string name = file.stem().string();
   if (file.extension() != "." + format || name.size() < 6 || name.size() > 9) return {};
+  if (name.size() > 6 && name[0] == '0') return {}; // no picture of ours is called so
   if (name.find_first_not_of("0123456789") != name.npos) return {};
   return std::stoi(name);
 }

@@ -70,7 +70,7 @@ PathFigure comparedPictures(const std::string& name, bool quick) {
 void drawPathFigure(const AccuracyOptions& options, const std::string& name) {
   const PathFigure figure = comparedPictures(name, options.quick);
   if (!figure.traced.empty()) needClamp(options);
-  const fs::path folder = reportFolder(options.output, "out/figure-" + name);
+  const fs::path folder = reportFolder(options.output, "out/figure-" + name, {"figure.csv"});
   Study study(options, options.launch.scene, {.size = "320x180", .set = kPlain});
   std::vector<std::pair<std::string, Image>> truths;
   for (const std::string& traced : figure.traced) {
@@ -189,7 +189,7 @@ Value meanStep(const Outcome& o) {
 
 /// Fig. 3: how much of a picture changes from one frame to the next while a light moves, and where lights are placed.
 void drawSteps(const AccuracyOptions& options) {
-  const fs::path folder = reportFolder(options.output, "out/figure-1.3");
+  const fs::path folder = reportFolder(options.output, "out/figure-1.3", {"figure.csv"});
   Study study(options, options.launch.scene, {.size = "320x180", .set = asInPaper1()});
   const RunPlan plan = upTo(study, options, 1);
   std::vector<Variant> variants;
@@ -220,7 +220,7 @@ void drawSteps(const AccuracyOptions& options) {
 /// Fig. 5: three frames in which light comes into sight, with candidates resampled by what they bring and without.
 void drawResampling(const AccuracyOptions& options) {
   constexpr int kFrames = 3;
-  const fs::path folder = reportFolder(options.output, "out/figure-1.5");
+  const fs::path folder = reportFolder(options.output, "out/figure-1.5", {"figure.csv"});
   Study study(options, options.launch.scene, {.size = "320x180", .set = asInPaper1()});
   const RunPlan plan = upTo(study, options, kFrames - 1);
   const std::vector<Variant> variants{study.variant("resampled", {{"smc.candidateRays", "16"}}, "smc"),

@@ -340,7 +340,8 @@ std::string knobSection(const Report& r, const Value& verdicts) {
 
 void accuracyReport(const AccuracyOptions& options) {
   refuseNamesakes(options.scenes);
-  const fs::path folder = reportFolder(options.output, "out/accuracy");
+  const fs::path folder = reportFolder(options.output, "out/accuracy",
+                                       {"index.html", "front.svg", "points.csv", "knobs.csv", "presets.csv"});
   const FolderLock alone(folder);
   if (!alone.held()) throw RunError(folder.string() + ": another program measures here (--out names another folder)");
   const SweepFrames frames = options.quick ? SweepFrames{4, 2, 6} : SweepFrames{};

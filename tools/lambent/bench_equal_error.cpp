@@ -111,7 +111,7 @@ std::string equalErrorText(const Value& rows) {
 } // namespace
 
 void benchEqualError(const BenchOptions& options) {
-  const fs::path folder = reportFolder(options.output, "out/bench");
+  const fs::path folder = reportFolder(options.output, "out/bench", {"equal-error.csv", "equal-error.md"});
   const int seeds = options.seeds.value_or(3);
   Value rows = Value::list();
   for (const std::string& file : options.scenes) addRows(options, file, seeds, rows);

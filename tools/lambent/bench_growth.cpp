@@ -167,7 +167,7 @@ void benchGrowth(const BenchOptions& options) {
   Study study(options, options.launch.scene, {});
   LaunchContext& opened = *study.opened;
   needSampledLights(techniqueOf(opened.settings).name);
-  const fs::path folder = reportFolder(options.output, "out/bench");
+  const fs::path folder = reportFolder(options.output, "out/bench", {"growth.csv", "growth.md", "growth.svg"});
   if (!opened.shot) opened.settings.effects[EffectId::Redraw] = EffectMode::On;
   const bool lit = !opened.at(0).lights.empty();
   if (!lit && std::ranges::count(options.along, "lights"))

@@ -224,7 +224,7 @@ std::string sizeText(const Value& row) {
 } // namespace
 
 void benchTable2(const BenchOptions& options) {
-  const fs::path folder = reportFolder(options.output, "out/bench");
+  const fs::path folder = reportFolder(options.output, "out/bench", {"table2.csv", "table2.md"});
   Value rows;
   std::string machine;
   for (const std::string& file : options.scenes) rows.add(rowOf(options, file, machine));

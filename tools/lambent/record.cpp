@@ -244,7 +244,7 @@ void record(const RecordOptions& options) {
   RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format,
                        {total, ownNames(options)});
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
-  if (kept == 0) mark.write(0);
+  mark.write(kept); // with what this one writes besides
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
   for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, opened->seed)});

@@ -309,7 +309,8 @@ void reflectiveFigure(const AccuracyOptions& options) {
   LaunchContext& opened = *study.opened;
   if (figure.overTime && !opened.shot)
     throw InputError(study.launch.scene, "not a shot (a .json file, with moving lights)");
-  const fs::path folder = reportFolder(options.output, format("out/figure-%s", figure.name));
+  const fs::path folder =
+      reportFolder(options.output, format("out/figure-%s", figure.name), {"figure.csv", "figure.svg"});
   opened.settings.effects[EffectId::Redraw] = EffectMode::On;
   std::optional<Baseline> baseline;
   if (figure.truth != FigureTruth::None)
@@ -371,7 +372,7 @@ void accuracyCurve(const AccuracyOptions& options) {
   Study study(options, options.launch.scene,
               {.quickSize = "", .set = patches ? Assignments{{"rsm.vpls", "16384"}} : Assignments{}, .punctual = true});
   LaunchContext& opened = *study.opened;
-  const fs::path folder = reportFolder(options.output, "out/accuracy");
+  const fs::path folder = reportFolder(options.output, "out/accuracy", {kind + ".csv", kind + ".svg"});
   opened.settings.effects[EffectId::Redraw] = EffectMode::On;
   const Baseline baseline = baselineOf(study, !patches, folder / (kind + "-baseline.png"));
   Value all = Value::list();

@@ -183,9 +183,10 @@ fs::path resultFolder(const OutputOptions& output, const std::string& unnamed) {
   return folder;
 }
 
-fs::path reportFolder(const OutputOptions& output, const std::string& unnamed) {
+fs::path reportFolder(const OutputOptions& output, const std::string& unnamed, const std::vector<std::string>& names) {
   const fs::path folder = resultFolder(output, unnamed);
   replaceOnlyOwnIn(folder);
+  for (const std::string& name : names) checkWritable(folder / name);
   if (!output.json.empty()) checkWritable(output.json);
   return folder;
 }

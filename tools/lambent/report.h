@@ -56,10 +56,12 @@ void writeReport(const OutputOptions& output, const std::filesystem::path& folde
 void refuseNamesakes(const std::vector<std::string>& files);
 
 /// The folder that results go to: --out, or `unnamed` where that is empty; made where it lacks, and nothing is written
-/// through links in it. Throws RunError, and InputError where --json may have the name of a result there: none of them
-/// ends in .json.
+/// through links in it. Throws RunError, and InputError where --json may have the name of a result there: but
+/// recording.json, which `record` looks after itself, none of them ends in .json.
 std::filesystem::path resultFolder(const OutputOptions& output, const std::string& unnamed);
-/// The same, and in it only what earlier reports wrote there is replaced.
-std::filesystem::path reportFolder(const OutputOptions& output, const std::string& unnamed);
+/// The folder of a report, which writes these names among others: of what is there only what earlier reports wrote is
+/// replaced. Throws as resultFolder, and InputError where one of the names is somebody's.
+std::filesystem::path reportFolder(const OutputOptions& output, const std::string& unnamed,
+                                   const std::vector<std::string>& names);
 
 } // namespace lambent

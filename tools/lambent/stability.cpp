@@ -119,8 +119,8 @@ Image markedPicture(LaunchContext& opened, std::span<const vec2> marked, int sam
 }
 
 /// One shot, as it moves or, with `stillAt` (a share of its length), standing still at that time.
-ShotRun follow(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
-               std::optional<double> stillAt = {}) {
+ShotRun follow(const StabilityOptions& options, const std::string& file, const fs::path& folder,
+               std::optional<GlContext>& context, std::optional<double> stillAt = {}) {
   LaunchOptions launch = options.launch;
   launch.scene = file;
   for (const auto& [name, value] : protocolOf(options).set | std::views::reverse)
@@ -128,6 +128,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
   const auto opened = openLaunch(launch);
   refuseGlossy(opened->settings);
   if (!opened->shot) throw InputError(file, "not a shot (a .json file)");
+  checkStabilityResults(folder, nameOf(file)); // again: what the shot reads is known now
   say(*opened, options.output.quiet);
 
   TrackedPixels tracked = trackedPixels(*opened->shot, options.grid);
@@ -206,10 +207,10 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, std::op
 }
 
 /// Measures the shot at `times` times at which it stands still, in the middles of as many equal parts of its length.
-void measureStill(const StabilityOptions& options, const std::string& file, std::optional<GlContext>& context,
-                  ShotRun& shot) {
+void measureStill(const StabilityOptions& options, const std::string& file, const fs::path& folder,
+                  std::optional<GlContext>& context, ShotRun& shot) {
   for (int i = 0; i < options.still; ++i) {
-    const ShotRun still = follow(options, file, context, (i + 0.5) / options.still);
+    const ShotRun still = follow(options, file, folder, context, (i + 0.5) / options.still);
     for (size_t t = 0; t < shot.techniques.size(); ++t) {
       shot.techniques[t].marked.still += still.techniques[t].marked.mean.error / options.still;
       shot.techniques[t].grid.still += still.techniques[t].grid.mean.error / options.still;
@@ -221,13 +222,13 @@ void measureStill(const StabilityOptions& options, const std::string& file, std:
 void stability(const StabilityOptions& options) {
   for (const std::string& name : options.techniques) techniqueByName(name); // or a guess at what was meant
   refuseNamesakes(options.shots);
-  const fs::path folder = reportFolder(options.output, "out/stability");
+  const fs::path folder = reportFolder(options.output, "out/stability", {});
   for (const std::string& file : options.shots) checkStabilityResults(folder, nameOf(file));
   std::optional<GlContext> context; // made when a shot wants maps
   std::vector<ShotRun> shots;
   for (const std::string& file : options.shots) {
-    shots.push_back(follow(options, file, context));
-    if (options.still > 0 && shots.back().steps.empty()) measureStill(options, file, context, shots.back());
+    shots.push_back(follow(options, file, folder, context));
+    if (options.still > 0 && shots.back().steps.empty()) measureStill(options, file, folder, context, shots.back());
   }
 
   const std::string& set = shots.front().set;

@@ -193,7 +193,7 @@ TEST(WriteAtomically, WritesThroughNoLinkInAFolderOfResults) {
   writePng(folder / "again/000001.png", Image8{1, 1, {1, 2, 3}});
 }
 
-/// Nor below it; a folder of results that is reached by a link is one.
+/// Nor below it.
 TEST(WriteAtomically, WritesThroughNoLinkedFolderInAFolderOfResults) {
   TemporaryFolder folder;
   fs::create_directory(folder / "outside");
@@ -222,6 +222,11 @@ TEST(WriteAtomically, ReplacesOnlyItsOwnInAFolderOfReports) {
     EXPECT_NO_THROW(checkWritable(report / "log.jsonl"));
     replaceOnlyOwnIn(report); // as the next run of the program does
   }
+  writeBytes(report / "other.csv", "x");
+  EXPECT_THROW(checkWritable(report / "other.csv"), InputError);
+  writeBytes(report / ".lambent-results", readBytes(report / ".lambent-results") + "\nother.csv");
+  EXPECT_NO_THROW(checkWritable(report / "other.csv")) << "another program wrote it meanwhile";
+  writeBytes(report / ".lambent-results", "\nown.csv\nlog.jsonl");
   EXPECT_EQ(readBytes(report / "mine.csv"), "mine");
   EXPECT_EQ(readBytes(report / "own.csv"), "again 1");
   EXPECT_EQ(readBytes(report / ".lambent-results"), "\nown.csv\nlog.jsonl") << "each once";

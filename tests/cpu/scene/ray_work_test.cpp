@@ -6,6 +6,8 @@
 #include "engine/core/sampling.h"
 #include "tests/cpu/scene/support.h"
 
+#include <sys/resource.h>
+
 namespace lambent::test::ray_work_test {
 
 RayWork workOf(const GltfBuilder& b) { return rayWork(b.load(TemporaryFolder(), {.large = true})); }
@@ -183,15 +185,43 @@ TEST(RayWork, IsTheSameFarOffAndBesideWhatIsFar) {
   EXPECT_NEAR(workOf(beside).sum(), alone, 0.2f * alone);
 }
 
-/// What is small beside the floor it stands on, but is what light is sent on from: by area it would count for nothing.
-TEST(RayWork, CountsWhereLightsArePut) {
+/// What is small beside the floor it stands on, but is what light is sent on from: by area it counts for nothing. The
+/// camera looks at it from near by; `behind` are triangles of its own.
+GltfBuilder pileOnAFloor(int copies, bool seen, int behind = 0) {
   GltfBuilder b;
-  std::vector<vec3> floor = {{-20, 0, -20}, {-20, 0, 20}, {20, 0, 20}, {-20, 0, -20}, {20, 0, 20}, {20, 0, -20}};
+  const std::vector<vec3> floor = {{-200, 0, -200}, {-200, 0, 200}, {200, 0, 200},
+                                   {-200, 0, -200}, {200, 0, 200},  {200, 0, -200}};
   b.addRoot({{"mesh", meshOf(b, floor)}});
   const int box = meshOf(b, sidesFromInside({-0.5f, 1, 0.5f})); // turned inside out
-  for (int i = 0; i < 150; ++i) b.addRoot({{"mesh", box}, {"translation", {0, 1, 0}}});
-  EXPECT_GT(workOf(b).boxes, 100) << "rays begin at a side that is there 150 times";
-  EXPECT_NE(refusalOf(b), "");
+  for (int i = 0; i < copies; ++i) b.addRoot({{"mesh", box}, {"translation", {0, 1, 0}}});
+  std::vector<vec3> layers;
+  for (int i = 0; i < behind; ++i)
+    for (const vec3& c : kAcross) layers.push_back(0.1f * c + vec3(0, 1, 0.6f + 1e-5f * float(i)));
+  if (behind > 0) {
+    const int masked =
+        b.push("materials", {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.1f}}}}});
+    b.addRoot({{"mesh", meshOf(b, layers, masked)}});
+  }
+  const int camera = b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.3}, {"znear", 0.1}}}});
+  b.addRoot({{"camera", camera}, {"translation", {0, 1, seen ? 5 : 190}}});
+  return b;
+}
+
+TEST(RayWork, CountsWhereLightsArePut) {
+  EXPECT_LT(workOf(pileOnAFloor(150, false)).boxes, 40) << "seen from far off it is little";
+  EXPECT_GT(workOf(pileOnAFloor(150, true)).boxes, 100) << "rays begin at a side that is there 150 times";
+  EXPECT_NE(refusalOf(pileOnAFloor(150, true)), "");
+}
+
+/// A picture of nothing but layers that are cut out; rays that only lead somewhere keep no lists of them.
+TEST(RayWork, CountsWhatFillsThePictureAndNeedsLittleMemory) {
+  rusage before{}, after{};
+  const GltfBuilder b = pileOnAFloor(1, true, 20000);
+  const Scene scene = b.load(TemporaryFolder(), {.large = true});
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_GT(rayWork(scene).sum(), 1000);
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 300 << 10) << "KiB";
 }
 
 /// A tenth of a scene's area decides little, of however many triangles it is.
