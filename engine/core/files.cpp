@@ -116,6 +116,8 @@ void refuseLinks(const fs::path& named) {
 /// What this program wrote into folders whose other files it does not replace.
 class OwnResults {
  public:
+  static constexpr const char* kList = ".lambent-results";
+
   void begin(const fs::path& folder) {
     const std::lock_guard lock(mutex_);
     names_[placeOf(folder)] = listed(folder);
@@ -156,8 +158,6 @@ class OwnResults {
   }
 
  private:
-  static constexpr const char* kList = ".lambent-results";
-
   static std::set<std::string> listed(const fs::path& folder) {
     const fs::path list = folder / kList;
     std::error_code none;
@@ -210,6 +210,7 @@ void makeFolder(const fs::path& folder) {
 void checkWritable(const fs::path& named) {
   std::error_code none;
   refuseLinks(named);
+  if (named.filename() == OwnResults::kList) throw InputError(named.string(), "is not replaced: it lists results");
   if (ownResults().wouldLose(named))
     throw InputError(named.string(), "is not replaced: no result that was written here (name another folder)");
   const fs::path file = leadsTo(named);

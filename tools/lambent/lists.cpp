@@ -1,6 +1,7 @@
 // lambent settings, techniques, content: what there is. Every setting with default, range and cost; the table of
 // techniques, four axes a row, and what goes with what; the scenes that can be made, which are made.
 #include "engine/core/error.h"
+#include "engine/core/files.h"
 #include "gi/plan/techniques.h"
 #include "tools/content/content.h"
 #include "tools/lambent/commands.h"
@@ -120,6 +121,10 @@ void generate(const std::vector<std::string>& names, const OutputOptions& output
   const std::filesystem::path base = resultFolder(output, output.out.empty() ? findContentFolder().string() : "");
   Value j = Value::list();
   for (const ContentRecipe* r : chosen) {
+    if (!output.out.empty()) { // the bundled ones came without a list
+      makeFolder(base / r->name);
+      replaceOnlyOwnIn(base / r->name);
+    }
     const GeneratedScene made = r->write(base / r->name);
     j.add(Value::of("name", r->name, "file", made.file.string(), "triangles", made.triangles, "bytes", made.bytes));
     if (!output.quiet)

@@ -36,6 +36,7 @@ class SceneSweep {
         format("%d %d %d %d %d", samples_, frames_.moving, frames_.still, frames_.slow, study_.launch.threads));
     out_.pictures = folder_ / ("pictures-" + name_ + "-" + conditions_); // not beside another program's
     makeFolder(out_.pictures);
+    replaceOnlyOwnIn(out_.pictures);
     for (const std::string& name : {std::string("index.html"), std::string("points.csv"), "runs-" + name_ + ".jsonl"})
       checkWritable(folder_ / name); // before the work, when what the scene reads is known
   }

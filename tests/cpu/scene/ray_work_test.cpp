@@ -189,8 +189,8 @@ TEST(RayWork, IsTheSameFarOffAndBesideWhatIsFar) {
 /// camera looks at it from near by; `behind` are triangles of its own.
 GltfBuilder pileOnAFloor(int copies, bool seen, int behind = 0) {
   GltfBuilder b;
-  const std::vector<vec3> floor = {{-200, 0, -200}, {-200, 0, 200}, {200, 0, 200},
-                                   {-200, 0, -200}, {200, 0, 200},  {200, 0, -200}};
+  const std::vector<vec3> floor = {{-1000, 0, -1000}, {-1000, 0, 1000}, {1000, 0, 1000},
+                                   {-1000, 0, -1000}, {1000, 0, 1000},  {1000, 0, -1000}};
   b.addRoot({{"mesh", meshOf(b, floor)}});
   const int box = meshOf(b, sidesFromInside({-0.5f, 1, 0.5f})); // turned inside out
   for (int i = 0; i < copies; ++i) b.addRoot({{"mesh", box}, {"translation", {0, 1, 0}}});
@@ -203,14 +203,14 @@ GltfBuilder pileOnAFloor(int copies, bool seen, int behind = 0) {
     b.addRoot({{"mesh", meshOf(b, layers, masked)}});
   }
   const int camera = b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.3}, {"znear", 0.1}}}});
-  b.addRoot({{"camera", camera}, {"translation", {0, 1, seen ? 5 : 190}}});
+  b.addRoot({{"camera", camera}, {"translation", {0, 1, seen ? 5 : 950}}});
   return b;
 }
 
 TEST(RayWork, CountsWhereLightsArePut) {
-  EXPECT_LT(workOf(pileOnAFloor(150, false)).boxes, 40) << "seen from far off it is little";
-  EXPECT_GT(workOf(pileOnAFloor(150, true)).boxes, 100) << "rays begin at a side that is there 150 times";
-  EXPECT_NE(refusalOf(pileOnAFloor(150, true)), "");
+  EXPECT_LT(workOf(pileOnAFloor(1500, false)).boxes, 40) << "seen from far off it is little";
+  EXPECT_GT(workOf(pileOnAFloor(1500, true)).boxes, 120) << "many begin at a side that is there 1500 times";
+  EXPECT_NE(refusalOf(pileOnAFloor(1500, true)), "");
 }
 
 /// A picture of nothing but layers that are cut out; rays that only lead somewhere keep no lists of them.
