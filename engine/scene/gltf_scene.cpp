@@ -205,6 +205,15 @@ void refuseSlowRays(const Scene& scene) {
   throw InputError(scene.file.string(), text.str());
 }
 
+/// A first frame draws a shadow map of each.
+void refuseManyLights(const Scene& scene) {
+  constexpr size_t kMost = 2000; // 17 s of CPU; see decisions.md
+  if (const size_t lights = scene.registry.count<PunctualLight>(); lights > kMost)
+    throw InputError(scene.file.string(),
+                     std::to_string(lights) + " lights, of which each has a shadow map: a first picture would take " +
+                         "minutes; let there be " + std::to_string(kMost) + " at most, or --allow-large");
+}
+
 } // namespace
 
 Scene loadScene(const std::filesystem::path& file, const std::string& sceneName, const LoadStep& step,
@@ -229,7 +238,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
-  if (!trust.large) refuseSlowRays(scene);
+  if (!trust.large) refuseManyLights(scene), refuseSlowRays(scene);
   size_t far = 0;
   scene.registry.each<MeshInstance, WorldTransform>(
       [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });

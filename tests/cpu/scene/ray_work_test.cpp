@@ -126,6 +126,19 @@ TEST(RayWork, NeedlesAreRefusedFromSoManyOn) {
   EXPECT_NE(needles(95), "");
 }
 
+/// Each has a map in the first frame.
+TEST(RayWork, ThousandsOfLightsAreRefusedUnlessTheFileIsTrusted) {
+  GltfBuilder b = room();
+  b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  b.json["extensions"]["KHR_lights_punctual"]["lights"].push_back({{"type", "point"}});
+  const nlohmann::json node = {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
+  for (int i = 0; i < 2000; ++i) b.addRoot(node);
+  EXPECT_EQ(refusalOf(b), "");
+  b.addRoot(node);
+  EXPECT_NE(refusalOf(b).find("2001 lights"), std::string::npos);
+  EXPECT_NO_THROW(b.load(TemporaryFolder(), {.large = true}));
+}
+
 /// Half of a mesh is cut out, the other half in front of it is not: which is which is said by primitives.
 TEST(RayWork, LooksUpTheMaterialOfATriangle) {
   for (const bool maskedFirst : {true, false}) {
