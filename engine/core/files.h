@@ -13,7 +13,8 @@ void makeFolder(const std::filesystem::path& folder);
 
 /// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
 /// writable, a folder by its name, a pipe that nobody reads within a second; InputError where it is kept, a link in a
-/// folder of results, or somebody's (replaceOnlyOwnIn). A pipe stays open until the program ends, or its reader would be at its end before.
+/// folder of results, or somebody's (replaceOnlyOwnIn). A pipe stays open until the program ends, or its reader would be
+/// at its end before.
 void checkWritable(const std::filesystem::path& file);
 
 /// Whether two names are of one file, or would be once it is written.
@@ -28,14 +29,15 @@ void keepFromReplacing(const std::filesystem::path& file);
 void refuseLinksIn(const std::filesystem::path& folder);
 
 /// The same, and has it refuse to replace what lies in this folder and is not in its list of what this program wrote
-/// there, .lambent-results, a name a line (none that has a line break). Throws InputError where that is no file. Any thread.
+/// there, .lambent-results, a name a line (none that has a line break). Throws InputError where that is no file. Any
+/// thread.
 void replaceOnlyOwnIn(const std::filesystem::path& folder);
 /// Takes a file into that list before it is written by another way than writeAtomically; nothing in other folders.
 /// Throws RunError.
 void listAsOwn(const std::filesystem::path& file);
 
-/// What a link leads to, whether it is there or not; of other files that are there the place without links. Throws RunError for links that lead to one
-/// another.
+/// What a link leads to, whether it is there or not; of other files that are there the place without links. Throws
+/// RunError for links that lead to one another.
 std::filesystem::path leadsTo(std::filesystem::path file);
 
 /// Calls write(temporary), lists `file` as listAsOwn() does and renames the temporary to it; removes it and rethrows on

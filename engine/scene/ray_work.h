@@ -6,8 +6,8 @@
 namespace lambent {
 
 /// Means over rays, each from in front of a surface in a random direction to where it ends. Rays that only lead to
-/// where others begin are not counted. Of two means the larger: from surfaces by their area, and from what rays meet that
-/// leave what a picture by the file's first camera (or the default view) shows.
+/// where others begin are not counted. Of two means the larger: from surfaces by their area, and from what rays meet
+/// that leave what a picture by the file's first camera (or the default view) shows.
 struct RayWork {
   float boxes = 0;  // of triangles, which it enters: no tree of boxes can do without a look at what is in them
   float cutOut = 0; // triangles that it passes where they are cut out
