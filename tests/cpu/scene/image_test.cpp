@@ -202,6 +202,9 @@ TEST(WriteAtomically, WritesThroughNoLinkedFolderInAFolderOfResults) {
   refuseLinksIn(folder / "results");
   EXPECT_NE(inputErrorOf([&] { writeAtomically(folder / "results/door/door.bin", "new"); }).find("door is a link"),
             std::string::npos);
+  fs::create_directories(folder / "results/deep/er");
+  fs::create_directory_symlink("../../../outside", folder / "results/deep/er/door");
+  EXPECT_THROW(writeAtomically(folder / "results/deep/er/door/door.bin", "new"), InputError);
   EXPECT_TRUE(fs::is_empty(folder / "outside"));
 }
 

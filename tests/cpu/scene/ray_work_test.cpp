@@ -226,6 +226,15 @@ TEST(RayWork, CountsWhereLightsArePut) {
   EXPECT_NE(refusalOf(pileOnAFloor(1500, true)), "");
 }
 
+/// Nor need it be seen, or be met by many rays of what is seen.
+TEST(RayWork, CountsWhereLightsArePutThatFewRaysMeet) {
+  GltfBuilder b = pileOnAFloor(1500, true);
+  nlohmann::json& camera = b.json["nodes"].back();
+  camera["translation"] = {10, 5, 0};
+  camera["rotation"] = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; // down, at the floor beside it
+  EXPECT_GT(workOf(b).boxes, 120);
+}
+
 /// A picture of nothing but layers that are cut out; rays that only lead somewhere keep no lists of them.
 TEST(RayWork, CountsWhatFillsThePictureAndNeedsLittleMemory) {
   rusage before{}, after{};
