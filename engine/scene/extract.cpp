@@ -64,7 +64,9 @@ SceneView SceneExtractor::extract(const Scene& scene, const CameraView& camera, 
   scene.registry.each<PunctualLight, WorldTransform>([&](Entity e, const PunctualLight&, const WorldTransform&) {
     if (const std::optional<LightView> light = lightOf(scene, e)) lights.push_back(*light);
   });
-  return changes_.take(scene.assets, placeInstances(scene), std::move(lights), scene.sky, camera, time);
+  SceneView view = changes_.take(scene.assets, placeInstances(scene), std::move(lights), scene.sky, camera, time);
+  view.rayWork = scene.rayWork;
+  return view;
 }
 
 } // namespace lambent

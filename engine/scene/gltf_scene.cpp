@@ -192,16 +192,15 @@ void findOrigin(Scene& scene) {
 }
 
 /// A first frame casts 30 million rays.
-void refuseSlowRays(const Scene& scene) {
-  constexpr float kMost = 80; // boxes; see decisions.md
-  const RayWork work = rayWork(scene);
+void refuseSlowRays(const Scene& scene, const RayWork& work) {
+  constexpr float kMost = 250; // see decisions.md
   if (work.sum() <= kMost) return;
   const dvec3 at = dvec3(work.place) + scene.origin;
   std::ostringstream text;
   text << "every ray has to look into the boxes of " << std::lround(work.boxes) << " triangles";
   if (work.cutOut >= 1) text << ", and through " << std::lround(work.cutOut) << " that are cut out or blended,";
   text << " in the mean (most from " << at.x << ", " << at.y << ", " << at.z
-       << "): a first picture would take minutes; thin them out, or --allow-large";
+       << "): pictures would take very long; thin them out, or --allow-large";
   throw InputError(scene.file.string(), text.str());
 }
 
@@ -238,7 +237,10 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
-  if (!trust.large) refuseManyLights(scene), refuseSlowRays(scene);
+  if (!trust.large) refuseManyLights(scene);
+  const RayWork work = rayWork(scene);
+  if (!trust.large) refuseSlowRays(scene, work);
+  scene.rayWork = work.sum();
   size_t far = 0;
   scene.registry.each<MeshInstance, WorldTransform>(
       [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });

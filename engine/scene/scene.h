@@ -28,6 +28,7 @@ struct Scene {
   /// boxes and all that follows count from here, so that single precision is as good there as at home. Whole steps of 8
   /// m, of less in scenes below half a metre, of 1000 m above 60 m.
   dvec3 origin{0};
+  float rayWork = 0; // as in SceneView
   std::filesystem::path file;
   std::vector<std::filesystem::path> files; // all that were read: the one above, and those it names
 

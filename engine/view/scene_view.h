@@ -92,6 +92,7 @@ struct SceneView {
   Aabb boundsWorld; // of all instances
   SceneChanges changes;
   double time = 0; // seconds
+  float rayWork = 0; // what a ray has to look at, in the mean (RayWork::sum, engine/scene/ray_work.h); 0: not known
 };
 
 /// World direction through the point (u, v) of the image, u to the right and v down in [0,1], and its origin.

@@ -44,7 +44,7 @@ constexpr FigureRow kRows[] = {
     {"maps_drawn", "shadow maps of VPLs and lamps, in part or whole",
      [](const S& s) -> Figure { return uint64_t(s.mapsDrawn); }},
     {"map_texels_drawn", "of VPLs' maps", [](const S& s) -> Figure { return s.mapTexelsDrawn; }},
-    {"maps_waiting", "shadow maps of VPLs that show where something was",
+    {"maps_waiting", "shadow maps of VPLs that show where something was, or are coarse",
      [](const S& s) -> Figure { return uint64_t(s.mapsWaiting); }},
     {"light_maps_drawn", "shadow maps of punctual lights and of the sky",
      [](const S& s) -> Figure { return uint64_t(s.lightMapsDrawn); }},

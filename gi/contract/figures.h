@@ -31,9 +31,9 @@ struct FrameStats {
   uint64_t pathsHeld = 0, pathsTraced = 0, pathsRetraced = 0; // light paths kept; traced; of these, ones traced before
   uint32_t mapsDrawn = 0;                                     // paraboloid maps, in part or whole
   uint64_t mapTexelsDrawn = 0;                                // of VPLs' maps, a ray or a texel drawn each
-  uint32_t mapsWaiting = 0;                     // that show where a moved object was, and had to wait for later frames
-  uint32_t lightMapsDrawn = 0;                  // of punctual lights and of the sky
-  uint64_t draws = 0, waits = 0, readBacks = 0; // of the GPU: see gl::Counts
+  uint32_t mapsWaiting = 0;                                   // that show where a moved object was, or are coarse
+  uint32_t lightMapsDrawn = 0;                                // of punctual lights and of the sky
+  uint64_t draws = 0, waits = 0, readBacks = 0;               // of the GPU: see gl::Counts
   bool burst = false;
   EffectPlan plan;
   std::array<uint64_t, kEffects> work{}; // by effect, in the unit of its row

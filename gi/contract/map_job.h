@@ -43,12 +43,12 @@ struct TexelRect {
 struct MapJob {
   uint32_t slot = 0;
   TexelRect texels;
-  bool coarse = false; // every second texel of every second row is traced, and those between follow from them
+  int step = 1; // 2 or 4: of so many texels and rows only one is traced, and those between follow from them
 };
 
 /// Number of texels that are traced for a rectangle.
-inline int64_t texelsTraced(const TexelRect& t, bool coarse) {
-  return coarse ? int64_t((t.x1 - t.x0 + 1) / 2) * ((t.y1 - t.y0 + 1) / 2) : t.area();
+inline int64_t texelsTraced(const TexelRect& t, int step) {
+  return t.empty() ? 0 : int64_t((t.x1 - t.x0 + step - 1) / step) * ((t.y1 - t.y0 + step - 1) / step);
 }
 
 } // namespace lambent

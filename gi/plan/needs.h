@@ -45,7 +45,7 @@ struct Needs {
 struct ProviderStatus {
   bool settled = false;      // no better virtual lights are in reach (gi/vpl/settling.h)
   bool lightArrived = false; // they were updated next to the last frame, which does not show them
-  uint32_t mapsWaiting = 0;  // maps that show where a moved object was
+  uint32_t mapsWaiting = 0;  // maps that show where a moved object was, or are coarse
   int averaged = 0;          // frames in the mean since anything last changed
   std::string pending = {};  // why another frame of the same world would differ; empty: it has converged
 };

@@ -55,6 +55,8 @@ class Table {
     number(SETTING(smc, validationRays), {0, 1024, "rays", PowersOfTwo}, Light,
            "V, rays per visible point and round towards unverified VPLs");
     number(SETTING(smc, warmup), {0, 100000, "frames"}, Light, "iterations before the first frame");
+    flag(SETTING(smc, shortWarmup), Light,
+         "fewer of them (down to 12) where the scene's rays are slow; inspect says what a ray looks at, 24 is slow");
     number(SETTING(smc, neighbours), {0, 1024, "lights"}, Light,
            "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
     choice(SETTING(smc, density), {"knn", "knn-side", "cells"}, Light,
@@ -66,6 +68,9 @@ class Table {
     number(SETTING(shadow, bias), {0, 100, "texels"}, Nothing, "depth bias of VPL maps, texels at the receiver");
     number(SETTING(shadow, refresh), {0, 32768, "maps", PowersOfTwo}, Nothing,
            "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
+    choice(SETTING(shadow, firstMaps), {"auto", "whole", "half", "quarter"}, Nothing,
+           "VPL maps of a first frame by rays: whole, or with half or a quarter of the rays a side, and whole as "
+           "shadow.refresh allows; auto: by what a ray of the scene has to look at");
     number(SETTING(shadow, motionRays), {0, 1024, "rays", PowersOfTwo}, Nothing,
            "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
     number(SETTING(shadow, sunResolution), {0, 16384, "texels", PowersOfTwo}, Maps,
@@ -430,6 +435,24 @@ std::string whyNot(const Settings& settings) {
     return "vpl.source " + settingText(settings, "vpl.source") + ": technique " + settings.own->name + " takes " +
            rowOf(settings.own->axes.source).name;
   return whyNot(axesOf(settings));
+}
+
+namespace {
+
+// What a ray looks at, above which a first frame does less; see decisions.md.
+constexpr float kSlow = 12, kSlower = 24;
+
+} // namespace
+
+int firstMapStep(FirstMaps setting, float rayWork) {
+  if (setting == FirstMaps::Auto) return rayWork > kSlower ? 4 : rayWork > kSlow ? 2 : 1;
+  return setting == FirstMaps::Quarter ? 4 : setting == FirstMaps::Half ? 2 : 1;
+}
+
+int warmupOf(const SmcSettings& settings, float rayWork) {
+  if (!settings.shortWarmup || rayWork <= kSlower) return settings.warmup;
+  constexpr int kLeast = 12; // what the window warms up by while it loads
+  return std::max(std::min(settings.warmup, kLeast), int(float(settings.warmup) * kSlower / rayWork));
 }
 
 } // namespace lambent

@@ -22,6 +22,7 @@ enum class PatchCriterion : int { Plane, Depth };
 enum class PatchUpsample : int { Bilateral, Bilinear };
 // Who tests emissive surfaces against pixels in direct light: samples with shadow maps | patches with rays (paper 4).
 enum class EmitterShadows : int { Samples, Patches };
+enum class FirstMaps : int { Auto, Whole, Half, Quarter };
 enum class AreaTracer : int { Auto, Cpu, Gpu }; // who traces rays of these patches
 // What splits them: how many rays their quarters and those next to them find open | which rays their quarters do (paper
 // 4) | which the eight patches around do (Nichols et al. 2010).
@@ -94,6 +95,7 @@ struct SmcSettings {
   int points = 2048;       // directly visible points X
   int validationRays = 16; // V, rays per point and round towards unverified VPLs
   int warmup = 100;        // iterations before the first frame
+  bool shortWarmup = true; // fewer where the scene's rays are slow
   int neighbours = 0;      // k of the density for rendering; 0 = max(1, ⌊√(N/32)⌋), see gi/README
   bool cache = true;       // keep light paths until geometry that they touch moves; same results
   DensityEstimator density = DensityEstimator::Cells;
@@ -105,6 +107,7 @@ struct ShadowSettings {
   ShadowMaker maker = ShadowMaker::Auto;
   float bias = 0.4f;   // depth left for round-off and curved receivers, texels of the map at the receiver
   int refresh = 48;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  FirstMaps firstMaps = FirstMaps::Auto; // how the first VPL maps of a scene are drawn
   int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the frame, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w
@@ -286,6 +289,13 @@ struct Settings {
 Axes axesOf(const Settings& settings);
 /// Says why the settings contradict each other; empty where they do not.
 std::string whyNot(const Settings& settings);
+
+/// Texels between the rays of a scene's first VPL maps: 1, 2 or 4. Those between are traced as `shadow.refresh` comes
+/// to them. `rayWork` as in SceneView.
+int firstMapStep(FirstMaps setting, float rayWork);
+
+/// Iterations of smc before the first frame: fewer than asked for where rays are slow, but never below 12 for that.
+int warmupOf(const SmcSettings& settings, float rayWork);
 
 enum class SettingKind { Flag, Whole, Real, Choice };
 enum class Scale { Linear, PowersOfTwo }; // steps that make sense: of a slider, of a sweep

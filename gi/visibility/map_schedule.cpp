@@ -11,6 +11,8 @@ namespace lambent {
 
 namespace {
 
+constexpr int kRough = 2; // texels between the rays of a map that is drawn coarsely while others wait
+
 /// Whether some of up to `tries` points of the box are in sight, as far as the place where the ray enters it. The
 /// points are spread evenly (Roberts' R3 sequence, randomly shifted), so that a part in sight is found though it is
 /// small.
@@ -102,6 +104,11 @@ void MapSchedule::invalidateAll(size_t slots, int resolution) {
   for (Stale& s : stale_) s.texels = TexelRect::whole(resolution);
 }
 
+void MapSchedule::drawnCoarsely(std::span<const MapJob> jobs, size_t slots) {
+  stale_.assign(slots, {});
+  for (const MapJob& job : jobs) (job.step > kRough ? stale_[job.slot].texels : stale_[job.slot].rough) = job.texels;
+}
+
 std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span<const float> brightness,
                                       int resolution, int64_t texels) {
   stale_.resize(brightness.size());
@@ -135,23 +142,23 @@ std::vector<MapJob> MapSchedule::take(std::span<const uint32_t> first, std::span
   // Stale maps come before rough ones. All coarse first, then as many finely as the rest allows, the most urgent ones.
   std::stable_partition(order.begin(), order.end(), [&](uint32_t slot) { return !stale_[slot].texels.empty(); });
   int64_t rest = texels;
-  for (uint32_t slot : order) rest -= texelsTraced(stale_[slot].texels, true);
+  for (uint32_t slot : order) rest -= texelsTraced(stale_[slot].texels, kRough);
   for (uint32_t slot : order) {
     if (texels <= 0) break;
     Stale& s = stale_[slot];
     TexelRect fine = s.texels;
     fine.add(s.rough);
-    const int64_t more = texelsTraced(fine, false) - texelsTraced(s.texels, true);
+    const int64_t more = texelsTraced(fine, 1) - texelsTraced(s.texels, kRough);
     const bool coarse = rest < more && !s.texels.empty();
     if (coarse) {
-      jobs.push_back({slot, s.texels, true});
-      texels -= texelsTraced(s.texels, true);
+      jobs.push_back({slot, s.texels, kRough});
+      texels -= texelsTraced(s.texels, kRough);
       s.texels = {};
       s.rough = fine;
       s.frames = 0;
     } else {
       jobs.push_back({slot, fine});
-      texels -= texelsTraced(fine, false);
+      texels -= texelsTraced(fine, 1);
       rest -= more;
       s = {};
     }

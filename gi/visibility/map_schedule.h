@@ -23,6 +23,10 @@ class MapSchedule {
   /// Queues every map as a whole.
   void invalidateAll(size_t slots, int resolution);
 
+  /// Queues all that was drawn coarsely just now and nothing else: what has half the rays a side, for when nothing else
+  /// waits; what has a quarter, as what shows where something was.
+  void drawnCoarsely(std::span<const MapJob> jobs, size_t slots);
+
   /// Takes jobs out of the queue, those of `first` (slots, ascending, whose VPL is another than before) whole and for
   /// certain, others in order of light per texel times the square of frames waited until `texels` have been traced (the
   /// last map may exceed them). Where they do not suffice for all, maps are drawn coarsely, as many as need be, and

@@ -39,37 +39,38 @@ std::vector<float> readMap(const gl::Texture& array, int layer, float farDistanc
   return distances;
 }
 
-/// Gives texels in odd columns or rows of a rectangle a distance, from their neighbours that have one.
-void fillBetween(std::vector<float>& distances, int width, int height) {
+/// Gives texels at odd multiples of `gap`, in columns or rows, a distance from their neighbours at even ones.
+void fillBetween(std::vector<float>& distances, int width, int height, int gap) {
   // Along a plane 1/distance is nearly linear; where it jumps, two surfaces meet.
   const auto between = [](float a, float b) {
     constexpr float kJump = 1.5f;
     return std::max(a, b) < kJump * std::min(a, b) ? 2 * a * b / (a + b) : a;
   };
-  for (int y = 0; y < height; y += 2)
-    for (int x = 1; x < width; x += 2) {
+  for (int y = 0; y < height; y += 2 * gap)
+    for (int x = gap; x < width; x += 2 * gap) {
       float* at = &distances[size_t(y) * width + x];
-      *at = between(at[-1], at[x + 1 < width ? 1 : -1]);
+      *at = between(at[-gap], at[x + gap < width ? gap : -gap]);
     }
-  for (int y = 1; y < height; y += 2)
-    for (int x = 0; x < width; ++x) {
+  const ptrdiff_t rows = ptrdiff_t(gap) * width;
+  for (int y = gap; y < height; y += 2 * gap)
+    for (int x = 0; x < width; x += gap) {
       float* at = &distances[size_t(y) * width + x];
-      *at = between(at[-width], at[y + 1 < height ? width : -width]);
+      *at = between(at[-rows], at[y + gap < height ? rows : -rows]);
     }
 }
 
 /// Casts the texels of a part of one map on the CPU, row by row: paraboloidValue(distance / farDistance) in 16 bits,
-/// 65535 where nothing is met. Coarse: a ray for every second texel of every second row; texels between have the mean
+/// 65535 where nothing is met. A step of 2 or 4: a ray for every so many texels and rows; texels between have the mean
 /// of their neighbours on one surface, where these are nearly equal, else the nearest one's. Thread-safe.
 std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose, const TexelRect& texels,
-                              bool coarse = false) {
-  const int n = in.resolution, step = coarse ? 2 : 1, width = texels.x1 - texels.x0;
+                              int step = 1) {
+  const int n = in.resolution, width = texels.x1 - texels.x0;
   const mat3 worldFromLight = frameOf(pose);
   const vec3 origin = pose.origin();
   std::vector<Ray> rays;
   std::vector<uint32_t> texelOfRay;
-  rays.reserve(size_t(texelsTraced(texels, coarse)));
-  texelOfRay.reserve(size_t(texelsTraced(texels, coarse)));
+  rays.reserve(size_t(texelsTraced(texels, step)));
+  texelOfRay.reserve(size_t(texelsTraced(texels, step)));
   // 8×8 blocks keep neighbouring rays neighbours in memory, for the ray tracer's packets.
   const int block = 8 * step;
   for (int by = texels.y0; by < texels.y1; by += block)
@@ -77,7 +78,7 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
       for (int y = by; y < std::min(by + block, texels.y1); y += step)
         for (int x = bx; x < std::min(bx + block, texels.x1); x += step) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
-          if (d.z < -2.0f / float(n)) continue; // as map_resample.frag
+          if (d.z < -2.0f * float(step) / float(n)) continue; // as map_resample.frag
           rays.push_back({origin, worldFromLight * d, in.farDistance});
           texelOfRay.push_back(uint32_t((y - texels.y0) * width + x - texels.x0));
         }
@@ -85,7 +86,7 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
   in.rays->distances(rays, met);
   std::vector<float> distances(size_t(texels.area()), kInfinity);
   for (size_t i = 0; i < rays.size(); ++i) distances[texelOfRay[i]] = met[i];
-  if (coarse) fillBetween(distances, width, texels.y1 - texels.y0);
+  for (int gap = step / 2; gap > 0; gap /= 2) fillBetween(distances, width, texels.y1 - texels.y0, gap);
   std::vector<uint16_t> values(distances.size(), 65535);
   for (size_t i = 0; i < distances.size(); ++i)
     if (distances[i] < in.farDistance)
@@ -129,7 +130,8 @@ void ParaboloidMapPass::draw(const ParaboloidMapInputs& in, std::span<const MapJ
   constexpr int kPart = 8; // of so many of a map's texels one
   const int64_t most = TexelRect::whole(in.resolution).area() / kPart;
   std::vector<MapJob> parts, whole;
-  for (const MapJob& job : jobs) (texelsTraced(job.texels, job.coarse) <= most ? parts : whole).push_back(job);
+  for (const MapJob& job : jobs) // a coarse one of all texels is no part: raster draws it whole
+    (texelsTraced(job.texels, 1) <= most ? parts : whole).push_back(job);
   drawRays(in, parts);
   drawRaster(in, whole);
 }
@@ -281,11 +283,10 @@ void ParaboloidMapPass::drawRays(const ParaboloidMapInputs& in, std::span<const 
     gl::pulse();
     const std::span<const MapJob> batch = jobs.subspan(begin, std::min(kBatch, jobs.size() - begin));
     parallelFor(batch.size(), 1, [&](size_t from, size_t to) {
-      for (size_t i = from; i < to; ++i)
-        maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].coarse);
+      for (size_t i = from; i < to; ++i) maps[i] = castMap(in, in.poses[batch[i].slot], batch[i].texels, batch[i].step);
     });
     for (size_t i = 0; i < batch.size(); ++i) {
-      const auto& [slot, t, coarse] = batch[i];
+      const auto& [slot, t, step] = batch[i];
       glTextureSubImage3D(arrays_[slot / kLayersPerArray].name(), 0, t.x0, t.y0, int(slot % kLayersPerArray),
                           t.x1 - t.x0, t.y1 - t.y0, 1, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, maps[i].data());
     }

@@ -30,15 +30,25 @@ ShadowedLights ShadowMapCache::update(const ShadowMapInputs& in, FrameStats& sta
   std::vector<MapJob> jobs;
   maps.jobsAreAll = pass_.redrawsAll(maps);
   if (maps.jobsAreAll) schedule_.clear();
-  if (maps.jobsAreAll || !in.lights.mayWait) {
-    jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(),
-                      maps.jobsAreAll || world.view.changes.first || old_, shadow.resolution);
+  const bool all = maps.jobsAreAll || world.view.changes.first || old_;
+  const bool follow =
+      in.lights.mayWait && shadow.refresh > 0 && in.frame.settings.effects[EffectId::MapRefresh] != EffectMode::Off;
+  const int step = fresh_ && follow ? firstMapStep(shadow.firstMaps, world.view.rayWork) : 1;
+  fresh_ = false;
+  if (step > 1 || maps.jobsAreAll || !in.lights.mayWait) {
+    jobs = jobsAtOnce(poses_, poses, in.lights.slots, world.moved.boxes(), all || step > 1, shadow.resolution);
+    for (MapJob& job : jobs) job.step = step;
   } else {
     jobs = inTurn(in, stats);
   }
   old_ = false;
   maps.jobs = jobs;
   maps_ = pass_.run(maps);
+  if (step > 1) {
+    if (!pass_.maker().gpu()) schedule_.drawnCoarsely(jobs, poses_.size()); // the GPU draws them whole
+    for (const MapJob& job : jobs) stats.mapTexelsDrawn += uint64_t(texelsTraced(job.texels, step));
+    stats.mapsWaiting = waiting();
+  }
   stats.mapsDrawn += pass_.mapsDrawn();
   stats.of(EffectId::Indirect) += pass_.mapsDrawn();
   stats.makerTimes = pass_.maker().report();
@@ -75,7 +85,7 @@ std::vector<MapJob> ShadowMapCache::inTurn(const ShadowMapInputs& in, FrameStats
   const std::vector<MapJob> jobs = schedule_.take(in.lights.moved, brightness, resolution, budget);
   stats.mapsWaiting = waiting();
   stats.of(EffectId::MapRefresh) = jobs.size() - in.lights.moved.size() + stats.raysMapTests.occlusion;
-  for (const MapJob& job : jobs) stats.mapTexelsDrawn += uint64_t(texelsTraced(job.texels, job.coarse));
+  for (const MapJob& job : jobs) stats.mapTexelsDrawn += uint64_t(texelsTraced(job.texels, job.step));
   return jobs;
 }
 

@@ -26,9 +26,9 @@ class ShadowMapCache {
   void forget() {
     schedule_.clear();
     maps_ = {};
-    old_ = true;
+    old_ = fresh_ = true;
   }
-  /// Number of maps that still show where a moved object was.
+  /// Number of maps that still show where a moved object was, or are coarse.
   uint32_t waiting() const { return uint32_t(schedule_.waiting()); }
   /// Returns the maps of the last update; empty where its lights had none.
   const ParaboloidMaps& maps() const { return maps_; }
@@ -41,6 +41,7 @@ class ShadowMapCache {
   ParaboloidMaps maps_;
   std::vector<MapPose> poses_; // by slot, as drawn
   bool old_ = false;           // lights were shown without maps
+  bool fresh_ = true;          // no map was drawn of this scene
 };
 
 /// Jobs that bring maps up to date at once: whole where the light is new or moved, else the part that a box covers.

@@ -219,7 +219,7 @@ struct VplUpdateLog {
 };
 
 /// Runs all stages once, in place (paper 1, algorithm 1). On a camera cut (most VPLs lost at once) the bound on
-/// replacements is lifted and the stages run several times. The first call fills the set and runs `settings.warmup`
+/// replacements is lifted and the stages run several times. The first call fills the set and runs warmupOf()
 /// iterations; `progress` (may be empty) is called for each.
 VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
                       const std::function<void(int, int)>& progress = {});

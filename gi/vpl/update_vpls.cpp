@@ -356,7 +356,7 @@ VplChanges updateVpls(VplSet& set, const VplUpdate& in, VplUpdateLog& log,
     // The set as first sampled, and the set after a cut, are only candidates: let the sampler settle before the
     // frame.
     constexpr int kBurstIterations = 3;
-    const int more = start ? settings.warmup : all.burst ? kBurstIterations : 0;
+    const int more = start ? warmupOf(settings, in.view.rayWork) : all.burst ? kBurstIterations : 0;
     now = {start ? settings.moves : std::max(settings.moves, settings.vpls / 8), false, false, false};
     for (int i = 0; i < more; ++i) {
       if (progress) progress(i, more);

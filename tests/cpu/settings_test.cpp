@@ -128,4 +128,22 @@ TEST(Axes, SettingsSayTheirAxes) {
   EXPECT_FALSE(whyNot(s).empty()) << "no technique has given a stage";
 }
 
+TEST(Settings, AFirstFrameDoesLessWhereRaysAreSlow) {
+  for (const auto& [rayWork, step] : {std::pair(0.0f, 1), {12.0f, 1}, {12.1f, 2}, {24.0f, 2}, {24.1f, 4}}) {
+    EXPECT_EQ(firstMapStep(FirstMaps::Auto, rayWork), step) << rayWork;
+    EXPECT_EQ(firstMapStep(FirstMaps::Whole, rayWork), 1);
+    EXPECT_EQ(firstMapStep(FirstMaps::Half, rayWork), 2);
+    EXPECT_EQ(firstMapStep(FirstMaps::Quarter, rayWork), 4);
+  }
+  for (const auto& [asked, rayWork, iterations] : {std::tuple(100, 24.0f, 100),
+                                                   {100, 48.0f, 50},
+                                                   {100, 1e6f, 12},
+                                                   {5, 1e6f, 5},
+                                                   {400, 48.0f, 200},
+                                                   {0, 48.0f, 0}}) {
+    EXPECT_EQ(warmupOf({.warmup = asked}, rayWork), iterations) << asked << " at " << rayWork;
+    EXPECT_EQ(warmupOf({.warmup = asked, .shortWarmup = false}, rayWork), asked);
+  }
+}
+
 } // namespace lambent::test::settings_test

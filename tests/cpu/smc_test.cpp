@@ -39,6 +39,20 @@ class Smc : public ::testing::Test {
   Room room;
 };
 
+TEST_F(Smc, WarmsUpLessWhereRaysAreSlow) {
+  for (const auto& [boxes, shortened, expected] : {std::tuple(0.0f, true, 40), std::tuple(24.0f, true, 40),
+                                                   std::tuple(48.0f, true, 20), std::tuple(48.0f, false, 40)}) {
+    Room fresh;
+    fresh.view.rayWork = boxes;
+    fresh.settings.warmup = 40;
+    fresh.settings.shortWarmup = shortened;
+    int iterations = 0;
+    updateVpls(fresh.set, {fresh.view, fresh.rays, fresh.lights, fresh.settings, 1}, fresh.log,
+               [&](int, int of) { iterations = of; });
+    EXPECT_EQ(iterations, expected) << boxes;
+  }
+}
+
 TEST(Mailboxes, LoseALightWhoseCarrierTurnedItAway) {
   const AnalyticQuery rays; // the carrier is too small to be met
   const CameraView camera = cameraAlong({0, 0, 6}, {0, 0, -1}, 1);

@@ -169,7 +169,7 @@ TEST_F(MapScheduleTest, MapsDrawnInPartEqualMapsDrawnWhole) {
     const std::vector<MapJob> jobs = schedule.take({}, brightness, 64, 1 << 30);
     int64_t texels = 0;
     for (const MapJob& job : jobs) {
-      texels += texelsTraced(job.texels, job.coarse);
+      texels += texelsTraced(job.texels, job.step);
       odd += (job.texels.x1 - job.texels.x0) % 2;
     }
     EXPECT_LT(double(texels), 0.7 * double(poses.size()) * 64 * 64) << "frame " << frame;
@@ -214,7 +214,7 @@ TEST_F(MapScheduleTest, CoarseMapsComeCloseAndAreMadeFineAtRest) {
   for (const MapJob& job : MapSchedule(schedule).take({}, brightness, 64, 1 << 30)) cost += job.texels.area();
   std::vector<MapJob> jobs = schedule.take({}, brightness, 64, cost / 3);
   EXPECT_EQ(jobs.size(), MapSchedule(schedule).waiting() +
-                             std::count_if(jobs.begin(), jobs.end(), [](const MapJob& j) { return !j.coarse; }));
+                             std::count_if(jobs.begin(), jobs.end(), [](const MapJob& j) { return j.step == 1; }));
   in.jobs = jobs;
   parts.run(in);
   const double coarse = wrong();
@@ -298,7 +298,7 @@ TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
   EXPECT_EQ(slotsOf(jobs), (std::vector<uint32_t>{0, 1, 4, 5}));
   for (const MapJob& job : jobs) {
     EXPECT_EQ(job.texels, TexelRect::whole(kResolution));
-    EXPECT_EQ(job.coarse, job.slot == 1 || job.slot == 4);
+    EXPECT_EQ(job.step, job.slot == 1 || job.slot == 4 ? 2 : 1);
   }
   EXPECT_EQ(schedule.waiting(), 5u) << "3, 6, 7, and 1 and 4 to be drawn finely; the empty slot needs no map";
   EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, 0)), std::vector<uint32_t>{});
@@ -308,13 +308,13 @@ TEST(MapSchedule, BrightestFirstWithinTheBudgetAndMovedLightsAlways) {
   // Enough for both that are stale, one of them finely, and not for the rough ones.
   const std::vector<MapJob> fine = schedule.take({}, brightness, kResolution, kMap + kMap / 4);
   EXPECT_EQ(slotsOf(fine), (std::vector<uint32_t>{6, 7}));
-  EXPECT_FALSE(fine[0].coarse);
-  EXPECT_TRUE(fine[1].coarse);
+  EXPECT_EQ(fine[0].step, 1);
+  EXPECT_EQ(fine[1].step, 2);
   // With nothing stale the rough ones follow, the brightest first.
   EXPECT_EQ(slotsOf(schedule.take({}, brightness, kResolution, kMap)), std::vector<uint32_t>{1});
   const std::vector<MapJob> last = schedule.take({}, brightness, kResolution, 100 * kMap);
   EXPECT_EQ(slotsOf(last), (std::vector<uint32_t>{3, 4, 7}));
-  for (const MapJob& job : last) EXPECT_FALSE(job.coarse);
+  for (const MapJob& job : last) EXPECT_EQ(job.step, 1);
   EXPECT_EQ(schedule.waiting(), 0u);
   schedule.invalidateAll(brightness.size(), kResolution);
   schedule.clear();
@@ -370,7 +370,7 @@ TEST(MapSchedule, NoMapWaitsForEverAndTheBudgetHolds) {
     int64_t texels = 0;
     for (int& s : since) ++s;
     for (const MapJob& job : jobs) {
-      texels += texelsTraced(job.texels, job.coarse);
+      texels += texelsTraced(job.texels, job.step);
       ++drawn[job.slot];
       longest = std::max(longest, since[job.slot]);
       since[job.slot] = 0;
@@ -441,6 +441,87 @@ TEST_F(MapScheduleTest, LightsThatRideKeepToTheBudgetToo) {
   }
   EXPECT_GT(most, 0u);
   EXPECT_LE(most, 5u * 32 * 32); // the last map may pass the budget
+}
+
+/// A room whose lights have maps, seen by a viewer of its own for each way to draw the first ones.
+class FirstMapsTest : public MapScheduleTest {
+ protected:
+  FirstMapsTest() {
+    lit.scene.lamp(vec3(0.5f, 0.7f, 0.4f), vec3(2));
+    lit.scene.size(32, 24);
+    settings.smc = {.vpls = 256, .moves = 0, .warmup = 4};
+    settings.shadow = {.resolution = 32, .maker = ShadowMaker::Rays, .refresh = 64};
+    settings.history.frames = 1;
+  }
+  uint32_t waitingAtFirst(float rayWork = 0) {
+    Viewer gi(settings);
+    SceneView view = lit.scene.view();
+    view.rayWork = rayWork;
+    const FrameStats& stats = gi.run(view);
+    EXPECT_GT(stats.vplsAlive, 50u);
+    return stats.mapsWaiting;
+  }
+  Room lit;
+  Settings settings;
+};
+
+/// Coarse at first, all whole some frames later, and then as if they had been.
+TEST_F(FirstMapsTest, BecomeWhole) {
+  settings.shadow.firstMaps = FirstMaps::Whole;
+  Viewer whole(settings);
+  EXPECT_EQ(whole.run(lit.scene.view()).mapsWaiting, 0u);
+  const Image right = whole.read(Buffer::Irradiance);
+  double before = 0;
+  for (const FirstMaps first : {FirstMaps::Half, FirstMaps::Quarter}) {
+    settings.shadow.firstMaps = first;
+    Viewer coarse(settings);
+    const FrameStats& stats = coarse.run(lit.scene.view());
+    EXPECT_GT(stats.vplsAlive, 200u);
+    EXPECT_EQ(stats.mapsWaiting, stats.vplsAlive);
+    EXPECT_EQ(stats.mapTexelsDrawn, stats.vplsAlive * (first == FirstMaps::Half ? 256u : 64u));
+    const double off = relativeDifference(coarse.read(Buffer::Irradiance), right);
+    std::printf("a first frame's irradiance is off by %.2f %%\n", 100 * off);
+    EXPECT_GT(off, before);
+    EXPECT_LT(off, first == FirstMaps::Half ? 0.15 : 0.4); // of maps that have 16 and 8 texels a side
+    before = off;
+    int frames = 0;
+    for (; frames < 8 && stats.mapsWaiting > 0; ++frames) coarse.run(lit.scene.view(kStill));
+    EXPECT_EQ(frames, first == FirstMaps::Half ? 4 : 5); // of a quarter, all with half the rays a side before
+    EXPECT_EQ(coarse.read(Buffer::Irradiance).pixels, right.pixels);
+  }
+}
+
+TEST_F(FirstMapsTest, AreCoarseWhereRaysAreSlow) {
+  EXPECT_EQ(waitingAtFirst(12), 0u);
+  EXPECT_GT(waitingAtFirst(12.1f), 0u);
+}
+
+TEST_F(FirstMapsTest, AreWholeWhereNoneWouldFollow) {
+  settings.shadow.firstMaps = FirstMaps::Quarter;
+  EXPECT_GT(waitingAtFirst(), 0u);
+  settings.shadow.refresh = 0;
+  EXPECT_EQ(waitingAtFirst(), 0u);
+  settings.shadow.refresh = 64;
+  settings.effects[EffectId::MapRefresh] = EffectMode::Off;
+  EXPECT_EQ(waitingAtFirst(), 0u);
+}
+
+/// Maps of another resolution follow good ones: they are not a scene's first.
+TEST_F(FirstMapsTest, AreThoseOfAnotherScene) {
+  settings.shadow.firstMaps = FirstMaps::Quarter;
+  Viewer gi(settings);
+  const FrameStats& stats = gi.run(lit.scene.view());
+  while (stats.mapsWaiting > 0) gi.run(lit.scene.view(kStill));
+  gi.settings().shadow.resolution = 16;
+  gi.run(lit.scene.view(kStill));
+  EXPECT_EQ(stats.mapsWaiting, 0u);
+}
+
+/// The GPU draws whole maps, so none has to follow.
+TEST_F(FirstMapsTest, AreWholeByRaster) {
+  settings.shadow.firstMaps = FirstMaps::Quarter;
+  settings.shadow.maker = ShadowMaker::Raster;
+  EXPECT_EQ(waitingAtFirst(), 0u);
 }
 
 } // namespace lambent::test::map_schedule_test

@@ -140,6 +140,11 @@ TEST_F(MapsTest, PartsAreCastWhereTheGpuDraws) {
   partIs({24, 8, 40, 24}, ShadowMaker::Auto, makers.rays);
   partIs({16, 16, 48, 48}, ShadowMaker::Auto, makers.raster);
   partIs({24, 8, 40, 24}, ShadowMaker::Raster, makers.raster);
+  for (const int step : {2, 4}) {
+    jobs = {{0, TexelRect::whole(64), step}};
+    onGpu.run(inputs());
+    EXPECT_EQ(onGpu.readLayer(0), makers.raster) << "which nobody would make whole";
+  }
 }
 
 TEST_F(MapsTest, MoreSlotsThanAnArrayHasLayers) {

@@ -62,7 +62,8 @@ void render(const RenderOptions& options) {
     sayWarning(*stats);
     if (stats->plan.on(EffectId::Redraw)) drawn = *stats;
     if (options.frames) continue;
-    if (stats->plan.on(EffectId::History)) frames = std::max(frames, opened->settings.history.frames);
+    if (stats->plan.on(EffectId::History)) // from where all maps are whole
+      frames = std::max(frames, opened->settings.history.frames + (stats->mapsWaiting > 0 ? i + 1 : 0));
     if (stats->raysSoft.occlusion > 0) frames = std::max(frames, opened->settings.direct.frames);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
@@ -103,9 +104,9 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
       Value::of("file", opened->scene.file.string(), "triangles", placedTriangles, "mesh_triangles", meshTriangles,
                 "meshes", assets.meshes.size(), "instances", view.instances.size(), "skinned_instances", skinned,
                 "morphed_instances", morphed, "materials", assets.materials.size(), "images", assets.images.size(),
-                "image_mib", double(texels) * 4 / (1 << 20), "size_m", listOf(size), "animations",
-                opened->scene.animations.size(), "warnings", opened->scene.warnings, "notes", opened->notes, "lights",
-                Value::list(), "emitters", Value::list(), "cameras", Value::list());
+                "image_mib", double(texels) * 4 / (1 << 20), "size_m", listOf(size), "ray_work", view.rayWork,
+                "animations", opened->scene.animations.size(), "warnings", opened->scene.warnings, "notes",
+                opened->notes, "lights", Value::list(), "emitters", Value::list(), "cameras", Value::list());
   std::string lightLines;
   for (const LightView& l : view.lights) {
     lightLines += format("  light      %s, %.3g %.3g %.3g %s\n", typeName(l.type), l.intensity.x, l.intensity.y,
@@ -142,6 +143,7 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   std::printf("  materials  %zu, %zu images (%.1f MiB)\n", assets.materials.size(), assets.images.size(),
               double(texels) * 4 / (1 << 20));
   std::printf("  size       %.3g x %.3g x %.3g m\n", double(size.x), double(size.y), double(size.z));
+  std::printf("  rays       each looks at %.1f triangles in the mean\n", double(view.rayWork));
   std::printf("  animations %zu, cameras %zu\n", opened->scene.animations.size(), j["cameras"].size());
   std::printf("%s", lightLines.c_str());
   for (const Emitter& e : lights.emitters)

@@ -228,6 +228,19 @@ bool isOpenOrHasLamp(LaunchContext& stage, const SceneView& view, const std::str
 }
 
 /// One note for each setting that is called by a name of before.
+/// What the first frames of a scene whose rays are slow leave for later ones.
+void tellOfSlowRays(LaunchContext& stage, float rayWork) {
+  const Settings& settings = stage.settings;
+  const Needs needs = needsOf(settings);
+  if (needs.maps && needs.sampled() && firstMapStep(settings.shadow.firstMaps, rayWork) > 1)
+    stage.notes.push_back(
+        "its rays are slow: where they draw shadow maps, the first are coarse and become whole (shadow.firstMaps)");
+  const int warmup = warmupOf(settings.smc, rayWork);
+  if (needs.sampled() && settings.vpl.source == VplSource::Smc && warmup < settings.smc.warmup)
+    stage.notes.push_back("its rays are slow: " + std::to_string(warmup) + " iterations before the first frame, not " +
+                          std::to_string(settings.smc.warmup) + " (smc.shortWarmup)");
+}
+
 std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std::optional<Shot>& shot) {
   std::vector<std::string> names = options.set, notes;
   if (shot)
@@ -393,6 +406,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     addSkyAndSun(stage->scene, {}, sunRadius(options, kSunRadius));
     stage->notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60)");
   }
+  tellOfSlowRays(*stage, view.rayWork);
   tellWhatIsLeftOut(*stage, stage->settings);
   if (stage->shot && !stage->shot->played.empty()) {
     stage->props = std::make_unique<Props>(stage->scene);
