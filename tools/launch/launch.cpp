@@ -236,7 +236,7 @@ void tellOfSlowRays(LaunchContext& stage, float rayWork) {
     stage.notes.push_back(
         "its rays are slow: where they draw shadow maps, the first are coarse and become whole (shadow.firstMaps)");
   const int warmup = warmupOf(settings.smc, rayWork);
-  if (needs.sampled() && settings.vpl.source == VplSource::Smc && warmup < settings.smc.warmup)
+  if (needs.lights == LightSupply::Kept && warmup < settings.smc.warmup)
     stage.notes.push_back("its rays are slow: " + std::to_string(warmup) + " iterations before the first frame, not " +
                           std::to_string(settings.smc.warmup) + " (smc.shortWarmup)");
 }
