@@ -193,24 +193,28 @@ void findOrigin(Scene& scene) {
 
 /// A first frame casts 30 million rays.
 void refuseSlowRays(const Scene& scene, const RayWork& work) {
-  constexpr float kMost = 250; // see decisions.md
+  constexpr float kMost = 150; // see decisions.md
   if (work.sum() <= kMost) return;
   const dvec3 at = dvec3(work.place) + scene.origin;
   std::ostringstream text;
-  text << "every ray has to look into the boxes of " << std::lround(work.boxes) << " triangles";
-  if (work.cutOut >= 1) text << ", and through " << std::lround(work.cutOut) << " that are cut out or blended,";
-  text << " in the mean (most from " << at.x << ", " << at.y << ", " << at.z
+  text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
+  if (work.cutOut >= 1) text << ", " << std::lround(work.cutOut) << " that are cut out or blended counted 7 times";
+  text << " (most from " << at.x << ", " << at.y << ", " << at.z
        << "): pictures would take very long; thin them out, or --allow-large";
   throw InputError(scene.file.string(), text.str());
 }
 
-/// A first frame draws a shadow map of each.
-void refuseManyLights(const Scene& scene) {
-  constexpr size_t kMost = 2000; // 17 s of CPU; see decisions.md
-  if (const size_t lights = scene.registry.count<PunctualLight>(); lights > kMost)
-    throw InputError(scene.file.string(),
-                     std::to_string(lights) + " lights, of which each has a shadow map: a first picture would take " +
-                         "minutes; let there be " + std::to_string(kMost) + " at most, or --allow-large");
+/// A first frame draws a shadow map of each, with all triangles in it. `read`: bytes of the file and what it names.
+void refuseManyLights(const Scene& scene, size_t triangles, size_t read) {
+  constexpr size_t kOfItself = 7000; // what a map takes beside its triangles, in triangles
+  constexpr double kMost = 1.41e7;   // 17 s of CPU; see decisions.md
+  const size_t lights = scene.registry.count<PunctualLight>();
+  const double most = kMost * std::max(1.0, double(read) / double(gltf::Budget::kSmall));
+  if (double(lights) * double(kOfItself + triangles) <= most) return;
+  throw InputError(scene.file.string(),
+                   std::to_string(lights) + " lights, of which each has a shadow map of " + std::to_string(triangles) +
+                       " triangles: a first picture would take very long; let there be " +
+                       std::to_string(size_t(most / double(kOfItself + triangles))) + " at most, or --allow-large");
 }
 
 } // namespace
@@ -237,7 +241,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
-  if (!trust.large) refuseManyLights(scene);
+  if (!trust.large) refuseManyLights(scene, import.doc.budget.shown, import.doc.budget.read);
   const RayWork work = rayWork(scene);
   if (!trust.large) refuseSlowRays(scene, work);
   scene.rayWork = work.sum();

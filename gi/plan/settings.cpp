@@ -56,7 +56,7 @@ class Table {
            "V, rays per visible point and round towards unverified VPLs");
     number(SETTING(smc, warmup), {0, 100000, "frames"}, Light, "iterations before the first frame");
     flag(SETTING(smc, shortWarmup), Light,
-         "fewer of them (down to 12) where the scene's rays are slow; inspect says what a ray looks at, 24 is slow");
+         "fewer iterations of smc.warmup (12 at least) where a ray looks at more than 24 triangles, as inspect says");
     number(SETTING(smc, neighbours), {0, 1024, "lights"}, Light,
            "k of knn densities for rendering; 0 = max(1, floor(sqrt(N/32)))");
     choice(SETTING(smc, density), {"knn", "knn-side", "cells"}, Light,
@@ -70,7 +70,8 @@ class Table {
            "VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first");
     choice(SETTING(shadow, firstMaps), {"auto", "whole", "half", "quarter"}, Nothing,
            "VPL maps of a first frame by rays: whole, or with half or a quarter of the rays a side, and whole as "
-           "shadow.refresh allows; auto: by what a ray of the scene has to look at");
+           "shadow.refresh allows; auto: half where a ray looks at more than 12 triangles, as inspect says, a quarter "
+           "above 24");
     number(SETTING(shadow, motionRays), {0, 1024, "rays", PowersOfTwo}, Nothing,
            "rays per VPL and moved object that look whether the one sees the other; 0 = assume so");
     number(SETTING(shadow, sunResolution), {0, 16384, "texels", PowersOfTwo}, Maps,

@@ -126,6 +126,7 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"smc.cache", "shadow.maker", "area.tracer", "cube.maker", "frame.overlap"},
        "time alone: the picture is the same, or a frame late"},
       {{"shadow.bias", "filter.normalPower"}, "error alone: any value costs the same"},
+      {{"shadow.firstMaps", "smc.shortWarmup"}, "of a first frame where rays are slow, as in none of these scenes"},
       {{"shadow.spotResolution"}, "as shadow.sunResolution, of lights that these scenes have not"},
       {{"multires.detail", "multires.light"}, "of splatting (technique multires-splat)"},
       {{"gather.glossy", "gather.spread"}, "another picture: what is measured here is diffuse"},
