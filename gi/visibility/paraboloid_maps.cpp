@@ -128,10 +128,11 @@ void ParaboloidMapPass::draw(const ParaboloidMapInputs& in, std::span<const MapJ
   if (!maker_.gpu()) return drawRays(in, jobs);
   if (!partsByRays) return drawRaster(in, jobs);
   constexpr int kPart = 8; // of so many of a map's texels one
-  const int64_t most = TexelRect::whole(in.resolution).area() / kPart;
+  const int64_t most = int64_t(in.resolution) * in.resolution / kPart;
   std::vector<MapJob> parts, whole;
-  for (const MapJob& job : jobs) // a coarse one of all texels is no part: raster draws it whole
-    (texelsTraced(job.texels, 1) <= most ? parts : whole).push_back(job);
+  const TexelRect all = TexelRect::whole(in.resolution); // never a part, however coarse: nobody would make it whole
+  for (const MapJob& job : jobs)
+    (job.texels != all && texelsTraced(job.texels, job.step) <= most ? parts : whole).push_back(job);
   drawRays(in, parts);
   drawRaster(in, whole);
 }
