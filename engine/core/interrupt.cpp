@@ -36,6 +36,7 @@ int cpuMs = 0; // of all threads
 void request(int) {
   interrupted = true;
   for (const int second : {SIGINT, SIGTERM}) std::signal(second, SIG_DFL);
+  std::signal(SIGHUP, SIG_IGN); // a terminal that closes can send two
   constexpr int kMs = 10'000;
   alarmIn(ITIMER_PROF, cpuMs);
   alarmIn(ITIMER_REAL, kMs);
@@ -44,10 +45,11 @@ void request(int) {
 } // namespace
 
 void endOnRequest() {
-  constexpr int kOfTwo = 1900; // threads: a second of each
+  constexpr int kOfTwo = 1700; // threads: a second of each, less what freeing memory takes
   cpuMs = kOfTwo * std::max(1, int(std::thread::hardware_concurrency()) / 2);
   for (const int signal : {SIGPROF, SIGALRM}) std::signal(signal, cutOff);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, request);
+  if (std::signal(SIGHUP, request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // under nohup
 }
 
 void endedInOrder() {

@@ -1,4 +1,4 @@
-// Requests to end: INT and TERM.
+// Requests to end: INT, TERM and HUP.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ extern std::atomic<bool> interrupted;
 
 /// From now on the first request sets `interrupted`. What is not at its end a second of work on all cores later (10 s,
 /// where it waits) is cut off, exit code 1: files are written whole or not at all, and logs line by line. A second
-/// request ends it at once.
+/// request ends it at once. HUP stays ignored under `nohup`.
 void endOnRequest();
 /// The work is done: what is left is not cut off.
 void endedInOrder();
