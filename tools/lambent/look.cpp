@@ -49,23 +49,25 @@ void render(const RenderOptions& options) {
   const auto opened = openAndSay(options.launch, options.output.quiet);
   GlContext context = GlContext::headless();
   Viewer gi(opened->settings, opened->seed);
-  Progress progress("placing virtual lights", options.output.quiet);
+  std::optional<Progress> progress(std::in_place, "placing virtual lights", options.output.quiet);
   const auto begin = std::chrono::steady_clock::now();
   const FrameStats* stats = nullptr;
   FrameStats drawn; // of the last frame that was: once the lights have settled the picture stays
   int frames = options.frames.value_or(1);
   for (int i = 0; i < frames; ++i) {
     stats = &gi.run(opened->at(0), [&](int done, int total) {
-      progress.update(done, total);
+      if (i == 0) progress->update(done, total);
       if (interrupted) throw RunError("interrupted");
     });
+    if (i == 0) progress.emplace("drawing", options.output.quiet);
     sayWarning(*stats);
     if (stats->plan.on(EffectId::Redraw)) drawn = *stats;
-    if (options.frames) continue;
-    if (stats->plan.on(EffectId::History)) // from where all maps are whole
+    if (!options.frames && stats->plan.on(EffectId::History)) // from where all maps are whole
       frames = std::max(frames, opened->settings.history.frames + (stats->mapsWaiting > 0 ? i + 1 : 0));
-    if (stats->raysSoft.occlusion > 0) frames = std::max(frames, opened->settings.direct.frames);
+    if (!options.frames && stats->raysSoft.occlusion > 0) frames = std::max(frames, opened->settings.direct.frames);
+    progress->update(i + 1, frames);
   }
+  progress.reset();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   writeBuffer(out, gi, buffer);
   Value figures = figuresOf(*stats);
