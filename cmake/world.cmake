@@ -5,8 +5,8 @@ add_library(lambent_world SHARED gi/world/sync.cpp gi/world/world.cpp $<TARGET_O
 set_target_properties(lambent_world PROPERTIES EXPORT_NAME world VERSION ${PROJECT_VERSION}
                       SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib UNITY_BUILD OFF
                       INSTALL_RPATH $ORIGIN LINK_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/lambent.map)
-target_link_libraries(lambent_world PRIVATE lambent_options glm::glm TBB::tbb Threads::Threads TinyGLTF::TinyGLTF
-                      nlohmann_json::nlohmann_json PkgConfig::STB OpenEXR::OpenEXR PUBLIC lambent_shared)
+target_link_libraries(lambent_world PRIVATE lambent_options glm::glm TBB::tbb Threads::Threads lambent_gltf
+                      PkgConfig::STB OpenEXR::OpenEXR PUBLIC lambent_shared)
 target_link_options(lambent_world PRIVATE -Wl,--no-undefined -Wl,--version-script=${CMAKE_SOURCE_DIR}/cmake/lambent.map)
 if(LAMBENT_SANITIZE)
   target_link_options(lambent_world PRIVATE -fsanitize=address,undefined)

@@ -138,6 +138,8 @@ std::string accessorPlace(const std::string& place, int accessor) {
 
 Bytes viewBytes(const Document& doc, int view, const std::string& place) {
   const tinygltf::BufferView& v = doc.at(doc.model.bufferViews, view, "buffer view", place);
+  if (const auto defect = doc.viewDefects.find(view); defect != doc.viewDefects.end())
+    throw InputError(doc.file.string(), place + ": " + defect->second);
   const auto& buffer =
       doc.at(doc.model.buffers, v.buffer, "buffer", place + ", buffer view " + std::to_string(view)).data;
   if (v.byteOffset > buffer.size() || v.byteLength > buffer.size() - v.byteOffset)

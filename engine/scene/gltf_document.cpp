@@ -3,6 +3,7 @@
 #include "engine/scene/gltf_document.h"
 
 #include "engine/core/free_memory.h"
+#include "engine/scene/gltf_compression.h"
 #include "engine/scene/json_text.h"
 
 #include <algorithm>
@@ -20,9 +21,10 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Extensions that a file may require because it is shown as meant (unlit: as a Lambert surface of its colour).
-constexpr std::array<const char*, 5> kSupportedExtensions = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                             "KHR_texture_transform", "KHR_mesh_quantization",
-                                                             "KHR_materials_unlit"};
+constexpr std::array<const char*, 10> kSupportedExtensions = {
+    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",   "KHR_mesh_quantization",
+    "KHR_materials_unlit", "KHR_draco_mesh_compression",      "EXT_meshopt_compression", "KHR_meshopt_compression",
+    "EXT_texture_webp",    "EXT_mesh_gpu_instancing"};
 
 /// Reads the bytes of a file. Throws InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const fs::path& file) {
@@ -248,9 +250,15 @@ void checkCamerasAndLights(Document& doc) {
 }
 
 void checkExtensions(const Document& doc) {
-  for (const std::string& required : doc.model.extensionsRequired)
+  for (const std::string& required : doc.model.extensionsRequired) {
+    if (required == "KHR_texture_basisu")
+      throw InputError(
+          doc.file.string(),
+          "requires the glTF extension KHR_texture_basisu, whose KTX2 images are not decoded here; convert "
+          "it first: gltf-transform ktxdecompress IN OUT");
     if (std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), required) == kSupportedExtensions.end())
       throw InputError(doc.file.string(), "requires the glTF extension " + required + ", which is not supported");
+  }
 }
 
 } // namespace
@@ -297,9 +305,10 @@ constexpr double kShareCounted = 0.75;
 Document readDocument(const fs::path& file, FileTrust trust) {
   Document doc;
   doc.file = file;
-  const std::vector<uint8_t> bytes = readFileBytes(file);
+  std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
+  if (std::vector<uint8_t> readable = asParsed(file, bytes); !readable.empty()) bytes = std::move(readable);
   doc.budget.free = size_t(kShareCounted * double(freeMemory()));
   doc.budget.trusted = trust.large;
   Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}};
@@ -332,6 +341,7 @@ Document readDocument(const fs::path& file, FileTrust trust) {
 
   doc.files.assign(reading.files.begin(), reading.files.end());
   doc.files.push_back(file);
+  decodeViews(doc);
   checkMaterials(doc);
   checkNodes(doc);
   checkCamerasAndLights(doc);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Budget {
     spent = fits ? spent + count * each : limit() + 1;
     return fits;
   }
+  bool overdrawn() const { return spent > limit(); }
   size_t limit() const { return trusted ? free : std::min(free, bySize()); }
   size_t bySize() const {
     const size_t small = std::min(read, kSmall);
@@ -64,6 +66,7 @@ struct Document {
   std::vector<CameraLens> lenses;    // of cameras
   std::vector<PunctualLight> lights; // `type` not yet set
   std::vector<std::string> warnings;
+  std::map<int, std::string> viewDefects; // of compressed buffer views that cannot be decoded
 
   /// Throws an InputError for `place` in this file, for example "mesh 3 'Wall', primitive 0".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;

@@ -4,17 +4,15 @@
 #include "engine/scene/gltf_import.h"
 
 #include <atomic>
+#include <cstring>
 #include <memory>
 
 #include <stb/stb_image.h>
+#include <webp/decode.h>
 
 namespace lambent::gltf {
 
 namespace {
-
-struct StbFree {
-  void operator()(stbi_uc* p) const { stbi_image_free(p); }
-};
 
 constexpr int kMostTexels = 16384; // per side, that OpenGL 4.5 guarantees
 
@@ -28,13 +26,34 @@ Bytes encodedBytes(const Document& doc, int index) {
   return {image.image.data(), image.image.size()};
 }
 
+bool isWebp(Bytes bytes) {
+  return bytes.size >= 12 && std::memcmp(bytes.data, "RIFF", 4) == 0 && std::memcmp(bytes.data + 8, "WEBP", 4) == 0;
+}
+
+struct StbOrWebpFree {
+  bool webp;
+  void operator()(uint8_t* p) const { webp ? WebPFree(p) : stbi_image_free(p); }
+};
+using Texels = std::unique_ptr<uint8_t, StbOrWebpFree>;
+
+/// RGBA8, or nothing where the bytes are damaged.
+Texels decodeTexels(Bytes bytes, int& width, int& height) {
+  if (isWebp(bytes)) return {WebPDecodeRGBA(bytes.data, bytes.size, &width, &height), {true}};
+  int channels = 0; // 16 bits of each are rounded to 8 by the decoder
+  return {stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), {false}};
+}
+
 /// Why the image cannot be decoded; empty: it may be.
 std::string defectOf(Bytes bytes, int& width, int& height) {
   int channels = 0;
   if (bytes.size == 0) return "cannot be read (no such file, or it is empty)";
   if (bytes.size > size_t(std::numeric_limits<int>::max())) return "is larger than 2 GiB";
-  if (!stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels))
-    return std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG or JPEG expected)";
+  constexpr uint8_t kKtx2[] = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb};
+  if (bytes.size >= sizeof kKtx2 && std::memcmp(bytes.data, kKtx2, sizeof kKtx2) == 0)
+    return "is KTX2, which is not decoded here (gltf-transform ktxdecompress IN OUT converts it)";
+  if (isWebp(bytes) && !WebPGetInfo(bytes.data, bytes.size, &width, &height)) return "cannot be decoded: damaged WebP";
+  if (!isWebp(bytes) && !stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels))
+    return std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
   if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)
     return "is " + std::to_string(width) + "x" + std::to_string(height) + " texels (1 to " +
            std::to_string(kMostTexels) + " each way)";
@@ -54,13 +73,13 @@ TextureImage white(bool srgb) {
 /// Without texels: it could not be decoded, `defect` says why.
 TextureImage decode(const Document& doc, int index, bool srgb, std::string& defect) {
   const Bytes bytes = encodedBytes(doc, index);
-  int width = 0, height = 0, channels = 0;
-  // 16 bits per channel are rounded to 8 by the decoder.
-  const std::unique_ptr<stbi_uc, StbFree> texels(
-      stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4));
+  int width = 0, height = 0;
+  const Texels texels = decodeTexels(bytes, width, height);
   TextureImage out;
   if (!texels) {
-    defect = std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG or JPEG expected)";
+    defect = isWebp(bytes)
+                 ? "cannot be decoded: damaged WebP"
+                 : std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
     return out;
   }
   out.width = width;
@@ -70,7 +89,7 @@ TextureImage decode(const Document& doc, int index, bool srgb, std::string& defe
   out.texels.resize(count);
   glm::dvec4 sum(0);
   for (size_t i = 0; i < count; ++i) {
-    const stbi_uc* t = texels.get() + 4 * i;
+    const uint8_t* t = texels.get() + 4 * i;
     out.texels[i] = {t[0], t[1], t[2], t[3]};
     sum += glm::dvec4(decodeTexel(out.texels[i], out.srgb));
   }

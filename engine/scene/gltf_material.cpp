@@ -34,12 +34,18 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   TextureRef ref;
   if (use.index < 0) return ref;
   const tinygltf::Texture& texture = doc.at(doc.model.textures, use.index, "texture", place);
-  if (texture.source < 0 || size_t(texture.source) >= doc.model.images.size()) {
-    doc.warn(place + ": texture " + std::to_string(use.index) +
-             " has no image that this program can use; white instead");
+  const auto sourceBy = [&](const char* extension) {
+    const auto found = texture.extensions.find(extension);
+    return found == texture.extensions.end() ? -1 : int(number(found->second, "source", -1));
+  };
+  const int webp = sourceBy("EXT_texture_webp"), source = webp >= 0 ? webp : texture.source;
+  if (source < 0 || size_t(source) >= doc.model.images.size()) {
+    const bool ktx = sourceBy("KHR_texture_basisu") >= 0;
+    doc.warn(place + ": texture " + std::to_string(use.index) + " has no image that this program can use" +
+             (ktx ? " (KTX2; gltf-transform ktxdecompress IN OUT converts it)" : "") + "; white instead");
     return ref;
   }
-  ref.image = import.images.emplace(std::pair(texture.source, srgb), uint32_t(import.images.size())).first->second;
+  ref.image = import.images.emplace(std::pair(source, srgb), uint32_t(import.images.size())).first->second;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = doc.model.samplers[size_t(texture.sampler)];
     ref.wrapU = wrapMode(sampler.wrapS);

@@ -1,6 +1,7 @@
 // glTF primitives to one triangle mesh: all modes made into triangle lists, vertices of primitives that share their
 // accessors kept once, defects dropped and counted, missing normals made.
 
+#include "engine/scene/gltf_compression.h"
 #include "engine/scene/gltf_import.h"
 
 #include <cmath>
@@ -332,7 +333,7 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
   const std::pair key(meshIndex, skinned);
   if (const auto known = import.meshes.find(key); known != import.meshes.end()) return known->second;
   Document& doc = import.doc;
-  const tinygltf::Mesh& in = doc.model.meshes[size_t(meshIndex)];
+  tinygltf::Mesh& in = doc.model.meshes[size_t(meshIndex)];
   lambent::Mesh mesh;
   mesh.name = in.name.empty() ? "mesh " + std::to_string(meshIndex) : in.name;
   HighestJoint highest;
@@ -343,7 +344,7 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
   };
   std::map<VertexSource, Shared> shared;
   for (size_t i = 0; i < in.primitives.size(); ++i) {
-    const tinygltf::Primitive& primitive = in.primitives[i];
+    tinygltf::Primitive& primitive = in.primitives[i];
     const std::string place = label("mesh", size_t(meshIndex), in.name) + ", primitive " + std::to_string(i);
     if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
       doc.fail(place, "mode " + std::to_string(primitive.mode) + " is not one of glTF's (0 to 6)");
@@ -351,6 +352,7 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
       import.counted["primitive(s) of points or lines left out"]++;
       continue;
     }
+    decodePrimitive(doc, primitive, place);
     const VertexSource source = vertexSource(import, primitive, skinned);
     if (source.positions < 0) {
       import.counted["primitive(s) without positions left out"]++;

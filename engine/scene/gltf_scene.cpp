@@ -97,6 +97,55 @@ size_t emittingTriangles(const SceneAssets& assets, uint32_t mesh) {
   return count;
 }
 
+/// What an instance takes in the registry, in the view and in what follows both.
+constexpr size_t kBytesPerInstance = 1024;
+
+/// Transforms of the instances that a node has of its mesh, in its space; none where the node itself is the only one.
+/// EXT_mesh_gpu_instancing.
+std::optional<std::vector<Transform>> instancesOf(const Document& doc, const tinygltf::Node& node,
+                                                  const std::string& outerPlace) {
+  const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (extension == node.extensions.end() || !extension->second.IsObject() || !extension->second.Has("attributes"))
+    return {};
+  const std::string place = outerPlace + ", EXT_mesh_gpu_instancing";
+  const tinygltf::Value& attributes = extension->second.Get("attributes");
+  std::optional<size_t> count;
+  const auto accessorOf = [&](const char* name) {
+    const int accessor = int(number(attributes, name, -1));
+    if (accessor < 0) return -1;
+    const size_t elements = doc.at(doc.model.accessors, accessor, "accessor", place).count;
+    if (count && *count != elements)
+      doc.fail(place, std::string(name) + " has " + std::to_string(elements) + " elements, the attribute before it " +
+                          std::to_string(*count));
+    count = elements;
+    return accessor;
+  };
+  const int translations = accessorOf("TRANSLATION"), rotations = accessorOf("ROTATION"), scales = accessorOf("SCALE");
+  if (!count) return {};
+  doc.spend(*count, kBytesPerInstance, place);
+  std::vector<Transform> instances(*count);
+  const auto check = [&](bool finite, const char* what) {
+    if (!finite) doc.fail(place, std::string(what) + " holds a number that is not finite");
+  };
+  if (translations >= 0) {
+    const std::vector<vec3> values = readAccessor<vec3>(doc, translations, place + ", TRANSLATION");
+    for (size_t i = 0; i < *count; ++i) check(isFinite(values[i]), "TRANSLATION"), instances[i].translation = values[i];
+  }
+  if (rotations >= 0) {
+    const std::vector<vec4> values = readAccessor<vec4>(doc, rotations, place + ", ROTATION");
+    for (size_t i = 0; i < *count; ++i) {
+      const float length = glm::length(values[i]);
+      check(std::isfinite(length) && length > 1e-12f, "ROTATION");
+      instances[i].rotation = quat(values[i].w, values[i].x, values[i].y, values[i].z) / length;
+    }
+  }
+  if (scales >= 0) {
+    const std::vector<vec3> values = readAccessor<vec3>(doc, scales, place + ", SCALE");
+    for (size_t i = 0; i < *count; ++i) check(isFinite(values[i]), "SCALE"), instances[i].scale = values[i];
+  }
+  return instances;
+}
+
 } // namespace
 
 void importNodes(Import& import, const std::string& sceneName) {
@@ -148,12 +197,25 @@ void importNodes(Import& import, const std::string& sceneName) {
     doc.checkIndex(node.mesh, doc.model.meshes.size(), "mesh", place);
     const uint32_t mesh = importMesh(import, node.mesh, node.skin >= 0);
     if (mesh == kNone) continue;
-    doc.show(import.scene.assets.meshes[mesh].triangles.size(), place);
-    registry.emplace<MeshInstance>(e, mesh);
+    const std::optional<std::vector<Transform>> instances = instancesOf(doc, node, place);
+    const size_t count = instances ? instances->size() : 1;
+    for (size_t i = 0; i < count; ++i) doc.show(import.scene.assets.meshes[mesh].triangles.size(), place);
     const auto [shining, first] = emitting.try_emplace(mesh, 0);
     if (first) shining->second = emittingTriangles(import.scene.assets, mesh);
-    doc.spend(shining->second, kBytesPerEmitter, place);
-    importDeformation(import, index, mesh);
+    doc.spend(count, shining->second * kBytesPerEmitter, place);
+    if (!instances) {
+      registry.emplace<MeshInstance>(e, mesh);
+      importDeformation(import, index, mesh);
+      continue;
+    }
+    if (node.skin >= 0) import.counted["instanced node(s) with a skin, which poses none of the instances"]++;
+    for (const Transform& transform : *instances) {
+      const Entity instance = registry.create();
+      registry.emplace<Transform>(instance, transform);
+      registry.emplace<WorldTransform>(instance);
+      registry.emplace<Parent>(instance, e);
+      registry.emplace<MeshInstance>(instance, mesh);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"
 #include "gi/plan/presets.h"
+#include "tests/fuzz/compressed.h"
 #include "tests/fuzz/files.h"
 #include "tests/fuzz/own_files.h"
 
@@ -155,6 +156,12 @@ const std::vector<Target>& targets() {
          {"\"count\":", "\"byteOffset\":", "\"byteStride\":", "\"componentType\":5125", "\"mode\":6",
           "\"uri\":", "null", "[]", "{}", "-1", "4294967296", "1e39", "1e-39", "0.5", "\"MAT4\"", "\"CUBICSPLINE\"",
           "\"path\":\"weights\"", "\"sparse\":"},
+         {}},
+        {"compressed",
+         gltf,
+         compressedSeeds,
+         {"DRACO", "RIFF", "WEBP", "VP8L", "\"count\":", "\"byteStride\":", "\"mode\":", "\"filter\":",
+          "\"QUATERNION\"", "\"INDICES\"", "\"fallback\":", "\xff\xff\xff\xff", "\xff\xff\xff\x0f", "-1", "4294967296"},
          {}},
         {"settings",
          settings,
