@@ -14,7 +14,7 @@ namespace lambent::fuzz {
 
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr uint32_t kSide = 4; // vertices of a grid
 
@@ -32,7 +32,7 @@ std::vector<uint32_t> gridIndices() {
 }
 
 /// A .glb of one node and mesh.
-std::string glbOf(json document, const std::string& binary) {
+std::string glbOf(Json document, const std::string& binary) {
   document["asset"]["version"] = "2.0";
   document["scenes"] = {{{"nodes", {0}}}};
   if (!document.contains("nodes")) document["nodes"] = {{{"mesh", 0}}};
@@ -68,7 +68,7 @@ std::string dracoSeed(int method) {
   encoder.EncodeMeshToBuffer(*mesh, &buffer);
   const std::string data(buffer.data(), buffer.size());
   const size_t n = mesh->num_points();
-  json document;
+  Json document;
   document["buffers"] = {{{"byteLength", data.size()}}};
   document["bufferViews"] = {{{"buffer", 0}, {"byteLength", data.size()}}};
   document["accessors"] = {{{"componentType", 5126}, {"type", "VEC3"}, {"count", n}},
@@ -85,12 +85,12 @@ std::string meshoptSeed() {
   const std::vector<uint32_t> indices = gridIndices();
   const size_t n = positions.size();
   std::string data;
-  json document;
+  Json document;
   size_t fallback = 0;
   const auto add = [&](std::vector<uint8_t> bytes, size_t size, const char* mode, const char* filter, size_t stride,
                        size_t count) {
     while (data.size() % 4) data += '\0';
-    json view = {{"buffer", 1}, {"byteOffset", fallback}, {"byteLength", stride * count}};
+    Json view = {{"buffer", 1}, {"byteOffset", fallback}, {"byteLength", stride * count}};
     view["extensions"]["EXT_meshopt_compression"] = {
         {"buffer", 0},  {"byteOffset", data.size()}, {"byteLength", size}, {"byteStride", stride}, {"count", count},
         {"mode", mode}, {"filter", filter}};
@@ -138,7 +138,7 @@ std::string webpSeed(bool lossless) {
                                : WebPEncodeRGBA(texels.data(), 8, 8, 32, 60, &out);
   data.append(reinterpret_cast<const char*>(out), size);
   WebPFree(out);
-  json document;
+  Json document;
   document["buffers"] = {{{"byteLength", data.size()}}};
   document["bufferViews"] = {{{"buffer", 0}, {"byteLength", 36}},
                              {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 36}},
