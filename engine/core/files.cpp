@@ -27,11 +27,18 @@ namespace {
 struct TemporaryName {
   std::string begin, end;
   explicit TemporaryName(const fs::path& file)
-      : begin("." + file.stem().string().substr(0, 100) + "."), end(file.extension().string()) {
+      : begin("." + file.stem().string().substr(0, 100) + ".lambent-"), end(file.extension().string()) {
     constexpr size_t kLongestEnd = 32; // no format's
     if (end.size() > kLongestEnd) end.clear();
   }
 };
+
+bool isTemporaryOf(const std::string& name, const fs::path& file) {
+  const auto [begin, end] = TemporaryName(file);
+  if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) return false;
+  const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return between.find_first_not_of("0123456789") == between.npos;
+}
 
 /// Made by this program alone, and locked while it lives: a lock that can be had is that of a program that was killed.
 class Temporary {
@@ -260,6 +267,25 @@ fs::path leadsTo(fs::path file) {
   return file;
 }
 
+namespace {
+
+/// Removes what programs that were killed have left of a file, as removeLeftovers. A folder is looked through once: it
+/// may hold a film of 10^5 frames, and what another program leaves there later can wait.
+void removeLeftoversOnce(const fs::path& file) {
+  static std::mutex mutex;
+  static std::map<fs::path, std::vector<fs::path>> hidden; // names that begin with a dot, by folder
+  const std::lock_guard lock(mutex);
+  const auto [found, first] = hidden.try_emplace(placeOf(folderOf(file)));
+  std::error_code ignored;
+  for (fs::directory_iterator at(folderOf(file), ignored), end; first && at != end; at.increment(ignored))
+    if (const fs::path name = at->path().filename(); name.string().starts_with('.')) found->second.push_back(name);
+  for (const fs::path& name : found->second)
+    if (isTemporaryOf(name.string(), file) && abandoned(folderOf(file) / name))
+      fs::remove(folderOf(file) / name, ignored);
+}
+
+} // namespace
+
 void writeAtomically(const fs::path& named, const std::function<void(const fs::path&)>& write) {
   std::error_code ignored;
   checkWritable(named);
@@ -268,6 +294,7 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
+  removeLeftoversOnce(file);
   const fs::path temporary = temporaryFor(file);
   const Unbroken whole;
   const Temporary held(temporary, file);
@@ -357,15 +384,9 @@ fs::path temporaryFor(const fs::path& file) {
 
 void removeLeftovers(const fs::path& named) {
   const fs::path file = leadsTo(named);
-  const auto [begin, end] = TemporaryName(file);
   std::error_code ignored;
-  for (const fs::directory_entry& e :
-       fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), ignored)) {
-    const std::string name = e.path().filename().string();
-    if (name.size() <= begin.size() + end.size() || !name.starts_with(begin) || !name.ends_with(end)) continue;
-    const std::string between = name.substr(begin.size(), name.size() - begin.size() - end.size());
-    if (between.find_first_not_of("0123456789") == between.npos && abandoned(e.path())) fs::remove(e.path(), ignored);
-  }
+  for (const fs::directory_entry& e : fs::directory_iterator(folderOf(file), ignored))
+    if (isTemporaryOf(e.path().filename().string(), file) && abandoned(e.path())) fs::remove(e.path(), ignored);
 }
 
 } // namespace lambent

@@ -137,8 +137,9 @@ TEST_F(RecordingFolderTest, WaitsForNoPipe) {
 
 TEST_F(RecordingFolderTest, RemovesWhatAKillLeft) {
   mark_.reset();
-  const char* left[] = {".recording.17.json", ".000003.4711.png"};
-  const char* others[] = {".000003.4711.exr", ".000003.x.png", ".notes.17.png"};
+  const char* left[] = {".recording.lambent-17.json", ".000003.lambent-4711.png"};
+  const char* others[] = {".000003.lambent-4711.exr", ".000003.lambent-x.png", ".notes.lambent-17.png",
+                          ".000003.4711.png"};
   for (const char* name : left) writeBytes(folder_ / name, "x");
   for (const char* name : others) writeBytes(folder_ / name, "x");
   mark_.emplace(folder_.path(), "these", "png");

@@ -38,12 +38,24 @@ TEST_F(FreeMemory, OfTheFirstVersionToo) {
 
 TEST(Leftovers, AreThoseOfThatFileAlone) {
   const TemporaryFolder folder;
-  for (const char* name : {"a.png", ".a.123.png", ".a.1x.png", ".b.123.png", ".a.123.exr", ".a..png"})
+  for (const char* name : {"a.png", ".a.lambent-123.png", ".a.lambent-1x.png", ".b.lambent-123.png",
+                           ".a.lambent-123.exr", ".a.lambent-.png", ".a.123.png"})
     writeBytes(folder / name, "x");
   removeLeftovers(folder / "a.png");
-  EXPECT_FALSE(fs::exists(folder / ".a.123.png"));
-  for (const char* name : {"a.png", ".a.1x.png", ".b.123.png", ".a.123.exr", ".a..png"})
+  EXPECT_FALSE(fs::exists(folder / ".a.lambent-123.png"));
+  for (const char* name :
+       {"a.png", ".a.lambent-1x.png", ".b.lambent-123.png", ".a.lambent-123.exr", ".a.lambent-.png", ".a.123.png"})
     EXPECT_TRUE(fs::exists(folder / name)) << name;
+}
+
+TEST(Leftovers, GoWithTheFirstFileWrittenBesideThem) {
+  const TemporaryFolder folder;
+  writeBytes(folder / ".a.lambent-123.png", "x");
+  writeBytes(folder / ".b.lambent-123.png", "x");
+  writeAtomically(folder / "a.png", "whole");
+  EXPECT_FALSE(fs::exists(folder / ".a.lambent-123.png"));
+  writeAtomically(folder / "b.png", "whole");
+  EXPECT_FALSE(fs::exists(folder / ".b.lambent-123.png"));
 }
 
 /// What a program that lives is about to finish is not taken from it.
@@ -78,9 +90,9 @@ TEST(Leftovers, OfALinkLieBesideWhatItLeadsTo) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "there");
   fs::create_symlink("there/b.png", folder / "a.png");
-  writeBytes(folder / "there/.b.123.png", "x");
+  writeBytes(folder / "there/.b.lambent-123.png", "x");
   removeLeftovers(folder / "a.png");
-  EXPECT_FALSE(fs::exists(folder / "there/.b.123.png"));
+  EXPECT_FALSE(fs::exists(folder / "there/.b.lambent-123.png"));
 }
 
 } // namespace lambent::test::free_memory_test
