@@ -35,7 +35,7 @@ void main() {
   vec3 share = texelFetch(visible, pixel, 0).rgb;
   if (depth == 0.0 || share == vec3(0.0)) return;
   vec3 position = positionFromDepth(pixel, depth);
-  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  vec3 normal = normalForLight(pixel, texelFetch(gbufferNormal, pixel, 0).xyz);
 #ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, normal);
   AreaLobe lobe = lobeFor(receiver.alpha2, receiver.cosViewer);

@@ -101,9 +101,10 @@ void main() {
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  vec3 forLight = normalForLight(pixel, normal);
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
-  Receiver receiver = receiverAt(pixel, position, normal);
+  Receiver receiver = receiverAt(pixel, position, forLight);
   vec3 glossy = vec3(0.0);
 #endif
 
@@ -121,8 +122,12 @@ void main() {
   for (int i = first; i < end; ++i) {
     LightRecord light = lights[i];
     vec3 towardsLight;
-    float cosine, weight = unshadowed(light, position, normal, towardsLight, cosine);
+    float cosine, weight = unshadowed(light, position, forLight, towardsLight, cosine);
     if (!(weight > 0.0)) continue;
+#ifdef MAPPED_NORMALS
+    cosine = dot(normal, towardsLight);
+    if (!(cosine > 0.0)) continue;
+#endif
 #ifdef DOUBTS
 #ifdef SKY
     if (open) {

@@ -1,5 +1,6 @@
 #version 450
-// Surface attributes seen by the camera. Variants: GLOSSY (roughness and metalness too), KEEPS_MODE (for llvmpipe, Mesa
+// Surface attributes seen by the camera. Variants: GLOSSY (roughness and metalness too),
+// MAPPED_NORMALS (the normal by the normal map too; NORMAL_TEXTURE: the material has one), KEEPS_MODE (for llvmpipe, Mesa
 // 22.3: where the depth test rejects a whole block of pixels of a draw to half floats without any discard, the thread
 // no longer flushes denormals to zero, and what it draws from then on may differ from what other threads draw).
 #include "lib/material.glsl"
@@ -19,12 +20,23 @@ layout(location = 2) out vec4 outEmission;
 layout(location = 3) out vec2 outRoughnessMetalness;
 #endif
 
+#ifdef MAPPED_NORMALS
+#include "shared/normal_map.h"
+#ifdef NORMAL_TEXTURE
+layout(location = 5) in vec4 tangentWorld;
+#endif
+layout(location = 4) out vec4 outMappedNormal;
+#endif
+
 void main() {
   // What differs from pixel to pixel comes before any discard: afterwards a driver may have no neighbours to ask.
   vec4 base = baseColorAt(uv, color);
   vec3 emission = emissionAt(uv), across = dFdx(positionEye), up = dFdy(positionEye);
 #ifdef GLOSSY
   vec2 roughnessMetalness = roughnessMetalnessAt(uv);
+#endif
+#ifdef NORMAL_TEXTURE
+  vec3 normalTexel = normalTexelAt(uv);
 #endif
 #ifdef KEEPS_MODE
   if (camera.size.x < 0.0) discard; // never, which the compiler cannot know
@@ -42,12 +54,21 @@ void main() {
   // geometric one is the only answer that agrees with what is seen.
   float long_ = length(normalWorld); // 0 where corners have none, or opposite ones
   vec3 normal = long_ > 0.0 ? normalWorld / long_ : geometric;
-  if (dot(normal, geometric) < 0.0) normal = -normal;
+  float side = dot(normal, geometric) < 0.0 ? -1.0 : 1.0;
+  normal *= side;
   if (!(dot(normal, towardsViewer) > 0.0)) normal = geometric;
 
   bool front = gl_FrontFacing == (handedness > 0.0);
   bool emits = front || material.baseUvV.w > 0.5;
   outNormal = vec4(normal, 1.0);
+#ifdef NORMAL_TEXTURE
+  vec3 mapped =
+      mappedNormal(normalWorld, tangentWorld.xyz, sign(tangentWorld.w), normalTexel, material.roughnessMetalness.z);
+  outMappedNormal = dot(tangentWorld.xyz, tangentWorld.xyz) > 0.0 ? vec4(facingViewer(side * mapped, towardsViewer), 1.0)
+                                                                  : outNormal;
+#elif defined(MAPPED_NORMALS)
+  outMappedNormal = outNormal;
+#endif
   outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 #ifdef GLOSSY
   outRoughnessMetalness = vec2(max(roughnessMetalness.x, kLeastRoughness), roughnessMetalness.y);

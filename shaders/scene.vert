@@ -9,6 +9,10 @@ layout(location = 6) in vec4 worldRow2;
 layout(location = 1) in vec3 normalObject;
 layout(location = 0) out vec3 normalWorld;
 layout(location = 4) flat out float handedness;
+#ifdef NORMAL_TEXTURE
+layout(location = 7) in vec4 tangentObject; // w: side of the bitangent
+layout(location = 5) out vec4 tangentWorld;
+#endif
 #endif
 #if !defined(DEPTH_ONLY) || defined(POSITION)
 layout(location = 1) out vec3 positionEye; // world axes, origin at the eye: keeps the derivatives precise
@@ -34,6 +38,10 @@ void main() {
   vec3 n = vec3(dot(c0, normalObject), dot(c1, normalObject), dot(c2, normalObject));
   float size = length(n); // may be 0: a file may give normals of no length
   normalWorld = size > 0.0 ? n * (handedness / size) : vec3(0.0);
+#ifdef NORMAL_TEXTURE
+  vec3 t = tangentObject.xyz;
+  tangentWorld = vec4(dot(worldRow0.xyz, t), dot(worldRow1.xyz, t), dot(worldRow2.xyz, t), tangentObject.w * handedness);
+#endif
 #endif
 #if !defined(DEPTH_ONLY) || defined(POSITION)
   positionEye = positionWorld - eye;

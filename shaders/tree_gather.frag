@@ -43,7 +43,7 @@ void main() {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
-  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  vec3 normal = normalForLight(pixel, texelFetch(gbufferNormal, pixel, 0).xyz);
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, normal);

@@ -38,9 +38,10 @@ void main() {
   vec3 towardsViewer =
       camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
   vec3 asked = x + kTowardsViewer * towardsViewer;
+  vec3 forLight = normalForLight(pixel, normal);
 #ifdef GLOSSY
-  Receiver receiver = receiverAt(pixel, position, normal);
-  vec3 mirrored = reflect(-receiver.towardsViewer, normal);
+  Receiver receiver = receiverAt(pixel, position, forLight);
+  vec3 mirrored = reflect(-receiver.towardsViewer, forLight);
   vec3 glossy = vec3(0.0), glossyHidden = vec3(0.0);
 #endif
   vec3 seen = vec3(0.0), hidden = vec3(0.0);
@@ -54,7 +55,7 @@ void main() {
     int index = (at.z * cells + at.y) * cells + at.x;
     int part = volumePart(asked, centre);
     bool sees = (sights[index][part >> 5] >> (part & 31) & 1u) != 0u;
-    vec3 light = weight * onSurface(index, normal);
+    vec3 light = weight * onSurface(index, forLight);
     if (sees) seen += light, seenWeight += weight;
     else hidden += light, hiddenWeight += weight;
 #ifdef GLOSSY

@@ -20,7 +20,7 @@ namespace lambent::gl {
 /// Binding points of each kind that passes may use, from 0 on: those that StateGuard keeps for the host. All that binds
 /// goes through the functions below, which stop the program where a pass goes further (tools/check_layers forbids
 /// OpenGL's own).
-inline constexpr int kTextureUnits = 13, kUniformBindings = 4, kStorageBindings = 8;
+inline constexpr int kTextureUnits = 14, kUniformBindings = 4, kStorageBindings = 8;
 /// By name, 0 included: for what a table holds.
 void bindTexture(int unit, GLuint texture);
 void bindSampler(int unit, GLuint sampler);

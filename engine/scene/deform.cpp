@@ -44,6 +44,9 @@ mat3 normalMatrix(const mat3& m) {
   return glm::dot(m[0], cofactor[0]) < 0 ? -cofactor : cofactor;
 }
 
+/// -1 where it turns left hands into right ones: a bitangent then is on the other side.
+float sideOf(const mat3& m) { return glm::determinant(m) < 0 ? -1.0f : 1.0f; }
+
 void morph(const Mesh& mesh, std::span<const float> weights, size_t begin, size_t end, DeformedMesh& out) {
   std::copy(mesh.positions.begin() + long(begin), mesh.positions.begin() + long(end),
             out.positions.begin() + long(begin));
@@ -70,6 +73,8 @@ void skin(const Mesh& mesh, std::span<const mat4> objectFromBind, size_t begin, 
       }
     if (!(total > 0)) continue;
     out.positions[i] = vec3(blended * vec4(out.positions[i], 1));
+    if (!out.tangents.empty())
+      out.tangents[i] = vec4(mat3(blended) * vec3(out.tangents[i]), out.tangents[i].w * sideOf(mat3(blended)));
     out.normals[i] = normalMatrix(mat3(blended)) * out.normals[i];
   }
 }
@@ -105,12 +110,15 @@ void deform(const Mesh& mesh, const Pose& pose, DeformedMesh& out) {
   const size_t count = mesh.positions.size();
   out.positions.resize(count);
   out.normals.resize(count);
+  out.tangents = mesh.tangents; // morph targets' own are left out: what is drawn makes them tangent to the normals
   parallelFor(count, kGrain, [&](size_t begin, size_t end) {
     morph(mesh, pose.morphWeights, begin, end, out);
     if (!pose.objectFromBind.empty()) skin(mesh, pose.objectFromBind, begin, end, out);
     for (size_t i = begin; i < end; ++i) {
       if (!isFinite(out.positions[i])) out.positions[i] = mesh.positions[i]; // keys beyond single precision
       out.normals[i] = unitOr(out.normals[i], mesh.normals[i]);
+      if (!out.tangents.empty())
+        out.tangents[i] = vec4(unitOr(vec3(out.tangents[i]), vec3(mesh.tangents[i])), out.tangents[i].w);
     }
   });
   out.boundsObject = {};

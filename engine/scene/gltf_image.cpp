@@ -128,6 +128,8 @@ void decodeImages(Import& import) {
     if (!defects[i].empty()) {
       doc.warn(placeOf(image, index) + ": " + defects[i] + "; white instead");
       images[i] = white(srgb);
+      for (lambent::Material& m : import.scene.assets.materials) // white would be a slope
+        if (m.normalTexture.image == i) m.normalTexture.image = kNone;
     }
     images[i].name = name;
   }

@@ -104,6 +104,12 @@ uint32_t importMaterial(Import& import, int index) {
   out.metalness = factor(float(pbr.metallicFactor), "metalness");
   out.roughnessMetalnessTexture =
       importTexture(import, pbr.metallicRoughnessTexture, place + ", roughness and metalness", false);
+  const tinygltf::NormalTextureInfo& bumps = in.normalTexture;
+  tinygltf::TextureInfo normalMap;
+  normalMap.index = bumps.index, normalMap.texCoord = bumps.texCoord, normalMap.extensions = bumps.extensions;
+  out.normalTexture = importTexture(import, normalMap, place + ", normal map", false);
+  out.normalScale = float(bumps.scale);
+  if (!std::isfinite(out.normalScale)) doc.fail(place, "the normal map's scale is beyond single precision");
   const auto strength = in.extensions.find("KHR_materials_emissive_strength");
   out.emission = glm::max(
       emissive * (strength != in.extensions.end() ? number(strength->second, "emissiveStrength", 1) : 1), vec3(0));

@@ -3,6 +3,7 @@
 
 #include "engine/scene/gltf_compression.h"
 #include "engine/scene/gltf_import.h"
+#include "engine/scene/tangents.h"
 
 #include <cmath>
 #include <compare>
@@ -25,7 +26,8 @@ struct VertexSource {
     int positions = -1, normals = -1;
     auto operator<=>(const Target&) const = default;
   };
-  int positions = -1, normals = -1, uv0 = -1, uv1 = -1, colors = -1;
+  int positions = -1, normals = -1, uv0 = -1, uv1 = -1, colors = -1, tangents = -1;
+  int tangentsOf = -1;        // the primitive whose triangles they are made from, which then shares with no other
   std::vector<Joints> joints; // JOINTS_0 with WEIGHTS_0, JOINTS_1 with WEIGHTS_1, …
   std::vector<Target> targets;
 
@@ -38,7 +40,7 @@ struct VertexSource {
 struct Vertices {
   std::vector<vec3> positions, normals;
   std::vector<vec2> uv0, uv1;
-  std::vector<vec4> colors;
+  std::vector<vec4> colors, tangents;
   std::vector<JointSet> jointSets;
   std::vector<MorphTarget> targets;
 };
@@ -119,7 +121,7 @@ void appendOptional(std::vector<V>& to, const std::vector<V>& from, size_t befor
 }
 
 /// Joints are only looked at for a mesh that is shown with a skin.
-VertexSource vertexSource(Import& import, const tinygltf::Primitive& primitive, bool skinned) {
+VertexSource vertexSource(Import& import, const tinygltf::Primitive& primitive, int index, bool skinned) {
   const auto& given = primitive.attributes;
   VertexSource source;
   source.positions = find(given, "POSITION");
@@ -127,6 +129,11 @@ VertexSource vertexSource(Import& import, const tinygltf::Primitive& primitive, 
   source.uv0 = find(given, "TEXCOORD_0");
   source.uv1 = find(given, "TEXCOORD_1");
   source.colors = find(given, "COLOR_0");
+  if (primitive.material >= 0 && size_t(primitive.material) < import.doc.model.materials.size() &&
+      import.doc.model.materials[size_t(primitive.material)].normalTexture.index >= 0) {
+    if (source.normals >= 0) source.tangents = find(given, "TANGENT"); // "ignored where normals are not given"
+    if (source.tangents < 0) source.tangentsOf = index;
+  }
   for (int set = 0; skinned; ++set) {
     const std::string number = std::to_string(set);
     const VertexSource::Joints joints{find(given, "JOINTS_" + number), find(given, "WEIGHTS_" + number)};
@@ -159,6 +166,8 @@ Vertices readVertices(Import& import, const VertexSource& source, const std::str
     v.colors = readColors(doc, source.colors, place + ", COLOR_0");
     checkCount(doc, v.colors.size(), count, place + ", COLOR_0");
   }
+  v.tangents = readOptional<vec4>(doc, source.tangents, count, place + ", TANGENT");
+  for (vec4& t : v.tangents) t = vec4(unitOr(vec3(t), vec3(0)), t.w < 0 ? -1 : 1);
   replaceNonFinite(v.uv0, vec2(0));
   replaceNonFinite(v.uv1, vec2(0));
   replaceNonFinite(v.colors, vec4(1));
@@ -174,25 +183,79 @@ Vertices readVertices(Import& import, const VertexSource& source, const std::str
   return v;
 }
 
+/// Bytes of a vertex with all that it may have.
+size_t bytesPerVertex(const Vertices& v) {
+  return 2 * sizeof(vec3) + 2 * sizeof(vec2) + 2 * sizeof(vec4) + v.jointSets.size() * 2 * sizeof(vec4) +
+         v.targets.size() * 2 * sizeof(vec3);
+}
+
+/// Visits all arrays that a vertex has, each with the other's: fn(from's, to's).
+template <class Fn> void eachArray(const Vertices& from, Vertices& to, Fn&& fn) {
+  fn(from.positions, to.positions);
+  fn(from.normals, to.normals);
+  fn(from.uv0, to.uv0);
+  fn(from.uv1, to.uv1);
+  fn(from.colors, to.colors);
+  fn(from.tangents, to.tangents);
+  to.jointSets.resize(from.jointSets.size());
+  for (size_t s = 0; s < from.jointSets.size(); ++s) {
+    fn(from.jointSets[s].joints, to.jointSets[s].joints);
+    fn(from.jointSets[s].weights, to.jointSets[s].weights);
+  }
+  to.targets.resize(from.targets.size());
+  for (size_t t = 0; t < from.targets.size(); ++t) {
+    fn(from.targets[t].positions, to.targets[t].positions);
+    fn(from.targets[t].normals, to.targets[t].normals);
+  }
+}
+
+/// Makes tangents for the material's normal map. A vertex whose triangles disagree about its tangent becomes several.
+void makeTangents(const Document& doc, Vertices& v, std::vector<uvec3>& triangles, const TextureRef& map,
+                  const std::string& place) {
+  std::vector<vec2> uvs = map.uvSet == 0 ? v.uv0 : v.uv1;
+  if (uvs.empty()) return; // the map has one texel for all, and no direction
+  for (vec2& uv : uvs) uv = vec2(map.uvTransform * vec3(uv, 1));
+  doc.spend(3 * triangles.size(), sizeof(CornerTangent), place);
+  const std::vector<CornerTangent> corners = cornerTangents(v.positions, v.normals, uvs, triangles);
+  constexpr uint32_t kNobody = 0xffffffffu;
+  struct Copy {
+    uint32_t group, next; // the vertex's next copy
+  };
+  std::vector<Copy> copies(v.positions.size(), {kNobody, kNobody});
+  v.tangents.assign(v.positions.size(), vec4(0));
+  for (size_t i = 0; i < corners.size(); ++i) {
+    uint32_t at = triangles[i / 3][int(i % 3)];
+    while (copies[at].group != corners[i].group) {
+      if (copies[at].group == kNobody) {
+        copies[at].group = corners[i].group;
+        v.tangents[at] = corners[i].tangent;
+        break;
+      }
+      if (copies[at].next == kNobody) {
+        copies[at].next = uint32_t(copies.size());
+        copies.push_back({kNobody, kNobody});
+        doc.spend(1, bytesPerVertex(v), place);
+        eachArray(v, v, [at](const auto&, auto& array) {
+          if (array.empty()) return;
+          const auto vertex = array[at];
+          array.push_back(vertex);
+        });
+      }
+      at = copies[at].next;
+    }
+    triangles[i / 3][int(i % 3)] = at;
+  }
+}
+
 /// One vertex per triangle corner, each with its triangle's normal (glTF: "flat normals" where none are given).
 void makeFlat(Vertices& v, std::vector<uvec3>& triangles) {
   Vertices flat;
-  const auto unweld = [&](const auto& from, auto& to) {
+  eachArray(v, flat, [&](const auto& from, auto& to) {
     if (from.empty()) return;
     to.reserve(triangles.size() * 3);
     for (const uvec3& t : triangles)
       for (int c = 0; c < 3; ++c) to.push_back(from[t[c]]);
-  };
-  unweld(v.positions, flat.positions);
-  unweld(v.uv0, flat.uv0);
-  unweld(v.uv1, flat.uv1);
-  unweld(v.colors, flat.colors);
-  for (const JointSet& set : v.jointSets) {
-    JointSet& to = flat.jointSets.emplace_back();
-    unweld(set.joints, to.joints);
-    unweld(set.weights, to.weights);
-  }
-  for (const MorphTarget& target : v.targets) unweld(target.positions, flat.targets.emplace_back().positions);
+  });
   for (uint32_t i = 0; i < triangles.size(); ++i) {
     const vec3 cross = faceCross(v.positions, triangles[i]);
     const float squared = glm::dot(cross, cross); // none only where a morph or joints give the triangle its area
@@ -235,6 +298,7 @@ uint32_t appendVertices(lambent::Mesh& mesh, Vertices& v) {
   appendOptional(mesh.uv0, v.uv0, before, added, vec2(0));
   appendOptional(mesh.uv1, v.uv1, before, added, vec2(0));
   appendOptional(mesh.colors, v.colors, before, added, vec4(1));
+  appendOptional(mesh.tangents, v.tangents, before, added, vec4(0));
   mesh.jointSets.resize(std::max(mesh.jointSets.size(), v.jointSets.size()));
   v.jointSets.resize(mesh.jointSets.size());
   for (size_t s = 0; s < mesh.jointSets.size(); ++s) {
@@ -321,12 +385,6 @@ void noteJoints(HighestJoint& highest, const std::vector<JointSet>& sets, const 
           highest = {set.joints[i][c], place + ", vertex " + std::to_string(i)};
 }
 
-/// Bytes of a vertex with all that it may have.
-size_t bytesPerVertex(const Vertices& v) {
-  return 2 * sizeof(vec3) + 2 * sizeof(vec2) + sizeof(vec4) + v.jointSets.size() * 2 * sizeof(vec4) +
-         v.targets.size() * 2 * sizeof(vec3);
-}
-
 } // namespace
 
 uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
@@ -353,7 +411,7 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
       continue;
     }
     decodePrimitive(doc, primitive, place);
-    const VertexSource source = vertexSource(import, primitive, skinned);
+    const VertexSource source = vertexSource(import, primitive, int(i), skinned);
     if (source.positions < 0) {
       import.counted["primitive(s) without positions left out"]++;
       continue;
@@ -375,22 +433,29 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
     if (triangles.empty()) continue;
 
     const bool flat = source.normals < 0;
+    const uint32_t material = importMaterial(import, primitive.material);
+    const auto makeMissingTangents = [&] {
+      const TextureRef& map = import.scene.assets.materials[material].normalTexture;
+      if (source.tangentsOf >= 0 && map.image != kNone) makeTangents(doc, vertices, triangles, map, place);
+    };
     uint32_t first;
     if (known != shared.end()) {
       first = known->second.first;
     } else if (flat) {
       doc.spend(3 * triangles.size(), bytesPerVertex(vertices), place);
       makeFlat(vertices, triangles);
+      makeMissingTangents();
       first = appendVertices(mesh, vertices);
     } else {
       doc.spend(vertices.positions.size(), bytesPerVertex(vertices), place); // what others have is filled up
       std::vector<vec3> asRead = vertices.positions;
       repairNormals(vertices, triangles);
+      makeMissingTangents();
       first = appendVertices(mesh, vertices);
       shared.emplace(source, Shared{first, std::move(asRead)});
     }
     doc.spend(triangles.size(), kBytesPerTracedTriangle, place);
-    appendTriangles(mesh, triangles, first, importMaterial(import, primitive.material), flat);
+    appendTriangles(mesh, triangles, first, material, flat);
   }
 
   uint32_t slot = kNone;

@@ -110,6 +110,10 @@ void writeVertices(RTCBuffer vertices, const std::vector<vec3>& positions) {
 
 } // namespace
 
+/// Beyond 1.8e18 in an instance's space a ray is not valid to Embree, whose builds with assertions then end.
+constexpr float kFarthestInEmbree = 4e17f;
+constexpr float kMostGrowth = 1e12f;
+
 struct EmbreeQuery::State {
   /// The triangles of one mesh, or of one deformed instance.
   struct BottomLevel {
@@ -121,6 +125,7 @@ struct EmbreeQuery::State {
     uint32_t mesh = kNone;
     RTCGeometry geometry = nullptr; // owned by the top level
     mat3 normalFromObject{1};
+    float growth = 0; // of a ray that is brought into its space
     // Only of a deformed instance; the positions and normals are copies, since the view's live no longer than it.
     BottomLevel own;
     uint64_t revision = 0;
@@ -129,7 +134,12 @@ struct EmbreeQuery::State {
     bool deformed() const { return revision != 0; }
   };
 
+  bool traces(const Ray& r) const {
+    return traceable(r) && maxComponent(glm::abs(r.origin)) * growth <= kFarthestInEmbree;
+  }
+
   const SceneAssets& assets;
+  float growth = 1; // the largest of all instances
   RTCDevice device = nullptr;
   std::vector<RTCScene> meshes;                        // null for a mesh without triangles
   std::vector<std::vector<GeometryData>> geometryData; // by mesh and primitive; addresses are handed to Embree
@@ -244,7 +254,7 @@ void EmbreeQuery::State::remove(uint32_t index) {
   instance = {};
 }
 
-/// Makes Embree's instance `index` what the view's is.
+/// Makes Embree's instance `index` what the view's is. What has no size is met by no ray.
 void EmbreeQuery::State::place(uint32_t index, const InstanceView& in) {
   Instance& out = instances[index];
   if (out.mesh != in.mesh || out.deformed() != (in.deformed != nullptr)) {
@@ -252,6 +262,15 @@ void EmbreeQuery::State::place(uint32_t index, const InstanceView& in) {
     out.mesh = in.mesh;
   }
   if (in.deformed && in.deformed->revision != out.revision) reshape(out, *in.deformed);
+  const mat4 objectFromWorld = glm::inverse(in.worldFromObject);
+  out.growth = 0;
+  for (int c = 0; c < 4; ++c) out.growth = std::max(out.growth, maxComponent(glm::abs(vec3(objectFromWorld[c]))));
+  if (!isFinite(objectFromWorld) || out.growth > kMostGrowth) {
+    if (out.geometry) rtcDetachGeometry(top, index);
+    out.geometry = nullptr;
+    out.growth = 0;
+    return;
+  }
   if (RTCScene bottom = in.deformed ? out.own.scene : meshes[in.mesh]; bottom && !out.geometry) {
     out.geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(out.geometry, bottom);
@@ -315,6 +334,8 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
     s.place(i, in);
     ++placed;
   }
+  s.growth = 1;
+  for (const State::Instance& i : s.instances) s.growth = std::max(s.growth, i.growth);
   if (placed > 0 || before != now) {
     rtcCommitScene(s.top);
     requireMemory(s.device);
@@ -349,7 +370,7 @@ void EmbreeQuery::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits)
   uint64_t lookups = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     SurfaceHit& hit = hits[i] = {};
-    if (!traceable(rays[i])) continue;
+    if (!s.traces(rays[i])) continue;
     RTCRayHit rh;
     fillRay(rh.ray, rays[i]);
     rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -378,7 +399,7 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
     alignas(64) std::array<int, 16> valid;
     const size_t count = std::min<size_t>(16, rays.size() - first);
     for (size_t j = 0; j < 16; ++j) {
-      const bool traced = j < count && traceable(rays[first + j]);
+      const bool traced = j < count && state_->traces(rays[first + j]);
       const Ray ray = traced ? rays[first + j] : Ray{}; // Embree looks at masked lanes too (AVX2, assertions on)
       valid[j] = traced ? -1 : 0;
       packet.ray.org_x[j] = ray.origin.x;
@@ -405,7 +426,7 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
   TraceArguments arguments;
   for (size_t i = 0; i < rays.size(); ++i) {
     blocked[i] = 0;
-    if (!traceable(rays[i])) continue;
+    if (!state_->traces(rays[i])) continue;
     RTCRay ray;
     fillRay(ray, rays[i]);
     occluded1(state_->top, arguments, &ray);

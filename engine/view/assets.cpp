@@ -12,7 +12,7 @@ uint64_t bytesOf(const SceneAssets& assets) {
   uint64_t sum = 0;
   for (const Mesh& m : assets.meshes) {
     sum += sizeOf(m.positions) + sizeOf(m.normals) + sizeOf(m.uv0) + sizeOf(m.uv1) + sizeOf(m.colors) +
-           sizeOf(m.triangles) + sizeOf(m.primitives);
+           sizeOf(m.tangents) + sizeOf(m.triangles) + sizeOf(m.primitives);
     for (const JointSet& s : m.jointSets) sum += sizeOf(s.joints) + sizeOf(s.weights);
     for (const MorphTarget& t : m.morphTargets) sum += sizeOf(t.positions) + sizeOf(t.normals);
   }

@@ -49,6 +49,8 @@ struct Material {
   TextureRef emissiveTexture;
   float roughness = 1, metalness = 0;   // factors, [0,1]; roughness is perceptual: α = roughness²
   TextureRef roughnessMetalnessTexture; // G: roughness, B: metalness
+  TextureRef normalTexture;             // tangent space, where the camera sees it (shaders/shared/normal_map.h)
+  float normalScale = 1;
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
@@ -79,12 +81,13 @@ struct MorphTarget {
 };
 
 /// Triangle mesh in object space, metres. `normals` always has one unit vector per vertex (made by the importer where
-/// the file has none); `uv0`, `uv1`, `colors` are empty or one per vertex (colours linear RGBA).
+/// the file has none); `uv0`, `uv1`, `colors`, `tangents` are empty or one per vertex (colours linear RGBA; tangents
+/// unit, w: bitangent = w · cross(normal, tangent); 0 where no normal map asks for one).
 struct Mesh {
   std::string name;
   std::vector<vec3> positions, normals;
   std::vector<vec2> uv0, uv1;
-  std::vector<vec4> colors;
+  std::vector<vec4> colors, tangents;
   std::vector<uvec3> triangles; // indices into the vertex arrays; sorted by primitive
   std::vector<Primitive> primitives;
   Aabb boundsObject;

@@ -13,13 +13,14 @@ void add(Hash& hash, const TextureRef& t) {
   hash.bytes(&t.uvTransform, sizeof t.uvTransform);
 }
 
-void add(Hash& hash, const SceneAssets& assets, bool glossy) {
+void add(Hash& hash, const SceneAssets& assets, bool glossy, bool normalMaps) {
   for (const Mesh& mesh : assets.meshes) {
     hash.values(mesh.positions);
     hash.values(mesh.normals);
     hash.values(mesh.uv0);
     hash.values(mesh.uv1);
     hash.values(mesh.colors);
+    if (normalMaps) hash.values(mesh.tangents);
     hash.values(mesh.triangles);
     for (const Primitive& p : mesh.primitives) hash.value(p.firstTriangle), hash.value(p.material);
   }
@@ -32,13 +33,18 @@ void add(Hash& hash, const SceneAssets& assets, bool glossy) {
     hash.value(m.alphaMode);
     hash.value(m.alphaCutoff);
     hash.value(m.doubleSided);
-    if (!glossy) continue;
-    hash.value(m.roughness);
-    hash.value(m.metalness);
-    add(hash, m.roughnessMetalnessTexture);
+    if (glossy) {
+      hash.value(m.roughness);
+      hash.value(m.metalness);
+      add(hash, m.roughnessMetalnessTexture);
+    }
+    if (normalMaps) {
+      add(hash, m.normalTexture);
+      hash.value(m.normalScale);
+    }
   }
   for (const TextureImage& image : assets.images) {
-    if (!image.srgb && !glossy) continue;
+    if (!image.srgb && !glossy && !normalMaps) continue;
     hash.value(image.width);
     hash.value(image.srgb);
     hash.values(image.texels);
@@ -47,14 +53,15 @@ void add(Hash& hash, const SceneAssets& assets, bool glossy) {
 
 } // namespace
 
-void addGeometry(Hash& hash, const SceneView& view, bool glossy) {
-  if (view.assets) add(hash, *view.assets, glossy);
+void addGeometry(Hash& hash, const SceneView& view, bool glossy, bool normalMaps) {
+  if (view.assets) add(hash, *view.assets, glossy, normalMaps);
   for (const InstanceView& i : view.instances) {
     hash.value(i.mesh);
     hash.bytes(&i.worldFromObject, sizeof i.worldFromObject);
     if (!i.deformed) continue;
     hash.values(i.deformed->positions);
     hash.values(i.deformed->normals);
+    if (normalMaps) hash.values(i.deformed->tangents);
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace lambent {
 
-/// Meshes, materials, textures, and where the instances are. What only glossy receivers depend on stays out of the
-/// others' hashes.
-void addGeometry(Hash& hash, const SceneView& view, bool glossy);
+/// Meshes, materials, textures, and where the instances are. What only glossy receivers depend on, or those with normal
+/// maps, stays out of the others' hashes.
+void addGeometry(Hash& hash, const SceneView& view, bool glossy, bool normalMaps);
 
 } // namespace lambent

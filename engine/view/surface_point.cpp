@@ -1,6 +1,7 @@
 #include "engine/view/surface_point.h"
 
 #include "engine/core/error.h"
+#include "shaders/shared/normal_map.h"
 
 namespace lambent {
 
@@ -46,6 +47,32 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_
       unit(normalFromObject * glm::cross(positions[corners.y] - p0, positions[corners.z] - p0), vec3(0));
   point.normal = unit(normalFromObject * place.interpolate(normals), point.geometricNormal);
   return point;
+}
+
+vec3 mappedNormalAt(const SceneView& view, uint32_t instanceIndex, uint32_t primitiveIndex, uint32_t triangle,
+                    vec2 barycentric, const vec3& normal, const vec3& towardsViewer) {
+  CHECK_LT(instanceIndex, view.instances.size());
+  const InstanceView& instance = view.instances[instanceIndex];
+  const Mesh& mesh = view.assets->meshes[instance.mesh];
+  CHECK_LT(primitiveIndex, mesh.primitives.size());
+  const Primitive& primitive = mesh.primitives[primitiveIndex];
+  const Material& material = view.assets->materials[primitive.material];
+  if (material.normalTexture.image == kNone || mesh.tangents.empty()) return normal;
+  CHECK_LT(triangle, primitive.triangleCount);
+  const TrianglePlace place = trianglePlace(mesh, primitive, triangle, barycentric);
+  const DeformedMesh* shape = instance.deformed.get();
+  const vec4 tangent = place.interpolate(shape ? shape->tangents : mesh.tangents);
+  if (vec3(tangent) == vec3(0)) return normal;
+  const std::vector<vec3>& positions = shape ? shape->positions : mesh.positions;
+  const vec3 p0 = positions[place.vertices.x];
+  const mat3 worldFromObject(instance.worldFromObject);
+  const mat3 normalFromObject = glm::transpose(glm::inverse(worldFromObject));
+  const vec3 front = normalFromObject * glm::cross(positions[place.vertices.y] - p0, positions[place.vertices.z] - p0);
+  const float side = (tangent.w < 0) == (glm::determinant(worldFromObject) < 0) ? 1.0f : -1.0f;
+  const vec3 texel(sampleTexture(*view.assets, material.normalTexture, uvAt(mesh, place, material.normalTexture)));
+  const vec3 mapped = mappedNormal(normalFromObject * place.interpolate(shape ? shape->normals : mesh.normals),
+                                   worldFromObject * vec3(tangent), side, texel, material.normalScale);
+  return facingViewer(glm::dot(front, towardsViewer) < 0 ? -mapped : mapped, towardsViewer);
 }
 
 RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex,

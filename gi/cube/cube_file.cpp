@@ -131,7 +131,7 @@ struct CubeFile {
 
 uint64_t cubeKey(const SceneView& view) {
   Hash hash(kVersion);
-  addGeometry(hash, view, false);
+  addGeometry(hash, view, false, false);
   return hash.result();
 }
 

@@ -71,6 +71,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
                              .more = more(frame),
                              .sample = history_.sample() * uint32_t(samples),
                              .glossy = glossy,
+                             .normalMaps = frame.surfaces.mappedNormal != nullptr,
                              .seed = frame.seed},
                             counts);
     stats.raysSoft += counts;

@@ -169,7 +169,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       seen.push_back(uint32_t(i));
       centres.push_back((vec2(at) + 0.5f) / vec2(camera.width, camera.height));
     }
-    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres);
+    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
     count.closest += centres.size();
     std::vector<Place> places;
     for (size_t k = 0; k < seen.size(); ++k) {

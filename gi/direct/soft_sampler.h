@@ -35,6 +35,7 @@ struct SoftSampling {
   MoreSamples more;
   uint32_t sample = 0; // number of the first one: those of a mean follow each other
   bool glossy = false;
+  bool normalMaps = false;
   uint32_t seed = 1;
 };
 

@@ -109,9 +109,11 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     out.sky = world.view.sky;
     out.farDistance = world.farDistance;
     const bool glossy = settings.gather.glossy && plan.on(EffectId::Glossy);
+    const bool normalMaps = plan.on(EffectId::NormalMaps);
     out.surfaces = k.surfaces.run({.scene = world.gpu,
                                    .camera = world.view.camera,
                                    .glossy = glossy,
+                                   .normalMaps = normalMaps,
                                    .host = host,
                                    .keep = !plan.seenChanges(),
                                    .previous = needs.previousSurfaces});
@@ -133,6 +135,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     k.outputs = out;
     stats.of(EffectId::Redraw) = draws();
     if (glossy) stats.of(EffectId::Glossy) = draws();
+    if (out.surfaces.mappedNormal) stats.of(EffectId::NormalMaps) = draws();
   }
   k.outputs.inside = indirect.inside();
   k.end(begin, before);

@@ -45,10 +45,16 @@ std::vector<std::string> bindSurfaces(const GBuffer& gbuffer) {
   gbuffer.camera->bindUniform(0);
   gbuffer.depth->bind(0);
   gbuffer.normal->bind(1);
-  if (!gbuffer.roughnessMetalness) return {};
+  std::vector<std::string> defines;
+  if (gbuffer.mappedNormal) {
+    gbuffer.mappedNormal->bind(13);
+    defines.push_back("MAPPED_NORMALS");
+  }
+  if (!gbuffer.roughnessMetalness) return defines;
   gbuffer.albedo->bind(6);
   gbuffer.roughnessMetalness->bind(7);
-  return {"GLOSSY"};
+  defines.push_back("GLOSSY");
+  return defines;
 }
 
 void setShading(const gl::Program& program, const GatherDraw& draw) {

@@ -29,6 +29,7 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
                             .glossy = in.frame.surfaces.roughnessMetalness != nullptr,
+                            .normalMaps = in.frame.surfaces.mappedNormal != nullptr,
                             .seed = in.frame.seed,
                             .frame = in.sample,
                             .frames = in.averaged ? in.frame.settings.history.frames : 1,

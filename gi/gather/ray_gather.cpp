@@ -19,7 +19,8 @@ class RayGather : public Gather {
     {
       CpuScope scope(stats.stages, key(StageId::GatherByRays));
       irradiance = gatherByRays(in.frame.world.rays, camera, in.lights.list.slots, in.frame.settings.gather,
-                                stats.raysGather, lobes ? &glossy : nullptr);
+                                stats.raysGather, lobes ? &glossy : nullptr,
+                                in.frame.surfaces.mappedNormal ? &in.frame.world.view : nullptr);
     }
     {
       const gl::PassScope scope = context_.scope(StageId::IrradianceUpload);

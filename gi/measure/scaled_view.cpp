@@ -20,6 +20,7 @@ template <class Fn> void eachAttribute(const Mesh& from, Mesh& to, Fn&& fn) {
   fn(from.uv0, to.uv0);
   fn(from.uv1, to.uv1);
   fn(from.colors, to.colors);
+  fn(from.tangents, to.tangents);
 }
 
 /// One triangle's n² triangles, appended. A point of an edge is the same number for number from both sides of it: its

@@ -1,6 +1,7 @@
 // Every visible point against every VPL with a ray each: paper 1's "all VPLs - ray tracing" (fig. 8), the measure that
 // separates errors of the VPL set from errors of shadow maps and interleaving. Costs width × height × N rays.
 #include "engine/core/parallel.h"
+#include "engine/view/surface_point.h"
 #include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
 
@@ -12,7 +13,8 @@ float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area,
   return settings.clamp > 0 ? glm::min(g, settings.clamp) : g;
 }
 
-std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points) {
+std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
+                                   const SceneView* normalMaps) {
   std::vector<Ray> block;
   const vec3 forward = -vec3(camera.worldFromView[2]);
   for (const vec2& p : points) {
@@ -21,6 +23,10 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
   }
   std::vector<SurfaceHit> hits(block.size());
   rays.closest(block, hits);
+  for (size_t i = 0; normalMaps && i < hits.size(); ++i)
+    if (SurfaceHit& h = hits[i]; h.valid())
+      h.normal = mappedNormalAt(*normalMaps, h.instance, h.primitive, h.triangle, h.barycentric, h.normal,
+                                -block[i].direction);
   return hits;
 }
 
@@ -73,12 +79,13 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
 }
 
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
-                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy) {
+                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy,
+                               const SceneView* normalMaps) {
   std::vector<vec2> centres;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
   counts.closest += centres.size();
-  return irradianceByRays(rays, surfacesAt(rays, camera, centres), lights, settings, counts, glossy);
+  return irradianceByRays(rays, surfacesAt(rays, camera, centres, normalMaps), lights, settings, counts, glossy);
 }
 
 } // namespace lambent

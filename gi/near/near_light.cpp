@@ -216,6 +216,11 @@ vec2 centreOf(const CameraView& camera, size_t pixel) {
   return (vec2(pixel % size_t(camera.width), pixel / size_t(camera.width)) + 0.5f) / vec2(camera.width, camera.height);
 }
 
+/// What the camera sees at these points, as what is gathered has it.
+std::vector<SurfaceHit> surfacesOf(const NearLightInputs& in, std::span<const vec2> points) {
+  return surfacesAt(in.rays, in.view.camera, points, in.normalMaps ? &in.view : nullptr);
+}
+
 /// Light of pixels that cast other rays, mixed.
 void mixNeighbours(NearLight& light, const NeighbourSurfaces& seen, bool averaged) {
   for (std::vector<vec3>* of : {&light.irradiance, &light.glossy})
@@ -231,7 +236,7 @@ std::vector<SurfaceHit> someSurfaces(const NearLightInputs& in, RayCounts& count
     for (int x = step / 2; x < camera.width; x += step)
       centres.push_back(centreOf(camera, size_t(y) * size_t(camera.width) + size_t(x)));
   counts.closest += centres.size();
-  return surfacesAt(in.rays, camera, centres);
+  return surfacesOf(in, centres);
 }
 
 /// Every pixel casts as many rays as the frame before says, each frame the next ones of its pattern.
@@ -249,7 +254,7 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
   parallelCount(out.irradiance.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<vec2> centres;
     for (size_t i = begin; i < end; ++i) centres.push_back(centreOf(camera, i));
-    const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
+    const std::vector<SurfaceHit> surfaces = surfacesOf(in, centres);
     count.closest += centres.size();
 
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, 1};
@@ -330,7 +335,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       paths.push_back(path);
       centres.push_back(centreOf(camera, i));
     }
-    const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres);
+    const std::vector<SurfaceHit> surfaces = surfacesOf(in, centres);
     count.closest += centres.size();
 
     NearTracer tracer{in.rays, in.lights, in.gather, cells, update, shift, float(stride) / float(perBlock)};

@@ -19,6 +19,7 @@ struct NearLightInputs {
   int bounces = 1;      // of the virtual lights: SmcSettings::bounces
   bool subsets = false; // interleaved: the pixels of 4×4 share the rays out, in other ways in each frame
   bool glossy = false;
+  bool normalMaps = false;
   uint32_t seed = 1;
   uint32_t frame = 0;           // which of those that are averaged
   int frames = 1;               // that are; 1: blocks of pixels are mixed

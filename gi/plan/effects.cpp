@@ -21,6 +21,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"filter", "mixes the 4x4 subsets of a gather", "draws"},
     {"history", "indirect light of a pixel is averaged over frames; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
+    {"normalMaps", "normal maps where the camera looks; off: surfaces are as smooth as their meshes", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"gather", "light of VPLs is brought to surfaces; off: what a cube holds stays, and else there is none", "draws"},
     {"redraw", "the frame is drawn again; off: the last one stays", "draws"},
@@ -65,7 +66,7 @@ bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
 
 /// What the scene's lights, materials and instances hold.
 struct SceneFacts {
-  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, moved = 0;
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, normalMaps = 0, moved = 0;
   bool emittersMoved = false;
 
   explicit SceneFacts(const SceneView& view) {
@@ -80,6 +81,7 @@ struct SceneFacts {
         textured += m.baseColorTexture.image != kNone;
         reflecting += reflects(m);
         glossy += m.glossy();
+        normalMaps += m.normalTexture.image != kNone;
       }
     }
   }
@@ -164,6 +166,9 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});
+  decide(EffectId::NormalMaps,
+         {scene.normalMaps > 0, scene.normalMaps > 0 ? count(scene.normalMaps, "surface") + " with normal maps"
+                                                     : "no material has a normal map"});
 
   // What changed.
   const bool geometry = changes.geometry || changes.instances;

@@ -64,6 +64,7 @@ enum class EffectId : int {
   Filter,
   History,
   Glossy,
+  NormalMaps,
   SoftShadows,
   Gather,
   Redraw,

@@ -74,6 +74,7 @@ class LiveReference::Tracing {
             .bounces = task_->paths.bounces,
             .seed = seed_,
             .glossy = task_->paths.glossy ? &view : nullptr,
+            .normalMaps = task_->paths.normalMaps ? &view : nullptr,
             .stopped = &stopped_};
   }
 
@@ -99,10 +100,10 @@ LiveReference::~LiveReference() {
 }
 
 std::string LiveReference::follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {
-  const Paths paths{settings.smc.bounces, tracesGlossy(settings, buffer)};
+  const Paths paths{settings.smc.bounces, tracesGlossy(settings, buffer), tracesNormalMaps(settings)};
   std::string why = followed_ ? whatChanged(view.changes) : "it begins";
   if (why.empty() && followed_->bounces != paths.bounces) why = "smc.bounces changed";
-  if (why.empty() && followed_->glossy != paths.glossy) why = "surfaces reflect in another way";
+  if (why.empty() && *followed_ != paths) why = "surfaces reflect in another way";
   followed_ = paths;
   const bool begins = why.empty() && waiting_;
   waiting_ = !why.empty();

@@ -18,12 +18,13 @@ namespace {
 constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 
 /// Surfaces at the centres of pixels [begin, end).
-std::vector<SurfaceHit> primaryHits(const RayQuery& rays, const CameraView& camera, size_t begin, size_t end) {
+std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, size_t end) {
+  const CameraView& camera = in.camera;
   std::vector<vec2> centres;
   for (size_t i = begin; i < end; ++i)
     centres.push_back({(float(i % camera.width) + 0.5f) / float(camera.width),
                        (float(i / camera.width) + 0.5f) / float(camera.height)});
-  return surfacesAt(rays, camera, centres);
+  return surfacesAt(in.rays, camera, centres, in.normalMaps);
 }
 
 /// One path's present vertex. `weight` turns irradiance/π here into irradiance/π at the primary hit.
@@ -213,7 +214,7 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
   const size_t pixels = sums.pixels.size();
   parallelCount(pixels, kBlockPixels, counts, [&](size_t begin, size_t end, RayCounts& ofBlock) {
     if (in.stopped && *in.stopped) return;
-    const std::vector<SurfaceHit> primary = primaryHits(in.rays, in.camera, begin, end);
+    const std::vector<SurfaceHit> primary = primaryHits(in, begin, end);
     ofBlock.closest += primary.size();
     BlockTracer tracer(in, begin, primary);
     for (uint32_t s = 0; s < count; ++s) {
@@ -251,7 +252,7 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
   std::vector<Row> rows(size_t(sums.height));
   parallelFor(rows.size(), 1, [&](size_t firstRow, size_t lastRow) {
     for (size_t i = firstRow * sums.width; i < lastRow * sums.width; ++i) {
-      const SurfaceHit h = primaryHits(in.rays, in.camera, i, i + 1)[0];
+      const SurfaceHit h = primaryHits(in, i, i + 1)[0];
       Row& row = rows[i / sums.width];
       vec3& mean = image.mean.pixels[i];
       image.surface[i] = h.valid();

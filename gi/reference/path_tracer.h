@@ -23,6 +23,7 @@ struct ReferenceInputs {
   /// Primary hits reflect by the roughness and metalness of this view's materials, as with gather.glossy; null:
   /// Lambert.
   const SceneView* glossy = nullptr;
+  const SceneView* normalMaps = nullptr; // primary hits have the normals of this view's maps; null: the meshes' own
   /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };

@@ -49,7 +49,7 @@ bool possible(const PixelSums& p, uint32_t samples) {
 
 uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   Hash hash(kVersion);
-  addGeometry(hash, view, in.glossy != nullptr);
+  addGeometry(hash, view, in.glossy != nullptr, in.normalMaps != nullptr);
   for (const LightView& light : view.lights) add(hash, light);
   for (const float number : view.sky.numbers()) hash.value(number);
   hash.bytes(&in.camera.worldFromView, sizeof in.camera.worldFromView);
@@ -62,6 +62,7 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   hash.value(in.clamp);
   hash.value(in.seed);
   if (in.glossy) hash.value(true);
+  if (in.normalMaps) hash.value('n');
   return hash.result();
 }
 

@@ -78,6 +78,8 @@ bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer) {
          buffer != ReferenceBuffer::Irradiance;
 }
 
+bool tracesNormalMaps(const Settings& settings) { return settings.effects[EffectId::NormalMaps] != EffectMode::Off; }
+
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
   rays.update(view);
@@ -89,6 +91,7 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
                            .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr,
+                           .normalMaps = tracesNormalMaps(settings) ? &view : nullptr,
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);

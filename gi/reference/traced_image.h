@@ -37,6 +37,9 @@ struct TracedImage {
 /// which does not depend on how it is reflected.
 bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
 
+/// Says whether the truth has the normals of normal maps where the camera looks.
+bool tracesNormalMaps(const Settings& settings);
+
 /// Traces a view. Throws InputError for a state file of another image.
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);
 

@@ -72,25 +72,29 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     keepPrevious(fits);
   block_ = block;
   const bool glossy = in.glossy && !converted;
-  if (!fits || glossy != bool(roughnessMetalness_) || converted == bool(albedo_)) {
-    const auto make = [&](const char* label, GLenum format) {
-      return gl::Texture(label, {.format = format, .width = width, .height = height});
+  const bool mapped = in.normalMaps && !converted;
+  if (!fits || glossy != bool(roughnessMetalness_) || mapped != bool(mappedNormal_) || converted == bool(albedo_)) {
+    const auto make = [&](const char* label, GLenum format, bool wanted = true) {
+      return wanted ? gl::Texture(label, {.format = format, .width = width, .height = height}) : gl::Texture();
     };
     depth_ = make("g-buffer/depth", GL_DEPTH_COMPONENT32F);
     normal_ = make("g-buffer/normal", GL_RGBA16F);
-    albedo_ = converted ? gl::Texture() : make("g-buffer/albedo", GL_RGBA16F);
+    albedo_ = make("g-buffer/albedo", GL_RGBA16F, !converted);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    roughnessMetalness_ = glossy ? make("g-buffer/roughness and metalness", GL_RG16) : gl::Texture();
-    framebuffer_ = converted ? gl::Framebuffer("g-buffer", {&normal_, &emission_}, &depth_)
-                   : glossy
-                       ? gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, &roughnessMetalness_}, &depth_)
-                       : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_}, &depth_);
+    roughnessMetalness_ = make("g-buffer/roughness and metalness", GL_RG16, glossy);
+    mappedNormal_ = make("g-buffer/mapped normal", GL_RGBA16F, mapped);
+    const gl::Texture *finish = glossy ? &roughnessMetalness_ : nullptr,
+                      *mappedNormal = mapped ? &mappedNormal_ : nullptr;
+    framebuffer_ = converted
+                       ? gl::Framebuffer("g-buffer", {&normal_, &emission_}, &depth_)
+                       : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, finish, mappedNormal}, &depth_);
   }
   const GBuffer out{&depth_,
                     &normal_,
                     converted ? nullptr : &albedo_,
                     &emission_,
                     glossy ? &roughnessMetalness_ : nullptr,
+                    mapped ? &mappedNormal_ : nullptr,
                     &camera_,
                     block,
                     width,
@@ -103,9 +107,9 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     return out;
   }
   const float zero[4] = {0, 0, 0, 0};
-  for (int i = 0; i < (glossy ? 4 : 3); ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
+  for (int i = 0; i < 5; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
-  in.scene.draw(glossy ? DrawKind::GlossyGBuffer : DrawKind::GBuffer, block.clipFromWorld, in.camera.position());
+  in.scene.draw(gBufferWith(glossy, mapped), block.clipFromWorld, in.camera.position());
   return out;
 }
 
@@ -200,6 +204,7 @@ GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
               take(hosts_[2], host.albedo),
               take(hosts_[3], host.emission),
               in.glossy ? take(hosts_[4], host.roughnessMetalness) : nullptr,
+              nullptr, // what hosts draw is one normal
               &camera_,
               {},
               width,

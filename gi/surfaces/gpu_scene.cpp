@@ -90,7 +90,9 @@ void GpuScene::noteMoves(const std::vector<Placed>& placed) {
 namespace {
 
 /// Whether it shows materials, and not only where their masks are cut out.
-bool showsMaterials(DrawKind kind) { return kind == DrawKind::GBuffer || kind == DrawKind::GlossyGBuffer; }
+bool showsMaterials(DrawKind kind) { return kind <= DrawKind::GlossyMappedGBuffer; }
+bool showsFinish(DrawKind kind) { return kind == DrawKind::GlossyGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
+bool showsNormalMaps(DrawKind kind) { return kind == DrawKind::MappedGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
 
 } // namespace
 
@@ -107,8 +109,10 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
     desc.defines.push_back("KEEPS_MODE");
   if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
-  if (kind == DrawKind::GlossyGBuffer) desc.defines.push_back("GLOSSY");
-  if (material.roughnessMetalnessTexture && kind == DrawKind::GlossyGBuffer) desc.defines.push_back("FINISH_TEXTURE");
+  if (showsFinish(kind)) desc.defines.push_back("GLOSSY");
+  if (material.roughnessMetalnessTexture && showsFinish(kind)) desc.defines.push_back("FINISH_TEXTURE");
+  if (showsNormalMaps(kind)) desc.defines.push_back("MAPPED_NORMALS");
+  if (material.normalTexture && tangents_ && showsNormalMaps(kind)) desc.defines.push_back("NORMAL_TEXTURE");
   return context_.programs.get(desc);
 }
 
@@ -121,6 +125,8 @@ void GpuScene::bindMaterial(uint32_t index) const {
   gl::bindSampler(3, material.emissiveSampler);
   gl::bindTexture(4, material.roughnessMetalnessTexture);
   gl::bindSampler(4, material.finishSampler);
+  gl::bindTexture(5, material.normalTexture);
+  gl::bindSampler(5, material.normalSampler);
 }
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which,
@@ -174,9 +180,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
     ++draws;
     testedDraws_ += tested(material);
   }
-  gl::bindSampler(2, 0);
-  gl::bindSampler(3, 0);
-  gl::bindSampler(4, 0);
+  for (const GLuint unit : {2, 3, 4, 5}) gl::bindSampler(unit, 0);
   glBindVertexArray(0);
   return draws;
 }

@@ -25,9 +25,10 @@ struct Frustum {
   bool mayShow(const Aabb& box) const;
 };
 
-/// What a draw writes: the G-buffer, the same with roughness and metalness, distance (metres) and geometric normal of
-/// what the eye sees, or depth alone.
-enum class DrawKind { GBuffer, GlossyGBuffer, DistanceNormal, Depth };
+/// What a draw writes: the G-buffer, the same with roughness and metalness, with mapped normals, or both; distance
+/// (metres) and geometric normal of what the eye sees; or depth alone.
+enum class DrawKind { GBuffer, GlossyGBuffer, MappedGBuffer, GlossyMappedGBuffer, DistanceNormal, Depth };
+inline DrawKind gBufferWith(bool glossy, bool mapped) { return DrawKind(int(glossy) + 2 * int(mapped)); }
 
 /// Which instances are drawn: those that have not moved for a while, those that have, or both.
 enum class Instances { All, Still, Moving };
@@ -44,11 +45,11 @@ class GpuScene {
 
   /// Draws all instances that `clipFromWorld` may show, sorted by material, into the bound framebuffer: one call per
   /// material and vertex array, and without a G-buffer one for all materials without alpha test. Sets programs, vertex
-  /// array and textures; the caller sets the pipeline state, gives the eye but for depth, for a G-buffer binds the camera
-  /// block, and for distances gives the directions of pixels: of window coordinates (x, y, 1), world axes.
+  /// array and textures; the caller sets the pipeline state, gives the eye but for depth, for a G-buffer binds the
+  /// camera block, and for distances gives the directions of pixels: of window coordinates (x, y, 1), world axes.
   /// Returns the number of calls.
-  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0),
-                Instances which = Instances::All, const mat3& wayFromPixel = mat3(1)) const;
+  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0), Instances which = Instances::All,
+                const mat3& wayFromPixel = mat3(1)) const;
 
   /// Sets which alpha test draws use; AlphaTest::Masked at the start.
   void setAlphaTest(AlphaTest test) {
@@ -73,8 +74,8 @@ class GpuScene {
     Aabb boundsObject;
   };
   struct MaterialDraw {
-    GLuint baseTexture, emissiveTexture, roughnessMetalnessTexture; // 0 = none
-    GLuint baseSampler, emissiveSampler, finishSampler;
+    GLuint baseTexture, emissiveTexture, roughnessMetalnessTexture, normalTexture; // 0 = none
+    GLuint baseSampler, emissiveSampler, finishSampler, normalSampler;
     bool masked;
   };
   struct MeshRange {
@@ -96,7 +97,7 @@ class GpuScene {
   };
   /// Vertices of the deformed instances, one after the other; attributes that do not deform are copies of the mesh's.
   struct DeformedVertices {
-    gl::Buffer positions, normals, uvs, colors;
+    gl::Buffer positions, normals, uvs, colors, tangents;
     gl::VertexArray array;
     std::vector<uint32_t> baseVertex; // by instance; kNone: rigid
   };
@@ -104,7 +105,7 @@ class GpuScene {
   static uint64_t nextVersion();
   void uploadMeshes(const SceneAssets& assets);
   gl::VertexArray vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
-                                const gl::Buffer& uvs, const gl::Buffer& colors) const;
+                                const gl::Buffer& uvs, const gl::Buffer& colors, const gl::Buffer& tangents) const;
   void noteMoves(const std::vector<Placed>& placed);
   void layOutDeformed(std::span<const InstanceView> instances);
   void uploadDeformed(std::span<const InstanceView> instances);
@@ -117,7 +118,7 @@ class GpuScene {
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
   PassContext context_;
-  gl::Buffer positions_, normals_, uvs_, colors_, indices_, instanceRows_, materials_;
+  gl::Buffer positions_, normals_, uvs_, colors_, tangents_, indices_, instanceRows_, materials_;
   gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
   mutable gl::Ring commands_{"scene/draws"};
   gl::VertexArray vertexArray_;

@@ -34,11 +34,12 @@ void GpuScene::layOutDeformed(std::span<const InstanceView> instances) {
   deformed_ = {};
   deformed_.baseVertex = std::move(baseVertex);
   if (total == 0) return;
-  changes_.reserve(total * (sizeof(vec3) + sizeof(uint64_t)) + instances.size() * 3 * sizeof(vec4));
+  changes_.reserve(total * (sizeof(vec3) + 2 * sizeof(uint64_t)) + instances.size() * 3 * sizeof(vec4));
   deformed_.positions = roomFor("scene/deformed positions", positions_, total, sizeof(vec3));
   deformed_.normals = roomFor("scene/deformed normals", normals_, total, sizeof(uint64_t));
   deformed_.uvs = roomFor("scene/deformed uvs", uvs_, total, sizeof(vec4));
   deformed_.colors = roomFor("scene/deformed colors", colors_, total, sizeof(uint64_t));
+  deformed_.tangents = roomFor("scene/deformed tangents", tangents_, total, sizeof(uint64_t));
   for (size_t i = 0; i < instances.size(); ++i) {
     if (!instances[i].deformed) continue;
     const MeshRange& mesh = meshes_[instances[i].mesh];
@@ -49,13 +50,14 @@ void GpuScene::layOutDeformed(std::span<const InstanceView> instances) {
     };
     copy(uvs_, deformed_.uvs, sizeof(vec4));
     copy(colors_, deformed_.colors, sizeof(uint64_t));
+    copy(tangents_, deformed_.tangents, sizeof(uint64_t)); // zeros of meshes that have none stay
   }
-  deformed_.array =
-      vertexArrayOf("scene/deformed vertices", deformed_.positions, deformed_.normals, deformed_.uvs, deformed_.colors);
+  deformed_.array = vertexArrayOf("scene/deformed vertices", deformed_.positions, deformed_.normals, deformed_.uvs,
+                                  deformed_.colors, deformed_.tangents);
 }
 
 void GpuScene::uploadDeformed(std::span<const InstanceView> instances) {
-  std::vector<uint64_t> normals;
+  std::vector<uint64_t> normals, tangents;
   for (size_t i = 0; i < instances.size(); ++i) {
     const DeformedMesh* shape = instances[i].deformed.get();
     if (!shape || (i < placed_.size() && placed_[i].revision == shape->revision)) continue;
@@ -66,6 +68,10 @@ void GpuScene::uploadDeformed(std::span<const InstanceView> instances) {
     changes_.upload(deformed_.positions, base * sizeof(vec3), shape->positions.size() * sizeof(vec3),
                     shape->positions.data());
     changes_.upload(deformed_.normals, base * sizeof(uint64_t), normals.size() * sizeof(uint64_t), normals.data());
+    if (shape->tangents.empty()) continue;
+    tangents.clear();
+    for (const vec4& t : shape->tangents) tangents.push_back(glm::packSnorm4x16(t));
+    changes_.upload(deformed_.tangents, base * sizeof(uint64_t), tangents.size() * sizeof(uint64_t), tangents.data());
   }
 }
 

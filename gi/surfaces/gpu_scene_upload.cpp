@@ -36,9 +36,11 @@ MaterialBlock blockOf(const Material& m) {
       .baseUvV = uvRow(m.baseColorTexture, 1, m.doubleSided ? 1.0f : 0.0f),
       .emissiveUvU = uvRow(m.emissiveTexture, 0, float(m.emissiveTexture.uvSet)),
       .emissiveUvV = uvRow(m.emissiveTexture, 1, 0),
-      .roughnessMetalness = vec4(m.roughness, m.metalness, 0, 0),
+      .roughnessMetalness = vec4(m.roughness, m.metalness, m.normalScale, 0),
       .roughnessMetalnessUvU = uvRow(m.roughnessMetalnessTexture, 0, float(m.roughnessMetalnessTexture.uvSet)),
       .roughnessMetalnessUvV = uvRow(m.roughnessMetalnessTexture, 1, 0),
+      .normalUvU = uvRow(m.normalTexture, 0, float(m.normalTexture.uvSet)),
+      .normalUvV = uvRow(m.normalTexture, 1, 0),
   };
 }
 
@@ -87,13 +89,14 @@ void GpuScene::takeAssets(const SceneAssets& assets) {
 
 void GpuScene::uploadMeshes(const SceneAssets& assets) {
   std::vector<vec3> positions;
-  std::vector<uint64_t> normals, colors; // four 16-bit values each
-  std::vector<vec4> uvs;                 // uv0, uv1
+  std::vector<uint64_t> normals, colors, tangents; // four 16-bit values each
+  std::vector<vec4> uvs;                           // uv0, uv1
   std::vector<uvec3> triangles;
-  bool anyUv = false, anyColor = false;
+  bool anyUv = false, anyColor = false, anyTangent = false;
   for (const Mesh& mesh : assets.meshes) {
     anyUv |= !mesh.uv0.empty() || !mesh.uv1.empty();
     anyColor |= !mesh.colors.empty();
+    anyTangent |= !mesh.tangents.empty();
   }
   for (const Mesh& mesh : assets.meshes) {
     const uint32_t baseVertex = uint32_t(positions.size()), baseTriangle = uint32_t(triangles.size());
@@ -105,6 +108,7 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
       const vec2 uv0 = mesh.uv0.empty() ? vec2(0) : mesh.uv0[i], uv1 = mesh.uv1.empty() ? vec2(0) : mesh.uv1[i];
       if (anyUv) uvs.push_back(vec4(uv0.x, uv0.y, uv1.x, uv1.y));
       if (anyColor) colors.push_back(glm::packUnorm4x16(mesh.colors.empty() ? vec4(1) : mesh.colors[i]));
+      if (anyTangent) tangents.push_back(glm::packSnorm4x16(mesh.tangents.empty() ? vec4(0) : mesh.tangents[i]));
     }
     MeshRange& range = meshes_.emplace_back(MeshRange{baseVertex, uint32_t(mesh.positions.size()), {}});
     for (uint32_t i = 0; i < mesh.primitives.size(); ++i)
@@ -114,6 +118,7 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
   }
   uvs_ = {};
   colors_ = {};
+  tangents_ = {};
   if (positions.empty()) {
     vertexArray_ = gl::VertexArray("scene/vertices"); // nothing to draw, but bound all the same
     return;
@@ -123,19 +128,22 @@ void GpuScene::uploadMeshes(const SceneAssets& assets) {
   normals_ = gl::Buffer::of<uint64_t>("scene/normals", normals);
   if (anyUv) uvs_ = gl::Buffer::of<vec4>("scene/uvs", uvs);
   if (anyColor) colors_ = gl::Buffer::of<uint64_t>("scene/colors", colors);
+  if (anyTangent) tangents_ = gl::Buffer::of<uint64_t>("scene/tangents", tangents);
   if (!triangles.empty()) indices_ = gl::Buffer::of<uvec3>("scene/indices", triangles);
 
-  vertexArray_ = vertexArrayOf("scene/vertices", positions_, normals_, uvs_, colors_);
+  vertexArray_ = vertexArrayOf("scene/vertices", positions_, normals_, uvs_, colors_, tangents_);
 }
 
 /// Attributes from these buffers, rows of worldFromObject per instance, and the indices of all meshes.
 gl::VertexArray GpuScene::vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,
-                                        const gl::Buffer& uvs, const gl::Buffer& colors) const {
+                                        const gl::Buffer& uvs, const gl::Buffer& colors,
+                                        const gl::Buffer& tangents) const {
   gl::VertexArray array(label);
   attribute(array, 0, positions, 3, GL_FLOAT, false, sizeof(vec3));
   attribute(array, 1, normals, 3, GL_SHORT, true, sizeof(uint64_t));
   attribute(array, 2, uvs, 4, GL_FLOAT, false, sizeof(vec4));
   attribute(array, 3, colors, 4, GL_UNSIGNED_SHORT, true, sizeof(uint64_t));
+  attribute(array, 7, tangents, 4, GL_SHORT, true, sizeof(uint64_t));
   for (GLuint row = 0; row < 3; ++row) {
     glEnableVertexArrayAttrib(array.name(), kInstanceBinding + row);
     glVertexArrayAttribFormat(array.name(), kInstanceBinding + row, 4, GL_FLOAT, GL_FALSE, row * sizeof(vec4));
@@ -177,10 +185,10 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
     const Material& m = assets.materials[i];
     const MaterialBlock block = blockOf(m);
     std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
-    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture),
-                              textureOf(m.roughnessMetalnessTexture), samplerOf(m.baseColorTexture),
-                              samplerOf(m.emissiveTexture), samplerOf(m.roughnessMetalnessTexture),
-                              m.alphaMode == AlphaMode::Mask});
+    materialDraws_.push_back(
+        {textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.roughnessMetalnessTexture),
+         textureOf(m.normalTexture), samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
+         samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture), m.alphaMode == AlphaMode::Mask});
   }
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
 }

@@ -238,11 +238,13 @@ struct GlossyGather {
 /// Irradiance at the camera's primary hits from all lights with every pair tested by a ray (paper 1, fig. 8 "all VPLs -
 /// ray tracing"). Row 0 at the top; zero where the camera sees nothing.
 std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, std::span<const VirtualLight> lights,
-                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr);
+                               const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy = nullptr,
+                               const SceneView* normalMaps = nullptr);
 
 /// What the camera sees at points (u, v) of its image, v down, in [0, 1]. Rays start at the near plane, as the
 /// rasteriser's.
-std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points);
+std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
+                                   const SceneView* normalMaps = nullptr);
 
 /// Computes irradiance at surfaces from all lights, a ray for every pair; zero where there is no surface.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,

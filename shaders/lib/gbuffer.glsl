@@ -1,9 +1,23 @@
-// Reading the G-buffer. Units 0 and 1 and uniform binding 0 belong to it.
+// Reading the G-buffer. Units 0, 1 and 13 and uniform binding 0 belong to it. Variant
+// MAPPED_NORMALS.
 #include "shared/camera_block.h"
 
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };
 layout(binding = 0) uniform sampler2D gbufferDepth;
 layout(binding = 1) uniform sampler2D gbufferNormal;
+
+#ifdef MAPPED_NORMALS
+layout(binding = 13) uniform sampler2D gbufferMappedNormal;
+#endif
+
+/// The normal that light meets, by the material's normal map; `normal`, the G-buffer's, is that of places.
+vec3 normalForLight(ivec2 pixel, vec3 normal) {
+#ifdef MAPPED_NORMALS
+  return texelFetch(gbufferMappedNormal, pixel, 0).xyz;
+#else
+  return normal;
+#endif
+}
 
 /// World position of a pixel's surface; depth must not be 0.
 vec3 positionFromDepth(ivec2 pixel, float depth) {

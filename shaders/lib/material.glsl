@@ -1,10 +1,11 @@
-// A material's textures at mesh coordinates. Units 2 to 4 and uniform binding 1 belong to it.
+// A material's textures at mesh coordinates. Units 2 to 5 and uniform binding 1 belong to it.
 #include "shared/material_block.h"
 
 layout(std140, binding = 1) uniform MaterialUniforms { MaterialBlock material; };
 layout(binding = 2) uniform sampler2D baseTexture;
 layout(binding = 3) uniform sampler2D emissiveTexture;
 layout(binding = 4) uniform sampler2D roughnessMetalnessTexture;
+layout(binding = 5) uniform sampler2D normalTexture;
 
 vec2 transformUv(vec4 rowU, vec4 rowV, vec4 uv01) {
   vec3 uv = vec3(rowU.w > 0.5 ? uv01.zw : uv01.xy, 1.0);
@@ -33,6 +34,13 @@ vec3 emissionAt(vec4 uv01) {
   return material.emission.rgb;
 #endif
 }
+
+#ifdef NORMAL_TEXTURE
+/// Texel of the normal map.
+vec3 normalTexelAt(vec4 uv01) {
+  return texture(normalTexture, transformUv(material.normalUvU, material.normalUvV, uv01)).xyz;
+}
+#endif
 
 /// Roughness and metalness.
 vec2 roughnessMetalnessAt(vec4 uv01) {

@@ -6,7 +6,7 @@
 layout(binding = 6) uniform sampler2D gbufferAlbedo;
 layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
 
-/// `position` and `normal` are the G-buffer's of that pixel.
+/// `position` and `normal` are the G-buffer's of that pixel, the latter as normalForLight has it.
 Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
   vec3 towardsViewer =
       camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
@@ -25,7 +25,7 @@ vec3 evenGlossy(ivec2 pixel, Receiver receiver, vec3 radiance) {
 /// Radiance towards the camera of irradiance and of glossy light as the passes store it, divided by glossyTint.
 /// `depth` must not be 0.
 vec3 reflectedAt(ivec2 pixel, float depth, vec3 irradiance, vec3 glossy) {
-  vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  vec3 normal = normalForLight(pixel, texelFetch(gbufferNormal, pixel, 0).xyz);
   Receiver receiver = receiverAt(pixel, positionFromDepth(pixel, depth), normal);
   return receiver.diffuse * 0.318309886 * irradiance + glossyTint(receiver) * glossy;
 }

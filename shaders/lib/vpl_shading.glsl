@@ -28,7 +28,7 @@ uniform float biasTexels;    // ShadowSettings::bias
 
 /// A surface point of the image.
 struct Surface {
-  vec3 position, normal;
+  vec3 position, normal, forLight; // normalForLight
 #ifdef GLOSSY
   Receiver receiver;
 #endif
@@ -55,8 +55,9 @@ Surface surfaceAt(ivec2 pixel, float depth) {
   Surface s;
   s.position = positionFromDepth(pixel, depth);
   s.normal = texelFetch(gbufferNormal, pixel, 0).xyz;
+  s.forLight = normalForLight(pixel, s.normal);
 #ifdef GLOSSY
-  s.receiver = receiverAt(pixel, s.position, s.normal);
+  s.receiver = receiverAt(pixel, s.position, s.forLight);
 #endif
   return s;
 }
@@ -113,13 +114,17 @@ void receive(inout Received sum, Surface s, VplLight light, int layer, float tim
   float distance2 = squaredLength(fromLight);
   float inverseDistance = inversesqrt(distance2);
   vec3 direction = fromLight * inverseDistance;
-  float cosineReceiver = -dot(s.normal, direction);
+  float cosineReceiver = -dot(s.forLight, direction), cosinePlane = cosineReceiver;
+#ifdef MAPPED_NORMALS
+  cosinePlane = -dot(s.normal, direction);
+  cosineReceiver = cosinePlane > 0.0 ? cosineReceiver : 0.0;
+#endif
   vec3 lightNormal = vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w);
   vec3 d = inFrame(light, lightNormal, direction);
   float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
   g = min(g, largestG) * times;
 #ifdef SHADOWS
-  float lit = visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosineReceiver);
+  float lit = visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosinePlane);
 #ifdef CHECKED
   draw(sum, light, layer, g, lit > 0.0);
 #endif

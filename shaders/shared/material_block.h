@@ -10,12 +10,14 @@ struct MaterialBlock {
   vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
-  vec4 roughnessMetalness;    // x: roughness factor, y: metalness factor
+  vec4 roughnessMetalness;    // x: roughness factor, y: metalness factor, z: the normal map's scale
   vec4 roughnessMetalnessUvU; // as baseUvU
   vec4 roughnessMetalnessUvV; // xyz: second row
+  vec4 normalUvU;             // as baseUvU
+  vec4 normalUvV;             // xyz: second row
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(lambent::MaterialBlock) == 144);
+static_assert(sizeof(lambent::MaterialBlock) == 176);
 #endif

@@ -128,6 +128,30 @@ TEST(Trace, NotANumberIsAMissAndDoesNotAbort) {
   }
 }
 
+/// Debian's Embree ends the program where a packet's ray is not a number in an instance's space, or too far away there.
+TEST(Trace, InstancesWithoutSizeAreMetByNoRay) {
+  HandScene scene;
+  const uint32_t white = scene.material(vec3(0.5f));
+  scene.box(vec3(-1), vec3(1), white, true);
+  for (const vec3& scale : {vec3(0), vec3(1, 0, 1), vec3(1e-17f), vec3(1e-11f, 1, 1), vec3(1e-30f)}) {
+    scene.quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, white);
+    scene.place(uint32_t(scene.instances.size()) - 1, glm::scale(mat4(1), scale));
+  }
+  EmbreeQuery embree(scene.assets);
+  embree.update(scene.view());
+  std::vector<Ray> rays;
+  for (uint32_t i = 0; i < 64; ++i) {
+    Rng rng(1, Stream::Test, i);
+    rays.push_back({vec3(0.3f, 0.2f, 0.7f), sampleSphere(rng.next2())});
+    rays.push_back({vec3(3e9f, 0.2f, 0.7f), {-1, 0, 0}}); // too far for the thinnest
+  }
+  const auto [hits, t, blocked] = Answers(embree, rays);
+  for (size_t i = 0; i < rays.size(); i += 2) {
+    ASSERT_TRUE(hits[i].valid() && blocked[i] && t[i] < kInfinity);
+    EXPECT_LT(hits[i].instance, 6u);
+  }
+}
+
 TEST(Trace, EmptyScene) {
   SceneAssets none;
   EmbreeQuery rays(none);

@@ -29,7 +29,7 @@ inline Image directOf(PassContext passes, const HandScene& scene, const LightSet
   DirectLight direct(passes, mostDoubts);
   stats = {};
   FrameResults results;
-  results.surfaces = surfacePass.run({world.gpu, world.view.camera, glossy});
+  results.surfaces = surfacePass.run({world.gpu, world.view.camera, glossy, scene.normalMapped()});
   Patches patches([&] { return patchPass.run(results.surfaces, settings.multires); });
   // Without gloss as if it were indirect, which reads as irradiance, without albedo.
   SurfaceLighting& light = glossy ? results.direct : results.indirect;

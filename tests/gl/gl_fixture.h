@@ -170,7 +170,7 @@ class GatherTest : public GlTest {
  protected:
   GBuffer surfaces(const HandScene& scene, bool glossy = false) {
     placed = std::make_unique<PlacedScene>(passes, scene);
-    return surfacePass.run({placed->gpu(), scene.camera, glossy});
+    return surfacePass.run({placed->gpu(), scene.camera, glossy, scene.normalMapped()});
   }
   SurfaceLighting gathered(const GBuffer& gbuffer, const VirtualLights& lights, const Settings& settings,
                            const ParaboloidMaps* maps = nullptr) {

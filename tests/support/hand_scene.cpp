@@ -1,5 +1,7 @@
 #include "tests/support/hand_scene.h"
 
+#include <algorithm>
+
 namespace lambent::test {
 
 uint32_t HandScene::material(const vec3& albedo, const vec3& emission, bool doubleSided) {
@@ -35,12 +37,24 @@ TextureRef HandScene::texture(int width, std::vector<u8vec4> texels, bool srgb) 
   return {.image = uint32_t(assets.images.size() - 1), .nearest = true};
 }
 
+void HandScene::normalMap(uint32_t materialIndex, const vec3& local) {
+  const vec3 texel = glm::round((glm::normalize(local) * 0.5f + 0.5f) * 255.0f);
+  assets.materials[materialIndex].normalTexture = texture(1, {u8vec4(vec4(texel, 255))}, false);
+}
+
+bool HandScene::normalMapped() const {
+  return std::ranges::any_of(assets.materials, [](const Material& m) { return m.normalTexture.image != kNone; });
+}
+
 uint32_t HandScene::quad(const vec3& corner, const vec3& e1, const vec3& e2, uint32_t materialIndex) {
   Mesh mesh;
   const vec3 n = glm::normalize(glm::cross(e1, e2));
   mesh.positions = {corner, corner + e1, corner + e1 + e2, corner + e2};
   mesh.normals.assign(4, n);
   mesh.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  // v runs downwards in a texture, here along e2: the bitangent is against that.
+  if (assets.materials[materialIndex].normalTexture.image != kNone)
+    mesh.tangents.assign(4, vec4(glm::normalize(e1), -1));
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
   mesh.primitives.push_back({0, 2, materialIndex, mesh.boundsObject});

@@ -25,6 +25,10 @@ class HandScene {
   /// To be looked up without filtering.
   TextureRef texture(int width, std::vector<u8vec4> texels, bool srgb = true);
 
+  /// Gives a material a normal map of one texel, of the local direction; meshes that are added later have tangents along
+  /// their u.
+  void normalMap(uint32_t materialIndex, const vec3& local);
+  bool normalMapped() const;
   /// Parallelogram with front side cross(e1, e2); returns the instance.
   uint32_t quad(const vec3& corner, const vec3& e1, const vec3& e2, uint32_t materialIndex);
   /// Box seen from inside when `inward`: the front sides face in. One quad (instance) per face.

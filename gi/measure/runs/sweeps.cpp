@@ -134,7 +134,8 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"image.exposure", "image.toneMapper", "image.antiAliasing", "debug.nan", "debug.timing"}, "how it is shown"},
       {{"effects.indirect", "effects.bounces", "effects.emissive", "effects.sky", "effects.alpha", "effects.textures",
         "effects.motion", "effects.mapRefresh", "effects.relight", "effects.replace", "effects.filter",
-        "effects.history", "effects.glossy", "effects.softShadows", "effects.gather", "effects.redraw"},
+        "effects.history", "effects.glossy", "effects.normalMaps", "effects.softShadows", "effects.gather",
+        "effects.redraw"},
        "the plan leaves out only what shows nowhere"},
   };
   return table;

@@ -132,4 +132,33 @@ TEST(GlossyReference, LambertMaterialsAreUntouchedAndKeysTellFinishes) {
   EXPECT_NE(referenceKey(view, glossy), glossyKey);
 }
 
+/// A plate whose map tilts it everywhere, under a lamp and by a sky: E = I·cosθ/r², and the sky's share of a tilted
+/// plane's directions that the plate itself does not hide.
+TEST(NormalMapReference, TiltedPlate) {
+  HandScene scene;
+  const uint32_t material = scene.material(vec3(1));
+  scene.normalMap(material, {0.6f, 0, 0.8f});
+  scene.quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, material);
+  scene.camera = probeAt(vec3(0, 0, 2), vec3(0));
+  const vec3 local = vec3(scene.assets.images[0].texels[0]) / 127.5f - 1.0f;
+  const vec3 normal = glm::normalize(vec3(local.x, -local.y, local.z)); // e2 is v, downwards in the texture
+  const auto direct = [&](const SceneView* maps, const TracedScene& s, uint32_t samples) {
+    const ReferenceInputs in{
+        .rays = s.rays, .lights = s.lights, .camera = scene.camera, .bounces = 0, .normalMaps = maps};
+    return meanOf(trace(in, samples, ReferenceBuffer::Direct).mean, {0, 1, 0});
+  };
+  {
+    const LightView lamp = scene.lamp({0.9f, 0.3f, 0.8f}, vec3(3));
+    const TracedScene s(scene);
+    const float r2 = glm::dot(lamp.position, lamp.position), r3 = r2 * std::sqrt(r2);
+    EXPECT_NEAR(direct(&s.view, s, 1).mean, 3 / kPi * glm::dot(normal, lamp.position) / r3, 2e-3);
+    EXPECT_NEAR(direct(nullptr, s, 1).mean, 3 / kPi * lamp.position.z / r3, 2e-3);
+  }
+  scene.lights.clear();
+  scene.sky = vec3(1);
+  const TracedScene s(scene);
+  const Mean m = direct(&s.view, s, 64);
+  EXPECT_NEAR(m.mean, 0.5 * (1 + double(normal.z)), 4 * m.error + 1e-3);
+}
+
 } // namespace lambent::test::glossy_test

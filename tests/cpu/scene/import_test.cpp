@@ -2,8 +2,6 @@
 
 #include "tests/cpu/scene/support.h"
 
-#include <stb/stb_image_write.h>
-
 namespace lambent::test::import_test {
 
 const std::vector<vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -16,18 +14,6 @@ class Import : public ::testing::Test {
     return scene.assets.meshes.at(0);
   }
   /// A picture of one colour as PNG bytes.
-  static std::vector<uint8_t> png(u8vec4 color) {
-    std::vector<uint8_t> out;
-    const std::vector<u8vec4> texels(4, color);
-    stbi_write_png_to_func(
-        [](void* to, void* data, int size) {
-          const auto* p = static_cast<uint8_t*>(data);
-          static_cast<std::vector<uint8_t>*>(to)->insert(static_cast<std::vector<uint8_t>*>(to)->end(), p, p + size);
-        },
-        &out, 2, 2, 4, texels.data(), 8);
-    return out;
-  }
-
   TemporaryFolder folder;
   Scene scene;
 };

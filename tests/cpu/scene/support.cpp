@@ -1,6 +1,20 @@
 #include "tests/cpu/scene/support.h"
 
+#include <stb/stb_image_write.h>
+
 namespace lambent::test {
+
+std::vector<uint8_t> png(u8vec4 color) {
+  std::vector<uint8_t> out;
+  const std::vector<u8vec4> texels(4, color);
+  stbi_write_png_to_func(
+      [](void* to, void* data, int size) {
+        const auto* p = static_cast<uint8_t*>(data);
+        static_cast<std::vector<uint8_t>*>(to)->insert(static_cast<std::vector<uint8_t>*>(to)->end(), p, p + size);
+      },
+      &out, 2, 2, 4, texels.data(), 8);
+  return out;
+}
 
 namespace {
 

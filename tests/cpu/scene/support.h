@@ -8,6 +8,9 @@
 
 namespace lambent::test {
 
+/// A picture of one colour.
+std::vector<uint8_t> png(u8vec4 color);
+
 /// A glTF document under construction: `json` is free to edit, `bytes` is its one buffer (a data URI when written).
 struct GltfBuilder {
   nlohmann::json json = {{"asset", {{"version", "2.0"}}}};
