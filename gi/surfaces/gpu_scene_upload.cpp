@@ -5,7 +5,10 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace lambent {
@@ -44,7 +47,59 @@ MaterialBlock blockOf(const Material& m) {
   };
 }
 
-gl::Texture uploadImage(const TextureImage& image) {
+/// How often each alpha is met between texels, as filters see it, at four places around each. In 16ths of 1/255.
+struct AlphaHistogram {
+  static constexpr int kMost = 255 * 16;
+  std::array<uint64_t, kMost + 1> counts{};
+  uint64_t total = 0;
+
+  AlphaHistogram(const std::vector<u8vec4>& texels, int width, int height) : total(4 * texels.size()) {
+    for (int y = 0; y < height; ++y)
+      for (const int dy : {height - 1, 1}) {
+        const u8vec4 *row = &texels[size_t(y) * size_t(width)],
+                     *other = &texels[size_t((y + dy) % height) * size_t(width)];
+        const auto column = [&](int x) { return 3 * row[x].w + other[x].w; };
+        for (int x = 0; x < width; ++x)
+          for (const int dx : {width - 1, 1}) ++counts[size_t(3 * column(x) + column((x + dx) % width))];
+      }
+  }
+  /// Of those that pass a test.
+  uint64_t from(float alpha) const {
+    uint64_t sum = 0;
+    for (int i = int(std::ceil(alpha * kMost)); i <= kMost; ++i) sum += counts[size_t(i)];
+    return sum;
+  }
+  /// The alpha that `share` of them have at least; 0: they have none.
+  float quantile(double share) const {
+    uint64_t left = uint64_t(std::llround(share * double(total)));
+    for (int i = kMost; i > 0 && left > 0; --i) {
+      if (counts[size_t(i)] >= left) return float(i) / kMost;
+      left -= counts[size_t(i)];
+    }
+    return 0;
+  }
+};
+
+/// Scales alpha in the coarser levels, so that as large a share of each passes the test as of the finest: else a mean
+/// of few leaves and much that is empty fails it everywhere (Castaño 2010, "Computing alpha mipmaps").
+void keepCoverage(const gl::Texture& texture, const TextureImage& image, float cutoff) {
+  const AlphaHistogram finest(image.texels, image.width, image.height);
+  const double share = double(finest.from(cutoff)) / double(finest.total);
+  std::vector<u8vec4> texels;
+  for (int level = 1, width = image.width, height = image.height; width > 1 || height > 1; ++level) {
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+    texels.resize(size_t(width) * size_t(height));
+    gl::pulse();
+    texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level);
+    const float least = AlphaHistogram(texels, width, height).quantile(share);
+    if (!(least > 0)) continue;
+    for (u8vec4& t : texels) t.w = uint8_t(std::min(255.0f, std::round(float(t.w) * (cutoff / least))));
+    glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  }
+}
+
+/// `cutoff`: alpha of it at least passes the test of the material that shows the image; 0: none tests it.
+gl::Texture uploadImage(const TextureImage& image, float cutoff) {
   gl::pulse();
   const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
   gl::Texture texture("scene/" + image.name.substr(0, 100), {.format = GLenum(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
@@ -55,6 +110,7 @@ gl::Texture uploadImage(const TextureImage& image) {
   glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                       image.texels.data());
   glGenerateTextureMipmap(texture.name());
+  if (cutoff > 0 && cutoff <= 1) keepCoverage(texture, image, cutoff);
   return texture;
 }
 
@@ -168,10 +224,14 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 }
 
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
+  std::map<uint32_t, float> cutoffs; // of images, for an alpha of the file's own
+  for (const Material& m : assets.materials)
+    if (m.alphaMode == AlphaMode::Mask && m.alpha > 0)
+      cutoffs.emplace(m.baseColorTexture.image, m.alphaCutoff / m.alpha);
   for (size_t i = 0; i < assets.images.size(); ++i) {
     const TextureImage& image = assets.images[i];
     const bool gone = image.texels.empty();
-    if (i == textures_.size()) textures_.push_back(gone ? gl::Texture() : uploadImage(image));
+    if (i == textures_.size()) textures_.push_back(gone ? gl::Texture() : uploadImage(image, cutoffs[uint32_t(i)]));
     if (gone) textures_[i] = {};
   }
   const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };

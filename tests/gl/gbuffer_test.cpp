@@ -145,6 +145,34 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   EXPECT_EQ(surfaceBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
 }
 
+/// Leaves that are smaller than pixels still cover their share of them.
+TEST_F(GBufferTest, MasksKeepTheirCoverageFarAway) {
+  for (const float covered : {0.15f, 0.3f, 0.8f}) {
+    HandScene scene;
+    const uint32_t leaves = scene.material(vec3(1));
+    std::vector<u8vec4> texels;
+    Rng rng(1, Stream::Test, 0);
+    for (int i = 0; i < 128 * 128; ++i) texels.emplace_back(255, 255, 255, rng.next() < covered ? 255 : 0);
+    Material& m = scene.assets.materials[leaves];
+    m.baseColorTexture = scene.texture(128, texels);
+    m.baseColorTexture.nearest = false;
+    m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
+    m.alphaMode = AlphaMode::Mask;
+    scene.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, leaves);
+    double wanted = 0; // what rays meet
+    constexpr int kRays = 20000;
+    for (int i = 0; i < kRays; ++i)
+      wanted += (sampleAlpha(scene.assets, m.baseColorTexture, rng.next2()) >= 0.5f) / double(kRays);
+    for (const float distance : {2.0f, 6.0f, 12.0f}) { // 1.3, 4 and 8 texels to a pixel
+      scene.camera = cameraAt(vec3(0, 0, distance), vec3(0), 1.0f);
+      const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
+      int passed = 0;
+      for (const vec3& d : depth.pixels) passed += d.x > 0;
+      EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, 0.05) << covered << ' ' << distance;
+    }
+  }
+}
+
 TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   HandScene scene;
   const TextureRef picture = scene.texture(2, {{188, 0, 0, 255}, {0, 188, 0, 0}}); // red and opaque; green, transparent
