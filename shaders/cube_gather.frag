@@ -136,6 +136,7 @@ void main() {
   vec3 irradiance = total > 1e-3 ? sum / total : nearest.rgb;
   outIrradiance = vec4(irradiance, total > 1e-3 || nearest.w < 1e8 ? 1.0 : 0.0);
 #ifdef GLOSSY
-  outGlossy = vec4(evenGlossy(pixel, receiverAt(pixel, position, normalForLight(pixel, normal)), irradiance * 0.318309886), 1.0);
+  Receiver receiver = receiverAt(pixel, position, normalForLight(pixel, normal));
+  outGlossy = vec4(evenGlossy(pixel, receiver, irradiance * 0.318309886), 1.0);
 #endif
 }

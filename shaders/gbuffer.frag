@@ -1,8 +1,8 @@
 #version 450
-// Surface attributes seen by the camera. Variants: GLOSSY (roughness and metalness too),
-// MAPPED_NORMALS (the normal by the normal map too; NORMAL_TEXTURE: the material has one), KEEPS_MODE (for llvmpipe, Mesa
-// 22.3: where the depth test rejects a whole block of pixels of a draw to half floats without any discard, the thread
-// no longer flushes denormals to zero, and what it draws from then on may differ from what other threads draw).
+// Surface attributes seen by the camera. Variants: GLOSSY (roughness and metalness too), MAPPED_NORMALS (the normal by
+// the normal map too; NORMAL_TEXTURE: the material has one), KEEPS_MODE (for llvmpipe, Mesa 22.3: where the depth test
+// rejects a whole block of pixels of a draw to half floats without any discard, the thread no longer flushes denormals to
+// zero, and what it draws from then on may differ from what other threads draw).
 #include "lib/material.glsl"
 #include "shared/camera_block.h"
 
@@ -64,8 +64,8 @@ void main() {
 #ifdef NORMAL_TEXTURE
   vec3 mapped =
       mappedNormal(normalWorld, tangentWorld.xyz, sign(tangentWorld.w), normalTexel, material.roughnessMetalness.z);
-  outMappedNormal = dot(tangentWorld.xyz, tangentWorld.xyz) > 0.0 ? vec4(facingViewer(side * mapped, towardsViewer), 1.0)
-                                                                  : outNormal;
+  bool any = dot(tangentWorld.xyz, tangentWorld.xyz) > 0.0;
+  outMappedNormal = any ? vec4(facingViewer(side * mapped, towardsViewer), 1.0) : outNormal;
 #elif defined(MAPPED_NORMALS)
   outMappedNormal = outNormal;
 #endif

@@ -40,7 +40,8 @@ void main() {
   normalWorld = size > 0.0 ? n * (handedness / size) : vec3(0.0);
 #ifdef NORMAL_TEXTURE
   vec3 t = tangentObject.xyz;
-  tangentWorld = vec4(dot(worldRow0.xyz, t), dot(worldRow1.xyz, t), dot(worldRow2.xyz, t), tangentObject.w * handedness);
+  tangentWorld =
+      vec4(dot(worldRow0.xyz, t), dot(worldRow1.xyz, t), dot(worldRow2.xyz, t), tangentObject.w * handedness);
 #endif
 #endif
 #if !defined(DEPTH_ONLY) || defined(POSITION)

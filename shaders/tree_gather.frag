@@ -43,7 +43,7 @@ void main() {
   float depth = texelFetch(gbufferDepth, pixel, 0).r;
   if (depth == 0.0) return;
   vec3 position = positionFromDepth(pixel, depth);
-  vec3 normal = normalForLight(pixel, texelFetch(gbufferNormal, pixel, 0).xyz);
+  vec3 plane = texelFetch(gbufferNormal, pixel, 0).xyz, normal = normalForLight(pixel, plane);
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, normal);
@@ -69,7 +69,11 @@ void main() {
         vec3 direction = fromLight * inversesqrt(distance2);
         vec3 n = texelFetch(normals, cluster, at).xyz;
         float cosineLight = dot(n, direction) * inversesqrt(max(dot(n, n), 1e-12));
-        float g = max(-dot(normal, direction), 0.0) * max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
+        float cosine = max(-dot(normal, direction), 0.0);
+#ifdef MAPPED_NORMALS
+        cosine = dot(plane, direction) < 0.0 ? cosine : 0.0;
+#endif
+        float g = cosine * max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
         vec3 light = flux.rgb * (0.318309886 * min(g, largestG));
         irradiance += light;
 #ifdef GLOSSY

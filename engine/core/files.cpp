@@ -55,11 +55,11 @@ class Temporary {
   int file_;
 };
 
-/// Whether nobody writes it any more.
-bool abandoned(const fs::path& temporary) {
+/// Whether nobody writes it any more. Where the disk knows no locks: `otherwise`.
+bool abandoned(const fs::path& temporary, bool otherwise) {
   const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return false;
-  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  const bool free = flock(file, LOCK_EX | LOCK_NB) == 0 || (errno != EWOULDBLOCK && otherwise);
   close(file);
   return free;
 }
@@ -280,7 +280,7 @@ void removeLeftoversOnce(const fs::path& file) {
   for (fs::directory_iterator at(folderOf(file), ignored), end; first && at != end; at.increment(ignored))
     if (const fs::path name = at->path().filename(); name.string().starts_with('.')) found->second.push_back(name);
   for (const fs::path& name : found->second)
-    if (isTemporaryOf(name.string(), file) && abandoned(folderOf(file) / name))
+    if (isTemporaryOf(name.string(), file) && abandoned(folderOf(file) / name, false))
       fs::remove(folderOf(file) / name, ignored);
 }
 
@@ -386,7 +386,7 @@ void removeLeftovers(const fs::path& named) {
   const fs::path file = leadsTo(named);
   std::error_code ignored;
   for (const fs::directory_entry& e : fs::directory_iterator(folderOf(file), ignored))
-    if (isTemporaryOf(e.path().filename().string(), file) && abandoned(e.path())) fs::remove(e.path(), ignored);
+    if (isTemporaryOf(e.path().filename().string(), file) && abandoned(e.path(), true)) fs::remove(e.path(), ignored);
 }
 
 } // namespace lambent

@@ -44,6 +44,12 @@ mat3 normalMatrix(const mat3& m) {
   return glm::dot(m[0], cofactor[0]) < 0 ? -cofactor : cofactor;
 }
 
+/// Unit in the plane that the normal is now of; 0 stays 0, and has none.
+vec4 tangentTo(const vec3& normal, const vec4& tangent) {
+  const vec3 t(tangent);
+  return vec4(unitOr(t - normal * glm::dot(normal, t), vec3(0)), tangent.w);
+}
+
 /// -1 where it turns left hands into right ones: a bitangent then is on the other side.
 float sideOf(const mat3& m) { return glm::determinant(m) < 0 ? -1.0f : 1.0f; }
 
@@ -110,15 +116,14 @@ void deform(const Mesh& mesh, const Pose& pose, DeformedMesh& out) {
   const size_t count = mesh.positions.size();
   out.positions.resize(count);
   out.normals.resize(count);
-  out.tangents = mesh.tangents; // morph targets' own are left out: what is drawn makes them tangent to the normals
+  out.tangents = mesh.tangents; // morph targets' own are left out
   parallelFor(count, kGrain, [&](size_t begin, size_t end) {
     morph(mesh, pose.morphWeights, begin, end, out);
     if (!pose.objectFromBind.empty()) skin(mesh, pose.objectFromBind, begin, end, out);
     for (size_t i = begin; i < end; ++i) {
       if (!isFinite(out.positions[i])) out.positions[i] = mesh.positions[i]; // keys beyond single precision
       out.normals[i] = unitOr(out.normals[i], mesh.normals[i]);
-      if (!out.tangents.empty())
-        out.tangents[i] = vec4(unitOr(vec3(out.tangents[i]), vec3(mesh.tangents[i])), out.tangents[i].w);
+      if (!out.tangents.empty()) out.tangents[i] = tangentTo(out.normals[i], out.tangents[i]);
     }
   });
   out.boundsObject = {};

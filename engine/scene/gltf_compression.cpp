@@ -259,9 +259,13 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
   if (!packed || !packed->IsObject()) return;
   const std::string place = outerPlace + ", Draco";
   const auto positions = primitive.attributes.find("POSITION");
-  if (positions == primitive.attributes.end() || !empty(doc, positions->second, place)) return; // it has both
+  if (positions == primitive.attributes.end()) return;
+  const std::pair source(int(wholeOf(doc, *packed, "bufferView", SIZE_MAX, place)), positions->second);
+  if (const auto known = doc.dracoIndices.find(source); known != doc.dracoIndices.end() && primitive.indices < 0)
+    primitive.indices = known->second;               // of another primitive, with the rest
+  if (!empty(doc, positions->second, place)) return; // it has both, or was decoded
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES) doc.fail(place, "holds other than triangles, which are not decoded");
-  const Bytes bytes = viewBytes(doc, int(wholeOf(doc, *packed, "bufferView", SIZE_MAX, place)), place);
+  const Bytes bytes = viewBytes(doc, source.first, place);
   const size_t count = doc.model.accessors[size_t(positions->second)].count;
   const DracoHead head = dracoHead(bytes);
   if (!head.known) doc.fail(place, "is no mesh of Draco's bitstream 2.2 without metadata");
@@ -294,7 +298,7 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
     a.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     a.count = size_t(mesh->num_faces()) * 3;
     a.bufferView = addView(doc, std::move(data));
-    primitive.indices = int(doc.model.accessors.size());
+    primitive.indices = doc.dracoIndices[source] = int(doc.model.accessors.size());
     doc.model.accessors.push_back(std::move(a));
   }
   const tinygltf::Value none;

@@ -6,9 +6,9 @@
 
 namespace lambent::gltf {
 
-/// The file's bytes as the parser takes them, which knows nothing of what is compressed: buffers that are only there for
-/// who cannot decompress, and indices that Draco brings, are hidden from it. Returns nothing where the bytes may stay as
-/// they are. Throws InputError.
+/// The file's bytes as the parser takes them, which knows nothing of what is compressed: buffers that are only there
+/// for who cannot decompress, and indices that Draco brings, are hidden from it. Returns nothing where the bytes may stay
+/// as they are. Throws InputError.
 std::vector<uint8_t> asParsed(const std::filesystem::path& file, const std::vector<uint8_t>& bytes);
 
 /// Decodes all buffer views that are compressed. One that cannot be decoded is noted in doc.viewDefects, and does no

@@ -66,6 +66,7 @@ struct Document {
   std::vector<CameraLens> lenses;    // of cameras
   std::vector<PunctualLight> lights; // `type` not yet set
   std::vector<std::string> warnings;
+  std::map<std::pair<int, int>, int> dracoIndices; // accessors made of indices, by Draco's view and its POSITION
   std::map<int, std::string> viewDefects; // of compressed buffer views that cannot be decoded
 
   /// Throws an InputError for `place` in this file, for example "mesh 3 'Wall', primitive 0".

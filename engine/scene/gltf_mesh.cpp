@@ -215,6 +215,8 @@ void makeTangents(const Document& doc, Vertices& v, std::vector<uvec3>& triangle
   std::vector<vec2> uvs = map.uvSet == 0 ? v.uv0 : v.uv1;
   if (uvs.empty()) return; // the map has one texel for all, and no direction
   for (vec2& uv : uvs) uv = vec2(map.uvTransform * vec3(uv, 1));
+  replaceNonFinite(uvs, vec2(0));
+  replaceNonFinite(v.positions, vec3(0)); // no triangle left uses them
   doc.spend(3 * triangles.size(), sizeof(CornerTangent), place);
   const std::vector<CornerTangent> corners = cornerTangents(v.positions, v.normals, uvs, triangles);
   constexpr uint32_t kNobody = 0xffffffffu;

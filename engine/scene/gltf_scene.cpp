@@ -209,6 +209,8 @@ void importNodes(Import& import, const std::string& sceneName) {
       continue;
     }
     if (node.skin >= 0) import.counted["instanced node(s) with a skin, which poses none of the instances"]++;
+    if (!import.scene.assets.meshes[mesh].morphTargets.empty())
+      import.counted["instanced node(s) with morph targets, whose instances have the mesh's own shape"]++;
     for (const Transform& transform : *instances) {
       const Entity instance = registry.create();
       registry.emplace<Transform>(instance, transform);

@@ -14,7 +14,7 @@ namespace lambent {
 /// object space, with unit normals. Triangles, texture coordinates and colours stay the mesh's.
 struct DeformedMesh {
   std::vector<vec3> positions, normals;
-  std::vector<vec4> tangents; // as the mesh has them
+  std::vector<vec4> tangents; // as the mesh's; empty: those of the mesh
   std::vector<Aabb> primitiveBoundsObject; // parallel to Mesh::primitives
   Aabb boundsObject;
   /// Different for every shape that this process has made: who keeps a copy knows by it whether the copy still holds.

@@ -61,18 +61,21 @@ vec3 mappedNormalAt(const SceneView& view, uint32_t instanceIndex, uint32_t prim
   CHECK_LT(triangle, primitive.triangleCount);
   const TrianglePlace place = trianglePlace(mesh, primitive, triangle, barycentric);
   const DeformedMesh* shape = instance.deformed.get();
-  const vec4 tangent = place.interpolate(shape ? shape->tangents : mesh.tangents);
+  const bool shaped = shape && shape->tangents.size() == mesh.tangents.size();
+  const vec4 tangent = place.interpolate(shaped ? shape->tangents : mesh.tangents);
   if (vec3(tangent) == vec3(0)) return normal;
   const std::vector<vec3>& positions = shape ? shape->positions : mesh.positions;
   const vec3 p0 = positions[place.vertices.x];
   const mat3 worldFromObject(instance.worldFromObject);
   const mat3 normalFromObject = glm::transpose(glm::inverse(worldFromObject));
   const vec3 front = normalFromObject * glm::cross(positions[place.vertices.y] - p0, positions[place.vertices.z] - p0);
+  const vec3 smooth = normalFromObject * place.interpolate(shape ? shape->normals : mesh.normals);
   const float side = (tangent.w < 0) == (glm::determinant(worldFromObject) < 0) ? 1.0f : -1.0f;
   const vec3 texel(sampleTexture(*view.assets, material.normalTexture, uvAt(mesh, place, material.normalTexture)));
-  const vec3 mapped = mappedNormal(normalFromObject * place.interpolate(shape ? shape->normals : mesh.normals),
-                                   worldFromObject * vec3(tangent), side, texel, material.normalScale);
-  return facingViewer(glm::dot(front, towardsViewer) < 0 ? -mapped : mapped, towardsViewer);
+  const vec3 mapped = mappedNormal(smooth, worldFromObject * vec3(tangent), side, texel, material.normalScale);
+  // Normals may oppose the triangle's winding: theirs is the side that is shown.
+  const bool turned = (glm::dot(front, towardsViewer) < 0) != (glm::dot(front, smooth) < 0);
+  return facingViewer(turned ? -mapped : mapped, towardsViewer);
 }
 
 RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex,

@@ -51,7 +51,7 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t pri
 /// Unit normal, world space, that the surface's normal map gives it where the camera looks (`towardsViewer`, unit): on
 /// that side. `normal` (SurfaceHit's) where material or mesh has no map. Arguments as surfacePoint.
 vec3 mappedNormalAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle, vec2 barycentric,
-                  const vec3& normal, const vec3& towardsViewer);
+                    const vec3& normal, const vec3& towardsViewer);
 
 /// How a surface reflects, apart from its colour: factors times texture.
 struct RoughnessMetalness {

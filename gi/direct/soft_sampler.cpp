@@ -169,14 +169,18 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       seen.push_back(uint32_t(i));
       centres.push_back((vec2(at) + 0.5f) / vec2(camera.width, camera.height));
     }
-    const std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
+    std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres);
     count.closest += centres.size();
     std::vector<Place> places;
     for (size_t k = 0; k < seen.size(); ++k) {
       if (!in.surfaces && !hits[k].valid()) continue;
       const glm::ivec2 pixel(int(seen[k] % uint32_t(camera.width)),
                              camera.height - 1 - int(seen[k] / uint32_t(camera.width)));
-      const Start start = startOf(in.surfaces, pixel, hits[k]);
+      Start start = startOf(in.surfaces, pixel, hits[k]);
+      if (in.normalMaps && start.atHit) {
+        applyNormalMap(in.view, hits[k]);
+        start.vertex.normal = hits[k].normal;
+      }
       const int samples = in.samples + in.more.at(start.vertex.position);
       Place place{seen[k], start.vertex, {}, false, samples, PixelNumbers(pixel, in.seed)};
       if (in.glossy && start.atHit) { // the lobes of another surface would be of another light

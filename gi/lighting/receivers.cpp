@@ -8,10 +8,21 @@
 
 namespace lambent {
 
+namespace {
+
+vec3 towardsViewerAt(const CameraView& camera, const vec3& position) {
+  return camera.orthoHalfHeight > 0 ? vec3(camera.worldFromView[2]) : glm::normalize(camera.position() - position);
+}
+
+} // namespace
+
+void applyNormalMap(const SceneView& view, SurfaceHit& hit) {
+  hit.normal = mappedNormalAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric, hit.normal,
+                              towardsViewerAt(view.camera, hit.position));
+}
+
 Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
-  const CameraView& camera = view.camera;
-  const vec3 towardsViewer =
-      camera.orthoHalfHeight > 0 ? vec3(camera.worldFromView[2]) : glm::normalize(camera.position() - hit.position);
+  const vec3 towardsViewer = towardsViewerAt(view.camera, hit.position);
   const RoughnessMetalness roughnessMetalness =
       roughnessMetalnessAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric);
   return makeReceiver(hit.normal, towardsViewer, hit.albedo, roughnessMetalness.roughness,

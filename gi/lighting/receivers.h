@@ -9,6 +9,9 @@
 
 namespace lambent {
 
+/// Gives a valid hit the normal that its normal map has for `view`'s camera.
+void applyNormalMap(const SceneView& view, SurfaceHit& hit);
+
 /// The surface that `view`'s camera sees at a valid hit, as the G-buffer holds it.
 Receiver receiverOf(const SceneView& view, const SurfaceHit& hit);
 

@@ -1,7 +1,6 @@
 // Every visible point against every VPL with a ray each: paper 1's "all VPLs - ray tracing" (fig. 8), the measure that
 // separates errors of the VPL set from errors of shadow maps and interleaving. Costs width × height × N rays.
 #include "engine/core/parallel.h"
-#include "engine/view/surface_point.h"
 #include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
 
@@ -23,10 +22,8 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
   }
   std::vector<SurfaceHit> hits(block.size());
   rays.closest(block, hits);
-  for (size_t i = 0; normalMaps && i < hits.size(); ++i)
-    if (SurfaceHit& h = hits[i]; h.valid())
-      h.normal = mappedNormalAt(*normalMaps, h.instance, h.primitive, h.triangle, h.barycentric, h.normal,
-                                -block[i].direction);
+  for (SurfaceHit& h : hits)
+    if (normalMaps && h.valid()) applyNormalMap(*normalMaps, h);
   return hits;
 }
 

@@ -78,7 +78,10 @@ bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer) {
          buffer != ReferenceBuffer::Irradiance;
 }
 
-bool tracesNormalMaps(const Settings& settings) { return settings.effects[EffectId::NormalMaps] != EffectMode::Off; }
+bool tracesNormalMaps(const SceneView& view, const Settings& settings) {
+  return settings.effects[EffectId::NormalMaps] != EffectMode::Off && view.assets &&
+         std::ranges::any_of(view.assets->materials, [](const Material& m) { return m.normalTexture.image != kNone; });
+}
 
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
@@ -91,7 +94,7 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
                            .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr,
-                           .normalMaps = tracesNormalMaps(settings) ? &view : nullptr,
+                           .normalMaps = tracesNormalMaps(view, settings) ? &view : nullptr,
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);

@@ -38,7 +38,7 @@ struct TracedImage {
 bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
 
 /// Says whether the truth has the normals of normal maps where the camera looks.
-bool tracesNormalMaps(const Settings& settings);
+bool tracesNormalMaps(const SceneView& view, const Settings& settings);
 
 /// Traces a view. Throws InputError for a state file of another image.
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);

@@ -85,6 +85,7 @@ struct AlphaHistogram {
 void keepCoverage(const gl::Texture& texture, const TextureImage& image, float cutoff) {
   const AlphaHistogram finest(image.texels, image.width, image.height);
   const double share = double(finest.from(cutoff)) / double(finest.total);
+  if (share == 1) return;
   std::vector<u8vec4> texels;
   for (int level = 1, width = image.width, height = image.height; width > 1 || height > 1; ++level) {
     width = std::max(1, width / 2), height = std::max(1, height / 2);
@@ -92,8 +93,8 @@ void keepCoverage(const gl::Texture& texture, const TextureImage& image, float c
     gl::pulse();
     texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level);
     const float least = AlphaHistogram(texels, width, height).quantile(share);
-    if (!(least > 0)) continue;
-    for (u8vec4& t : texels) t.w = uint8_t(std::min(255.0f, std::round(float(t.w) * (cutoff / least))));
+    if (!(least > 0 && least < 1)) continue;
+    for (u8vec4& t : texels) t.w = uint8_t(std::min(255.0f, std::ceil(float(t.w) * (cutoff / least))));
     glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   }
 }

@@ -1,5 +1,5 @@
-// Reading the G-buffer. Units 0, 1 and 13 and uniform binding 0 belong to it. Variant
-// MAPPED_NORMALS.
+// Reading the G-buffer. Units 0, 1 and 13 and uniform binding 0 belong to it.
+// Variant MAPPED_NORMALS.
 #include "shared/camera_block.h"
 
 layout(std140, binding = 0) uniform Camera { CameraBlock camera; };

@@ -1,5 +1,5 @@
-// Seeds of what a glTF file holds compressed: .glb files whose second chunk is what meshopt, Draco or WebP wrote, so that
-// mutations meet the decoders.
+// Seeds of what a glTF file holds compressed: .glb files whose second chunk is what meshopt, Draco or WebP wrote, so
+// that mutations meet the decoders.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// What is fuzzed: readers of files and text from elsewhere (gltf, compressed, settings, picture), and of files that our programs
-// write and read again (shot, walk, preferences, recording, runs, state, cube). Whatever the bytes are, a reader gives a
-// result that holds what it promises, or throws InputError or RunError; anything else ends the program.
+// What is fuzzed: readers of files and text from elsewhere (gltf, compressed, settings, picture), and of files that our
+// programs write and read again (shot, walk, preferences, recording, runs, state, cube). Whatever the bytes are, a reader
+// gives a result that holds what it promises, or throws InputError or RunError; anything else ends the program.
 #pragma once
 
 #include <string>

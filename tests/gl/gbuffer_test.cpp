@@ -145,6 +145,24 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   EXPECT_EQ(surfaceBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
 }
 
+/// A mask that cuts nothing out cuts nothing out far away either, whatever its cutoff.
+TEST_F(GBufferTest, MasksOfWhatIsOpaqueStayOpaqueFarAway) {
+  for (const float cutoff : {0.33f, 0.51f, 0.75f, 1.0f}) {
+    HandScene scene;
+    const uint32_t solid = scene.material(vec3(1));
+    Material& m = scene.assets.materials[solid];
+    m.baseColorTexture = scene.texture(64, std::vector<u8vec4>(64 * 64, u8vec4(255)));
+    m.baseColorTexture.nearest = false;
+    m.baseColorTexture.uvTransform = mat3(8, 0, 0, 0, 8, 0, 0, 0, 1);
+    m.alphaMode = AlphaMode::Mask;
+    m.alphaCutoff = cutoff;
+    scene.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, solid);
+    scene.camera = cameraAt(vec3(0, 0, 9), vec3(0), 1.0f);
+    const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
+    for (const vec3& d : depth.pixels) ASSERT_GT(d.x, 0) << cutoff;
+  }
+}
+
 /// Leaves that are smaller than pixels still cover their share of them.
 TEST_F(GBufferTest, MasksKeepTheirCoverageFarAway) {
   for (const float covered : {0.15f, 0.3f, 0.8f}) {

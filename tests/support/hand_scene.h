@@ -25,7 +25,7 @@ class HandScene {
   /// To be looked up without filtering.
   TextureRef texture(int width, std::vector<u8vec4> texels, bool srgb = true);
 
-  /// Gives a material a normal map of one texel, of the local direction; meshes that are added later have tangents along
+  /// Gives a material a normal map of one texel, of the local direction; quads that are added later have tangents along
   /// their u.
   void normalMap(uint32_t materialIndex, const vec3& local);
   bool normalMapped() const;

@@ -206,10 +206,34 @@ TEST_F(TangentsOfFiles, MappedNormalsAreThoseOfASlantedSurface) {
   // From behind it is the same surface.
   const vec3 behind = glm::normalize(vec3(-0.2f, 0, -1));
   expectNormal(at(mat4(1), 0, behind), -slope);
+  // Normals against the winding of their triangles are on the side that is seen, as the rasteriser has it.
+  for (vec3& n : scene.assets.meshes[0].normals) n = -n;
+  expectNormal(at(mat4(1), 0, left), slope * vec3(-1, 1, 1));
+  for (vec3& n : scene.assets.meshes[0].normals) n = -n;
   // A slope that faces away is seen edge on, not through.
   const vec3 grazing = glm::normalize(vec3(-1, 0, 0.01f));
   EXPECT_GT(glm::dot(at(mat4(1), 0, grazing), grazing), 0);
   EXPECT_NEAR(glm::length(at(mat4(1), 0, grazing)), 1, 1e-5f);
+}
+
+/// Turned with their vertices; on the other side where a joint mirrors them; in the plane of normals that a morph
+/// turned.
+TEST(Tangents, FollowWhatDeformsTheirMesh) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals.assign(3, vec3(0, 0, 1));
+  mesh.tangents.assign(3, vec4(1, 0, 0, 1));
+  mesh.triangles = {{0, 1, 2}};
+  mesh.primitives.push_back({0, 1, 0, {}});
+  mesh.jointSets.push_back({std::vector(3, glm::uvec4(0)), std::vector(3, vec4(1, 0, 0, 0))});
+  mesh.morphTargets.push_back({{}, std::vector(3, vec3(1, 0, 0))});
+  DeformedMesh out;
+  deform(mesh, {{glm::rotate(mat4(1), kPi / 2, vec3(0, 0, 1))}, {}}, out);
+  for (const vec4& t : out.tangents) expectTangent(t, {0, 1, 0}, 1);
+  deform(mesh, {{glm::scale(mat4(1), vec3(-2, 2, 2))}, {}}, out);
+  for (const vec4& t : out.tangents) expectTangent(t, {-1, 0, 0}, -1);
+  deform(mesh, {{}, {1}}, out); // normals between z and x
+  for (const vec4& t : out.tangents) expectTangent(t, glm::normalize(vec3(1, 0, -1)), 1);
 }
 
 } // namespace lambent::test::tangents_test
