@@ -248,6 +248,29 @@ TEST(Compression, DracoBesidePlainDataGivesWay) {
   expectHills(b.load(folder), hills);
 }
 
+/// As exporters write what two meshes or materials share: the second is not decoded again, and has the same triangles.
+TEST(Compression, DracoOfTwoMeshesIsWhole) {
+  const TemporaryFolder folder;
+  const Hills hills;
+  GltfBuilder b = draco(hills, false, 0);
+  nlohmann::json primitive = b.json["meshes"][0]["primitives"][0];
+  b.json["materials"] = {{{"name", "other"}}};
+  primitive["material"] = 0;
+  b.json["meshes"][0]["primitives"].push_back(primitive);
+  b.addMeshNode(primitive);
+  const Scene scene = b.load(folder);
+  ASSERT_EQ(scene.assets.meshes.size(), 2u);
+  const size_t triangles = hills.indices.size() / 3;
+  EXPECT_EQ(scene.assets.meshes[0].triangles.size(), 2 * triangles);
+  EXPECT_EQ(cornersOf(scene.assets.meshes[1], 1e-4f).size(), 3 * triangles);
+  Mesh second = scene.assets.meshes[0];
+  second.triangles.erase(second.triangles.begin(), second.triangles.begin() + ptrdiff_t(triangles));
+  EXPECT_EQ(cornersOf(second, 1e-4f), cornersOf(scene.assets.meshes[1], 1e-4f));
+  second = scene.assets.meshes[0];
+  second.triangles.resize(triangles);
+  EXPECT_EQ(cornersOf(second, 1e-4f), cornersOf(scene.assets.meshes[1], 1e-4f));
+}
+
 TEST(Compression, DracoThatLiesIsRefused) {
   const Hills hills;
   const TemporaryFolder folder;
