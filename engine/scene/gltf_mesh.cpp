@@ -209,6 +209,24 @@ template <class Fn> void eachArray(const Vertices& from, Vertices& to, Fn&& fn) 
   }
 }
 
+/// Leaves out vertices that no triangle uses: an accessor may be that of many primitives.
+void dropUnused(Vertices& v, std::vector<uvec3>& triangles) {
+  std::vector<bool> uses(v.positions.size(), false);
+  for (const uvec3& t : triangles) uses[t.x] = uses[t.y] = uses[t.z] = true;
+  std::vector<uint32_t> place(uses.size(), 0), kept;
+  for (uint32_t i = 0; i < uses.size(); ++i)
+    if (uses[i]) place[i] = uint32_t(kept.size()), kept.push_back(i);
+  if (kept.size() == uses.size()) return;
+  for (uvec3& t : triangles) t = {place[t.x], place[t.y], place[t.z]};
+  Vertices used;
+  eachArray(v, used, [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(kept.size());
+    for (const uint32_t i : kept) to.push_back(from[i]);
+  });
+  v = std::move(used);
+}
+
 /// Makes tangents for the material's normal map. A vertex whose triangles disagree about its tangent becomes several.
 void makeTangents(const Document& doc, Vertices& v, std::vector<uvec3>& triangles, const TextureRef& map,
                   const std::string& place) {
@@ -216,8 +234,9 @@ void makeTangents(const Document& doc, Vertices& v, std::vector<uvec3>& triangle
   if (uvs.empty()) return; // the map has one texel for all, and no direction
   for (vec2& uv : uvs) uv = vec2(map.uvTransform * vec3(uv, 1));
   replaceNonFinite(uvs, vec2(0));
-  replaceNonFinite(v.positions, vec3(0)); // no triangle left uses them
-  doc.spend(3 * triangles.size(), sizeof(CornerTangent), place);
+  replaceNonFinite(v.positions, vec3(0));         // no triangle left uses them
+  constexpr size_t kBytesPerMappedTriangle = 256; // of the tangents, and of what finds neighbours meanwhile
+  doc.spend(triangles.size(), kBytesPerMappedTriangle, place);
   const std::vector<CornerTangent> corners = cornerTangents(v.positions, v.normals, uvs, triangles);
   constexpr uint32_t kNobody = 0xffffffffu;
   struct Copy {
@@ -449,6 +468,7 @@ uint32_t importMesh(Import& import, int meshIndex, bool skinned) {
       makeMissingTangents();
       first = appendVertices(mesh, vertices);
     } else {
+      if (source.tangentsOf >= 0) dropUnused(vertices, triangles);
       doc.spend(vertices.positions.size(), bytesPerVertex(vertices), place); // what others have is filled up
       std::vector<vec3> asRead = vertices.positions;
       repairNormals(vertices, triangles);

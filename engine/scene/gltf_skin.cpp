@@ -77,7 +77,7 @@ void importDeformation(Import& import, int node, uint32_t slot) {
   const lambent::Mesh& mesh = import.scene.assets.meshes[slot];
   if (in.skin >= 0 || !mesh.morphTargets.empty()) { // a shape of its own, also for rays and OpenGL
     const std::string place = label("node", size_t(node), in.name);
-    import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3), place);
+    import.doc.spend(mesh.positions.size(), 2 * sizeof(vec3) + (mesh.tangents.empty() ? 0 : sizeof(vec4)), place);
     import.doc.spend(mesh.triangles.size(), kBytesPerPosedTriangle, place);
   }
   if (in.skin >= 0) addSkin(import, node, slot);

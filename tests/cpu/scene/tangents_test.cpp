@@ -157,6 +157,24 @@ TEST_F(TangentsOfFiles, AreMadeWhereAMapAsksAndVerticesDividedWhereTheyDisagree)
   EXPECT_EQ(without.assets.meshes[0].positions.size(), 6u);
 }
 
+/// Primitives that divide one set of vertices among them each have their own, and no others.
+TEST_F(TangentsOfFiles, AreOfTheVerticesThatAPrimitiveUses) {
+  GltfBuilder b = mirrored();
+  nlohmann::json& primitives = b.json["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  primitives[0]["indices"] = b.indices({0, 1, 2, 0, 2, 3});
+  primitives[1]["indices"] = b.indices({1, 5, 2, 5, 4, 2});
+  const Scene scene = b.load(folder);
+  const Mesh& mesh = scene.assets.meshes[0];
+  ASSERT_EQ(mesh.positions.size(), 8u);
+  for (size_t t = 0; t < 4; ++t)
+    for (int c = 0; c < 3; ++c) {
+      const uint32_t v = mesh.triangles[t][c];
+      expectTangent(mesh.tangents[v], {t < 2 ? 1 : -1, 0, 0}, t < 2 ? 1 : -1);
+      EXPECT_EQ(mesh.uv0[v].x, t < 2 ? mesh.positions[v].x : 2 - mesh.positions[v].x);
+    }
+}
+
 TEST_F(TangentsOfFiles, AreTheFilesOwnWhereItHasNormalsToo) {
   GltfBuilder b = mirrored();
   nlohmann::json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
