@@ -292,9 +292,9 @@ void writeAtomically(const fs::path& named, const std::function<void(const fs::p
   const fs::path file = foldersWithoutLinks().areAbove(named) ? named : leadsTo(named);
   if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
     return write(file); // a device or a pipe: nothing to keep, and a rename would put a file in its place
+  removeLeftoversOnce(file);
   // The random part keeps two programs that write the same target apart; the extension stays last because some
   // encoders choose their format by it.
-  removeLeftoversOnce(file);
   const fs::path temporary = temporaryFor(file);
   const Unbroken whole;
   const Temporary held(temporary, file);

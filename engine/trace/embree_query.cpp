@@ -334,9 +334,9 @@ uint32_t EmbreeQuery::update(const SceneView& view, bool all) {
     s.place(i, in);
     ++placed;
   }
-  s.growth = 1;
-  for (const State::Instance& i : s.instances) s.growth = std::max(s.growth, i.growth);
   if (placed > 0 || before != now) {
+    s.growth = 1;
+    for (const State::Instance& i : s.instances) s.growth = std::max(s.growth, i.growth);
     rtcCommitScene(s.top);
     requireMemory(s.device);
   }
