@@ -36,7 +36,7 @@ std::optional<GameOptions> readOptions(int argc, char** argv) {
   app.add_option("--truth", options.truth)->check(CLI::IsMember({"split", "heat"}))->group("");
   app.add_option("--press", options.press)->group("");
   app.add_option("--state", options.state)->group("");
-  refuseNotANumber(app);
+  refuseUnusable(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

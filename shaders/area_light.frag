@@ -20,8 +20,9 @@ layout(location = 1) out vec4 outGlossy;          // radiance over glossyTint
 
 AreaLobe lobeFor(float alpha2, float cosViewer) {
   vec2 place = lobePlace(alpha2, cosViewer);
-  return AreaLobe(textureLod(lobes, vec3(place, 0.0), 0.0), textureLod(lobes, vec3(place, 1.0), 0.0),
-                  textureLod(lobes, vec3(place, 2.0), 0.0));
+  return forViewer(AreaLobe(textureLod(lobes, vec3(place, 0.0), 0.0), textureLod(lobes, vec3(place, 1.0), 0.0),
+                            textureLod(lobes, vec3(place, 2.0), 0.0)),
+                   cosViewer);
 }
 #endif
 
@@ -51,7 +52,7 @@ void main() {
 #endif
     sum += pieces[i].radianceSides.rgb * factor;
 #ifdef GLOSSY
-    if (factor == 0.0 || receiver.strength == 0.0) continue;
+    if (factor == 0.0 || receiver.strength == vec3(0.0)) continue;
     AreaPiece piece = pieces[i];
     AreaLobe lobeOfPiece = lobe;
     if (piece.corners[0].w == 0.0) { // disks have gaps between them, which a wider lobe does not see

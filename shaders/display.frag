@@ -29,7 +29,7 @@ uniform int finestPatch; // level
 #endif
 
 #ifdef ERROR
-layout(binding = 6) uniform sampler2D truth; // as the source, with all that the variants make of it
+layout(binding = 12) uniform sampler2D truth; // as the source, with all that the variants make of it
 uniform float fullError;
 #endif
 

@@ -16,8 +16,7 @@ layout(location = 0) out vec4 outNormal;
 layout(location = 1) out vec4 outAlbedo;
 layout(location = 2) out vec4 outEmission;
 #ifdef GLOSSY
-#include "shared/ggx.h"
-layout(location = 3) out vec2 outRoughnessMetalness;
+layout(location = 3) out vec4 outFinish;
 #endif
 
 #ifdef MAPPED_NORMALS
@@ -71,7 +70,7 @@ void main() {
 #endif
   outAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 #ifdef GLOSSY
-  outRoughnessMetalness = vec2(max(roughnessMetalness.x, kLeastRoughness), roughnessMetalness.y);
+  outFinish = vec4(roughnessMetalness, material.roughnessMetalness.w, material.roughnessMetalnessUvV.w);
 #endif
   outEmission = vec4(emits ? emission : vec3(0.0), 1.0);
 }

@@ -46,7 +46,7 @@ void main() {
   vec3 plane = texelFetch(gbufferNormal, pixel, 0).xyz, normal = normalForLight(pixel, plane);
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
-  Receiver receiver = receiverAt(pixel, position, normal);
+  Receiver receiver = forVirtualLights(receiverAt(pixel, position, normal));
   vec3 glossy = vec3(0.0);
 #endif
   int depthOfTree = coarsest - finest;

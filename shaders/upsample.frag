@@ -22,7 +22,7 @@ uniform float detail;        // FINAL: MultiresSettings::detail
 #ifdef GLOSSY
 layout(binding = 4) uniform sampler2D atlasGlossy; // as irradiance, in the same places
 layout(binding = 5) uniform sampler2D coarseGlossy;
-layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
+layout(binding = 7) uniform sampler2D gbufferFinish;
 
 vec2 roughnessMetalness;
 
@@ -31,7 +31,7 @@ float likeLobe(ivec2 pixel) {
 #ifdef BILINEAR
   return 1.0;
 #endif
-  vec2 difference = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg - roughnessMetalness;
+  vec2 difference = texelFetch(gbufferFinish, pixel, 0).rg - roughnessMetalness;
   return exp2(-72.13475 * dot(difference, difference));
 }
 #endif
@@ -86,7 +86,7 @@ void main() {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
 #ifdef GLOSSY
-    roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
+    roughnessMetalness = texelFetch(gbufferFinish, pixel, 0).rg;
     vec3 glossySum = vec3(0.0);
     float glossyWeights = 0.0;
 #endif

@@ -26,6 +26,17 @@ size_t editDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// What `text` begins with, if it turns the direction of what follows on a terminal: U+200E, U+200F, U+202A to U+202E,
+/// U+2066 to U+2069 and U+061C, in UTF-8.
+std::string_view directionMark(std::string_view text) {
+  if (text.starts_with("\xd8\x9c")) return text.substr(0, 2);
+  if (text.size() < 3 || text[0] != '\xe2') return {};
+  const auto second = static_cast<unsigned char>(text[1]), third = static_cast<unsigned char>(text[2]);
+  const bool turns = second == 0x80 ? third == 0x8e || third == 0x8f || (third >= 0xaa && third <= 0xae)
+                                    : second == 0x81 && third >= 0xa6 && third <= 0xa9;
+  return turns ? text.substr(0, 3) : std::string_view();
+}
+
 } // namespace
 
 std::string printable(std::string_view text) {
@@ -51,6 +62,9 @@ std::string printable(std::string_view text) {
     } else if (c == 0xc2 && next >= 0x80 && next < 0xa0) { // U+0080 to U+009F in UTF-8
       escape(next);
       ++i;
+    } else if (const std::string_view turning = directionMark(text.substr(i)); !turning.empty()) {
+      for (const char byte : turning) escape(static_cast<unsigned char>(byte));
+      i += turning.size() - 1;
     } else {
       out += text[i];
     }

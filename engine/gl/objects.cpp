@@ -103,6 +103,7 @@ int texelBytes(GLenum format) {
   case GL_DEPTH24_STENCIL8:
   case GL_DEPTH_COMPONENT32F:
     return 4;
+  case GL_RGBA16:
   case GL_RGBA16F:
   case GL_RG32F:
     return 8;

@@ -4,6 +4,7 @@
 #include "engine/core/color.h"
 #include "engine/core/math.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace lambent {
 
 /// Larger images are refused on reading, so that a damaged header cannot ask for all memory.
 inline constexpr int kMaxImageSide = 32768;
+inline constexpr uint64_t kMaxImageTexels = uint64_t(kMaxImageSide) * kMaxImageSide;
 
 /// Linear RGB float image, row 0 at the top.
 struct Image {
@@ -35,7 +37,9 @@ Image8 resized(const Image8& image, int width, int height);
 /// Writes 32-bit float RGB, ZIP-compressed.
 void writeExr(const std::filesystem::path& file, const Image& image);
 /// Reads R,G,B (or `layer`.R, …). Throws InputError naming what the file has instead.
-Image readExr(const std::filesystem::path& file, const std::string& layer = {});
+Image readExr(const std::filesystem::path& file, const std::string& layer = {}, uint64_t mostTexels = kMaxImageTexels);
+/// Reads a Radiance picture (RGBE).
+Image readHdr(const std::filesystem::path& file, uint64_t mostTexels = kMaxImageTexels);
 /// Reads a portable float map, colour or grey (grey is repeated in all three channels). The header's scale is taken as
 /// byte order only.
 Image readPfm(const std::filesystem::path& file);

@@ -62,7 +62,7 @@ void writeExr(const std::filesystem::path& file, const Image& image) {
   });
 }
 
-Image readExr(const std::filesystem::path& file, const std::string& layer) {
+Image readExr(const std::filesystem::path& file, const std::string& layer, uint64_t mostTexels) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file.string(), "no such file");
   try {
     Imf::InputFile in(file.c_str());
@@ -72,6 +72,9 @@ Image readExr(const std::filesystem::path& file, const std::string& layer) {
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
       throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
                                           " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+    if (uint64_t(width) * uint64_t(height) > mostTexels)
+      throw InputError(file.string(), "has " + std::to_string(uint64_t(width) * uint64_t(height)) + " texels (" +
+                                          std::to_string(mostTexels) + " at most)");
     // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
     // memory.
     constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;

@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Extensions that a file may require because it is shown as meant (unlit: as a Lambert surface of its colour).
-constexpr std::array<const char*, 10> kSupportedExtensions = {
+constexpr std::array<const char*, 12> kSupportedExtensions = {
     "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",   "KHR_mesh_quantization",
     "KHR_materials_unlit", "KHR_draco_mesh_compression",      "EXT_meshopt_compression", "KHR_meshopt_compression",
-    "EXT_texture_webp",    "EXT_mesh_gpu_instancing"};
+    "EXT_texture_webp",    "EXT_mesh_gpu_instancing",         "KHR_materials_ior",       "KHR_materials_specular"};
 
 /// Reads the bytes of a file. Throws InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const fs::path& file) {
@@ -311,6 +311,8 @@ Document readDocument(const fs::path& file, FileTrust trust) {
   if (std::vector<uint8_t> readable = asParsed(file, bytes); !readable.empty()) bytes = std::move(readable);
   doc.budget.free = size_t(kShareCounted * double(freeMemory()));
   doc.budget.trusted = trust.large;
+  constexpr size_t kBytesPerMaterial = 2400; // of the parser's and ours
+  doc.spend(json.materials, kBytesPerMaterial, std::to_string(json.materials) + " materials");
   Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);
@@ -326,9 +328,12 @@ Document readDocument(const fs::path& file, FileTrust trust) {
     parsed = binary ? parser.LoadBinaryFromMemory(&doc.model, &error, &warning, bytes.data(), size, folder)
                     : parser.LoadASCIIFromString(&doc.model, &error, &warning,
                                                  reinterpret_cast<const char*>(bytes.data()), size, folder);
+  } catch (const std::bad_alloc&) {
+    throw; // loadScene names it
   } catch (const std::exception& e) {
     error = e.what();
   }
+  if (!parsed && error.empty()) error = "it departs from glTF";
   checkExtensions(doc); // before the parser's own errors, which such an extension may be the cause of
   const bool outside = reading.outside;
   const char* hint =

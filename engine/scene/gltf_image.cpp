@@ -43,6 +43,15 @@ Texels decodeTexels(Bytes bytes, int& width, int& height) {
   return {stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), {false}};
 }
 
+/// Passes over the picture that a JPEG makes, each as long as the picture is large; 0 of other formats. A marker is no
+/// part of what is compressed.
+size_t scansOf(Bytes bytes) {
+  if (bytes.size < 3 || bytes.data[0] != 0xff || bytes.data[1] != 0xd8) return 0;
+  size_t scans = 0;
+  for (size_t i = 2; i + 1 < bytes.size; ++i) scans += bytes.data[i] == 0xff && bytes.data[i + 1] == 0xda;
+  return scans;
+}
+
 /// Why the image cannot be decoded; empty: it may be.
 std::string defectOf(Bytes bytes, int& width, int& height) {
   int channels = 0;
@@ -57,6 +66,9 @@ std::string defectOf(Bytes bytes, int& width, int& height) {
   if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)
     return "is " + std::to_string(width) + "x" + std::to_string(height) + " texels (1 to " +
            std::to_string(kMostTexels) + " each way)";
+  constexpr uint64_t kMostPassed = uint64_t(1) << 35; // 2 s
+  if (const size_t scans = scansOf(bytes); uint64_t(width) * uint64_t(height) * scans > kMostPassed)
+    return "is a JPEG of " + std::to_string(scans) + " passes, which take very long to decode (some ten are usual)";
   return {};
 }
 

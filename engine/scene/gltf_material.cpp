@@ -1,4 +1,4 @@
-// glTF materials as Lambert surfaces, with roughness and metalness for the glossy reflection at the receiver.
+// glTF materials as Lambert surfaces, with the finish for the glossy reflection at the receiver.
 
 #include "engine/scene/gltf_import.h"
 
@@ -11,11 +11,9 @@ namespace lambent::gltf {
 
 namespace {
 
-/// Extensions that change nothing a Lambert surface shows, or that are applied.
-constexpr std::array<std::string_view, 8> kSilentExtensions = {
-    "KHR_materials_emissive_strength", "KHR_materials_ior",   "KHR_materials_specular",
-    "KHR_materials_clearcoat",         "KHR_materials_sheen", "KHR_materials_iridescence",
-    "KHR_materials_anisotropy",        "KHR_materials_unlit"};
+/// Extensions that are applied, as far as surfaces are drawn.
+constexpr std::array<std::string_view, 4> kAppliedExtensions = {"KHR_materials_emissive_strength", "KHR_materials_ior",
+                                                                "KHR_materials_specular", "KHR_materials_unlit"};
 
 vec2 pair(const tinygltf::Value& object, const char* key, vec2 otherwise) {
   if (!object.IsObject() || !object.Has(key) || object.Get(key).ArrayLen() < 2) return otherwise;
@@ -71,6 +69,38 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   return ref;
 }
 
+/// KHR_materials_ior and KHR_materials_specular, as far as a G-buffer holds them: numbers, no textures, no tint.
+void importDielectric(Import& import, const tinygltf::Material& in, const std::string& place, lambent::Material& out) {
+  const auto ior = in.extensions.find("KHR_materials_ior"), specular = in.extensions.find("KHR_materials_specular");
+  if (ior == in.extensions.end() && specular == in.extensions.end()) return;
+  float index = ior == in.extensions.end() ? 1.5f : number(ior->second, "ior", 1.5f);
+  if (!(index >= 1 || index == 0)) {
+    import.doc.warn(place + ": the index of refraction is below 1; 1.5 instead");
+    index = 1.5f;
+  }
+  const float root = index == 0 || !std::isfinite(index) ? 1.0f : (index - 1) / (index + 1); // 0: a mirror
+  out.dielectricF0 = root * root;
+  if (specular != in.extensions.end()) {
+    const tinygltf::Value& value = specular->second;
+    const float weight = number(value, "specularFactor", 1);
+    if (!(weight >= 0 && weight <= 1)) import.doc.warn(place + ": specularFactor is out of range; clamped to 0..1");
+    out.dielectricLobe = weight >= 0 ? std::min(weight, 1.0f) : 0.0f;
+    vec3 tint(1);
+    if (value.Has("specularColorFactor") && value.Get("specularColorFactor").ArrayLen() == 3)
+      for (int c = 0; c < 3; ++c) {
+        const tinygltf::Value& channel = value.Get("specularColorFactor").Get(size_t(c));
+        if (channel.IsNumber()) tint[c] = std::clamp(float(channel.GetNumberAsDouble()), 0.0f, 1e6f);
+      }
+    out.dielectricF0 = std::min(out.dielectricF0 * luminance(tint), 1.0f);
+    if (tint.x != tint.y || tint.y != tint.z)
+      import.counted["material(s) whose specularColorFactor counts by its luminance"]++;
+    for (const char* texture : {"specularTexture", "specularColorTexture"})
+      if (value.Has(texture)) import.counted[std::string("material(s) whose ") + texture + " is not used"]++;
+  }
+  // Where nothing would be reflected head-on, glancing light is not either; 0 stands for the default.
+  if (out.dielectricF0 < 1e-4f) out.dielectricF0 = 0, out.dielectricLobe = 0;
+}
+
 } // namespace
 
 uint32_t importMaterial(Import& import, int index) {
@@ -113,6 +143,8 @@ uint32_t importMaterial(Import& import, int index) {
   const auto strength = in.extensions.find("KHR_materials_emissive_strength");
   out.emission = glm::max(
       emissive * (strength != in.extensions.end() ? number(strength->second, "emissiveStrength", 1) : 1), vec3(0));
+  if (strength != in.extensions.end() && number(strength->second, "emissiveStrength", 1) < 0)
+    doc.warn(place + ": emissiveStrength is negative; taken as 0");
   if (!(maxComponent(out.emission) <= kMostLight) || !isFinite(out.emission))
     doc.fail(place, "the emission is beyond what pictures can hold (1e30)");
   if (out.emits()) out.emissiveTexture = importTexture(import, in.emissiveTexture, place + ", emission");
@@ -127,9 +159,10 @@ uint32_t importMaterial(Import& import, int index) {
     out.alphaCutoff = 0.5f;
     import.counted["material(s) with alpha blending shown with a mask, solid where alpha is at least 0.5"]++;
   }
+  importDielectric(import, in, place, out);
   for (const auto& [extension, value] : in.extensions)
-    if (std::find(kSilentExtensions.begin(), kSilentExtensions.end(), extension) == kSilentExtensions.end())
-      import.counted["material(s) with " + extension + " shown as opaque Lambert surfaces"]++;
+    if (std::find(kAppliedExtensions.begin(), kAppliedExtensions.end(), extension) == kAppliedExtensions.end())
+      import.counted["material(s) with " + extension + " shown without it"]++;
   materials.push_back(std::move(out));
   return slot;
 }

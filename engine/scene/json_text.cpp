@@ -27,7 +27,7 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
   JsonText out;
   std::vector<std::unordered_set<std::string_view>> open; // keys of the objects (of lists: none) around
   std::deque<std::string> written;                        // of keys that are written with escapes
-  std::string_view key;
+  std::string_view key, outermost; // the latter: of the outermost object
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') {
@@ -42,6 +42,7 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
         if (!open.empty() && !open.back().insert(key).second)
           throw InputError(file.string(),
                            "gives the key '" + std::string(key) + "' twice in one object (once expected)");
+        if (open.size() == 1) outermost = key;
         do ++next;
         while (next < text.size() && isSpace(text[next]));
         if (key == "byteStride" && next < text.size() && text[next] == '-')
@@ -50,6 +51,7 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
         out.uris.push_back(unescaped(inside));
       }
     } else if (c == '[' || c == '{') {
+      if (c == '{' && open.size() == 2 && outermost == "materials") ++out.materials;
       if (open.size() >= kMaxNesting)
         throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxNesting) + " levels deep");
       open.emplace_back();

@@ -28,15 +28,16 @@ struct TriangleBlock {
   }
 };
 
-/// A scene's triangles in blocks. Keeps boxes of each mesh, so that a mesh that is shown often is looked at where it is
-/// asked for only, and costs neither time nor memory for each of its triangles in each place. Blocks follow a curve
-/// through space, whatever the order in the file.
+/// A scene's triangles in blocks, as it is when it is made. Keeps boxes of each mesh, so that a mesh that is shown
+/// often is looked at where it is asked for only, and costs neither time nor memory for each of its triangles in each
+/// place. Blocks follow a curve through space, whatever the order in the file, and so do instances: many of them are
+/// asked for at once.
 class PlacedTriangles {
  public:
-  explicit PlacedTriangles(const Scene& scene) : scene_(scene) {}
+  explicit PlacedTriangles(const Scene& scene);
 
   /// Calls `visit` for all blocks whose box is `wanted`, each just after it was asked for; of instances whose box is
-  /// not, none. In the order of instances.
+  /// not, none.
   void forEachBlock(const std::function<bool(const Aabb&)>& wanted,
                     const std::function<void(const TriangleBlock&)>& visit);
 
@@ -47,7 +48,19 @@ class PlacedTriangles {
   };
   const Blocks& blocksOf(const Mesh& mesh);
 
+  struct Rigid {
+    const Mesh* mesh;
+    mat4 worldFromObject;
+    Aabb box; // world space
+  };
+  void visitInstance(const Mesh& mesh, const DeformedMesh* deformed, const mat4& worldFromObject,
+                     const std::function<bool(const Aabb&)>& wanted,
+                     const std::function<void(const TriangleBlock&)>& visit);
+
   const Scene& scene_;
+  std::vector<Rigid> rigid_; // along a curve through space
+  std::vector<Aabb> groups_; // around so many of them
+  bool deforms_ = false;
   std::unordered_map<const Mesh*, Blocks> blocks_;
 };
 

@@ -49,6 +49,8 @@ struct Material {
   TextureRef emissiveTexture;
   float roughness = 1, metalness = 0;   // factors, [0,1]; roughness is perceptual: α = roughness²
   TextureRef roughnessMetalnessTexture; // G: roughness, B: metalness
+  float dielectricF0 = 0;               // reflectance head-on of what is not metal; 0: 0.04 (index of refraction 1.5)
+  float dielectricLobe = 1;             // weight of its glossy part, [0,1]
   TextureRef normalTexture;             // tangent space, where the camera sees it (shaders/shared/normal_map.h)
   float normalScale = 1;
   AlphaMode alphaMode = AlphaMode::Opaque;

@@ -36,6 +36,8 @@ void add(Hash& hash, const SceneAssets& assets, bool glossy, bool normalMaps) {
     if (glossy) {
       hash.value(m.roughness);
       hash.value(m.metalness);
+      hash.value(m.dielectricF0);
+      hash.value(m.dielectricLobe);
       add(hash, m.roughnessMetalnessTexture);
     }
     if (normalMaps) {

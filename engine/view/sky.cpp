@@ -2,6 +2,9 @@
 // to 6 or so. Ours: the elevation stays at the horizon once the sun is below, with less and less light.
 #include "engine/view/sky.h"
 
+#include "engine/core/error.h"
+#include "engine/core/hash.h"
+#include "engine/core/parallel.h"
 #include "engine/core/sampling.h"
 #include "shaders/shared/octahedral.h"
 #include "shaders/shared/sky.h"
@@ -27,9 +30,35 @@ vec3 tableDirection(float row, float column) {
   const float y = 1 - 2 * row, r = std::sqrt(glm::max(0.0f, 1 - y * y)), phi = 2 * kPi * column;
   return {r * std::cos(phi), y, r * std::sin(phi)};
 }
+/// Row and column of a direction, as tableDirection takes them; the column in [0, 1).
+vec2 tablePlace(const vec3& direction) {
+  const float turn = std::atan2(direction.z, direction.x) / (2 * kPi);
+  return {glm::clamp(0.5f - 0.5f * direction.y, 0.0f, 1.0f), turn < 0 ? glm::min(turn + 1, 0x1.fffffep-1f) : turn};
+}
 int cellOf(float place, int count) { return glm::clamp(int(place * float(count)), 0, count - 1); }
 
-/// Chooses a cell by its weight, and a direction uniformly within it.
+/// What is even within each of the cells, finer: luminances of kParts × kParts parts of equal solid angle.
+constexpr int kParts = 16;
+class Parts {
+ public:
+  explicit Parts(std::span<const float> luminances) : parts_(luminances) {}
+  /// Where in the cell; both in [0, 1).
+  vec2 sample(vec2 within) const {
+    const auto [part, rest] = parts_.choose(within.x);
+    return (vec2(part / kParts, part % kParts) + vec2(rest, within.y)) / float(kParts);
+  }
+  /// Density over that of an even cell.
+  float density(vec2 within) const {
+    return parts_.probability(uint32_t(cellOf(within.x, kParts) * kParts + cellOf(within.y, kParts))) * kParts * kParts;
+  }
+  bool empty() const { return parts_.empty(); }
+
+ private:
+  Distribution parts_;
+};
+using PartsOfCells = std::vector<Parts>; // row by row; empty: cells are even
+
+/// Chooses a cell by its weight, and a direction within it.
 class Table {
  public:
   using Weights = std::array<std::array<float, kColumns>, kRows>;
@@ -42,16 +71,22 @@ class Table {
     }
     rows_ = Distribution(sums);
   }
+  bool empty() const { return rows_.empty(); }
   double total() const { return rows_.total(); }
-  vec3 sample(vec2 u) const {
+  vec3 sample(vec2 u, const PartsOfCells& parts) const {
     const auto [row, withinRow] = rows_.choose(u.x);
     const auto [column, withinColumn] = columns_[row].choose(u.y);
-    return tableDirection((float(row) + withinRow) / kRows, (float(column) + withinColumn) / kColumns);
+    vec2 within(withinRow, withinColumn);
+    if (!parts.empty()) within = parts[row * kColumns + column].sample(within);
+    return tableDirection((float(row) + within.x) / kRows, (float(column) + within.y) / kColumns);
   }
-  float pdf(const vec3& direction) const {
-    const float turn = std::atan2(direction.z, direction.x) / (2 * kPi);
-    const int row = cellOf(0.5f - 0.5f * direction.y, kRows), column = cellOf(turn < 0 ? turn + 1 : turn, kColumns);
-    return rows_.probability(row) * columns_[row].probability(column) / kCell;
+  float pdf(const vec3& direction, const PartsOfCells& parts) const {
+    const vec2 place = tablePlace(direction) * vec2(kRows, kColumns);
+    const int row = glm::min(int(place.x), kRows - 1), column = glm::min(int(place.y), kColumns - 1);
+    const float even = rows_.probability(row) * columns_[row].probability(column) / kCell;
+    return parts.empty() || !(even > 0)
+               ? even
+               : even * parts[size_t(row * kColumns + column)].density(place - vec2(row, column));
   }
 
   static constexpr float kCell = 4 * kPi / (kRows * kColumns); // steradians
@@ -102,33 +137,23 @@ DaylightModel makeModel(const vec3& towardsSun, float turbidity) {
 
 } // namespace
 
-struct Sky::Daylight {
-  vec3 towardsSun;
-  float turbidity;
-  DaylightModel model;
+/// Luminance times solid angle of the cells, and the same facing each of the normals.
+struct Sky::Varying {
   vec3 irradiance{0};
   std::optional<Table> all;
   std::vector<Table> facing; // by the cell of the normal
+  PartsOfCells parts;
+  struct Daylight {
+    vec3 towardsSun;
+    float turbidity;
+    DaylightModel model;
+  };
+  std::optional<Daylight> daylight;
+  Picture picture;
+  std::vector<float> numbers;
 
-  Daylight(const vec3& direction, float t) : towardsSun(direction), turbidity(t), model(makeModel(direction, t)) {
-    constexpr int kTurns = 3; // places of a cell: 3×3
-    Table::Weights luminances{};
-    glm::dvec3 sum(0);
-    for (int row = 0; row < kRows / 2; ++row)
-      for (int column = 0; column < kColumns; ++column)
-        for (int i = 0; i < kTurns * kTurns; ++i) {
-          const vec2 within = (vec2(i / kTurns, i % kTurns) + 0.5f) / float(kTurns);
-          const vec3 d = tableDirection((float(row) + within.x) / kRows, (float(column) + within.y) / kColumns);
-          const vec3 part = daylightRadiance(model, d) * (Table::kCell / (kTurns * kTurns));
-          sum += glm::dvec3(part * d.y);
-          luminances[row][column] += luminance(part);
-        }
-    irradiance = vec3(sum);
-    const vec3 sun = daylightSun(towardsSun, turbidity) * glm::max(towardsSun.y, 0.0f);
-    model.ground = (irradiance + sun) * (kGroundAlbedo / kPi);
-    for (int row = kRows / 2; row < kRows; ++row) luminances[row].fill(luminance(model.ground) * Table::kCell);
+  void choose(const Table::Weights& luminances) {
     all.emplace(luminances);
-
     for (int i = 0; i < kNormals * kNormals; ++i) {
       const vec3 n = unitFromOctahedral((vec2(i % kNormals, i / kNormals) + 0.5f) * (2.0f / kNormals) - 1.0f);
       const vec3 normal(n.x, n.z, n.y);
@@ -144,44 +169,146 @@ struct Sky::Daylight {
 };
 
 Sky Sky::daylight(const vec3& towardsSun, float turbidity) {
+  turbidity = limited(turbidity);
+  auto made = std::make_shared<Varying>();
+  DaylightModel& model =
+      made->daylight.emplace(Varying::Daylight{towardsSun, turbidity, makeModel(towardsSun, turbidity)}).model;
+  constexpr int kTurns = 3; // places of a cell: 3×3
+  Table::Weights luminances{};
+  glm::dvec3 sum(0);
+  for (int row = 0; row < kRows / 2; ++row)
+    for (int column = 0; column < kColumns; ++column)
+      for (int i = 0; i < kTurns * kTurns; ++i) {
+        const vec2 within = (vec2(i / kTurns, i % kTurns) + 0.5f) / float(kTurns);
+        const vec3 d = tableDirection((float(row) + within.x) / kRows, (float(column) + within.y) / kColumns);
+        const vec3 part = daylightRadiance(model, d) * (Table::kCell / (kTurns * kTurns));
+        sum += glm::dvec3(part * d.y);
+        luminances[row][column] += luminance(part);
+      }
+  made->irradiance = vec3(sum);
+  const vec3 sun = daylightSun(towardsSun, turbidity) * glm::max(towardsSun.y, 0.0f);
+  model.ground = (made->irradiance + sun) * (kGroundAlbedo / kPi);
+  for (int row = kRows / 2; row < kRows; ++row) luminances[row].fill(luminance(model.ground) * Table::kCell);
+  made->choose(luminances);
+  made->numbers = {towardsSun.x, towardsSun.y, towardsSun.z, turbidity};
   Sky sky;
-  sky.daylight_ = std::make_shared<const Daylight>(towardsSun, limited(turbidity));
+  sky.varying_ = std::move(made);
   return sky;
 }
 
+Sky Sky::image(std::shared_ptr<const SkyImage> image, float scale, float turn) {
+  CHECK(image && image->width > 0 && image->height > 0);
+  CHECK_EQ(image->texels.size(), size_t(image->width) * size_t(image->height));
+  auto made = std::make_shared<Varying>();
+  made->picture = {std::move(image), scale, turn};
+  const SkyImage& pixels = *made->picture.image;
+  Hash digest(1);
+  digest.values(pixels.texels);
+  made->numbers = {float(pixels.width), float(pixels.height), scale, turn};
+  for (int i = 0; i < 4; ++i) made->numbers.push_back(float(digest.result() >> (16 * i) & 0xffff));
+  Sky sky;
+  sky.varying_ = made;
+
+  // Twice as many places along each side of a part as the picture has texels there, up to 8: as many as it has where it
+  // is 4096 wide.
+  const int turns = glm::clamp(2 * ((pixels.width + kColumns * kParts - 1) / (kColumns * kParts)), 2, 8);
+  Table::Weights luminances{};
+  std::array<glm::dvec3, kRows> sums{};
+  std::vector<std::vector<float>> parts(size_t(kRows) * kColumns, std::vector<float>(size_t(kParts) * kParts));
+  parallelFor(kRows, 1, [&](size_t first, size_t last) {
+    for (size_t row = first; row < last; ++row)
+      for (size_t column = 0; column < kColumns; ++column) {
+        std::vector<float>& here = parts[row * kColumns + column];
+        for (int i = 0; i < kParts * kParts; ++i)
+          for (int j = 0; j < turns * turns; ++j) {
+            const vec2 within =
+                (vec2(i / kParts, i % kParts) + (vec2(j / turns, j % turns) + 0.5f) / float(turns)) / float(kParts);
+            const vec3 d = tableDirection((float(row) + within.x) / kRows, (float(column) + within.y) / kColumns);
+            const vec3 part = sky.radiance(d) * (Table::kCell / float(kParts * kParts * turns * turns));
+            sums[row] += glm::dvec3(part * glm::max(d.y, 0.0f));
+            here[size_t(i)] += luminance(part);
+          }
+        for (const float part : here) luminances[row][column] += part;
+        // A part that seemed dark is drawn now and then, for light between the places.
+        const float little = luminances[row][column] > 0 ? 0.02f * luminances[row][column] / (kParts * kParts) : 1;
+        for (float& part : here) part += little;
+      }
+  });
+  glm::dvec3 sum(0);
+  for (const glm::dvec3& row : sums) sum += row;
+  for (const std::vector<float>& cell : parts) made->parts.emplace_back(cell);
+  if (!(Table(luminances).total() > 0)) return {};
+  made->irradiance = vec3(sum);
+  made->choose(luminances);
+  return sky;
+}
+
+namespace {
+
+vec3 radianceOf(const Sky::Picture& picture, const vec3& direction) {
+  const SkyImage& image = *picture.image;
+  const vec2 place = skyImagePlace(direction, picture.turn) * vec2(image.width, image.height) - 0.5f;
+  const vec2 low = glm::floor(place), part = place - low;
+  const auto at = [&](int x, int y) -> const vec3& {
+    x = (x % image.width + image.width) % image.width;
+    return image.texels[size_t(glm::clamp(y, 0, image.height - 1)) * size_t(image.width) + size_t(x)];
+  };
+  const int x = int(low.x), y = int(low.y);
+  return picture.scale *
+         glm::mix(glm::mix(at(x, y), at(x + 1, y), part.x), glm::mix(at(x, y + 1), at(x + 1, y + 1), part.x), part.y);
+}
+
+} // namespace
+
 vec3 Sky::radiance(const vec3& direction) const {
-  return daylight_ ? daylightRadiance(daylight_->model, direction) : constantRadiance_;
+  if (!varying_) return constantRadiance_;
+  return varying_->daylight ? daylightRadiance(varying_->daylight->model, direction)
+                            : radianceOf(varying_->picture, direction);
 }
 
 float Sky::meanLuminance() const {
-  return daylight_ ? float(daylight_->all->total()) / (4 * kPi) : luminance(constantRadiance_);
+  return varying_ ? float(varying_->all->total()) / (4 * kPi) : luminance(constantRadiance_);
 }
 
-vec3 Sky::irradiance() const { return daylight_ ? daylight_->irradiance : kPi * constantRadiance_; }
+vec3 Sky::irradiance() const { return varying_ ? varying_->irradiance : kPi * constantRadiance_; }
 
 SkySample Sky::sample(vec2 u) const {
-  const vec3 d = daylight_ ? daylight_->all->sample(u) : sampleSphere(u);
+  const vec3 d = varying_ ? varying_->all->sample(u, varying_->parts) : sampleSphere(u);
   return {d, radiance(d), pdf(d)};
 }
 
-float Sky::pdf(const vec3& direction) const { return daylight_ ? daylight_->all->pdf(direction) : 1 / (4 * kPi); }
+float Sky::pdf(const vec3& direction) const {
+  return varying_ ? varying_->all->pdf(direction, varying_->parts) : 1 / (4 * kPi);
+}
 
 SkySample Sky::sampleFacing(const vec3& normal, vec2 u) const {
-  const vec3 d = daylight_ ? daylight_->facing[normalCell(normal)].sample(u) : sampleCosineHemisphere(normal, u);
+  if (!varying_) {
+    const vec3 d = sampleCosineHemisphere(normal, u);
+    return {d, radiance(d), pdfFacing(normal, d)};
+  }
+  const Table& table = varying_->facing[size_t(normalCell(normal))];
+  if (table.empty()) return {}; // all is dark on that side
+  const vec3 d = table.sample(u, varying_->parts);
   return {d, radiance(d), pdfFacing(normal, d)};
 }
 
 float Sky::pdfFacing(const vec3& normal, const vec3& direction) const {
-  return daylight_ ? daylight_->facing[normalCell(normal)].pdf(direction)
-                   : pdfCosineHemisphere(glm::dot(normal, direction));
+  return varying_ ? varying_->facing[size_t(normalCell(normal))].pdf(direction, varying_->parts)
+                  : pdfCosineHemisphere(glm::dot(normal, direction));
 }
 
-const DaylightModel* Sky::model() const { return daylight_ ? &daylight_->model : nullptr; }
+const DaylightModel* Sky::model() const {
+  return varying_ && varying_->daylight ? &varying_->daylight->model : nullptr;
+}
+
+const Sky::Picture& Sky::picture() const {
+  static const Picture none;
+  return varying_ ? varying_->picture : none;
+}
 
 std::vector<float> Sky::numbers() const {
-  if (!daylight_) return {constantRadiance_.x, constantRadiance_.y, constantRadiance_.z};
-  const vec3& d = daylight_->towardsSun;
-  return {d.x, d.y, d.z, daylight_->turbidity};
+  if (!varying_) return {constantRadiance_.x, constantRadiance_.y, constantRadiance_.z};
+  return varying_->numbers;
 }
 
 vec3 daylightSun(const vec3& towardsSun, float turbidity) {

@@ -78,21 +78,20 @@ vec3 mappedNormalAt(const SceneView& view, uint32_t instanceIndex, uint32_t prim
   return facingViewer(turned ? -mapped : mapped, towardsViewer);
 }
 
-RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex,
-                                        uint32_t triangle, vec2 barycentric) {
+vec4 finishAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex, uint32_t triangle, vec2 barycentric) {
   CHECK_LT(instance, view.instances.size());
   const Mesh& mesh = view.assets->meshes[view.instances[instance].mesh];
   CHECK_LT(primitiveIndex, mesh.primitives.size());
   const Primitive& primitive = mesh.primitives[primitiveIndex];
   const Material& material = view.assets->materials[primitive.material];
-  RoughnessMetalness roughnessMetalness{material.roughness, material.metalness};
-  if (material.roughnessMetalnessTexture.image == kNone) return roughnessMetalness;
+  vec4 finish(material.roughness, material.metalness, material.dielectricF0, material.dielectricLobe);
+  if (material.roughnessMetalnessTexture.image == kNone) return finish;
   CHECK_LT(triangle, primitive.triangleCount);
   const vec2 uv = uvAt(mesh, trianglePlace(mesh, primitive, triangle, barycentric), material.roughnessMetalnessTexture);
   const vec4 texel = sampleTexture(*view.assets, material.roughnessMetalnessTexture, uv);
-  roughnessMetalness.roughness *= texel.y;
-  roughnessMetalness.metalness *= texel.z;
-  return roughnessMetalness;
+  finish.x *= texel.y;
+  finish.y *= texel.z;
+  return finish;
 }
 
 } // namespace lambent

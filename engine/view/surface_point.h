@@ -53,11 +53,7 @@ SurfacePoint surfacePoint(const SceneView& view, uint32_t instance, uint32_t pri
 vec3 mappedNormalAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle, vec2 barycentric,
                     const vec3& normal, const vec3& towardsViewer);
 
-/// How a surface reflects, apart from its colour: factors times texture.
-struct RoughnessMetalness {
-  float roughness = 1, metalness = 0; // roughness is perceptual
-};
-RoughnessMetalness roughnessMetalnessAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle,
-                                        vec2 barycentric);
+/// How a surface reflects, apart from its colour, as shaders/shared/ggx.h takes it: factors times texture.
+vec4 finishAt(const SceneView& view, uint32_t instance, uint32_t primitive, uint32_t triangle, vec2 barycentric);
 
 } // namespace lambent

@@ -3,7 +3,7 @@
 namespace lambent {
 
 void LightTarget::fit(const GBuffer& surfaces, const glm::ivec2& size) {
-  const bool glossy = surfaces.roughnessMetalness != nullptr;
+  const bool glossy = surfaces.finish != nullptr;
   if (irradiance_ && this->size() == size && bool(glossy_) == glossy) return;
   const auto make = [&](const char* what) {
     return gl::Texture(label_ + "/" + what, {.format = GL_RGBA32F, .width = size.x, .height = size.y});

@@ -19,8 +19,8 @@ struct GBuffer {
   const gl::Texture* normal = nullptr;   // RGBA16F world shading normal, turned to the viewer
   const gl::Texture* albedo = nullptr;   // RGBA16F; null: a host's that has not told it
   const gl::Texture* emission = nullptr; // RGBA16F radiance emitted towards the viewer, W/(m² sr)
-  /// RG16 roughness (at least kLeastRoughness), metalness; null: all is Lambert.
-  const gl::Texture* roughnessMetalness = nullptr;
+  /// RGBA16 as shaders/shared/ggx.h takes it, a host's any with roughness and metalness; null: all is Lambert.
+  const gl::Texture* finish = nullptr;
   /// RGBA16F as `normal`, by normal maps: of light, never of places; null: the same.
   const gl::Texture* mappedNormal = nullptr;
   const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)

@@ -41,7 +41,7 @@ void AreaLightPass::add(const World& world, const GBuffer& surfaces, SurfaceRead
   if (lights_.lights.empty()) return;
   const PatchPyramid& pyramid = patches.pyramid();
   GBuffer plain = surfaces; // shares have no lobes
-  plain.roughnessMetalness = nullptr;
+  plain.finish = nullptr;
   atlas_.fit(plain, pyramid, false);
   const FrameSurfaces seen = reader.read(surfaces);
   readLevels(seen, pyramid);
@@ -210,7 +210,7 @@ const gl::Texture& AreaLightPass::upsample(const GBuffer& surfaces, const Settin
 void AreaLightPass::shade(const GBuffer& surfaces, std::vector<AreaPiece> pieces, const gl::Texture& share,
                           const LightTarget& target) {
   share.bind(2);
-  if (surfaces.roughnessMetalness) {
+  if (surfaces.finish) {
     if (!lobes_) lobes_ = lobeTexture();
     lobes_.bind(3);
   }
@@ -226,7 +226,7 @@ void AreaLightPass::shadePieces(const GBuffer& surfaces, std::span<const AreaPie
   if (disks) defines.push_back("DISKS");
   const gl::Program& program = context_.programs.get({.fragment = "area_light.frag", .defines = std::move(defines)});
   program.use();
-  if (surfaces.roughnessMetalness) program.set("spread", GatherSettings{}.spread); // as DirectLight
+  if (surfaces.finish) program.set("spread", GatherSettings{}.spread); // as DirectLight
   for (size_t first = 0; first < pieces.size(); first += kPiecesPerBlock) {
     const std::span some = pieces.subspan(first, std::min(pieces.size() - first, size_t(kPiecesPerBlock)));
     std::vector<AreaPiece> block(some.begin(), some.end());

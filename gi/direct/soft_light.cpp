@@ -55,7 +55,7 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   const bool others = std::exchange(parts_, parts) != parts;
   if (frames < 2 || changes.first || others) history_.forget();
   history_.fit(frame.surfaces);
-  const bool glossy = frame.surfaces.roughnessMetalness != nullptr;
+  const bool glossy = frame.surfaces.finish != nullptr;
   SoftLight found;
   {
     const CpuScope scope(stats.stages, key(StageId::SoftRays));

@@ -155,7 +155,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
   const LightSet& lights = in.lights;
   const float epsilon = in.rays.rayEpsilon();
   const bool connects = lights.lightCount() > 0, sky = !lights.sky.black();
-  const bool casts = sky || !lights.emitters.empty();
+  const bool casts = sky || !lights.emitters.empty(), suns = std::ranges::any_of(lights.punctual, hasDisk);
   SoftLight out;
   out.irradiance.assign(size_t(camera.width) * camera.height, vec3(0));
   if (in.glossy) out.glossy.assign(out.irradiance.size(), vec3(0));
@@ -212,7 +212,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
         }
         if (sky && !lights.sky.constant())
           connect(p, connectToSky(lights, vertex, vec3(weight), numbers(s, Pair::Sky), epsilon));
-        if (!casts) continue;
+        if (!casts && !(suns && vertex.receiver)) continue;
         const vec2 u = numbers(s, Pair::Ray);
         const vec3 direction = vertex.receiver ? sampleReflection(*vertex.receiver, numbers(s, Pair::Lobe).x, u)
                                                : sampleCosineHemisphere(vertex.normal, u);
@@ -248,7 +248,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       const vec3& direction = rays[k].direction;
       vec3 radiance(0);
       if (!met[k].valid())
-        radiance = sky ? skyByRay(lights, place.vertex, direction) : vec3(0);
+        radiance = skyByRay(lights, place.vertex, direction);
       else if (lights.emission && maxComponent(met[k].emission) > 0)
         radiance = met[k].emission * emitterShare(lights, place.vertex, direction, met[k]);
       if (maxComponent(radiance) > 0) bring(place, radiance * cast[k].value, direction);

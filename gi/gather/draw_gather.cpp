@@ -50,9 +50,9 @@ std::vector<std::string> bindSurfaces(const GBuffer& gbuffer) {
     gbuffer.mappedNormal->bind(13);
     defines.push_back("MAPPED_NORMALS");
   }
-  if (!gbuffer.roughnessMetalness) return defines;
+  if (!gbuffer.finish) return defines;
   gbuffer.albedo->bind(6);
-  gbuffer.roughnessMetalness->bind(7);
+  gbuffer.finish->bind(7);
   defines.push_back("GLOSSY");
   return defines;
 }

@@ -28,7 +28,7 @@ void NearLightPass::add(const GatherInputs& in, const LightTarget& target, int g
                             .casts = gather.near * nearTimes(in.lists, in.averaged, in.changes),
                             .bounces = in.frame.bounces,
                             .subsets = grid > 1,
-                            .glossy = in.frame.surfaces.roughnessMetalness != nullptr,
+                            .glossy = in.frame.surfaces.finish != nullptr,
                             .normalMaps = in.frame.surfaces.mappedNormal != nullptr,
                             .seed = in.frame.seed,
                             .frame = in.sample,

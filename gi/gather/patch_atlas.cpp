@@ -8,7 +8,7 @@
 namespace lambent {
 
 void PatchAtlas::fit(const GBuffer& surfaces, const PatchPyramid& patches, bool subsets) {
-  AtlasShape shape{.grid = subsets ? 4 : 1, .glossy = surfaces.roughnessMetalness != nullptr};
+  AtlasShape shape{.grid = subsets ? 4 : 1, .glossy = surfaces.finish != nullptr};
   // Patches of 4 × 4 pixels are what interleaving makes anyway.
   const int levels = subsets && patches.levels < 3 ? 0 : patches.levels;
   shape.coarsest = std::max(0, levels - shape.gridLevel());

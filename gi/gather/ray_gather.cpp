@@ -14,7 +14,7 @@ class RayGather : public Gather {
   SurfaceLighting run(const GatherInputs& in, FrameStats& stats) override {
     const CameraView& camera = in.frame.world.view.camera;
     GlossyGather glossy{in.frame.world.view, {}};
-    const bool lobes = in.frame.surfaces.roughnessMetalness != nullptr;
+    const bool lobes = in.frame.surfaces.finish != nullptr;
     std::vector<vec3> irradiance;
     {
       CpuScope scope(stats.stages, key(StageId::GatherByRays));

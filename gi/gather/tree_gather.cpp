@@ -53,7 +53,7 @@ void drawTreeGather(gl::ProgramCache& programs, const gl::Framebuffer& target, c
   if (!in.addToTarget) {
     gl::PipelineState{.width = 1 << 14, .height = 1 << 14}.apply(); // clearing keeps to the scissor
     const float nothing[4] = {};
-    for (int i = 0; i < (in.surfaces.roughnessMetalness ? 2 : 1); ++i)
+    for (int i = 0; i < (in.surfaces.finish ? 2 : 1); ++i)
       glClearNamedFramebufferfv(target.name(), GL_COLOR, i, nothing);
   }
   // Paper 3, eq. 7: a cluster of area A brings at most C = I A/(π r² + A), where I is the light of its whole map over

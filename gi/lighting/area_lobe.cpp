@@ -31,18 +31,19 @@ std::vector<Direction> directionsFor(float alpha, float cosViewer, float f0) {
                            .towardsViewer = vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer),
                            .specular = vec3(f0),
                            .diffuse = vec3(0),
+                           .strength = vec3(1),
                            .cosViewer = cosViewer,
-                           .alpha2 = alpha * alpha,
-                           .strength = 1};
+                           .alpha2 = alpha * alpha};
   const glm::dvec3 viewer(viewed.towardsViewer);
   const double alpha2 = double(viewed.alpha2);
   std::vector<Direction> directions;
   const auto add = [&](const glm::dvec3& light) {
     if (light.z <= 0) return;
     const glm::dvec3 half = glm::normalize(light + viewer);
-    const double cos2 = half.z * half.z, s2 = alpha2 * cos2 / (1 - cos2 * (1 - alpha2));
-    const double reflected =
-        double(ggxDensity(viewed.alpha2, float(half.z))) * half.z / (4 * glm::dot(viewer, half) * 2 * std::sqrt(s2));
+    const double cos2 = half.z * half.z, sin2 = half.x * half.x + half.y * half.y;
+    const double s2 = alpha2 * cos2 / (sin2 + alpha2 * cos2);
+    const double reflected = double(ggxDensity(viewed.alpha2, float(sin2), float(cos2))) * half.z /
+                             (4 * glm::dot(viewer, half) * 2 * std::sqrt(s2));
     const double low = 1 / (4 * double(kPi) * std::sqrt(light.z));
     const double density = kHalves * kHalves * reflected + kLow * kLow * low;
     directions.push_back({light, 1 / density, double(glossyReflectance(viewed, vec3(light), 0).x) * light.z});
@@ -151,23 +152,42 @@ FittedLobe fitLobe(float alpha, float cosViewer, float f0, const vec4& start) {
     if (settled) break;
     errors = errorsOf(p, directions, true);
   }
-  return {vec4(p[0], p[1], p[2], p[3]), float(all)};
+  return {vec4(p[0], p[1], p[2], p[3]), float(all), errors.sum};
 }
+
+namespace {
+
+/// The map that a very sharp lobe tends to: the mirrored direction becomes the axis, across it normals turn directions
+/// twice as far, and along the view by the viewer's cosine less.
+vec4 sharpMap(float alpha, float cosViewer) {
+  const float sine = std::sqrt(1 - cosViewer * cosViewer);
+  return cosViewer * vec4(cosViewer, sine, -2 * alpha * sine, 2 * alpha * cosViewer);
+}
+
+/// From the neighbour's map, or where that does not reach, from a sharp lobe's.
+FittedLobe fitted(float alpha, float cosViewer, float f0, const vec4& neighbour) {
+  const FittedLobe one = fitLobe(alpha, cosViewer, f0, neighbour),
+                   other = fitLobe(alpha, cosViewer, f0, sharpMap(alpha, cosViewer));
+  return other.error < one.error ? other : one;
+}
+
+} // namespace
 
 const std::vector<AreaLobe>& lobeTable() {
   static const std::vector<AreaLobe> table = [] {
     std::vector<AreaLobe> made(size_t(kLobeRoughnesses) * kLobeAngles);
     for (int column = 0; column < kLobeRoughnesses; ++column) {
-      const float roughness = kLeastRoughness + (1 - kLeastRoughness) * float(column) / float(kLobeRoughnesses - 1);
-      const float alpha = roughness * roughness;
+      const float least = std::sqrt(kLeastRoughness);
+      const float root = least + (1 - least) * float(column) / float(kLobeRoughnesses - 1),
+                  alpha = root * root * root * root;
       // From the view along the normal outwards, each from the last.
       FittedLobe white{.map = vec4(1, 0, 0, std::min(2 * alpha, 1.0f))}, schlick = white;
       for (int row = 0; row < kLobeAngles; ++row) {
         const float angle = float(row) / float(kLobeAngles - 1), cosine = std::max(1 - angle * angle, kLeastCos);
-        white = fitLobe(alpha, cosine, 1, white.map);
-        schlick = fitLobe(alpha, cosine, 0, schlick.map);
-        made[size_t(row) * kLobeRoughnesses + size_t(column)] = {white.map, schlick.map,
-                                                                 vec4(white.share, schlick.share, 0, 0)};
+        white = fitted(alpha, cosine, 1, white.map);
+        schlick = fitted(alpha, cosine, 0, schlick.map);
+        made[size_t(row) * kLobeRoughnesses + size_t(column)] = {
+            turnedMap(white.map, cosine, 1), turnedMap(schlick.map, cosine, 1), vec4(white.share, schlick.share, 0, 0)};
       }
     }
     return made;
@@ -193,7 +213,7 @@ AreaLobe lobeAt(const std::vector<AreaLobe>& table, const vec2& place) {
 
 vec3 lobeRadiance(const std::vector<AreaLobe>& table, const AreaPiece& piece, const vec3& position,
                   const Receiver& receiver) {
-  const AreaLobe lobe = lobeAt(table, lobePlace(receiver.alpha2, receiver.cosViewer));
+  const AreaLobe lobe = forViewer(lobeAt(table, lobePlace(receiver.alpha2, receiver.cosViewer)), receiver.cosViewer);
   vec3 x, y;
   lobeFrame(receiver, x, y);
   return vec3(piece.radianceSides) * lobeReflection(piece, position, receiver, lobe, x, y);

@@ -12,12 +12,13 @@ namespace lambent {
 struct FittedLobe {
   vec4 map{1, 0, 0, 1}; // inLobeSpace
   float share = 0;      // of uniform light from above that the lobe reflects
+  double error = 0;     // what fits are compared by
 };
 
 /// Fits the map to lobe times cosine by Levenberg and Marquardt's method from `start`. `f0`: of Schlick's term.
 FittedLobe fitLobe(float alpha, float cosViewer, float f0, const vec4& start);
 
-/// All entries, row by row: kLobeRoughnesses in a row, kLobeAngles rows. Made on the first call, 0.1 s on one core.
+/// All entries, row by row: kLobeRoughnesses in a row, kLobeAngles rows. Made on the first call, 0.3 s on one core.
 const std::vector<AreaLobe>& lobeTable();
 
 /// Between entries as a texture with linear filter has it. `place`: lobePlace.

@@ -19,9 +19,12 @@ LightConnection connectToPunctual(const LightView& light, float probability, con
                                   const vec3& weight, vec2 u, float rayEpsilon) {
   const PunctualSample p = punctualIrradiance(pointOfDisk(light, u), vertex.position, vertex.normal);
   if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, vertex.geometricNormal) <= 0) return {};
+  const float mis = vertex.receiver && hasDisk(light)
+                        ? powerHeuristic(probability * pdfOfDisk(light, p.towards), pdfOfRay(vertex, p.towards))
+                        : 1;
   const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon);
   return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards},
-          weight * p.irradiance / (kPi * probability)};
+          weight * p.irradiance * (mis / (kPi * probability))};
 }
 
 LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter, float probability,
@@ -72,9 +75,17 @@ LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, c
 }
 
 vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction) {
-  const vec3 radiance = lights.sky.radiance(direction);
-  if (lights.sky.constant()) return radiance;
-  return radiance * powerHeuristic(pdfOfRay(vertex, direction), lights.sky.pdfFacing(vertex.normal, direction));
+  vec3 radiance = lights.sky.radiance(direction);
+  if (!lights.sky.constant())
+    radiance *= powerHeuristic(pdfOfRay(vertex, direction), lights.sky.pdfFacing(vertex.normal, direction));
+  if (!vertex.receiver) return radiance;
+  for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
+    const float pdf = hasDisk(lights.punctual[i]) ? pdfOfDisk(lights.punctual[i], direction) : 0;
+    if (!(pdf > 0)) continue;
+    const float chosen = LightChoice(lights, vertex.position, vertex.normal).probability(i);
+    radiance += lights.punctual[i].intensity * (pdf * powerHeuristic(pdfOfRay(vertex, direction), chosen * pdf));
+  }
+  return radiance;
 }
 
 float emitterShare(const LightSet& lights, const PathVertex& vertex, const vec3& direction, const SurfaceHit& hit) {

@@ -33,8 +33,8 @@ LightConnection connectToLight(const LightSet& lights, const PathVertex& vertex,
 LightConnection connectToSky(const LightSet& lights, const PathVertex& vertex, const vec3& weight, vec2 u,
                              float rayEpsilon);
 
-/// Radiance that a ray from `vertex` brings when it meets the sky: all where the sky is constant,
-/// else its share; connections bring the rest.
+/// Radiance that a ray from `vertex` brings when it meets the sky: all where the sky is constant, else its share;
+/// connections bring the rest. A glossy receiver's rays bring their share of suns' disks too.
 vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& direction);
 
 /// Share of the emission at `hit` that belongs to a ray from `vertex`; connections bring the rest.

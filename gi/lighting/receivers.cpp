@@ -23,10 +23,8 @@ void applyNormalMap(const SceneView& view, SurfaceHit& hit) {
 
 Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
   const vec3 towardsViewer = towardsViewerAt(view.camera, hit.position);
-  const RoughnessMetalness roughnessMetalness =
-      roughnessMetalnessAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric);
-  return makeReceiver(hit.normal, towardsViewer, hit.albedo, roughnessMetalness.roughness,
-                      roughnessMetalness.metalness);
+  return makeReceiver(hit.normal, towardsViewer, hit.albedo,
+                      finishAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric));
 }
 
 vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {
@@ -36,12 +34,12 @@ vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {
 
 vec3 sampleReflection(const Receiver& receiver, float uChoice, vec2 u) {
   if (uChoice < 0.5f) return sampleCosineHemisphere(receiver.normal, u);
-  const float cosHalf2 = (1 - u.x) / (1 + (receiver.alpha2 - 1) * u.x);
-  const float sine = std::sqrt(std::max(0.0f, 1 - cosHalf2)), phi = 2 * kPi * u.y;
+  const float wide = receiver.alpha2 * u.x, all = 1 - u.x + wide; // tan² of the normal: wide / (1 − u.x)
+  const float sine = std::sqrt(wide / all), phi = 2 * kPi * u.y;
   vec3 tangent, bitangent;
   basisAround(receiver.normal, tangent, bitangent);
   const vec3 half =
-      (tangent * std::cos(phi) + bitangent * std::sin(phi)) * sine + receiver.normal * std::sqrt(cosHalf2);
+      (tangent * std::cos(phi) + bitangent * std::sin(phi)) * sine + receiver.normal * std::sqrt((1 - u.x) / all);
   return glm::normalize(2 * glm::dot(half, receiver.towardsViewer) * half - receiver.towardsViewer);
 }
 
@@ -53,7 +51,8 @@ float pdfReflection(const Receiver& receiver, const vec3& direction) {
     // Of the two normals that mirror the one direction into the other, that on the surface's side is drawn. Its cosine
     // with either is half the length of their sum; dω_half/dω = 1/(4 cosine).
     const float cosHalf = std::min(std::abs(glm::dot(sum, receiver.normal)) / length, 1.0f);
-    lobe = ggxDensity(receiver.alpha2, cosHalf) * cosHalf / (2 * length);
+    const vec3 across = glm::cross(receiver.normal, sum) / length;
+    lobe = ggxDensity(receiver.alpha2, glm::dot(across, across), cosHalf * cosHalf) * cosHalf / (2 * length);
   }
   return 0.5f * (pdfCosineHemisphere(glm::dot(direction, receiver.normal)) + lobe);
 }

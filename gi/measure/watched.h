@@ -27,6 +27,8 @@ struct TrackedValue {
 /// Zero where the camera sees no surface.
 TrackedValue trackedValue(const PixelSums& sums, const SurfaceHit& surface, uint32_t samples, bool direct = false);
 
+/// What commands that watch points set before what their command line says.
+inline constexpr const char* kLambertReceivers = "gather.glossy=off";
 /// Throws InputError when receivers are to be glossy: values and their truth are those of Lambert surfaces.
 void refuseGlossy(const Settings& settings);
 

@@ -64,7 +64,7 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j]) irradiance[i] += values[j];
       if (!glossy) continue;
-      const Receiver receiver = receiverOf(glossy->view, h);
+      const Receiver receiver = forVirtualLights(receiverOf(glossy->view, h));
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j])
           glossy->radiance[i] +=

@@ -208,7 +208,7 @@ NearLight noNearLight(const NearLightInputs& in) {
 void add(NearLight& out, size_t pixel, const Near& ray, const vec3& light, const SceneView& view, const SurfaceHit& h) {
   out.irradiance[pixel] += light;
   if (out.glossy.empty()) return;
-  const Receiver receiver = receiverOf(view, h);
+  const Receiver receiver = forVirtualLights(receiverOf(view, h));
   out.glossy[pixel] += light * glossyReflectance(receiver, ray.direction, ray.spread) / glossyTint(receiver);
 }
 

@@ -156,7 +156,7 @@ struct GatherSettings {
   int near = 8; // rays per 4×4 pixels of subsets (else per pixel) for what disk and clamp take from near VPLs; 0: lost
   float nearLimit = 8; // radiance of a near surface counts up to so many times its VPL's; 0 = whatever it is
   bool checks = true;  // subsets, still: rays check what maps say (gi/gather/map_checks.h)
-  bool glossy = false; // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
+  bool glossy = true;  // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
   bool operator==(const GatherSettings&) const = default;
 };

@@ -41,7 +41,7 @@ SurfaceLighting HistoryPass::run(const HistoryInputs& in) {
 }
 
 void HistoryPass::fit(const GBuffer& surfaces) {
-  const bool glossy = surfaces.roughnessMetalness != nullptr;
+  const bool glossy = surfaces.finish != nullptr;
   const auto fits = [&](const gl::Texture& texture) {
     return texture && texture.width() == surfaces.width && texture.height() == surfaces.height;
   };

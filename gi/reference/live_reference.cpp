@@ -100,7 +100,7 @@ LiveReference::~LiveReference() {
 }
 
 std::string LiveReference::follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {
-  const Paths paths{settings.smc.bounces, tracesGlossy(settings, buffer), tracesNormalMaps(view, settings)};
+  const Paths paths{settings.smc.bounces, tracesGlossy(view, settings, buffer), tracesNormalMaps(view, settings)};
   std::string why = followed_ ? whatChanged(view.changes) : "it begins";
   if (why.empty() && followed_->bounces != paths.bounces) why = "smc.bounces changed";
   if (why.empty() && *followed_ != paths) why = "surfaces reflect in another way";

@@ -56,12 +56,13 @@ class BlockTracer {
     for (uint32_t i = 0; i < primary_.size(); ++i) {
       const SurfaceHit& h = primary_[i];
       if (h.valid())
-        paths_.push_back({{h.position, h.normal, h.geometricNormal},
+        paths_.push_back({{h.position, h.normal, h.geometricNormal, receivers_.empty() ? nullptr : &receivers_[i]},
                           vec3(1),
                           i,
                           Rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index)});
     }
-    const bool raysMeetLight = !in_.lights.emitters.empty() || !in_.lights.sky.black();
+    const bool raysMeetLight = !in_.lights.emitters.empty() || !in_.lights.sky.black() ||
+                               (in_.bounces == 0 && in_.glossy && std::ranges::any_of(in_.lights.punctual, hasDisk));
     for (int vertex = 0; vertex <= in_.bounces && !paths_.empty(); ++vertex) {
       connect(vertex, counts);
       if (!in_.lights.sky.constant()) connectSky(vertex, counts);
@@ -148,8 +149,7 @@ class BlockTracer {
 
   bool glossyAt(int vertex) const { return vertex == 0 && !receivers_.empty(); }
 
-  /// Direction of a glossy receiver's ray; the path's weight then is that of radiance from there. Emitters' shares need
-  /// no other weights than a cosine ray's: any that add up to one will do.
+  /// Direction of a glossy receiver's ray; the path's weight then is that of radiance from there.
   vec3 drawReflection(Path& p) const {
     const Receiver& receiver = receivers_[p.pixel];
     const vec2 u = p.rng.next2();

@@ -73,9 +73,10 @@ float exposureFor(std::span<const vec3> radiance) {
   return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
 }
 
-bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer) {
+bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {
   return settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&
-         buffer != ReferenceBuffer::Irradiance;
+         buffer != ReferenceBuffer::Irradiance && view.assets &&
+         std::ranges::any_of(view.assets->materials, &Material::glossy);
 }
 
 bool tracesNormalMaps(const SceneView& view, const Settings& settings) {
@@ -93,7 +94,7 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .bounces = settings.smc.bounces,
                            .clamp = plan.clamped ? settings.gather.clamp : 0,
                            .seed = plan.seed,
-                           .glossy = tracesGlossy(settings, plan.buffer) ? &view : nullptr,
+                           .glossy = tracesGlossy(view, settings, plan.buffer) ? &view : nullptr,
                            .normalMaps = tracesNormalMaps(view, settings) ? &view : nullptr,
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};

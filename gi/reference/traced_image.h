@@ -35,7 +35,7 @@ struct TracedImage {
 
 /// Says whether the truth of a buffer reflects as glossy surfaces do: where the settings say so, but for irradiance,
 /// which does not depend on how it is reflected.
-bool tracesGlossy(const Settings& settings, ReferenceBuffer buffer);
+bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
 
 /// Says whether the truth has the normals of normal maps where the camera looks.
 bool tracesNormalMaps(const SceneView& view, const Settings& settings);

@@ -73,7 +73,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   block_ = block;
   const bool glossy = in.glossy && !converted;
   const bool mapped = in.normalMaps && !converted;
-  if (!fits || glossy != bool(roughnessMetalness_) || mapped != bool(mappedNormal_) || converted == bool(albedo_)) {
+  if (!fits || glossy != bool(finish_) || mapped != bool(mappedNormal_) || converted == bool(albedo_)) {
     const auto make = [&](const char* label, GLenum format, bool wanted = true) {
       return wanted ? gl::Texture(label, {.format = format, .width = width, .height = height}) : gl::Texture();
     };
@@ -81,9 +81,9 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     normal_ = make("g-buffer/normal", GL_RGBA16F);
     albedo_ = make("g-buffer/albedo", GL_RGBA16F, !converted);
     emission_ = make("g-buffer/emission", GL_RGBA16F);
-    roughnessMetalness_ = make("g-buffer/roughness and metalness", GL_RG16, glossy);
+    finish_ = make("g-buffer/finish", GL_RGBA16, glossy);
     mappedNormal_ = make("g-buffer/mapped normal", GL_RGBA16F, mapped);
-    const gl::Texture *finish = glossy ? &roughnessMetalness_ : nullptr,
+    const gl::Texture *finish = glossy ? &finish_ : nullptr,
                       *mappedNormal = mapped ? &mappedNormal_ : nullptr;
     framebuffer_ = converted
                        ? gl::Framebuffer("g-buffer", {&normal_, &emission_}, &depth_)
@@ -93,7 +93,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
                     &normal_,
                     converted ? nullptr : &albedo_,
                     &emission_,
-                    glossy ? &roughnessMetalness_ : nullptr,
+                    glossy ? &finish_ : nullptr,
                     mapped ? &mappedNormal_ : nullptr,
                     &camera_,
                     block,

@@ -39,9 +39,9 @@ MaterialBlock blockOf(const Material& m) {
       .baseUvV = uvRow(m.baseColorTexture, 1, m.doubleSided ? 1.0f : 0.0f),
       .emissiveUvU = uvRow(m.emissiveTexture, 0, float(m.emissiveTexture.uvSet)),
       .emissiveUvV = uvRow(m.emissiveTexture, 1, 0),
-      .roughnessMetalness = vec4(m.roughness, m.metalness, m.normalScale, 0),
+      .roughnessMetalness = vec4(m.roughness, m.metalness, m.normalScale, m.dielectricF0),
       .roughnessMetalnessUvU = uvRow(m.roughnessMetalnessTexture, 0, float(m.roughnessMetalnessTexture.uvSet)),
-      .roughnessMetalnessUvV = uvRow(m.roughnessMetalnessTexture, 1, 0),
+      .roughnessMetalnessUvV = uvRow(m.roughnessMetalnessTexture, 1, m.dielectricLobe),
       .normalUvU = uvRow(m.normalTexture, 0, float(m.normalTexture.uvSet)),
       .normalUvV = uvRow(m.normalTexture, 1, 0),
   };

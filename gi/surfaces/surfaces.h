@@ -16,7 +16,7 @@ CameraBlock cameraBlock(const CameraView& camera, float orthoFar);
 struct SurfaceInputs {
   const GpuScene& scene;
   const CameraView& camera;
-  bool glossy = false;                // with `roughnessMetalness`: the passes that follow then add glossy reflection
+  bool glossy = false;                // with `finish`: the passes that follow then add glossy reflection
   bool normalMaps = false;            // with `mappedNormal`
   const HostSurfaces* host = nullptr; // taken over instead of drawing
   bool keep = false;                  // they are those of the last run
@@ -42,7 +42,7 @@ class SurfacePass {
   void keepPrevious(bool any);
 
   PassContext context_;
-  gl::Texture depth_, normal_, albedo_, emission_, roughnessMetalness_, mappedNormal_;
+  gl::Texture depth_, normal_, albedo_, emission_, finish_, mappedNormal_;
   gl::Texture hosts_[5]; // a host's, with our conventions
   gl::Texture black_;    // emission of a host that has none
   gl::Sampler plain_;    // a host's texture may want mipmaps that it does not have

@@ -5,11 +5,26 @@
 
 namespace lambent {
 
-std::vector<std::string> backgroundVariants(const Sky& sky) {
-  return sky.constant() ? std::vector<std::string>{} : std::vector<std::string>{"DAYLIGHT"};
+std::vector<std::string> Background::variants(const Sky& sky) const {
+  if (sky.constant()) return {};
+  return sky.picture().image ? std::vector<std::string>{"DAYLIGHT", "SKY_IMAGE"} : std::vector<std::string>{"DAYLIGHT"};
 }
 
-void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& surfaces) {
+void Background::set(const gl::Program& program, const Sky& sky, const GBuffer& surfaces) {
+  if (const Sky::Picture& picture = sky.picture(); picture.image) {
+    if (shown_ != picture.image) {
+      const SkyImage& image = *picture.image;
+      texture_ = gl::Texture("sky", {.format = GL_RGBA16F, .width = image.width, .height = image.height});
+      glTextureSubImage2D(texture_.name(), 0, 0, 0, image.width, image.height, GL_RGB, GL_FLOAT, image.texels.data());
+      shown_ = picture.image;
+    }
+    surfaces.camera->bindUniform(0);
+    texture_.bind(11);
+    program.set("skyScaleTurn", vec2(picture.scale, picture.turn));
+    return;
+  }
+  shown_ = nullptr;
+  texture_ = {};
   const DaylightModel* model = sky.model();
   if (!model) {
     program.set("skyRadiance", sky.radiance({0, 1, 0}));

@@ -18,10 +18,10 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
     framebuffer_ = gl::Framebuffer("composite", {&radiance_});
   }
   std::vector<std::string> defines = bindSurfaces(in.surfaces);
-  for (const std::string& variant : backgroundVariants(in.sky)) defines.push_back(variant);
+  for (const std::string& variant : background_.variants(in.sky)) defines.push_back(variant);
   const gl::Program& program = context_.programs.get({.fragment = "composite.frag", .defines = std::move(defines)});
   program.use();
-  setBackground(program, in.sky, in.surfaces);
+  background_.set(program, in.sky, in.surfaces);
   in.surfaces.albedo->bind(2);
   (in.emission ? in.surfaces.emission : &black_)->bind(3);
   (in.direct.irradiance ? in.direct.irradiance : &black_)->bind(4);

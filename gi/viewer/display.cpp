@@ -130,7 +130,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
     const std::vector<std::string> glossy = bindSurfaces(frame.surfaces);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
     (view.glossy ? view.glossy : &black_)->bind(8);
-    for (const std::string& variant : backgroundVariants(frame.sky)) view.defines.push_back(variant);
+    for (const std::string& variant : background_.variants(frame.sky)) view.defines.push_back(variant);
   }
   if (smooth) view.defines.push_back("LUMA");
   if (error.truth) view.defines.push_back("ERROR");
@@ -138,7 +138,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   program.use();
   program.set("factor", view.factor);
   program.set("lens", vec2(frame.surfaces.block.lens.z, frame.surfaces.block.lens.w));
-  setBackground(program, frame.sky, frame.surfaces);
+  background_.set(program, frame.sky, frame.surfaces);
   program.set("tileSize", tileSize(frame.surfaces));
   program.set("toneMapper", int(look.toneMapper));
   program.set("markNan", look.markNan || buffer == Buffer::Nan ? 1 : 0);
@@ -154,7 +154,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   }
   if (error.truth) {
     program.set("fullError", error.full);
-    error.truth->bind(6);
+    error.truth->bind(12);
   }
   (view.source ? view.source : &black_)->bind(2);
   frame.surfaces.albedo->bind(3);

@@ -55,19 +55,20 @@ Image depthOf(const FrameResults& frame) {
   return image;
 }
 
-/// albedo/π · irradiance; with the receivers' lobes where the G-buffer has roughness and metalness, as
+/// albedo/π · irradiance; with the receivers' lobes where the G-buffer has their finish, as
 /// shaders/lib/receiver.glsl.
 Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const gl::Texture* glossyLight) {
   const GBuffer& g = frame.surfaces;
   Image image = rgbOf(irradiance, g.width, g.height);
   const Image albedo = rgbOf(g.albedo, g.width, g.height);
-  if (!g.roughnessMetalness) {
+  if (!g.finish) {
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] *= albedo.pixels[i] / kPi;
     return image;
   }
   const Image glossy = rgbOf(glossyLight, g.width, g.height),
-              roughnessMetalness = rgbOf(g.roughnessMetalness, g.width, g.height),
-              normal = rgbOf(g.normal, g.width, g.height), distance = depthOf(frame);
+              normal = rgbOf(g.mappedNormal ? g.mappedNormal : g.normal, g.width, g.height), distance = depthOf(frame);
+  std::vector<vec4> finish(size_t(g.width) * g.height); // row 0 at the bottom
+  g.finish->read(std::span(finish), GL_RGBA, GL_FLOAT);
   const mat4& worldFromView = g.block.worldFromView;
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x) {
@@ -76,7 +77,7 @@ Image reflected(const FrameResults& frame, const gl::Texture* irradiance, const 
       const vec3 towardsView = g.block.lens.w > 0 ? vec3(0, 0, 1) : -vec3(ndc * vec2(g.block.lens), -1);
       const Receiver receiver =
           makeReceiver(normal.at(x, y), glm::normalize(mat3(worldFromView) * towardsView), albedo.at(x, y),
-                       roughnessMetalness.at(x, y).x, roughnessMetalness.at(x, y).y);
+                       finish[size_t(g.height - 1 - y) * size_t(g.width) + size_t(x)]);
       image.at(x, y) = receiver.diffuse / kPi * image.at(x, y) + glossyTint(receiver) * glossy.at(x, y);
     }
   return image;

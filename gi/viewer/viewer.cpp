@@ -63,7 +63,7 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   stats.waits += asked.waits;
   stats.readBacks += asked.readBacks;
   stats.of(EffectId::Redraw) += asked.draws;
-  if (results.surfaces.roughnessMetalness) stats.of(EffectId::Glossy) += asked.draws;
+  if (results.surfaces.finish) stats.of(EffectId::Glossy) += asked.draws;
   stats.wallMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return stats;
 }

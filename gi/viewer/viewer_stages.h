@@ -9,10 +9,18 @@
 
 namespace lambent {
 
-/// The sky as what is seen where no surface is (shaders/lib/background.glsl): its variants, and its uniforms. It is
-/// seen by the camera of `surfaces`.
-std::vector<std::string> backgroundVariants(const Sky& sky);
-void setBackground(const gl::Program& program, const Sky& sky, const GBuffer& surfaces);
+/// The sky as what is seen where no surface is (shaders/lib/background.glsl). Keeps its picture, if it is one, as a
+/// texture.
+class Background {
+ public:
+  std::vector<std::string> variants(const Sky& sky) const;
+  /// Sets what the program needs, which is in use; the sky is seen by the camera of `surfaces`.
+  void set(const gl::Program& program, const Sky& sky, const GBuffer& surfaces);
+
+ private:
+  std::shared_ptr<const SkyImage> shown_;
+  gl::Texture texture_;
+};
 
 enum class Buffer : int; // gi/viewer/viewer.h
 
@@ -34,6 +42,7 @@ class CompositePass {
   PassContext context_;
   gl::Texture radiance_, black_;
   gl::Framebuffer framebuffer_;
+  Background background_;
 };
 
 /// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 1
@@ -79,6 +88,7 @@ class DisplayPass {
   void drawVpls(const FrameResults& frame);
 
   PassContext context_;
+  Background background_;
   gl::Texture display_, aliased_, black_; // aliased_: a copy of display_ before anti-aliasing
   gl::Framebuffer framebuffer_;
   gl::Ring sprites_{"display/vpls"};

@@ -4,21 +4,22 @@
 #include "shared/ggx.h"
 
 layout(binding = 6) uniform sampler2D gbufferAlbedo;
-layout(binding = 7) uniform sampler2D gbufferRoughnessMetalness;
+layout(binding = 7) uniform sampler2D gbufferFinish; // as makeReceiver takes it
 
 /// `position` and `normal` are the G-buffer's of that pixel, the latter as normalForLight has it.
 Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
   vec3 towardsViewer =
       camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : normalize(camera.worldFromView[3].xyz - position);
-  vec2 roughnessMetalness = texelFetch(gbufferRoughnessMetalness, pixel, 0).rg;
-  return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb, roughnessMetalness.x, roughnessMetalness.y);
+  return makeReceiver(normal, towardsViewer, texelFetch(gbufferAlbedo, pixel, 0).rgb,
+                      texelFetch(gbufferFinish, pixel, 0));
 }
 
 /// Glossy light as the passes store it, as if what comes from around the mirrored direction were even: its mean radiance,
 /// times what the lobe reflects of it.
 vec3 evenGlossy(ivec2 pixel, Receiver receiver, vec3 radiance) {
-  float roughness = max(texelFetch(gbufferRoughnessMetalness, pixel, 0).r, kLeastRoughness);
-  vec3 reflected = max(receiver.specular, vec3(dielectricShare(roughness, receiver.cosViewer)));
+  float roughness = max(texelFetch(gbufferFinish, pixel, 0).r, kLeastRoughness);
+  vec3 reflected = receiver.specular * lobeShare(roughness, receiver.cosViewer) +
+                   (1.0 - receiver.specular) * schlickShare(roughness, receiver.cosViewer);
   return radiance * receiver.strength * reflected / glossyTint(receiver);
 }
 

@@ -57,7 +57,7 @@ Surface surfaceAt(ivec2 pixel, float depth) {
   s.normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   s.forLight = normalForLight(pixel, s.normal);
 #ifdef GLOSSY
-  s.receiver = receiverAt(pixel, s.position, s.forLight);
+  s.receiver = forVirtualLights(receiverAt(pixel, s.position, s.forLight));
 #endif
   return s;
 }

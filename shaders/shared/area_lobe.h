@@ -16,16 +16,34 @@ struct AreaLobe {
   vec4 share;   // of uniform light from above that is reflected; x: F0 = 1, y: F0 = 0
 };
 
-/// Entries: roughness from kLeastRoughness to 1, and sqrt(1 − cosine) of the viewer's angle from 0 to 1.
-const int kLobeRoughnesses = 16;
+/// Entries: the root of roughness from that of kLeastRoughness to 1, and sqrt(1 − cosine) of the viewer's angle from 0
+/// to 1.
+const int kLobeRoughnesses = 20;
 const int kLobeAngles = 24;
 
 /// Where the entry for α² and a viewer's cosine lies, as coordinates of a texture with linear filter.
 SHARED_INLINE vec2 lobePlace(float alpha2, float cosViewer) {
-  float roughness = (sqrt(sqrt(alpha2)) - kLeastRoughness) / (1.0f - kLeastRoughness);
+  float least = sqrt(kLeastRoughness), roughness = (sqrt(sqrt(sqrt(alpha2))) - least) / (1.0f - least);
   float angle = sqrt(max(1.0f - cosViewer, 0.0f));
   return vec2((clamp(roughness, 0.0f, 1.0f) * float(kLobeRoughnesses - 1) + 0.5f) / float(kLobeRoughnesses),
               (min(angle, 1.0f) * float(kLobeAngles - 1) + 0.5f) / float(kLobeAngles));
+}
+
+/// A map as the table holds it, of directions along the mirrored one and across it in the plane of the viewer: there it
+/// changes little from view to view. `turn` 1: to that form, -1: back to what inLobeSpace takes.
+SHARED_INLINE vec4 turnedMap(vec4 map, float cosViewer, float turn) {
+  float sine = turn * sqrt(max(1.0f - cosViewer * cosViewer, 0.0f));
+  return vec4(map.x * cosViewer + map.y * sine, map.y * cosViewer - map.x * sine, map.z * cosViewer + map.w * sine,
+              map.w * cosViewer - map.z * sine);
+}
+
+/// An entry between those of the table, for a viewer.
+SHARED_INLINE AreaLobe forViewer(AreaLobe entry, float cosViewer) {
+  AreaLobe lobe;
+  lobe.white = turnedMap(entry.white, cosViewer, -1.0f);
+  lobe.schlick = turnedMap(entry.schlick, cosViewer, -1.0f);
+  lobe.share = entry.share;
+  return lobe;
 }
 
 /// The receiver's frame: z along the normal, the viewer in the plane of x and z. `x` and `y` are unit.

@@ -20,6 +20,7 @@ using glm::max;
 using glm::min;
 using glm::mix;
 using glm::normalize;
+using glm::pow;
 using glm::sqrt;
 using glm::uint;
 using glm::uvec2;

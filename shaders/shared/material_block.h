@@ -10,9 +10,9 @@ struct MaterialBlock {
   vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
-  vec4 roughnessMetalness;    // x: roughness factor, y: metalness factor, z: the normal map's scale
+  vec4 roughnessMetalness;    // factors of roughness and metalness; z: the normal map's scale; w: Material::dielectricF0
   vec4 roughnessMetalnessUvU; // as baseUvU
-  vec4 roughnessMetalnessUvV; // xyz: second row
+  vec4 roughnessMetalnessUvV; // xyz: second row; w: Material::dielectricLobe
   vec4 normalUvU;             // as baseUvU
   vec4 normalUvV;             // xyz: second row
 };

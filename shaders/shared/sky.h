@@ -29,4 +29,11 @@ SHARED_INLINE vec3 daylightRadiance(DaylightModel m, vec3 d) {
              vec3(0.0f, 0.0f, 0.0f));
 }
 
+/// Where a picture of the sky (SkyImage) shows the unit direction d, turned by `turn` radians counter-clockwise as seen
+/// from above: coordinates of a texture, from its first row on.
+SHARED_INLINE vec2 skyImagePlace(vec3 d, float turn) {
+  float around = (atan(d.z, d.x) + turn) * 0.159154943f + 0.5f;
+  return vec2(around - floor(around), acos(clamp(d.y, -1.0f, 1.0f)) * 0.318309886f);
+}
+
 SHARED_END

@@ -1,5 +1,7 @@
 // Lobes of area lights by linearly transformed cosines against numerical integrals of the lobe itself.
+#include "engine/core/rng.h"
 #include "gi/lighting/area_lobe.h"
+#include "gi/lighting/receivers.h"
 #include "tests/support/area_pieces.h"
 
 namespace lambent::test::area_lobe_test {
@@ -8,9 +10,10 @@ const float kRoughnesses[] = {0.3f, 0.37f, 0.5f, 0.62f, 0.8f, 1.0f};
 
 /// On the plane z = 0, seen from +x; `f0` 1 for a white metal, else a dielectric. Strength 1.
 Receiver seenFrom(float cosViewer, float roughness, float f0) {
-  Receiver r =
-      makeReceiver(vec3(0, 0, 1), vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer), vec3(1), roughness, 1);
+  Receiver r = makeReceiver(vec3(0, 0, 1), vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer), vec3(1),
+                            plainFinish(roughness, 1));
   r.specular = vec3(f0);
+  r.strength = vec3(1);
   return r;
 }
 
@@ -135,12 +138,46 @@ TEST(AreaLobe, ReflectsOfUniformLightWhatTheLobeDoes) {
       }
 }
 
+/// Sharp lobes, by rays that are drawn from them: around the mirror image's edges, and beside it.
+TEST(AreaLobe, SharpLobesSeeWhatTheMirroredDirectionMeets) {
+  LobeError error;
+  for (const float roughness : {kLeastRoughness, 0.08f, 0.13f, 0.22f})
+    for (const float cosViewer : {1.0f, 0.8f, 0.4f, 0.2f}) {
+      const Receiver r = seenFrom(cosViewer, roughness, 1);
+      const vec3 mirrored(-r.towardsViewer.x, 0, r.towardsViewer.z), side(0, 1, 0), up = glm::cross(side, mirrored);
+      const float wide = 4 * roughness * roughness;
+      for (const vec2& shift : {vec2(0, 0), vec2(0.5f, 0), vec2(0, 0.5f), vec2(0.5f, 0.5f), vec2(0, 2)}) {
+        const vec3 corner = 2.0f * (mirrored + wide * ((shift.x - 0.5f) * side + (shift.y - 0.5f) * up));
+        const AreaPiece piece = quadPiece(corner, 2 * wide * side, 2 * wide * up, true);
+        double seen = 0, whole = 0;
+        const int count = 40000;
+        for (int i = 0; i < count; ++i) {
+          Rng rng(1, Stream::Test, uint32_t(i));
+          const vec3 d = sampleReflection(r, rng.next(), rng.next2());
+          const float pdf = pdfReflection(r, d);
+          if (d.z <= 0 || !(pdf > 0)) continue;
+          const double value = double(glossyReflectance(r, d, 0).x * d.z / pdf);
+          whole += value;
+          const vec3 at = d * (2 / glm::dot(d, mirrored)) - corner;
+          const vec2 place = vec2(glm::dot(at, side), glm::dot(at, up)) / (2 * wide);
+          if (glm::dot(d, mirrored) > 0 && glm::min(place.x, place.y) >= 0 && glm::max(place.x, place.y) <= 1)
+            seen += value;
+        }
+        error.add(double(lobeRadiance(lobeTable(), piece, vec3(0), r).x), seen / count, whole / count);
+      }
+    }
+  std::printf("sharp lobes: RMS %.4f, largest %.4f of what the lobe reflects\n", error.rms(), error.most);
+  EXPECT_LT(error.rms(), 0.012);
+  EXPECT_LT(error.most, 0.035);
+}
+
 TEST(AreaLobe, OtherStartsFindTheSameMaps) {
-  for (const int column : {0, 5, 15})
+  for (const int column : {4, 10, kLobeRoughnesses - 1})
     for (const int row : {0, 7, 15}) {
-      const AreaLobe& entry = lobeTable()[size_t(row) * kLobeRoughnesses + size_t(column)];
-      const float roughness = kLeastRoughness + (1 - kLeastRoughness) * float(column) / float(kLobeRoughnesses - 1);
+      const float least = std::sqrt(kLeastRoughness);
+      const float root = least + (1 - least) * float(column) / float(kLobeRoughnesses - 1), roughness = root * root;
       const float angle = float(row) / float(kLobeAngles - 1);
+      const AreaLobe entry = forViewer(lobeTable()[size_t(row) * kLobeRoughnesses + size_t(column)], 1 - angle * angle);
       const FittedLobe again =
           fitLobe(roughness * roughness, 1 - angle * angle, 1, entry.white * vec4(0.9f, 1.1f, 1.1f, 1.2f));
       EXPECT_LT(glm::length(again.map - entry.white), 0.03f) << column << ' ' << row;

@@ -13,7 +13,7 @@ vec3 atCosine(float cosine, float phi = 0) {
 }
 
 Receiver seenAt(float cosViewer, float roughness, float metalness, const vec3& albedo = vec3(1)) {
-  return makeReceiver(kUp, atCosine(cosViewer), albedo, roughness, metalness);
+  return makeReceiver(kUp, atCosine(cosViewer), albedo, plainFinish(roughness, metalness));
 }
 
 /// ∫ f cosθ dω over the hemisphere of lights, by midpoints in (cos²θ, φ).
@@ -35,20 +35,19 @@ double lobeShareByHalfVectors(double cosViewer, double roughness, double f0, int
     return 0.5 * (std::sqrt(1 + alpha * alpha * tan2) - 1);
   };
   double sum = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double theta = 0.5 * M_PI * (i + 0.5) / steps, ch = std::cos(theta), sh = std::sin(theta), t = sh / ch;
-    const double d = alpha * alpha / (M_PI * std::pow(ch, 4) * std::pow(alpha * alpha + t * t, 2));
+  for (int i = 0; i < steps; ++i) { // even in what the density gathers: sharp lobes keep their tails
+    const double u = (i + 0.5) / steps, t = alpha * std::sqrt(u / (1 - u)), ch = 1 / std::sqrt(1 + t * t), sh = t * ch;
     for (int j = 0; j < steps; ++j) {
       const double phi = 2 * M_PI * (j + 0.5) / steps;
       const double vh = sh * std::cos(phi) * sineViewer + ch * cosViewer, cosLight = 2 * vh * ch - cosViewer;
       if (vh <= 0 || cosLight <= 0) continue;
       const double fresnel = f0 + (1 - f0) * std::pow(1 - vh, 5);
       const double masking = 1 / (1 + lambda(cosViewer) + lambda(cosLight));
-      // f cosLight dω = D G F / (4 cosViewer) · 4 vh dω_half
-      sum += d * masking * fresnel / cosViewer * vh * sh;
+      // f cosLight dω = D G F / (4 cosViewer) · 4 vh dω_half, and D cosθ dω_half is one part of steps²
+      sum += masking * fresnel / cosViewer * vh / ch;
     }
   }
-  return sum * 0.5 * M_PI / steps * 2 * M_PI / steps;
+  return sum / steps / steps;
 }
 
 TEST(Receivers, LobeIntegratesToTheSameInAnotherFormulation) {
@@ -58,38 +57,45 @@ TEST(Receivers, LobeIntegratesToTheSameInAnotherFormulation) {
         if (!metal && roughness == 1) continue; // Lambert: below
         const Receiver r = seenAt(cosViewer, roughness, metal ? 1.0f : 0.0f);
         const double share = reflectedShare([&](const vec3& l) { return double(glossyReflectance(r, l, 0).y); });
-        const double wanted = lobeShareByHalfVectors(cosViewer, roughness, metal ? 1 : 0.04);
+        const double wanted = double(r.strength.y) * lobeShareByHalfVectors(cosViewer, roughness, metal ? 1 : 0.04);
         EXPECT_NEAR(share, wanted, 2e-3 * wanted) << roughness << ' ' << cosViewer << ' ' << metal;
-        EXPECT_LT(share, 1);
+        EXPECT_LT(share, 1.002);
       }
 }
 
 TEST(Receivers, ReflectNoMoreThanTheyGet) {
   double largest = 0;
-  for (float roughness = 0.3f; roughness < 1.01f; roughness += 0.05f)
+  for (float roughness = kLeastRoughness; roughness < 1.01f; roughness += 0.05f)
     for (const float cosViewer : {0.01f, 0.03f, 0.06f, 0.1f, 0.15f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 1.0f})
       for (const float metalness : {0.0f, 0.3f, 1.0f}) {
         const Receiver r = seenAt(cosViewer, roughness, metalness);
         const double lobe = lobeShareByHalfVectors(double(cosViewer), double(roughness), double(r.specular.y), 200);
-        const double share = double(r.diffuse.y) + double(r.strength) * lobe;
+        const double share = double(r.diffuse.y) + double(r.strength.y) * lobe;
         EXPECT_LT(share, 1.0005) << roughness << ' ' << cosViewer << ' ' << metalness; // the sum's own error
         // What the bound takes away from a white dielectric for nothing stays small.
         if (metalness == 0) {
-          EXPECT_GT(share, 0.95) << roughness << ' ' << cosViewer;
+          EXPECT_GT(share, cosViewer < 0.1f ? 0.84 : 0.95) << roughness << ' ' << cosViewer;
+        }
+        // Nor is a white metal dark: what meets several facets is made up for.
+        if (metalness == 1) {
+          EXPECT_GT(share, 0.9) << roughness << ' ' << cosViewer;
         }
         largest = std::max(largest, share);
       }
   EXPECT_GT(largest, 0.99);
 }
 
-TEST(Receivers, TheLobeIsReciprocal) {
+TEST(Receivers, TheLobeIsReciprocalButForTheViewersFactor) {
   Rng rng(1, Stream::Test, 0);
   for (int i = 0; i < 1000; ++i) {
     const vec3 a = atCosine(0.01f + 0.99f * rng.next(), 6 * rng.next()), b = atCosine(0.01f + 0.99f * rng.next(), 0);
     const vec3 albedo = rng.next3();
     const float roughness = rng.next(), metalness = rng.next();
-    const vec3 there = glossyReflectance(makeReceiver(kUp, a, albedo, roughness, metalness), b, 0),
-               back = glossyReflectance(makeReceiver(kUp, b, albedo, roughness, metalness), a, 0);
+    const Receiver fromA = makeReceiver(kUp, a, albedo, plainFinish(roughness, metalness)),
+                   fromB = makeReceiver(kUp, b, albedo, plainFinish(roughness, metalness));
+    if (fromA.strength.x == 0) continue;
+    const vec3 there = glossyReflectance(fromA, b, 0) / fromA.strength,
+               back = glossyReflectance(fromB, a, 0) / fromB.strength;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], back[c], 1e-4f * there[c]);
   }
 }
@@ -102,20 +108,26 @@ TEST(Receivers, RoughDielectricsAreLambertAndSharpOnesAreBounded) {
   EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).diffuse, vec3(0));
   EXPECT_EQ(seenAt(0.6f, 0.5f, 1, albedo).specular, albedo);
   const vec3 mirror = atCosine(0.6f, kPi);
-  EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror, 0), glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror, 0));
+  EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror, 0),
+            glossyReflectance(seenAt(0.6f, kLeastRoughness, 1), mirror, 0));
+  EXPECT_FLOAT_EQ(glossyReflectance(forVirtualLights(seenAt(0.6f, 0.1f, 1)), mirror, 0).x / seenAt(0.6f, 0.1f, 1).strength.x,
+            glossyReflectance(seenAt(0.6f, kLeastVplRoughness, 1), mirror, 0).x /
+                seenAt(0.6f, kLeastVplRoughness, 1).strength.x);
   EXPECT_GT(glossyReflectance(seenAt(0.6f, 0.3f, 1), mirror, 0).x,
             4 * glossyReflectance(seenAt(0.6f, 0.6f, 1), mirror, 0).x);
   // Nowhere infinite or NaN: light from under the surface, along it, opposite to a viewer who is also in it.
   for (const float cosViewer : {0.0f, -1e-3f, 1.0f})
     for (const vec3& light : {-atCosine(cosViewer), atCosine(0, kPi), vec3(0, 0, -1), vec3(0, 0, 1)})
-      EXPECT_TRUE(isFinite(glossyReflectance(seenAt(cosViewer, 0.3f, 0.5f), light, 0)));
+      for (const float roughness : {0.0f, 0.3f})
+        EXPECT_TRUE(isFinite(glossyReflectance(seenAt(cosViewer, roughness, 0.5f), light, 0)));
 }
 
 TEST(Receivers, SpreadIsThatOfARougherSurface) {
   const vec3 light = atCosine(0.7f, 2.8f);
   const Receiver smooth = seenAt(0.6f, 0.4f, 1), rough = seenAt(0.6f, 0.5f, 1);
   const vec3 wanted = glossyReflectance(rough, light, 0);
-  EXPECT_LT(glm::length(glossyReflectance(smooth, light, rough.alpha2 - smooth.alpha2) - wanted), 1e-5f * wanted.x);
+  const vec3 spread = glossyReflectance(smooth, light, rough.alpha2 - smooth.alpha2);
+  EXPECT_LT(glm::length(spread / smooth.strength - wanted / rough.strength), 1e-5f * wanted.x);
   EXPECT_TRUE(isFinite(glossyReflectance(smooth, light, kInfinity)));
   // A disk seen by a receiver: its radius over the distance, squared, shrinks with the cosine.
   EXPECT_NEAR(lobeSpread(1, kPi * 0.01f, 0.5f, 4), 0.01 / 4 * 0.5, 1e-7);
@@ -172,7 +184,8 @@ TEST(Receivers, FinishComesFromFactorsAndTexture) {
   hit.instance = hit.primitive = hit.triangle = 0; // corners (-1,-1), (1,-1), (1,1)
   hit.barycentric = {0.2f, 0.0f};                  // u = 0.2
   hit.position = {-0.6f, -1, 0};
-  Receiver r = receiverOf(view, hit), wanted = makeReceiver(kUp, glm::normalize(vec3(0.6f, 1, 2)), hit.albedo, 0.8f, 0);
+  Receiver r = receiverOf(view, hit),
+           wanted = makeReceiver(kUp, glm::normalize(vec3(0.6f, 1, 2)), hit.albedo, plainFinish(0.8f, 0));
   EXPECT_NEAR(r.alpha2, wanted.alpha2, 1e-6f);
   EXPECT_LT(glm::length(r.diffuse - wanted.diffuse), 1e-6f);
   EXPECT_LT(glm::length(r.towardsViewer - wanted.towardsViewer), 1e-6f);
@@ -181,7 +194,7 @@ TEST(Receivers, FinishComesFromFactorsAndTexture) {
   parallel.camera.orthoHalfHeight = 1;
   EXPECT_LT(glm::length(receiverOf(parallel, hit).towardsViewer - vec3(0, 0, 1)), 1e-6f) << "the same everywhere";
   r = receiverOf(view, hit);
-  wanted = makeReceiver(kUp, wanted.towardsViewer, hit.albedo, 0.8f * 128 / 255, 0.5f);
+  wanted = makeReceiver(kUp, wanted.towardsViewer, hit.albedo, plainFinish(0.8f * 128 / 255, 0.5f));
   EXPECT_NEAR(r.alpha2, wanted.alpha2, 1e-6f);
   EXPECT_LT(glm::length(r.specular - wanted.specular), 1e-6f);
 }

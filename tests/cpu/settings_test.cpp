@@ -36,6 +36,8 @@ TEST(Settings, RangesReadAsTheyAreTyped) {
   EXPECT_EQ(settingRow("gather.clamp").range(), "0..1e+30");
   EXPECT_EQ(settingRow("smc.cache").range(), "on|off");
   Settings s;
+  applySetting(s, "gather.clamp", "1e+30");
+  EXPECT_EQ(s.gather.clamp, 1e30f) << "both ends of a range can be set";
   const std::string said = inputErrorOf([&] { applySetting(s, "gather.clamp", "3e38"); });
   EXPECT_NE(said.find("(0..1e+30)"), std::string::npos) << said;
   EXPECT_EQ(settingRow("vpl.visibility").range(), "maps|rays|none");

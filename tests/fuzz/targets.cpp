@@ -2,6 +2,7 @@
 
 #include "engine/image/image.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/sky_file.h"
 #include "gi/plan/presets.h"
 #include "tests/fuzz/compressed.h"
 #include "tests/fuzz/files.h"
@@ -131,9 +132,16 @@ std::vector<std::string> settingsSeeds() {
 }
 
 bool picture(std::string_view bytes) {
-  return reading(bytes, bytes.starts_with("P") ? ".pfm" : ".exr", [&](const fs::path& file) {
-    const Image image = bytes.starts_with("P") ? readPfm(file) : readExr(file);
-    CHECK_EQ(image.pixels.size(), size_t(image.width) * size_t(image.height));
+  if (bytes.starts_with("P"))
+    return reading(bytes, ".pfm", [&](const fs::path& file) {
+      const Image image = readPfm(file);
+      CHECK_EQ(image.pixels.size(), size_t(image.width) * size_t(image.height));
+    });
+  return reading(bytes, bytes.starts_with("#?") ? ".hdr" : ".exr", [&](const fs::path& file) {
+    std::vector<std::string> notes;
+    const auto sky = readSky(file, notes);
+    CHECK_EQ(sky->texels.size(), size_t(sky->width) * size_t(sky->height));
+    for (const vec3& texel : sky->texels) CHECK(isFinite(texel) && texel.x >= 0 && texel.y >= 0 && texel.z >= 0);
   });
 }
 
@@ -142,7 +150,11 @@ std::vector<std::string> pictureSeeds() {
   append<float>(pfm, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
   std::string grey = "Pf 3 1 1\n";
   append<float>(grey, {1, 2, 3});
-  return {pfm, grey, written(".exr", [](const fs::path& file) { writeExr(file, Image(5, 4, vec3(0.5f))); })};
+  const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X ";
+  const std::string flat = hdr + "2\n" + std::string("\x80\x40\x20\x81\x80\x80\x80\x80", 8),
+                    runs = hdr + "8\n" + std::string("\x02\x02\x00\x08\x88\x80\x88\x80\x88\x80\x88\x81", 12);
+  return {pfm, grey, flat, runs,
+          written(".exr", [](const fs::path& file) { writeExr(file, Image(5, 4, vec3(0.5f))); })};
 }
 
 } // namespace
@@ -171,7 +183,8 @@ const std::vector<Target>& targets() {
         {"picture",
          picture,
          pictureSeeds,
-         {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow"},
+         {"PF", "Pf", " 32768 ", " 1 ", "-1", "nan", "channels", "compression", "dataWindow", "#?RADIANCE", "-Y ",
+          "+X "},
          {}},
     };
     const std::vector<Target> own = ownFiles();

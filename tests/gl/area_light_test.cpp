@@ -48,7 +48,7 @@ TEST_F(AreaLightTest, GlossyFloorsMirrorTheLamp) {
       const CameraRay ray = pixelRay(scene.camera, x, y);
       const vec3 at = ray.origin - ray.direction * (ray.origin.y / ray.direction.y), up(0, 1, 0);
       if (ray.direction.y >= 0 || std::abs(at.x) > 9 || at.z < -9) continue;
-      const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, roughness, metalness);
+      const Receiver r = makeReceiver(up, -glm::normalize(ray.direction), albedo, plainFinish(roughness, metalness));
       const vec3 lambert = unshadowed(lights, lights.lights[0], at, up) * r.diffuse / kPi;
       onCpu.at(x, y) = lambert + lobeRadiance(lobeTable(), lamp, at, r);
       integrated.at(x, y) = lambert;

@@ -16,14 +16,15 @@ inline Image firstFrame(const Settings& settings, const SceneView& view, Buffer 
   return nextFrame(viewer, view, buffer);
 }
 
-/// Irradiance by direct light, or radiance where gather.glossy is on; row 0 at the top. `levels`: of the fragments that
+/// Irradiance by direct light, or radiance where surfaces are glossy; row 0 at the top. `levels`: of the fragments that
 /// asked lamps, by pixel, or −1.
 inline Image directOf(PassContext passes, const HandScene& scene, const LightSet& lights, const Settings& settings,
                       FrameStats& stats, uint32_t mostDoubts = ShadowRayPass::kMost,
                       std::vector<int>* levels = nullptr) {
   PlacedScene placed(passes, scene);
   const World world = placed.world(lights);
-  const bool glossy = settings.gather.glossy;
+  const bool glossy = settings.gather.glossy &&
+                      std::ranges::any_of(scene.assets.materials, [](const Material& m) { return m.glossy(); });
   SurfacePass surfacePass(passes);
   PatchPass patchPass(passes, StageId::Patches);
   DirectLight direct(passes, mostDoubts);

@@ -20,7 +20,7 @@ class GlossyTest : public GatherTest {
       const Material& m = scene.assets.materials[0];
       const vec3 towardsViewer = scene.camera.orthoHalfHeight > 0 ? vec3(scene.camera.worldFromView[2])
                                                                   : glm::normalize(scene.camera.position() - at(x, y));
-      return makeReceiver({0, 1, 0}, towardsViewer, m.baseColor, m.roughness, m.metalness);
+      return makeReceiver({0, 1, 0}, towardsViewer, m.baseColor, plainFinish(m.roughness, m.metalness));
     }
   };
 
@@ -149,11 +149,16 @@ TEST_F(GlossyTest, FinishTextureReachesTheGBuffer) {
   GlossyFloor floor(vec3(0.5f), 0.8f, 0.5f);
   floor.scene.assets.materials[0].roughnessMetalnessTexture = floor.scene.texture(1, {{255, 191, 102, 255}}, false);
   const GBuffer gbuffer = surfaces(floor.scene);
-  for (const vec4& t : readTexture(*gbuffer.roughnessMetalness)) {
+  for (const vec4& t : readTexture(*gbuffer.finish)) {
     ASSERT_NEAR(t.x, 0.8f * 191 / 255, 1e-4f);
     ASSERT_NEAR(t.y, 0.5f * 102 / 255, 1e-4f);
+    ASSERT_EQ(vec2(t.z, t.w), vec2(0, 1));
   }
-  EXPECT_EQ(surfaces(floor.scene, false).roughnessMetalness, nullptr);
+  floor.scene.assets.materials[0].dielectricF0 = 0.1f;
+  floor.scene.assets.materials[0].dielectricLobe = 0.25f;
+  for (const vec4& t : readTexture(*surfaces(floor.scene).finish))
+    ASSERT_LT(glm::length(vec2(t.z, t.w) - vec2(0.1f, 0.25f)), 1e-4f);
+  EXPECT_EQ(surfaces(floor.scene, false).finish, nullptr);
 }
 
 TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {

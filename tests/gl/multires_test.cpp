@@ -260,7 +260,7 @@ TEST_F(MultiresTest, APatchPerVplFollowsItsLight) {
 /// Glossy light goes the same ways.
 TEST_F(MultiresTest, GlossyLightIsGatheredSplattedAndUpsampledLikeTheRest) {
   const GBuffer gbuffer = glossyRoomSurfaces();
-  ASSERT_NE(gbuffer.roughnessMetalness, nullptr);
+  ASSERT_NE(gbuffer.finish, nullptr);
   const std::vector<vec4> full = glossyTexels(gbuffer, GatherMode::Full, {});
   ASSERT_EQ(full.size(), 64u * 48);
   for (const GatherMode mode : {GatherMode::Multires, GatherMode::Splat, GatherMode::SplatPerVpl}) {

@@ -203,7 +203,7 @@ int runCommand(int argc, char** argv, const char* version, std::initializer_list
   app.set_version_flag("--version", version, "name and version, and nothing else");
   app.require_subcommand(1);
   for (const auto& declare : commands) declare(app);
-  for (CLI::App* command : app.get_subcommands({})) refuseNotANumber(*command);
+  for (CLI::App* command : app.get_subcommands({})) refuseUnusable(*command);
   try {
     chooseShaders();
     checkCommand(app, argc, argv);

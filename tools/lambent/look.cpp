@@ -75,9 +75,10 @@ void render(const RenderOptions& options) {
   figures["picture"] = out;
   writeJson(options.output.json, figures);
   if (!options.output.quiet)
-    std::printf("%s: %dx%d, %s, exposure %.3g, %d frame%s in %.1f s (the last drawn took %.1f ms)\n", out.c_str(),
-                opened->camera.width, opened->camera.height, lightsText(drawn, opened->settings).c_str(),
-                double(gi.exposure()), frames, frames == 1 ? "" : "s", took.count(), drawn.wallMs);
+    std::printf("%s: %dx%d, %s, exposure %.3g, %d frame%s in %.1f s (the last drawn took %.1f ms)\n",
+                printable(out).c_str(), opened->camera.width, opened->camera.height,
+                lightsText(drawn, opened->settings).c_str(), double(gi.exposure()), frames, frames == 1 ? "" : "s",
+                took.count(), drawn.wallMs);
 }
 
 const char* typeName(LightType t) {
@@ -138,7 +139,7 @@ void inspect(const LaunchOptions& launch, const OutputOptions& output) {
   writeJson(output.json, j);
   if (output.quiet) return;
 
-  std::printf("%s\n", opened->scene.file.c_str());
+  std::printf("%s\n", printable(opened->scene.file.string()).c_str());
   std::printf("  triangles  %llu placed, %llu in %zu meshes, %zu instances\n", (unsigned long long)placedTriangles,
               (unsigned long long)meshTriangles, assets.meshes.size(), view.instances.size());
   if (skinned + morphed > 0) std::printf("  deformed   %zu skinned, %zu morphed instances\n", skinned, morphed);

@@ -125,6 +125,7 @@ ShotRun follow(const StabilityOptions& options, const std::string& file, const f
   launch.scene = file;
   for (const auto& [name, value] : protocolOf(options).set | std::views::reverse)
     launch.set.insert(launch.set.begin(), name + "=" + value); // --set comes after it
+  launch.set.insert(launch.set.begin(), kLambertReceivers);
   const auto opened = openLaunch(launch);
   refuseGlossy(opened->settings);
   if (!opened->shot) throw InputError(file, "not a shot (a .json file)");

@@ -47,7 +47,9 @@ void checkClamp(const ReferenceOptions& options, const Settings& settings) {
 void trackPixels(const ReferenceOptions& options) {
   if (fs::path(options.pixels).extension() != ".csv") throw InputError(options.pixels, "not a table (.csv)");
   checkWritable(options.pixels);
-  const auto opened = openAndSay(options.launch, options.output.quiet);
+  LaunchOptions launch = options.launch;
+  launch.set.insert(launch.set.begin(), kLambertReceivers);
+  const auto opened = openAndSay(launch, options.output.quiet);
   if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; --pixels follows its frames)");
   const Settings& settings = opened->settings;
   checkClamp(options, settings);

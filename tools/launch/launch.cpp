@@ -9,6 +9,7 @@
 #include "engine/core/resources.h"
 #include "engine/core/text.h"
 #include "engine/gl/program.h"
+#include "engine/scene/sky_file.h"
 #include "engine/trace/embree_query.h"
 #include "engine/trace/open_sky.h"
 #include "game/rules/props.h"
@@ -110,6 +111,29 @@ void addSun(Scene& scene, const Daylight& daylight, float radius) {
 void addSkyAndSun(Scene& scene, const Daylight& daylight, float sunRadius) {
   scene.sky = Sky::daylight(daylight.towardsSun(), float(daylight.turbidity));
   addSun(scene, daylight, sunRadius);
+}
+
+Sky givenSky(LaunchContext& stage, const LaunchOptions& options) {
+  const fs::path file = options.sky;
+  if (!namesSky(file)) {
+    if (options.skyScale != 1 || options.skyTurn != 0)
+      throw InputError("--sky " + options.sky,
+                       "is no picture, which --sky-scale and --sky-turn are for (.hdr or .exr)");
+    return lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
+  }
+  for (const std::string& written : options.written)
+    if (sameFile(file, written)) throw InputError(written, "the sky is read from this file (name another)");
+  keepFromReplacing(file);
+  const Sky sky = Sky::image(readSky(file, stage.notes), float(options.skyScale), float(glm::radians(options.skyTurn)));
+  if (sky.black()) stage.notes.push_back(options.sky + " is black: the sky gives no light");
+  return sky;
+}
+
+/// For a person to type: nothing that a shell would take for more than a name.
+std::string hintOfContent(const std::string& name) {
+  const bool plain = !name.empty() && name[0] != '-' &&
+                     std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
+  return plain ? " (a generated one: lambent content " + name + ")" : "";
 }
 
 /// In place of the scene's own.
@@ -227,7 +251,6 @@ bool isOpenOrHasLamp(LaunchContext& stage, const SceneView& view, const std::str
   return false;
 }
 
-/// One note for each setting that is called by a name of before.
 /// What the first frames of a scene whose rays are slow leave for later ones.
 void tellOfSlowRays(LaunchContext& stage, float rayWork) {
   const Settings& settings = stage.settings;
@@ -241,6 +264,7 @@ void tellOfSlowRays(LaunchContext& stage, float rayWork) {
                           std::to_string(settings.smc.warmup) + " (smc.shortWarmup)");
 }
 
+/// One note for each setting that is called by a name of before.
 std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std::optional<Shot>& shot) {
   std::vector<std::string> names = options.set, notes;
   if (shot)
@@ -312,7 +336,12 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")
       ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
-  command.add_option("--sky", options.sky, "radiance of the sky: r,g,b");
+  command.add_option("--sky", options.sky,
+                     "the sky: its radiance r,g,b, or a picture by longitude and latitude (.hdr, .exr)");
+  command.add_option("--sky-scale", options.skyScale, "factor on the radiance of such a picture")
+      ->check(CLI::Range(0.0, 1e6));
+  command.add_option("--sky-turn", options.skyTurn, "degrees by which it is turned, counter-clockwise seen from above")
+      ->check(CLI::Range(-360.0, 360.0));
   command.add_option(
       "--daylight", options.daylight,
       "clear sky and its sun, in place of the scene's own sky and suns: ELEVATION[,AZIMUTH[,TURBIDITY]]; "
@@ -325,7 +354,9 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.option_defaults()->group(own);
 }
 
-void refuseNotANumber(CLI::App& command) {
+void refuseUnusable(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    option->check([](const std::string& text) { return text.empty() ? "needs a value (it is empty)" : ""; }, "");
   for (CLI::Option* option : command.get_options())
     if (option->get_type_name().starts_with("FLOAT"))
       option->check(
@@ -375,8 +406,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   }
   const bool oneOfOurs = stage->shot || file.stem() == file.parent_path().filename(); // hall/hall.gltf
   if (std::error_code error; oneOfOurs && !fs::exists(file, error))
-    throw InputError(options.scene, "there is no scene " + file.string() + " (a generated one: lambent content " +
-                                        file.stem().string() + ")");
+    throw InputError(options.scene, "there is no scene " + file.string() + hintOfContent(file.stem().string()));
   stage->seed = options.seed;
   stage->settings = chosenSettings(options, stage->shot);
   for (std::string& note : notesOfRenamed(options, stage->shot)) stage->notes.push_back(std::move(note));
@@ -389,8 +419,10 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   if (stage->shot) keepFromReplacing(options.scene);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
-  if (!options.sky.empty())
-    stage->scene.sky = lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
+  if (options.sky.empty() && (options.skyScale != 1 || options.skyTurn != 0))
+    throw InputError("command line", "--sky-scale and --sky-turn are for a picture (--sky FILE)");
+  if (!options.sky.empty()) stage->scene.sky = givenSky(*stage, options);
+  sunRadius(options, 0); // whether there is a sun or not
   if (!options.daylight.empty()) replaceDaylight(*stage, options);
   animate(stage->scene, 0);
   const auto tell = [&](const char* at) {

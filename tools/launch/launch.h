@@ -25,6 +25,7 @@ struct LaunchOptions {
   std::string sceneName; // of several in the file
   FileTrust trust;       // in what it reads and asks for
   std::string camera, eye, target, size, sky, daylight, technique, preset;
+  double skyScale = 1, skyTurn = 0; // of a picture; degrees
   std::optional<float> fovDegrees, sunSize; // sunSize: degrees across
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;
@@ -34,8 +35,9 @@ struct LaunchOptions {
   int threads = 0; // 0 = all cores
 };
 
-/// Refuses "nan" and "inf" for every option of the command that takes a number: ranges let the first pass.
-void refuseNotANumber(CLI::App& command);
+/// Refuses empty text for every option of the command, and "nan" and "inf" for those that take a number: ranges let
+/// the first pass.
+void refuseUnusable(CLI::App& command);
 /// Declares the common options on a command. `options` must outlive the parse.
 void addLaunchOptions(CLI::App& command, LaunchOptions& options);
 

@@ -23,8 +23,8 @@ struct Plate {
     scene.camera = probeAt(2.0f * glm::normalize(vec3(0.9f, 0, 1)), vec3(0));
   }
   Receiver receiver() const {
-    return makeReceiver({0, 0, 1}, glm::normalize(vec3(0.9f, 0, 1)), albedo, scene.assets.materials[0].roughness,
-                        scene.assets.materials[0].metalness);
+    return makeReceiver({0, 0, 1}, glm::normalize(vec3(0.9f, 0, 1)), albedo,
+                        plainFinish(scene.assets.materials[0].roughness, scene.assets.materials[0].metalness));
   }
   /// Every pixel's reflected direct radiance, in green: independent estimates of one number.
   Mean direct(uint32_t samples) const {

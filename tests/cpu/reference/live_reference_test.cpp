@@ -123,6 +123,9 @@ TEST_F(LiveReferenceTest, StartsAnewWhereSamplesAreOfSomethingElse) {
   anew(kInstancesChanged, "objects moved");
   settings_.smc.bounces = 1;
   anew(kStill, "smc.bounces changed");
+  settings_.gather.glossy = false;
+  EXPECT_EQ(live.follow(seen(), settings_, buffer), "") << "all is matt";
+  scene_.assets.materials[0].roughness = 0.4f;
   settings_.gather.glossy = true;
   anew(kStill, "surfaces reflect in another way");
   settings_.image.exposure = 3;

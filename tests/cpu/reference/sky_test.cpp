@@ -52,7 +52,7 @@ TEST(SkyReference, GlossyPlate) {
     scene.camera = probe(n);
     const TracedScene s(scene);
     const Receiver receiver =
-        makeReceiver(n, glm::normalize(scene.camera.position()), {0.8f, 0.6f, 0.3f}, 0.4f, metalness);
+        makeReceiver(n, glm::normalize(scene.camera.position()), {0.8f, 0.6f, 0.3f}, plainFinish(0.4f, metalness));
     const double wanted = overSphere(512, [&](const vec3& d) {
       if (d.y <= 0) return 0.0;
       return double(luminance(reflectanceOf(receiver, d) * scene.sky.radiance(d)) * d.y);

@@ -124,6 +124,12 @@ TEST_F(BadInput, TexturesAndPictures) {
     EXPECT_TRUE(hasWarning(scene, "image 0 'missing.png': " + reason)) << reason;
     EXPECT_EQ(sampleTexture(scene.assets, scene.assets.materials.at(0).baseColorTexture, vec2(0.3f)), vec4(1));
   };
+  // Each pass over a picture of 8192 x 8192 takes 4 ms, and 12 bytes.
+  std::string passes("\xff\xd8\xff\xc2\x00\x0b\x08\x20\x00\x20\x00\x01\x01\x11\x00", 15);
+  for (int i = 0; i < 2000; ++i) passes += std::string("\xff\xda\x00\x08\x01\x01\x00\x01\x01\x00", 10);
+  writeBytes(folder / "missing.png", passes);
+  expectWhite("is a JPEG of 2000 passes");
+  std::filesystem::remove(folder / "missing.png");
   expectWhite("cannot be read");
   writeBytes(folder / "missing.png", "no picture");
   expectWhite("cannot be decoded");
@@ -445,6 +451,16 @@ TEST_F(BadInput, AFewBytesCannotAskForGigabytes) {
 }
 
 /// A few flat colours are small files of large textures, and a file that is trusted may ask for what the machine has.
+/// Of 3 bytes each: a million took 2.3 GB before it was shown.
+TEST_F(BadInput, AMillionMaterialsAreCountedBeforeTheyAreParsed) {
+  std::string text = R"({"asset":{"version":"2.0"},"materials":[{})";
+  for (int i = 1; i < 500000; ++i) text += ",{}";
+  writeBytes(folder / "many.gltf", text + "]}");
+  const std::string said = inputErrorOf([&] { loadScene(folder / "many.gltf"); });
+  EXPECT_NE(said.find("500000 materials"), std::string::npos) << said;
+  EXPECT_NE(said.find("memory"), std::string::npos) << said;
+}
+
 TEST_F(BadInput, LargeFilesMayAskForMoreAndTrustedOnesForWhatThereIs) {
   const auto limit = [](size_t read) { return gltf::Budget{.read = read}.limit() >> 20; };
   EXPECT_LT(limit(3 << 20), 720u);

@@ -384,6 +384,8 @@ TEST(Printable, ShowsControlCharactersAsNumbers) {
             "\\x9b31m")
       << "a terminal's own language in UTF-8";
   EXPECT_EQ(printable("\xc3\xa4 \xe2\x82\xac \\"), "\xc3\xa4 \xe2\x82\xac \\");
+  EXPECT_EQ(printable("a\xe2\x80\xaegnp.\xe2\x81\xa9z"), "a\\xe2\\x80\\xaegnp.\\xe2\\x81\\xa9z") << "turned around";
+  EXPECT_EQ(printable("\xd8\x9c\xe2\x80\x94"), "\\xd8\\x9c\xe2\x80\x94") << "a dash turns nothing";
 }
 
 TEST(NearestName, FindsTyposAndRefusesToGuess) {

@@ -4,6 +4,7 @@
 #include "engine/core/error.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
+#include "engine/scene/placed_triangles.h"
 #include "tests/cpu/scene/support.h"
 
 #include <sys/resource.h>
@@ -55,6 +56,39 @@ int meshOf(GltfBuilder& b, const std::vector<vec3>& corners, int material = -1) 
 
 /// Two triangles across the room at Z = 0.
 const std::vector<vec3> kAcross{{-3, -2, 0}, {3, -2, 0}, {3, 2, 0}, {-3, -2, 0}, {3, 2, 0}, {-3, 2, 0}};
+
+/// 100 000 instances all over a cube: a line through it asks for few of their boxes, in whatever order they are.
+TEST(PlacedTriangles, ALineAsksForFewOfManyInstances) {
+  GltfBuilder b;
+  const int mesh = meshOf(b, {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}});
+  std::vector<vec3> places;
+  Rng random(1, Stream::Test, 0);
+  for (int i = 0; i < 100000; ++i) places.push_back(100.0f * random.next3());
+  const int translations = b.positions(places);
+  b.json["nodes"] = {
+      {{"mesh", mesh},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", translations}}}}}}}}};
+  b.json["scenes"] = {{{"nodes", {0}}}};
+  b.json["scene"] = 0;
+  const Scene scene = b.load(TemporaryFolder(), {.large = true});
+  PlacedTriangles placed(scene);
+  size_t asked = 0, visited = 0, hit = 0;
+  const auto wanted = [&](const Aabb& box) {
+    ++asked;
+    return entry(box, vec3(-1, 50, 50), vec3(1, 0, 0), 0, kInfinity).has_value();
+  };
+  placed.forEachBlock(wanted, [&](const TriangleBlock&) { ++visited; });
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance&, const WorldTransform& w) {
+    const vec3 at(scene.fromOrigin(w.worldFromNode)[3]);
+    hit += at.y <= 50 && at.y >= 49.9f && at.z == 50;
+  });
+  EXPECT_GE(visited, hit);
+  EXPECT_LT(asked, 20000);
+  size_t all = 0;
+  placed.forEachBlock([](const Aabb&) { return true; },
+                      [&](const TriangleBlock& block) { all += block.triangles.size(); });
+  EXPECT_EQ(all, 100000);
+}
 
 TEST(RayWork, IsNothingOfNothingAndLittleOfARoom) {
   EXPECT_EQ(rayWork(Scene{}).sum(), 0);

@@ -1,0 +1,127 @@
+// Spheres of each roughness and metalness under each kind of light: the frame's direct light against path tracing that
+// knows the same reflection.
+#include "frames.h"
+#include "tests/support/daylight.h"
+#include "tests/support/reference.h"
+
+namespace lambent::test::glossy_spheres_test {
+
+static const int kFrames = getenv("KF") ? atoi(getenv("KF")) : 64;
+static const uint32_t kPaths = getenv("KP") ? atoi(getenv("KP")) : 256;
+constexpr float kRoughnesses[] = {0, 0.15f, 0.4f, 0.7f, 1};
+
+Mesh ball(uint32_t rows, uint32_t material) {
+  Mesh mesh;
+  const uint32_t columns = 2 * rows;
+  for (uint32_t row = 0; row <= rows; ++row)
+    for (uint32_t column = 0; column <= columns; ++column) {
+      const float down = kPi * float(row) / float(rows), around = 2 * kPi * float(column) / float(columns);
+      const vec3 n(std::sin(down) * std::cos(around), std::cos(down), -std::sin(down) * std::sin(around));
+      mesh.positions.push_back(n);
+      mesh.normals.push_back(n);
+    }
+  for (uint32_t row = 0; row < rows; ++row)
+    for (uint32_t column = 0; column < columns; ++column) {
+      const uint32_t a = row * (columns + 1) + column, b = a + columns + 1;
+      if (row > 0) mesh.triangles.push_back({a, b, a + 1});
+      if (row + 1 < rows) mesh.triangles.push_back({a + 1, b, b + 1});
+    }
+  for (const vec3& p : mesh.positions) mesh.boundsObject.add(p);
+  mesh.primitives.push_back({0, uint32_t(mesh.triangles.size()), material, mesh.boundsObject});
+  return mesh;
+}
+
+/// Two rows: dielectrics below, metals above.
+struct Spheres {
+  HandScene scene;
+
+  Spheres() {
+    for (int metal = 0; metal < 2; ++metal)
+      for (int i = 0; i < 5; ++i) {
+        const uint32_t m = scene.glossyMaterial({0.9f, 0.6f, 0.3f}, kRoughnesses[i], float(metal));
+        scene.add(ball(48, m), glm::translate(mat4(1), vec3(2.4f * float(i - 2), 2.4f * (float(metal) - 0.5f), 0)));
+      }
+    scene.camera = cameraAt({0, 0, 30}, {0, 0, 0}, 0.17f, 160, 64);
+  }
+};
+
+class GlossySpheresTest : public GlTest {
+ protected:
+  void expectTheReference(Spheres& spheres, const char* name, double most) {
+    Settings settings;
+    settings.effects[EffectId::Indirect] = EffectMode::Off;
+    Viewer gi(settings);
+    gi.run(spheres.scene.view());
+    for (int i = 1; i < kFrames; ++i) gi.run(spheres.scene.view(kStill));
+    const Image light = gi.read(Buffer::Direct);
+    const TracedScene traced(spheres.scene);
+    const Image truth = trace({.rays = traced.rays,
+                               .lights = traced.lights,
+                               .camera = spheres.scene.camera,
+                               .bounces = 0,
+                               .glossy = &traced.view},
+                              kPaths, ReferenceBuffer::Direct)
+                            .mean;
+    std::vector<double> got(10), wanted(10);
+    for (const auto [x, y] : Pixels(light)) {
+      const CameraRay ray = pixelRay(spheres.scene.camera, x, y);
+      const SurfaceHit hit = traced.rays.closest(Ray{ray.origin, ray.direction});
+      if (!hit.valid() || hit.instance >= 10) continue;
+      got[hit.instance] += double(luminance(light.at(x, y)));
+      wanted[hit.instance] += double(luminance(truth.at(x, y)));
+    }
+    for (size_t i = 0; i < 10; ++i) {
+      std::printf("%s, roughness %.2f, metalness %zu: %.4f of the reference\n", name, double(kRoughnesses[i % 5]),
+                  i / 5, got[i] / wanted[i]);
+      EXPECT_NEAR(got[i], wanted[i], most * wanted[i]) << name << ' ' << i;
+    }
+  }
+};
+
+TEST_F(GlossySpheresTest, UnderASun) {
+  Spheres spheres;
+  spheres.scene.lights.push_back({.type = LightType::Directional,
+                                  .direction = glm::normalize(vec3(-0.3f, -0.5f, -0.8f)),
+                                  .intensity = vec3(3),
+                                  .angularRadius = 0.2f});
+  expectTheReference(spheres, "sun", 0.01);
+}
+
+TEST_F(GlossySpheresTest, UnderALamp) {
+  Spheres spheres;
+  spheres.scene.lamp({1, 6, 14}, vec3(300));
+  expectTheReference(spheres, "lamp", 0.01);
+}
+
+TEST_F(GlossySpheresTest, UnderAnAreaLight) {
+  Spheres spheres;
+  spheres.scene.quad({-4, 5, 10}, {0, 0, -6}, {8, 0, 0}, spheres.scene.material(vec3(0), vec3(6)));
+  expectTheReference(spheres, "area light", 0.01);
+}
+
+TEST_F(GlossySpheresTest, UnderASky) {
+  Spheres spheres;
+  spheres.scene.sky = Sky::daylight(directionAt(40, 20), 3);
+  expectTheReference(spheres, "sky", 0.01);
+}
+
+TEST_F(GlossySpheresTest, UnderAPictureOfASky) {
+  Spheres spheres;
+  auto image = std::make_shared<SkyImage>();
+  image->width = 128;
+  image->height = 64;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) image->texels.push_back(vec3(0.2f) + vec3(float(x / 16 % 2), 0.5f, float(y / 8 % 2)));
+  image->texels[20 * 128 + 96] = vec3(2000); // towards the viewer and up
+  spheres.scene.sky = Sky::image(image);
+  expectTheReference(spheres, "picture", 0.01);
+}
+
+TEST_F(GlossySpheresTest, InAWhiteFurnace) {
+  Spheres spheres;
+  spheres.scene.sky = Sky(vec3(1));
+  for (Material& m : spheres.scene.assets.materials) m.baseColor = vec3(1);
+  expectTheReference(spheres, "furnace", 0.01);
+}
+
+} // namespace lambent::test::glossy_spheres_test
