@@ -223,7 +223,9 @@ TEST_F(EffectsTest, GlossyNeedsAGlossyMaterial) {
   const auto metal = stillWorld([](World& w) {
     for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughness = 0.4f;
   });
-  withoutIt(Glossy, quick(), metal, 0, true); // gather.glossy is off, and nothing can force it
+  Settings matt = quick();
+  matt.gather.glossy = false;
+  withoutIt(Glossy, matt, metal, 0, true); // nothing can force it
   EXPECT_GT(lossWithout(Glossy, glossy, metal), 0.1);
 }
 
@@ -236,7 +238,9 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
     w.scene.assets.meshes[0].primitives[0].material = w.scene.material(vec3(0.6f));
   });
   World w;
-  Viewer lambert(quick());
+  Settings matt = quick();
+  matt.gather.glossy = false;
+  Viewer lambert(matt);
   EXPECT_FALSE(lambert.run(*varnished(w, 0)).plan.on(Indirect));
   EXPECT_GT(lossWithout(Indirect, glossy, varnished), 1e-3);
 }

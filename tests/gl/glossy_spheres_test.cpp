@@ -6,8 +6,8 @@
 
 namespace lambent::test::glossy_spheres_test {
 
-static const int kFrames = getenv("KF") ? atoi(getenv("KF")) : 64;
-static const uint32_t kPaths = getenv("KP") ? atoi(getenv("KP")) : 256;
+constexpr int kFrames = 64;
+constexpr uint32_t kPaths = 512;
 constexpr float kRoughnesses[] = {0, 0.15f, 0.4f, 0.7f, 1};
 
 Mesh ball(uint32_t rows, uint32_t material) {
@@ -47,7 +47,8 @@ struct Spheres {
 
 class GlossySpheresTest : public GlTest {
  protected:
-  void expectTheReference(Spheres& spheres, const char* name, double most) {
+  /// Within 1 %; 2 % of a smooth metal, of which a few pixels see the light.
+  void expectTheReference(Spheres& spheres, const char* name) {
     Settings settings;
     settings.effects[EffectId::Indirect] = EffectMode::Off;
     Viewer gi(settings);
@@ -73,6 +74,7 @@ class GlossySpheresTest : public GlTest {
     for (size_t i = 0; i < 10; ++i) {
       std::printf("%s, roughness %.2f, metalness %zu: %.4f of the reference\n", name, double(kRoughnesses[i % 5]),
                   i / 5, got[i] / wanted[i]);
+      const double most = i >= 5 && kRoughnesses[i % 5] < 0.3f ? 0.02 : 0.01;
       EXPECT_NEAR(got[i], wanted[i], most * wanted[i]) << name << ' ' << i;
     }
   }
@@ -84,25 +86,25 @@ TEST_F(GlossySpheresTest, UnderASun) {
                                   .direction = glm::normalize(vec3(-0.3f, -0.5f, -0.8f)),
                                   .intensity = vec3(3),
                                   .angularRadius = 0.2f});
-  expectTheReference(spheres, "sun", 0.01);
+  expectTheReference(spheres, "sun");
 }
 
 TEST_F(GlossySpheresTest, UnderALamp) {
   Spheres spheres;
   spheres.scene.lamp({1, 6, 14}, vec3(300));
-  expectTheReference(spheres, "lamp", 0.01);
+  expectTheReference(spheres, "lamp");
 }
 
 TEST_F(GlossySpheresTest, UnderAnAreaLight) {
   Spheres spheres;
   spheres.scene.quad({-4, 5, 10}, {0, 0, -6}, {8, 0, 0}, spheres.scene.material(vec3(0), vec3(6)));
-  expectTheReference(spheres, "area light", 0.01);
+  expectTheReference(spheres, "area light");
 }
 
 TEST_F(GlossySpheresTest, UnderASky) {
   Spheres spheres;
   spheres.scene.sky = Sky::daylight(directionAt(40, 20), 3);
-  expectTheReference(spheres, "sky", 0.01);
+  expectTheReference(spheres, "sky");
 }
 
 TEST_F(GlossySpheresTest, UnderAPictureOfASky) {
@@ -114,14 +116,14 @@ TEST_F(GlossySpheresTest, UnderAPictureOfASky) {
     for (int x = 0; x < 128; ++x) image->texels.push_back(vec3(0.2f) + vec3(float(x / 16 % 2), 0.5f, float(y / 8 % 2)));
   image->texels[20 * 128 + 96] = vec3(2000); // towards the viewer and up
   spheres.scene.sky = Sky::image(image);
-  expectTheReference(spheres, "picture", 0.01);
+  expectTheReference(spheres, "picture");
 }
 
 TEST_F(GlossySpheresTest, InAWhiteFurnace) {
   Spheres spheres;
   spheres.scene.sky = Sky(vec3(1));
   for (Material& m : spheres.scene.assets.materials) m.baseColor = vec3(1);
-  expectTheReference(spheres, "furnace", 0.01);
+  expectTheReference(spheres, "furnace");
 }
 
 } // namespace lambent::test::glossy_spheres_test

@@ -15,7 +15,7 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
-const Assignments kPlain{{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}};
+const Assignments kPlain{{"gather.disk", "0"}, {"gather.near", "0"}, {"history.frames", "0"}, {"gather.glossy", "off"}};
 
 void needClamp(const AccuracyOptions& options) {
   if (!(options.clamp.value_or(0) > 0))

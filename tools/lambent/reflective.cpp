@@ -304,7 +304,9 @@ void reflectiveFigure(const AccuracyOptions& options) {
   Study study(options, options.launch.scene,
               {.size = "512x512",
                .quickSize = "48x27",
-               .set = options.quick ? Assignments{{"rsm.coarsest", "8"}, {"rsm.resolution", "32"}} : Assignments{},
+               .set = options.quick
+                          ? Assignments{{"gather.glossy", "off"}, {"rsm.coarsest", "8"}, {"rsm.resolution", "32"}}
+                          : Assignments{{"gather.glossy", "off"}}, // matt, but for figure 2.6
                .punctual = true});
   LaunchContext& opened = *study.opened;
   if (figure.overTime && !opened.shot)

@@ -82,7 +82,8 @@ TracedImage trace(const SceneView& view, const Settings& settings, TracePlan pla
 Assignments asInPaper1() {
   return {{"vpl.visibility", "maps"}, {"shadow.resolution", "128"}, {"gather.mode", "interleaved"},
           {"gather.disk", "0"},       {"gather.clamp", "10"}, // theirs is set by hand for each scene and not told
-          {"gather.near", "0"},       {"filter.on", "on"},          {"history.frames", "0"}};
+          {"gather.near", "0"},       {"filter.on", "on"},          {"history.frames", "0"},
+          {"gather.glossy", "off"}};
 }
 
 double msOf(const FrameStats& stats, std::span<const StageId> stages) {

@@ -205,6 +205,7 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
   if (options.fovDegrees && !(*options.fovDegrees > 1 && *options.fovDegrees < 179))
     throw InputError("--fov", "out of range (1 to 179 degrees)");
   const std::vector<NamedCamera> cameras = sceneCameras(stage.scene);
+  if (eye && !options.camera.empty()) throw InputError("--camera " + options.camera, "and --eye exclude each other");
   stage.cameraGiven = eye || !options.camera.empty();
   if (eye) {
     const dvec3 from = threeNumbers("--eye", options.eye), to = threeNumbers("--target", options.target);
@@ -234,6 +235,18 @@ bool hasEmitters(const Scene& scene) {
     for (const Primitive& p : mesh.primitives)
       if (scene.assets.materials[p.material].emits()) return true;
   return false;
+}
+
+/// Whether no more than decoration shines (nothing above radiance 1), in the open, and what is seen gets next to
+/// nothing of it.
+bool onlyGlows(const LaunchContext& stage, const SceneView& view) {
+  if (!view.lights.empty() || !view.sky.black()) return false;
+  for (const Material& m : stage.scene.assets.materials)
+    if (maxComponent(m.emission) > 1) return false;
+  EmbreeQuery rays(stage.scene.assets);
+  rays.update(view);
+  constexpr float kDark = 0.01f;
+  return skyReaches(rays, view.camera.position()) && glowOnSeen(rays, view.camera) < kDark;
 }
 
 /// Whether the sky is to be seen from the camera, or lights what is; else adds a lamp by the camera, for a sun would
@@ -423,6 +436,8 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     throw InputError("command line", "--sky-scale and --sky-turn are for a picture (--sky FILE)");
   if (!options.sky.empty()) stage->scene.sky = givenSky(*stage, options);
   sunRadius(options, 0); // whether there is a sun or not
+  if (!options.cube.empty() && !needsOf(stage->settings).stored)
+    stage->notes.push_back("--cube-file is for a technique that keeps a cube (--technique ibrr): not used");
   if (!options.daylight.empty()) replaceDaylight(*stage, options);
   animate(stage->scene, 0);
   const auto tell = [&](const char* at) {
@@ -437,6 +452,10 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   if (!lit && !view.instances.empty() && isOpenOrHasLamp(*stage, view, "light")) {
     addSkyAndSun(stage->scene, {}, sunRadius(options, kSunRadius));
     stage->notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60)");
+  } else if (lit && options.sky.empty() && onlyGlows(*stage, view)) {
+    addSkyAndSun(stage->scene, {}, sunRadius(options, kSunRadius));
+    stage->notes.push_back("what shines in the scene hardly lights it: added a clear sky and its sun (--daylight 60; "
+                           "--sky 0,0,0 leaves it as it is)");
   }
   tellOfSlowRays(*stage, view.rayWork);
   tellWhatIsLeftOut(*stage, stage->settings);
