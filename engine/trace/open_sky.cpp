@@ -29,9 +29,9 @@ bool skyReaches(const RayQuery& rays, const vec3& eye) {
   return out * kLeast > kPaths;
 }
 
-float glowOnSeen(const RayQuery& rays, const CameraView& camera) {
+Glow glowOnSeen(const RayQuery& rays, const CameraView& camera) {
   constexpr uint32_t kPlaces = 2048, kDirections = 4;
-  double sum = 0;
+  double shown = 0, reaches = 0;
   uint32_t seen = 0;
   for (uint32_t i = 0; i < kPlaces; ++i) {
     const vec3 at = additiveRecurrence3(i, vec3(0));
@@ -39,14 +39,16 @@ float glowOnSeen(const RayQuery& rays, const CameraView& camera) {
     const SurfaceHit hit = rays.closest(Ray{through.origin, through.direction});
     if (!hit.valid()) continue;
     ++seen;
+    shown += double(luminance(hit.emission));
     Rng rng(2, Stream::SkyLight, i);
     for (uint32_t k = 0; k < kDirections; ++k) {
       const SurfaceHit met = rays.closest(Ray{offsetPoint(hit.position, hit.geometricNormal, rays.rayEpsilon()),
                                               sampleCosineHemisphere(hit.geometricNormal, rng.next2())});
-      if (met.valid()) sum += double(luminance(met.emission));
+      if (met.valid()) reaches += double(luminance(met.emission));
     }
   }
-  return seen > 0 ? float(sum / (double(seen) * kDirections)) : 0;
+  if (seen == 0) return {};
+  return {float(shown / double(seen)), float(reaches / (double(seen) * kDirections))};
 }
 
 } // namespace lambent

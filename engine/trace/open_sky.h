@@ -9,8 +9,12 @@ namespace lambent {
 /// openings, true under a balcony of an open court. The same for the same scene.
 bool skyReaches(const RayQuery& rays, const vec3& eye);
 
-/// Radiance that reaches what the camera sees from surfaces that shine, straight; luminance, mean over the picture and
-/// over directions by their cosine. The same for the same scene.
-float glowOnSeen(const RayQuery& rays, const CameraView& camera);
+/// What shines, luminances of radiance in the mean over the surfaces of the picture.
+struct Glow {
+  float shown = 0;   // of these surfaces themselves
+  float reaches = 0; // them from others, straight; mean over directions by their cosine
+};
+/// The same for the same scene.
+Glow glowOnSeen(const RayQuery& rays, const CameraView& camera);
 
 } // namespace lambent

@@ -47,7 +47,7 @@ struct Spheres {
 
 class GlossySpheresTest : public GlTest {
  protected:
-  /// Within 1 %; 2 % of a smooth metal, of which a few pixels see the light.
+  /// Within 1 %; 3 % of a smooth metal, of which a few pixels see the light and are noisy.
   void expectTheReference(Spheres& spheres, const char* name) {
     Settings settings;
     settings.effects[EffectId::Indirect] = EffectMode::Off;
@@ -74,7 +74,7 @@ class GlossySpheresTest : public GlTest {
     for (size_t i = 0; i < 10; ++i) {
       std::printf("%s, roughness %.2f, metalness %zu: %.4f of the reference\n", name, double(kRoughnesses[i % 5]),
                   i / 5, got[i] / wanted[i]);
-      const double most = i >= 5 && kRoughnesses[i % 5] < 0.3f ? 0.02 : 0.01;
+      const double most = i >= 5 && kRoughnesses[i % 5] < 0.3f ? 0.03 : 0.01;
       EXPECT_NEAR(got[i], wanted[i], most * wanted[i]) << name << ' ' << i;
     }
   }

@@ -245,8 +245,10 @@ bool onlyGlows(const LaunchContext& stage, const SceneView& view) {
     if (maxComponent(m.emission) > 1) return false;
   EmbreeQuery rays(stage.scene.assets);
   rays.update(view);
-  constexpr float kDark = 0.01f;
-  return skyReaches(rays, view.camera.position()) && glowOnSeen(rays, view.camera) < kDark;
+  if (!skyReaches(rays, view.camera.position())) return false;
+  const Glow glow = glowOnSeen(rays, view.camera);
+  constexpr float kMostShown = 0.1f, kDark = 0.01f;
+  return glow.shown < kMostShown && glow.reaches < kDark;
 }
 
 /// Whether the sky is to be seen from the camera, or lights what is; else adds a lamp by the camera, for a sun would
