@@ -52,7 +52,7 @@ void main() {
 #endif
     sum += pieces[i].radianceSides.rgb * factor;
 #ifdef GLOSSY
-    if (factor == 0.0 || receiver.strength == vec3(0.0)) continue;
+    if (factor == 0.0 || receiver.grazing == vec3(0.0)) continue;
     AreaPiece piece = pieces[i];
     AreaLobe lobeOfPiece = lobe;
     if (piece.corners[0].w == 0.0) { // disks have gaps between them, which a wider lobe does not see

@@ -11,6 +11,7 @@
 layout(binding = 2) uniform sampler2D irradiance; // alpha: BEGIN frames in the variance, else variance
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossy; // alpha: BEGIN frames in the mean, else variance
+#include "lib/lobe_shape.glsl"
 layout(binding = 7) uniform sampler2D gbufferFinish;
 #endif
 #ifdef BEGIN
@@ -72,7 +73,7 @@ void main() {
   Sum diffuse = begin(texelFetch(irradiance, pixel, 0));
 #ifdef GLOSSY
   Sum lobe = begin(texelFetch(glossy, pixel, 0));
-  vec2 finish = texelFetch(gbufferFinish, pixel, 0).rg;
+  vec4 shape = shapeOfLobe(texelFetch(gbufferFinish, pixel, 0), kLeastRoughness);
 #endif
 #ifndef BEGIN
   float noise = diffuse.own.a;
@@ -103,7 +104,7 @@ void main() {
 #endif
       add(diffuse, texelFetch(irradiance, tap, 0), variance.r, weight);
 #ifdef GLOSSY
-      weight *= finishWeight(finish, texelFetch(gbufferFinish, tap, 0).rg);
+      weight *= finishWeight(shape, shapeOfLobe(texelFetch(gbufferFinish, tap, 0), kLeastRoughness));
       add(lobe, texelFetch(glossy, tap, 0), variance.g, weight);
 #endif
     }

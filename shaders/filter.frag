@@ -13,6 +13,7 @@
 layout(binding = 2) uniform sampler2D irradiance;
 #ifdef GLOSSY
 layout(binding = 3) uniform sampler2D glossy; // radiance over glossyTint
+#include "lib/lobe_shape.glsl"
 layout(binding = 7) uniform sampler2D gbufferFinish;
 #endif
 uniform ivec2 reach;           // (3, 3) whole, (3, 0) along rows, (0, 3) along columns
@@ -48,7 +49,7 @@ void main() {
   vec3 sum = vec3(0.0);
   float weights = 0.0;
 #ifdef GLOSSY
-  vec2 roughnessMetalness = texelFetch(gbufferFinish, pixel, 0).rg;
+  vec4 shape = shapeOfLobe(texelFetch(gbufferFinish, pixel, 0), kLeastVplRoughness);
   vec3 glossySum = vec3(0.0);
   float glossyWeights = 0.0;
 #endif
@@ -64,8 +65,8 @@ void main() {
       sum += counts * irradianceAt(neighbour).rgb;
       weights += counts;
 #ifdef GLOSSY
-      vec2 finish = texelFetch(gbufferFinish, neighbour, 0).rg;
-      counts = weight * (other ? glossyShare : 1.0) * finishWeight(roughnessMetalness, finish);
+      vec4 others = shapeOfLobe(texelFetch(gbufferFinish, neighbour, 0), kLeastVplRoughness);
+      counts = weight * (other ? glossyShare : 1.0) * finishWeight(shape, others);
       glossySum += counts * texelFetch(glossy, placeOf(neighbour), 0).rgb;
       glossyWeights += counts;
 #endif

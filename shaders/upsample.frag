@@ -22,17 +22,16 @@ uniform float detail;        // FINAL: MultiresSettings::detail
 #ifdef GLOSSY
 layout(binding = 4) uniform sampler2D atlasGlossy; // as irradiance, in the same places
 layout(binding = 5) uniform sampler2D coarseGlossy;
+#include "lib/lobe_shape.glsl"
 layout(binding = 7) uniform sampler2D gbufferFinish;
 
-vec2 roughnessMetalness;
+vec4 shape;
 
-/// Lobes of other shape hold other light: as in lib/surface_weight.glsl.
 float likeLobe(ivec2 pixel) {
 #ifdef BILINEAR
   return 1.0;
 #endif
-  vec2 difference = texelFetch(gbufferFinish, pixel, 0).rg - roughnessMetalness;
-  return exp2(-72.13475 * dot(difference, difference));
+  return finishWeight(shape, shapeOfLobe(texelFetch(gbufferFinish, pixel, 0), kLeastVplRoughness));
 }
 #endif
 
@@ -86,7 +85,7 @@ void main() {
     vec3 sum = vec3(0.0);
     float weights = 0.0;
 #ifdef GLOSSY
-    roughnessMetalness = texelFetch(gbufferFinish, pixel, 0).rg;
+    shape = shapeOfLobe(texelFetch(gbufferFinish, pixel, 0), kLeastVplRoughness);
     vec3 glossySum = vec3(0.0);
     float glossyWeights = 0.0;
 #endif

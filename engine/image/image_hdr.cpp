@@ -28,8 +28,8 @@ Image readHdr(const std::filesystem::path& file, uint64_t mostTexels) {
   if (uint64_t(width) * uint64_t(height) > mostTexels)
     throw InputError(file.string(), "has " + std::to_string(uint64_t(width) * uint64_t(height)) + " texels (" +
                                         std::to_string(mostTexels) + " at most)");
-  // A run of up to 127 equal bytes takes two: more texels than that are not there.
-  if (uint64_t(width) * uint64_t(height) > 64 * uint64_t(size))
+  // A run of up to 127 equal bytes takes two, and a texel has four: more texels than that are not there.
+  if (uint64_t(width) * uint64_t(height) > 16 * uint64_t(size))
     throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
   const std::unique_ptr<float, decltype(&stbi_image_free)> texels(
       stbi_loadf_from_memory(bytes.data(), int(size), &width, &height, &channels, 3), &stbi_image_free);

@@ -11,7 +11,7 @@ namespace lambent {
 
 namespace {
 
-constexpr int kWidest = 4096;
+constexpr int kLongest = 4096;
 constexpr uint64_t kMostSkyTexels = 8192 * 4096;
 constexpr float kMostRadiance = 65504; // of half floats
 
@@ -41,6 +41,8 @@ bool namesSky(const std::filesystem::path& file) {
 
 std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes) {
   if (!namesSky(file)) throw InputError(file.string(), "not a picture of the sky (.hdr or .exr)");
+  if (std::filesystem::is_directory(file))
+    throw InputError(file.string(), "is a folder (a picture of the sky expected)");
   Image image = extensionOf(file) == ".hdr" ? readHdr(file, kMostSkyTexels) : readExr(file, {}, kMostSkyTexels);
   size_t invalid = 0, bright = 0;
   for (vec3& texel : image.pixels)
@@ -52,7 +54,7 @@ std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::
     notes.push_back(file.string() + ": " + std::to_string(invalid) + " value(s) that are no light taken as black");
   if (bright > 0)
     notes.push_back(file.string() + ": " + std::to_string(bright) + " value(s) above 65504 taken as that");
-  while (image.width > kWidest) image = halved(image);
+  while (std::max(image.width, image.height) > kLongest) image = halved(image);
   auto sky = std::make_shared<SkyImage>();
   sky->width = image.width;
   sky->height = image.height;

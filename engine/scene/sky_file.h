@@ -12,7 +12,7 @@ namespace lambent {
 /// Says whether a name is that of a picture that readSky reads (.hdr or .exr, in any case).
 bool namesSky(const std::filesystem::path& file);
 
-/// Reads a picture by longitude and latitude. Wider ones than 4096 are halved until they are not. Adds to `notes` what
+/// Reads a picture by longitude and latitude. Ones longer than 4096 are halved until they are not. Adds to `notes` what
 /// is shown differently: what is not a number, or negative, is black; what is more than a half float holds is the most
 /// it holds. Throws InputError.
 std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes);

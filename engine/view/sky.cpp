@@ -139,7 +139,7 @@ DaylightModel makeModel(const vec3& towardsSun, float turbidity) {
 
 /// Luminance times solid angle of the cells, and the same facing each of the normals.
 struct Sky::Varying {
-  vec3 irradiance{0};
+  vec3 irradiance{0}, below{0};
   std::optional<Table> all;
   std::vector<Table> facing; // by the cell of the normal
   PartsOfCells parts;
@@ -188,6 +188,7 @@ Sky Sky::daylight(const vec3& towardsSun, float turbidity) {
   made->irradiance = vec3(sum);
   const vec3 sun = daylightSun(towardsSun, turbidity) * glm::max(towardsSun.y, 0.0f);
   model.ground = (made->irradiance + sun) * (kGroundAlbedo / kPi);
+  made->below = kPi * model.ground;
   for (int row = kRows / 2; row < kRows; ++row) luminances[row].fill(luminance(model.ground) * Table::kCell);
   made->choose(luminances);
   made->numbers = {towardsSun.x, towardsSun.y, towardsSun.z, turbidity};
@@ -213,7 +214,7 @@ Sky Sky::image(std::shared_ptr<const SkyImage> image, float scale, float turn) {
   // is 4096 wide.
   const int turns = glm::clamp(2 * ((pixels.width + kColumns * kParts - 1) / (kColumns * kParts)), 2, 8);
   Table::Weights luminances{};
-  std::array<glm::dvec3, kRows> sums{};
+  std::array<glm::dvec3, kRows> sums{}; // a row is above the horizon or below it
   std::vector<std::vector<float>> parts(size_t(kRows) * kColumns, std::vector<float>(size_t(kParts) * kParts));
   parallelFor(kRows, 1, [&](size_t first, size_t last) {
     for (size_t row = first; row < last; ++row)
@@ -225,7 +226,7 @@ Sky Sky::image(std::shared_ptr<const SkyImage> image, float scale, float turn) {
                 (vec2(i / kParts, i % kParts) + (vec2(j / turns, j % turns) + 0.5f) / float(turns)) / float(kParts);
             const vec3 d = tableDirection((float(row) + within.x) / kRows, (float(column) + within.y) / kColumns);
             const vec3 part = sky.radiance(d) * (Table::kCell / float(kParts * kParts * turns * turns));
-            sums[row] += glm::dvec3(part * glm::max(d.y, 0.0f));
+            sums[row] += glm::dvec3(part * glm::abs(d.y));
             here[size_t(i)] += luminance(part);
           }
         for (const float part : here) luminances[row][column] += part;
@@ -234,11 +235,12 @@ Sky Sky::image(std::shared_ptr<const SkyImage> image, float scale, float turn) {
         for (float& part : here) part += little;
       }
   });
-  glm::dvec3 sum(0);
-  for (const glm::dvec3& row : sums) sum += row;
+  glm::dvec3 above(0), below(0);
+  for (int row = 0; row < kRows; ++row) (row < kRows / 2 ? above : below) += sums[size_t(row)];
   for (const std::vector<float>& cell : parts) made->parts.emplace_back(cell);
   if (!(Table(luminances).total() > 0)) return {};
-  made->irradiance = vec3(sum);
+  made->irradiance = vec3(above);
+  made->below = vec3(below);
   made->choose(luminances);
   return sky;
 }
@@ -271,6 +273,7 @@ float Sky::meanLuminance() const {
 }
 
 vec3 Sky::irradiance() const { return varying_ ? varying_->irradiance : kPi * constantRadiance_; }
+vec3 Sky::irradianceBelow() const { return varying_ ? varying_->below : kPi * constantRadiance_; }
 
 SkySample Sky::sample(vec2 u) const {
   const vec3 d = varying_ ? varying_->all->sample(u, varying_->parts) : sampleSphere(u);

@@ -49,8 +49,9 @@ class Sky {
   bool black() const { return !varying_ && luminance(constantRadiance_) <= 0; }
   bool constant() const { return !varying_; }
   float meanLuminance() const; // over the sphere
-  /// Irradiance of an open horizontal plane from above, W/m².
+  /// Irradiance of an open horizontal plane from above, and from below, W/m².
   vec3 irradiance() const;
+  vec3 irradianceBelow() const;
 
   /// Draws directions in proportion to luminance, from numbers in [0, 1): uniform over the sphere where the sky is
   /// constant, else over each of 32×32 cells of equal solid angle, or of 16×16 parts of each where it is a picture.

@@ -54,7 +54,7 @@ struct HostSurfaces {
   uint32_t depth = 0, normal = 0;
   uint32_t albedo = 0;             // 0: who composes the image knows it; light does without
   uint32_t emission = 0;           // 0: nothing glows
-  uint32_t roughnessMetalness = 0; // 0: all is Lambert; of hosts with our conventions only
+  uint32_t finish = 0;             // 0: all is Lambert; of hosts with our conventions only; RG: blue 0, alpha 1
   HostConventions conventions = {};
 };
 

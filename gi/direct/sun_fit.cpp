@@ -119,7 +119,7 @@ std::vector<SkyDirection> skyDirections(const Sky& sky, int count) {
   };
   for (SkyDirection& d : directions)
     d.irradiance = d.direction.y < 0 ? corrected(d.irradiance, above, sky.irradiance())
-                                     : corrected(d.irradiance, below, kPi * sky.radiance({0, -1, 0}));
+                                     : corrected(d.irradiance, below, sky.irradianceBelow());
   return directions;
 }
 

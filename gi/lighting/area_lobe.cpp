@@ -30,8 +30,8 @@ std::vector<Direction> directionsFor(float alpha, float cosViewer, float f0) {
   const Receiver viewed = {.normal = vec3(0, 0, 1),
                            .towardsViewer = vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer),
                            .specular = vec3(f0),
+                           .grazing = vec3(1 - f0),
                            .diffuse = vec3(0),
-                           .strength = vec3(1),
                            .cosViewer = cosViewer,
                            .alpha2 = alpha * alpha};
   const glm::dvec3 viewer(viewed.towardsViewer);
@@ -157,8 +157,8 @@ FittedLobe fitLobe(float alpha, float cosViewer, float f0, const vec4& start) {
 
 namespace {
 
-/// The map that a very sharp lobe tends to: the mirrored direction becomes the axis, across it normals turn directions
-/// twice as far, and along the view by the viewer's cosine less.
+/// The map that a very sharp lobe tends to: the mirrored direction becomes the axis, towards and from the viewer
+/// normals turn directions twice as far, and across that less by the viewer's cosine.
 vec4 sharpMap(float alpha, float cosViewer) {
   const float sine = std::sqrt(1 - cosViewer * cosViewer);
   return cosViewer * vec4(cosViewer, sine, -2 * alpha * sine, 2 * alpha * cosViewer);

@@ -80,8 +80,8 @@ vec3 skyByRay(const LightSet& lights, const PathVertex& vertex, const vec3& dire
     radiance *= powerHeuristic(pdfOfRay(vertex, direction), lights.sky.pdfFacing(vertex.normal, direction));
   if (!vertex.receiver) return radiance;
   for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
-    const float pdf = hasDisk(lights.punctual[i]) ? pdfOfDisk(lights.punctual[i], direction) : 0;
-    if (!(pdf > 0)) continue;
+    if (!hasDisk(lights.punctual[i]) || !isInDisk(lights.punctual[i], direction)) continue;
+    const float pdf = pdfOfDisk(lights.punctual[i], direction);
     const float chosen = LightChoice(lights, vertex.position, vertex.normal).probability(i);
     radiance += lights.punctual[i].intensity * (pdf * powerHeuristic(pdfOfRay(vertex, direction), chosen * pdf));
   }

@@ -136,12 +136,15 @@ LightView pointOfDisk(const LightView& light, vec2 u) {
   return point;
 }
 
-float pdfOfDisk(const LightView& light, const vec3& towards) {
-  const float cosine = -glm::dot(light.direction, towards);
-  if (!(cosine > 0)) return 0;
+bool isInDisk(const LightView& light, const vec3& towards) {
+  const float cosine = -glm::dot(light.direction, towards), r = std::tan(light.angularRadius);
   const vec3 across = glm::cross(light.direction, towards); // digits that a cosine near 1 has lost
-  const float r = std::tan(light.angularRadius), tangent2 = glm::dot(across, across) / (cosine * cosine);
-  return tangent2 <= r * r ? 1 / (kPi * r * r * cosine * cosine * cosine) : 0;
+  return cosine > 0 && glm::dot(across, across) <= r * r * cosine * cosine;
+}
+
+float pdfOfDisk(const LightView& light, const vec3& towards) {
+  const float cosine = -glm::dot(light.direction, towards), r = std::tan(light.angularRadius);
+  return 1 / (kPi * r * r * cosine * cosine * cosine);
 }
 
 PunctualSample punctualIrradiance(const LightView& light, const vec3& x, const vec3& n) {

@@ -152,7 +152,8 @@ class Table {
         SETTING(gather, checks), Nothing,
         "interleaved gathers, and lists once a view stands: a ray per pixel and 2048 VPLs checks what shadow maps say");
     flag(SETTING(gather, glossy), Nothing,
-         "surfaces that the camera sees reflect by roughness and metalness, VPLs as by 0.3 at least; light paths stay Lambert");
+         "surfaces that the camera sees reflect by roughness and metalness, VPLs as by 0.3 at least; light paths stay "
+         "Lambert");
     number(SETTING(gather, spread), {0, 1000}, Nothing,
            "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     number(SETTING(multires, coarsest), {1, 1024, "patches", PowersOfTwo}, Nothing,

@@ -1,4 +1,4 @@
-// Depth, normal, albedo, emission, and on demand roughness and metalness of what the camera sees.
+// Depth, normal, albedo, emission, and on demand the finish of what the camera sees.
 #include "gi/surfaces/surfaces.h"
 
 #include "engine/core/error.h"
@@ -83,8 +83,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
     emission_ = make("g-buffer/emission", GL_RGBA16F);
     finish_ = make("g-buffer/finish", GL_RGBA16, glossy);
     mappedNormal_ = make("g-buffer/mapped normal", GL_RGBA16F, mapped);
-    const gl::Texture *finish = glossy ? &finish_ : nullptr,
-                      *mappedNormal = mapped ? &mappedNormal_ : nullptr;
+    const gl::Texture *finish = glossy ? &finish_ : nullptr, *mappedNormal = mapped ? &mappedNormal_ : nullptr;
     framebuffer_ = converted
                        ? gl::Framebuffer("g-buffer", {&normal_, &emission_}, &depth_)
                        : gl::Framebuffer("g-buffer", {&normal_, &albedo_, &emission_, finish, mappedNormal}, &depth_);
@@ -189,7 +188,7 @@ void checkHost(const HostSurfaces& host, const CameraView& camera) {
   check("normal", host.normal, true);
   check("albedo", host.albedo, false);
   check("emission", host.emission, false);
-  check("roughness and metalness", host.roughnessMetalness, false);
+  check("finish", host.finish, false);
 }
 
 GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
@@ -203,7 +202,7 @@ GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
               take(hosts_[1], host.normal),
               take(hosts_[2], host.albedo),
               take(hosts_[3], host.emission),
-              in.glossy ? take(hosts_[4], host.roughnessMetalness) : nullptr,
+              in.glossy ? take(hosts_[4], host.finish) : nullptr,
               nullptr, // what hosts draw is one normal
               &camera_,
               {},

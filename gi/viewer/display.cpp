@@ -126,7 +126,8 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   }
 
   View view = viewOf(buffer, frame, look.exposure);
-  if (buffer == Buffer::Direct || buffer == Buffer::Indirect) {
+  const bool reflected = buffer == Buffer::Direct || buffer == Buffer::Indirect;
+  if (reflected) {
     const std::vector<std::string> glossy = bindSurfaces(frame.surfaces);
     view.defines.insert(view.defines.end(), glossy.begin(), glossy.end());
     (view.glossy ? view.glossy : &black_)->bind(8);
@@ -138,7 +139,7 @@ void DisplayPass::draw(Buffer buffer, const FrameResults& frame, const Look& loo
   program.use();
   program.set("factor", view.factor);
   program.set("lens", vec2(frame.surfaces.block.lens.z, frame.surfaces.block.lens.w));
-  background_.set(program, frame.sky, frame.surfaces);
+  background_.set(program, reflected ? frame.sky : Sky(), frame.surfaces);
   program.set("tileSize", tileSize(frame.surfaces));
   program.set("toneMapper", int(look.toneMapper));
   program.set("markNan", look.markNan || buffer == Buffer::Nan ? 1 : 0);

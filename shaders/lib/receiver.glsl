@@ -19,8 +19,8 @@ Receiver receiverAt(ivec2 pixel, vec3 position, vec3 normal) {
 vec3 evenGlossy(ivec2 pixel, Receiver receiver, vec3 radiance) {
   float roughness = max(texelFetch(gbufferFinish, pixel, 0).r, kLeastRoughness);
   vec3 reflected = receiver.specular * lobeShare(roughness, receiver.cosViewer) +
-                   (1.0 - receiver.specular) * schlickShare(roughness, receiver.cosViewer);
-  return radiance * receiver.strength * reflected / glossyTint(receiver);
+                   receiver.grazing * schlickShare(roughness, receiver.cosViewer);
+  return radiance * reflected / glossyTint(receiver);
 }
 
 /// Radiance towards the camera of irradiance and of glossy light as the passes store it, divided by glossyTint.

@@ -35,9 +35,3 @@ float surfaceWeight(PixelPlane plane, ivec2 offset, ivec2 neighbour, float neigh
   float alignment = max(dot(plane.normal, texelFetch(gbufferNormal, neighbour, 0).xyz), 1e-4);
   return exp2(normalPower * log2(alignment) - 0.7213475 * deviation * deviation);
 }
-
-/// Lobes of another shape hold other light: exp(-Δ²/2σ²), σ = 0.1 of roughness or metalness.
-float finishWeight(vec2 roughnessMetalness, vec2 others) {
-  vec2 difference = others - roughnessMetalness;
-  return exp2(-72.13475 * dot(difference, difference));
-}

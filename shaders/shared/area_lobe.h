@@ -89,7 +89,7 @@ SHARED_INLINE vec3 lobeReflection(AreaPiece piece, vec3 position, Receiver r, Ar
                 areaFormFactor(inLobeSpace(piece, position, x, y, r.normal, lobe.white), here, up);
   float schlick = lobeScale(lobe.share.y, lobe.schlick) *
                   areaFormFactor(inLobeSpace(piece, position, x, y, r.normal, lobe.schlick), here, up);
-  return r.strength * (r.specular * white + (vec3(1.0f) - r.specular) * schlick);
+  return r.specular * white + r.grazing * schlick;
 }
 
 SHARED_END

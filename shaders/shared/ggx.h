@@ -23,26 +23,26 @@ const float kDielectricF0 = 0.04f;
 struct Receiver {
   vec3 normal;        // unit
   vec3 towardsViewer; // unit
-  vec3 specular;      // F0
+  vec3 specular;      // of the lobe head-on, and
+  vec3 grazing;       // what Schlick's term adds to it; both with what meets several facets
   vec3 diffuse;       // what is left of the albedo
-  vec3 strength;      // of the lobe; above 1 by what meets several facets
   float cosViewer;    // at least 1e-4
   float alpha2;       // α²
 };
 
 /// Bound of the share of uniform light that a lobe of F0 = 1 reflects towards a viewer without compensation; a fit to
-/// numerical integrals, 0 to 0.09 of it above them. The rest is light that facets hide.
+/// numerical integrals, 0 to 0.1 of it above them. The rest is light that facets hide.
 SHARED_INLINE float lobeShare(float roughness, float cosViewer) {
   float alpha = roughness * roughness, x = alpha / (alpha + cosViewer);
   float hidden = x * ((0.2227f + (-1.1596f + 4.6133f * roughness) * roughness) +
                       x * ((-0.0075f + (1.5276f - 7.0770f * roughness) * roughness) +
                            x * (-0.0173f + (-1.1724f + 3.1393f * roughness) * roughness)));
-  return min(1.043f * (1.0f - hidden), 1.0f);
+  return min(max(1.043f * (1.0f - hidden), 1.0f - 5.0f * cosViewer), 1.0f);
 }
 
-/// Bound of the same for Schlick's part, F0 = 0: 0 to 0.03 above, 0.15 at cosines below 0.1.
+/// Bound of the same for Schlick's part, F0 = 0: 0 to 0.05 above, 0.2 at cosines below 0.1.
 SHARED_INLINE float schlickShare(float roughness, float cosViewer) {
-  return 1.015f * pow(max(1.0f - cosViewer, 0.0f), 5.0945f * exp(-1.2469f * roughness)) /
+  return 1.05f * pow(max(1.0f - cosViewer, 0.0f), 5.0945f * exp(-1.2469f * roughness)) /
          (1.0f + 23.2458f * pow(roughness, 2.5706f));
 }
 
@@ -56,14 +56,16 @@ SHARED_INLINE Receiver makeReceiver(vec3 normal, vec3 towardsViewer, vec3 albedo
   r.normal = normal;
   r.towardsViewer = towardsViewer;
   float metalness = finish.y, f0 = finish.z > 0.0f ? finish.z : kDielectricF0;
-  r.specular = vec3(f0) * (1.0f - metalness) + albedo * metalness;
   r.cosViewer = min(max(dot(normal, towardsViewer), 1e-4f), 1.0f);
   float roughness = max(finish.x, kLeastRoughness);
   float alpha = roughness * roughness;
   r.alpha2 = alpha * alpha;
   float dielectric = min(10.0f * (1.0f - roughness), 1.0f) * finish.w;
   float again = 1.0f / lobeShare(roughness, r.cosViewer) - 1.0f;
-  r.strength = (vec3(1.0f) + r.specular * again) * (dielectric + (1.0f - dielectric) * metalness);
+  float ofDielectric = (1.0f - metalness) * dielectric * (1.0f + f0 * again);
+  vec3 ofMetal = metalness * (vec3(1.0f) + albedo * again);
+  r.specular = vec3(ofDielectric * f0) + ofMetal * albedo;
+  r.grazing = vec3(ofDielectric * (1.0f - f0)) + ofMetal * (vec3(1.0f) - albedo);
   float taken = f0 + (1.0f - f0) * schlickShare(roughness, r.cosViewer) * (1.0f + f0 * again);
   r.diffuse = albedo * ((1.0f - metalness) * max(1.0f - dielectric * taken, 0.0f));
   return r;
@@ -98,14 +100,13 @@ SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight, float spread
   float alpha2 = min(r.alpha2 + spread, 1.0f);
   float cosLight = max(dot(r.normal, towardsLight), 0.0f);
   vec3 half_ = towardsLight + r.towardsViewer, across = cross(r.normal, half_);
-  float length2 = max(dot(half_, half_), 2e-6f), along = cosLight + r.cosViewer;
+  float length2 = max(dot(half_, half_), 1e-12f), along = cosLight + r.cosViewer;
   float density = ggxDensity(alpha2, dot(across, across) / length2, min(along * along / length2, 1.0f));
   float masking = 0.5f / (cosLight * sqrt(r.cosViewer * r.cosViewer * (1.0f - alpha2) + alpha2) +
                           r.cosViewer * sqrt(cosLight * cosLight * (1.0f - alpha2) + alpha2));
   float grazing = max(1.0f - 0.5f * sqrt(length2), 0.0f); // 1 − the cosine between half vector and light
   float grazing2 = grazing * grazing;
-  vec3 fresnel = r.specular + (vec3(1.0f) - r.specular) * (grazing2 * grazing2 * grazing);
-  return fresnel * r.strength * (density * masking);
+  return (r.specular + r.grazing * (grazing2 * grazing2 * grazing)) * (density * masking);
 }
 
 /// Colour that glossy light is divided by while it is stored and filtered, so that textures of metals stay sharp.

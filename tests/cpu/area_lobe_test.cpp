@@ -13,7 +13,7 @@ Receiver seenFrom(float cosViewer, float roughness, float f0) {
   Receiver r = makeReceiver(vec3(0, 0, 1), vec3(std::sqrt(1 - cosViewer * cosViewer), 0, cosViewer), vec3(1),
                             plainFinish(roughness, 1));
   r.specular = vec3(f0);
-  r.strength = vec3(1);
+  r.grazing = vec3(1 - f0);
   return r;
 }
 

@@ -139,9 +139,8 @@ TEST(Kernels, GgxLobe) {
     const Real t = across + a2 * along;
     const Real masking = 0.5L / (n * std::sqrt(v * v * (1 - a2) + a2) + v * std::sqrt(n * n * (1 - a2) + a2));
     for (int channel = 0; channel < 3; ++channel) {
-      const Real f0 = r.specular[channel];
-      const Real fresnel = f0 + (1 - f0) * std::pow(1 - std::sqrt(0.5L + 0.5L * dot), 5);
-      const Real wanted = fresnel * r.strength[channel] * a2 / (std::acos(-1.0L) * t * t) * masking;
+      const Real fresnel = r.specular[channel] + r.grazing[channel] * std::pow(1 - std::sqrt(0.5L + 0.5L * dot), 5);
+      const Real wanted = fresnel * a2 / (std::acos(-1.0L) * t * t) * masking;
       if (wanted > 1e-6L) lobe = std::max(lobe, std::abs(got[channel] / wanted - 1));
     }
   }

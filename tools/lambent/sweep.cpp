@@ -25,8 +25,8 @@ class SceneSweep {
  public:
   SceneSweep(const AccuracyOptions& options, const std::string& file, const fs::path& folder, const SweepFrames& frames)
       : options_(options), frames_(frames), folder_(folder),
-        study_(options, file, {.size = "128x72", .quickSize = "48x27", .set = {{"gather.glossy", "off"}}}), opened_(*study_.opened), name_(nameOf(file)),
-        samples_(options.samples.value_or(options.quick ? 64 : 2048)) {
+        study_(options, file, {.size = "128x72", .quickSize = "48x27", .set = {{"gather.glossy", "off"}}}),
+        opened_(*study_.opened), name_(nameOf(file)), samples_(options.samples.value_or(options.quick ? 64 : 2048)) {
     refuseGlossy(opened_.settings);
     punctual_ = std::ranges::any_of(opened_.at(0).lights,
                                     [](const LightView& light) { return maxComponent(light.intensity) > 0; });

@@ -119,6 +119,8 @@ Sky givenSky(LaunchContext& stage, const LaunchOptions& options) {
     if (options.skyScale != 1 || options.skyTurn != 0)
       throw InputError("--sky " + options.sky,
                        "is no picture, which --sky-scale and --sky-turn are for (.hdr or .exr)");
+    if (options.sky.find_first_not_of("0123456789+-.,eE \t") != std::string::npos)
+      throw InputError("--sky " + options.sky, "is neither a picture (.hdr, .exr) nor three numbers (r,g,b)");
     return lightValue("--sky", options.sky, vec3(threeNumbers("--sky", options.sky)));
   }
   for (const std::string& written : options.written)
@@ -243,10 +245,12 @@ bool onlyGlows(const LaunchContext& stage, const SceneView& view) {
   if (!view.lights.empty() || !view.sky.black()) return false;
   for (const Material& m : stage.scene.assets.materials)
     if (maxComponent(m.emission) > 1) return false;
+  const std::vector<NamedCamera> cameras = sceneCameras(stage.scene); // not the person's: all views are lit alike
+  const CameraView from = cameras.empty() ? defaultView(stage.scene) : cameras[0].view;
   EmbreeQuery rays(stage.scene.assets);
   rays.update(view);
-  if (!skyReaches(rays, view.camera.position())) return false;
-  const Glow glow = glowOnSeen(rays, view.camera);
+  if (!skyReaches(rays, from.position())) return false;
+  const Glow glow = glowOnSeen(rays, from);
   constexpr float kMostShown = 0.1f, kDark = 0.01f;
   return glow.shown < kMostShown && glow.reaches < kDark;
 }
@@ -354,7 +358,7 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--sky", options.sky,
                      "the sky: its radiance r,g,b, or a picture by longitude and latitude (.hdr, .exr)");
   command.add_option("--sky-scale", options.skyScale, "factor on the radiance of such a picture")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(1e-6, 1e6));
   command.add_option("--sky-turn", options.skyTurn, "degrees by which it is turned, counter-clockwise seen from above")
       ->check(CLI::Range(-360.0, 360.0));
   command.add_option(

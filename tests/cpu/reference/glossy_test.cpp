@@ -48,6 +48,33 @@ TEST(GlossyReference, PlateUnderAPointLight) {
   }
 }
 
+/// Of its points rays of the lobe bring a share and connections the rest: against a fine sum over the disk, which knows
+/// of neither. The sharp ones are the cases that connections alone hardly find.
+TEST(GlossyReference, PlateUnderASunWithADisk) {
+  for (const float radius : {1e-5f, 0.05f, 0.3f})
+    for (const Finish& finish : {Finish{0.1f, 1}, Finish{0.1f, 0}, Finish{0.4f, 1}, Finish{0.6f, 0.5f}}) {
+      Plate plate(finish);
+      LightView sun{.type = LightType::Directional,
+                    .direction = glm::normalize(vec3(0.85f, 0.05f, -1)), // just beside the mirrored direction
+                    .intensity = vec3(3),
+                    .angularRadius = radius};
+      plate.scene.lights.push_back(sun);
+      const Receiver receiver = plate.receiver();
+      double wanted = 0;
+      const int steps = 400;
+      for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+          const vec3 towards = -pointOfDisk(sun, (vec2(i, j) + 0.5f) / float(steps)).direction;
+          wanted += double(3 * towards.z * reflectanceOf(receiver, towards).y);
+        }
+      wanted /= steps * steps;
+      const Mean m = plate.direct(256);
+      EXPECT_NEAR(m.mean, wanted, 4 * m.error + 2e-3 * wanted)
+          << finish.roughness << ' ' << finish.metalness << ' ' << radius;
+      EXPECT_LT(m.error, 0.02 * wanted) << "found by rays of the lobe";
+    }
+}
+
 TEST(GlossyReference, PlateUnderTheSkyAndALamp) {
   // Two triangles of a lamp, met by connections and by rays, before a sky that only rays meet; against a fine sum over
   // all directions.

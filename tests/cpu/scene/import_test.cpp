@@ -190,6 +190,7 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
   scene = b.load(folder);
   ASSERT_EQ(scene.assets.materials.size(), 1u);
   const Material& m = scene.assets.materials[0];
+  EXPECT_EQ(vec2(m.dielectricF0, m.dielectricLobe), vec2(0, 1)) << "as glTF has it where nothing is said";
   expectNear(m.baseColor, {0.5f, 0.25f, 1});
   EXPECT_FLOAT_EQ(m.alpha, 0.75f);
   expectNear(m.emission, {8, 4, 0});
@@ -412,6 +413,35 @@ TEST_F(Import, TextureTransformsTurn) {
   const mat3& turn = scene.assets.materials[0].baseColorTexture.uvTransform;
   expectNear(turn * vec3(1, 0, 1), {0, -1, 1});
   expectNear(turn * vec3(0, 1, 1), {1, 0, 1});
+}
+
+TEST_F(Import, IndexOfRefractionAndSpecularGiveF0AndWeight) {
+  const auto finishOf = [&](const nlohmann::json& extensions, const std::string& warning = {}) {
+    GltfBuilder b = oneTriangle();
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    b.json["materials"] = {{{"extensions", extensions}}};
+    b.json["extensionsRequired"] = {"KHR_materials_ior", "KHR_materials_specular"};
+    const Scene scene = b.load(folder);
+    EXPECT_EQ(hasWarning(scene, warning), !warning.empty()) << warning;
+    const Material& m = scene.assets.materials.at(0);
+    return vec2(m.dielectricF0, m.dielectricLobe);
+  };
+  const auto ior = [](double n) { return nlohmann::json{{"KHR_materials_ior", {{"ior", n}}}}; };
+  const auto specular = [](const nlohmann::json& values) { return nlohmann::json{{"KHR_materials_specular", values}}; };
+  const auto near = [](const vec2& a, const vec2& b) { return glm::length(a - b) < 1e-6f; };
+  EXPECT_PRED2(near, finishOf(ior(2)), vec2(1 / 9.0f, 1));
+  EXPECT_PRED2(near, finishOf(ior(0)), vec2(1, 1)); // a mirror, as the extension says
+  EXPECT_PRED2(near, finishOf(ior(1)), vec2(0, 0));
+  EXPECT_PRED2(near, finishOf(ior(0.5), "the index of refraction is below 1"), vec2(0.04f, 1));
+  EXPECT_PRED2(near, finishOf(specular({{"specularFactor", 0.25}})), vec2(0.04f, 0.25f));
+  EXPECT_PRED2(near, finishOf(specular({{"specularFactor", 7}}), "specularFactor is out of range"), vec2(0.04f, 1));
+  EXPECT_PRED2(near, finishOf(specular({{"specularColorFactor", {2, 2, 2}}})), vec2(0.08f, 1));
+  EXPECT_PRED2(near, finishOf(specular({{"specularColorFactor", {100, 100, 100}}})), vec2(1, 1));
+  EXPECT_PRED2(near, finishOf(specular({{"specularColorFactor", {1, 0, 0}}}), "counts by its luminance"),
+               vec2(0.04f * 0.2126f, 1));
+  EXPECT_PRED2(near, finishOf(specular({{"specularTexture", {{"index", 0}}}}), "specularTexture is not used"),
+               vec2(0.04f, 1));
+  finishOf({{"KHR_materials_clearcoat", nlohmann::json::object()}}, "KHR_materials_clearcoat shown without it");
 }
 
 } // namespace lambent::test::import_test

@@ -69,6 +69,8 @@ TEST(SkyImage, WhatIsDrawnHasTheDensityThatItSays) {
     }
     const dvec3 floor = openIrradiance(sky, {0, 1, 0}, 1024);
     EXPECT_NEAR(sky.irradiance().x, floor.x, 2e-2 * floor.x) << width;
+    const dvec3 ceiling = openIrradiance(sky, {0, -1, 0}, 1024);
+    EXPECT_NEAR(sky.irradianceBelow().x, ceiling.x, 2e-2 * ceiling.x) << width;
     EXPECT_NEAR(sky.meanLuminance(),
                 overSphere(1024, [&](const vec3& d) { return double(luminance(sky.radiance(d))); }) / (4 * M_PI),
                 2e-2 * sky.meanLuminance());
@@ -124,6 +126,13 @@ TEST_F(SkyFile, HalvesWhatIsVeryWide) {
   const auto sky = readSky(folder / "wide.exr", notes);
   EXPECT_EQ(sky->width, 4096);
   EXPECT_EQ(sky->texels[77], vec3(1));
+}
+
+TEST_F(SkyFile, HalvesWhatIsVeryTall) {
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10000 +X 2\n";
+  const auto sky = readSky(written("tall.hdr", header + std::string(80000, '\x80')), notes);
+  EXPECT_EQ(sky->height, 2500);
+  EXPECT_EQ(sky->texels.size(), size_t(2500 * sky->width));
 }
 
 TEST_F(SkyFile, RefusesWhatIsNoSky) {
