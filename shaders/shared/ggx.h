@@ -42,7 +42,7 @@ SHARED_INLINE float lobeShare(float roughness, float cosViewer) {
 
 /// Bound of the same for Schlick's part, F0 = 0: 0 to 0.05 above, 0.2 at cosines below 0.1.
 SHARED_INLINE float schlickShare(float roughness, float cosViewer) {
-  return 1.05f * pow(max(1.0f - cosViewer, 0.0f), 5.0945f * exp(-1.2469f * roughness)) /
+  return 1.06f * pow(max(1.0f - cosViewer, 0.0f), 5.0945f * exp(-1.2469f * roughness)) /
          (1.0f + 23.2458f * pow(roughness, 2.5706f));
 }
 

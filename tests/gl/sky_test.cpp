@@ -22,15 +22,26 @@ class SkyTest : public GlTest {
   }
 };
 
+/// Turned, and with a dark place straight below.
+Sky pictureOfASky() {
+  auto image = std::make_shared<SkyImage>(SkyImage{48, 24, {}});
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 48; ++x)
+      image->texels.push_back(y > 21 ? vec3(0.01f) : vec3(0.5f + 0.3f * float(x % 3), 0.1f * float(y), 1));
+  return Sky::image(image, 0.7f, 0.9f);
+}
+
 TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
+  const Sky skies[] = {Sky::daylight(directionAt(-4, 185), 3), Sky::daylight(directionAt(8, 185), 3),
+                       Sky::daylight(directionAt(60, 185), 3), pictureOfASky()};
   for (const bool orthographic : {false, true})
-    for (const float elevation : {-4.0f, 8.0f, 60.0f})
+    for (const Sky& sky : skies)
       for (const bool glossy : {false, true}) {
         HandScene scene;
         const uint32_t m = scene.material(vec3(0.5f));
         if (glossy) scene.assets.materials[m].roughness = 0.4f;
         scene.quad(vec3(-0.3f, 0, -1), vec3(0.6f, 0, 0), vec3(0, 0.3f, 0), m);
-        scene.sky = Sky::daylight(directionAt(elevation, 185), 3);
+        scene.sky = sky;
         scene.camera = cameraAt(vec3(0, 0.1f, 0.4f), vec3(0.1f, 0.25f, -1), 1.9f);
         if (orthographic) scene.camera.orthoHalfHeight = 2;
         Settings settings;
@@ -46,11 +57,21 @@ TEST_F(SkyTest, BackgroundIsTheSkysRadiance) {
           const CameraRay ray = pixelRay(scene.camera, x, y);
           const vec3 wanted = scene.sky.radiance(ray.direction);
           const float tolerance = 1e-3f * maxComponent(wanted);
-          ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
-          ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance) << x << ' ' << y << ' ' << elevation;
+          ASSERT_LT(maxComponent(glm::abs(beauty.at(x, y) - wanted)), tolerance)
+              << x << ' ' << y << ' ' << &sky - skies;
+          ASSERT_LT(maxComponent(glm::abs(direct.at(x, y) - wanted)), tolerance)
+              << x << ' ' << y << ' ' << &sky - skies;
         }
         EXPECT_GT(seen, 1000);
       }
+}
+
+TEST_F(SkyTest, OfAPictureBothHalvesOfOpenPlatesAreRight) {
+  const Sky sky = pictureOfASky();
+  for (const vec3& normal : {vec3(0, 1, 0), vec3(0, -1, 0)}) {
+    const dvec3 wanted = openIrradiance(sky, normal);
+    EXPECT_LT(maxComponent(glm::abs(dvec3(plate(sky, normal)) - wanted)), 0.01 * wanted.x) << normal.y;
+  }
 }
 
 TEST_F(SkyTest, DisplayShowsItToo) {
