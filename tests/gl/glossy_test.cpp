@@ -110,7 +110,7 @@ TEST_F(GlossyTest, FilterKeepsConstantsAndTheTintOfEachPixel) {
         const vec3 towardsViewer = -pixelRay(scene.camera, x, y).direction;
         const vec3 tint = glossyTint(makeReceiver({0, 0, 1}, towardsViewer, colors[x >= 32], plainFinish(0.5f, 1)));
         ASSERT_LT(glm::length(image.at(x, y) - tint * vec3(2, 3, 4)), 4e-3f) << x << ' ' << y;
-        ASSERT_LT(glm::length(tint - colors[x >= 32]), 0.12f) << "what meets several facets adds little to it";
+        ASSERT_LT(glm::length(tint - colors[x >= 32]), 0.15f) << "what meets several facets adds little to it";
       }
     }
 }
