@@ -140,6 +140,7 @@ TEST(AreaLobe, ReflectsOfUniformLightWhatTheLobeDoes) {
 
 /// Sharp lobes, by rays that are drawn from them: around the mirror image's edges, and beside it.
 TEST(AreaLobe, SharpLobesSeeWhatTheMirroredDirectionMeets) {
+  SKIP_STATISTICS_WHEN_SANITIZED();
   LobeError error;
   for (const float roughness : {kLeastRoughness, 0.08f, 0.13f, 0.22f})
     for (const float cosViewer : {1.0f, 0.8f, 0.4f, 0.2f}) {
