@@ -19,12 +19,11 @@ LightConnection connectToPunctual(const LightView& light, float probability, con
                                   const vec3& weight, vec2 u, float rayEpsilon) {
   const PunctualSample p = punctualIrradiance(pointOfDisk(light, u), vertex.position, vertex.normal);
   if (luminance(p.irradiance) <= 0 || glm::dot(p.towards, vertex.geometricNormal) <= 0) return {};
-  const float mis = vertex.receiver && hasDisk(light)
-                        ? powerHeuristic(probability * pdfOfDisk(light, p.towards), pdfOfRay(vertex, p.towards))
-                        : 1;
   const vec3 origin = offsetPoint(vertex.position, vertex.geometricNormal, rayEpsilon);
-  return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards},
-          weight * p.irradiance * (mis / (kPi * probability))};
+  vec3 brought = weight * p.irradiance / (kPi * probability);
+  if (vertex.receiver && hasDisk(light)) // its rays bring the rest
+    brought *= powerHeuristic(probability * pdfOfDisk(light, p.towards), pdfOfRay(vertex, p.towards));
+  return {p.distance < kInfinity ? segment(origin, light.position) : Ray{origin, p.towards}, brought};
 }
 
 LightConnection connectToEmitter(const LightSet& lights, const Emitter& emitter, float probability,

@@ -115,10 +115,7 @@ void Command::launch(LaunchOptions& options) {
 
 void Command::output(OutputOptions& options, const std::string& outHelp, const std::string& standard) {
   options.out = standard;
-  if (!outHelp.empty()) {
-    writes("--out", options.out, outHelp);
-    to_->get_option("--out")->transform([standard](const std::string& out) { return out.empty() ? standard : out; });
-  }
+  if (!outHelp.empty()) writes("--out", options.out, outHelp);
   writes("--json", options.json, "write the figures to this file, for programs");
   to_->get_option("--json")->check([](const std::string& file) { // before the work
     checkWritable(file);
