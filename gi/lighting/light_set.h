@@ -66,8 +66,8 @@ inline bool hasDisk(const LightView& light) { return light.type == LightType::Di
 
 /// Says whether a direction meets the disk of a light that has one.
 bool isInDisk(const LightView& light, const vec3& towards);
-/// Density per steradian with which pointOfDisk finds the direction towards a point of a light's disk. Times the light's
-/// intensity it is the disk's radiance.
+/// Density per steradian with which pointOfDisk finds the direction towards a point of a light's disk. Times the
+/// light's intensity it is the disk's radiance.
 float pdfOfDisk(const LightView& light, const vec3& towards);
 
 /// The light as a point of its disk brings it; numbers in [0, 1). Lights without a size are returned as they are.

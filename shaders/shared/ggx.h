@@ -94,8 +94,8 @@ SHARED_INLINE float lobeSpread(float factor, float area, float cosLight, float d
 }
 
 /// The lobe, 1/sr: radiance towards the viewer per irradiance from the unit direction `towardsLight`, within 1e-3 of
-/// itself. Finite everywhere; means nothing where the light is below the surface, for its irradiance is zero there. `spread`: see
-/// lobeSpread; 0 for a light that is a point.
+/// itself. Finite everywhere; means nothing where the light is below the surface, for its irradiance is zero there.
+/// `spread`: see lobeSpread; 0 for a light that is a point.
 SHARED_INLINE vec3 glossyReflectance(Receiver r, vec3 towardsLight, float spread) {
   float alpha2 = min(r.alpha2 + spread, 1.0f);
   float cosLight = max(dot(r.normal, towardsLight), 0.0f);

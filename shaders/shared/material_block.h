@@ -10,7 +10,7 @@ struct MaterialBlock {
   vec4 baseUvV;   // xyz: second row; w: 1 when double-sided
   vec4 emissiveUvU;
   vec4 emissiveUvV;
-  vec4 roughnessMetalness;    // factors of roughness and metalness; z: the normal map's scale; w: Material::dielectricF0
+  vec4 roughnessMetalness;    // factors of roughness, metalness; z: the normal map's scale; w: Material::dielectricF0
   vec4 roughnessMetalnessUvU; // as baseUvU
   vec4 roughnessMetalnessUvV; // xyz: second row; w: Material::dielectricLobe
   vec4 normalUvU;             // as baseUvU
