@@ -30,6 +30,9 @@ bool isWebp(Bytes bytes) {
   return bytes.size >= 12 && std::memcmp(bytes.data, "RIFF", 4) == 0 && std::memcmp(bytes.data + 8, "WEBP", 4) == 0;
 }
 
+bool isPng(Bytes bytes) { return bytes.size >= 4 && std::memcmp(bytes.data, "\x89PNG", 4) == 0; }
+bool isJpeg(Bytes bytes) { return bytes.size >= 3 && std::memcmp(bytes.data, "\xff\xd8\xff", 3) == 0; }
+
 struct StbOrWebpFree {
   bool webp;
   void operator()(uint8_t* p) const { webp ? WebPFree(p) : stbi_image_free(p); }
@@ -46,7 +49,7 @@ Texels decodeTexels(Bytes bytes, int& width, int& height) {
 /// Passes over the picture that a JPEG makes, each as long as the picture is large; 0 of other formats. A marker is no
 /// part of what is compressed.
 size_t scansOf(Bytes bytes) {
-  if (bytes.size < 3 || bytes.data[0] != 0xff || bytes.data[1] != 0xd8) return 0;
+  if (!isJpeg(bytes)) return 0;
   size_t scans = 0;
   for (size_t i = 2; i + 1 < bytes.size; ++i) scans += bytes.data[i] == 0xff && bytes.data[i + 1] == 0xda;
   return scans;
@@ -61,6 +64,9 @@ std::string defectOf(Bytes bytes, int& width, int& height) {
   if (bytes.size >= sizeof kKtx2 && std::memcmp(bytes.data, kKtx2, sizeof kKtx2) == 0)
     return "is KTX2, which is not decoded here (gltf-transform ktxdecompress IN OUT converts it)";
   if (isWebp(bytes) && !WebPGetInfo(bytes.data, bytes.size, &width, &height)) return "cannot be decoded: damaged WebP";
+  // The library knows more kinds than glTF, and its reader of .hdr never ends where a run is cut off.
+  if (!isWebp(bytes) && !isPng(bytes) && !isJpeg(bytes))
+    return "cannot be decoded: unknown image type (PNG, JPEG or WebP expected)";
   if (!isWebp(bytes) && !stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels))
     return std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
   if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)

@@ -118,6 +118,14 @@ TEST_F(SkyFile, ReadsOpenExrAndRadiance) {
   EXPECT_EQ(hdr->width, 2);
   EXPECT_EQ(hdr->texels[0], vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(hdr->texels[1], vec3(0.5f));
+  // In runs: red 1 eight times, green by itself, blue in two runs.
+  const std::string wide = "#?RGBE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
+  const std::string runs("\x02\x02\x00\x08\x88\x80\x08\x00\x10\x20\x30\x40\x50\x60\x70\x83\x40\x85\x80\x88\x81", 21);
+  const auto row = readSky(written("runs.hdr", wide + runs), notes);
+  EXPECT_EQ(row->texels[0], vec3(1, 0, 0.5f));
+  EXPECT_EQ(row->texels[7], vec3(1, 0.875f, 1));
+  for (size_t kept = 0; kept < runs.size(); ++kept)
+    EXPECT_THROW(readSky(written("runs.hdr", wide + runs.substr(0, kept)), notes), InputError) << kept;
 }
 
 TEST_F(SkyFile, HalvesWhatIsVeryWide) {
