@@ -14,6 +14,15 @@ namespace lambent {
 
 namespace fs = std::filesystem;
 
+void checkImageSize(const fs::path& file, int64_t width, int64_t height, uint64_t mostTexels) {
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
+    throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
+                                        " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+  if (const uint64_t texels = uint64_t(width) * uint64_t(height); texels > mostTexels)
+    throw InputError(file.string(),
+                     "has " + std::to_string(texels) + " texels (" + std::to_string(mostTexels) + " at most)");
+}
+
 Image8 resized(const Image8& image, int width, int height) {
   Image8 out{width, height, std::vector<uint8_t>(size_t(3) * width * height)};
   const bool made = stbir_resize_uint8_generic(image.rgb.data(), image.width, image.height, 0, out.rgb.data(), width,
@@ -46,9 +55,7 @@ Image readPfm(const fs::path& file) {
   in >> kind >> width >> height >> scale;
   if (!in || (kind != "PF" && kind != "Pf"))
     throw InputError(file.string(), "is not a PFM image (the header would be: PF, width height, scale)");
-  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
-    throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
-                                        " (1 to " + std::to_string(kMaxImageSide) + " each way)");
+  checkImageSize(file, width, height);
   if (scale == 0 || !std::isfinite(scale))
     throw InputError(file.string(), "the scale in the PFM header is not a number");
   in.get(); // exactly one white-space character ends the header

@@ -14,6 +14,10 @@ namespace lambent {
 inline constexpr int kMaxImageSide = 32768;
 inline constexpr uint64_t kMaxImageTexels = uint64_t(kMaxImageSide) * kMaxImageSide;
 
+/// Throws InputError where a header asks for more than that, or for nothing.
+void checkImageSize(const std::filesystem::path& file, int64_t width, int64_t height,
+                    uint64_t mostTexels = kMaxImageTexels);
+
 /// Linear RGB float image, row 0 at the top.
 struct Image {
   int width = 0, height = 0;

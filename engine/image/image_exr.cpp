@@ -69,12 +69,7 @@ Image readExr(const std::filesystem::path& file, const std::string& layer, uint6
     const Imf::ChannelList& channels = in.header().channels();
     const auto window = in.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
-    if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
-      throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
-                                          " (1 to " + std::to_string(kMaxImageSide) + " each way)");
-    if (uint64_t(width) * uint64_t(height) > mostTexels)
-      throw InputError(file.string(), "has " + std::to_string(uint64_t(width) * uint64_t(height)) + " texels (" +
-                                          std::to_string(mostTexels) + " at most)");
+    checkImageSize(file, width, height, mostTexels);
     // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
     // memory.
     constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;

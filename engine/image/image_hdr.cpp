@@ -88,19 +88,13 @@ Image readHdr(const std::filesystem::path& file, uint64_t mostTexels) {
   int width = 0, height = 0;
   if (!known || !rgbe || !takeLine(bytes, line) || !readSize(line, width, height))
     throw InputError(file.string(), "is not a Radiance picture (.hdr, RGBE, rows from the top)");
-  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
-    throw InputError(file.string(), "the image's size is " + std::to_string(width) + "x" + std::to_string(height) +
-                                        " (1 to " + std::to_string(kMaxImageSide) + " each way)");
-  const uint64_t texels = uint64_t(width) * uint64_t(height);
-  if (texels > mostTexels)
-    throw InputError(file.string(),
-                     "has " + std::to_string(texels) + " texels (" + std::to_string(mostTexels) + " at most)");
+  checkImageSize(file, width, height, mostTexels);
   const auto cutOff = [&](int row) {
     return InputError(file.string(),
                       "is damaged or ends in row " + std::to_string(row + 1) + " of " + std::to_string(height));
   };
   // A run of up to 127 equal bytes takes two, and a texel has four: more texels than that are not there.
-  if (texels > 16 * uint64_t(content.size())) throw cutOff(height - 1);
+  if (uint64_t(width) * uint64_t(height) > 16 * uint64_t(content.size())) throw cutOff(height - 1);
   Image image(width, height);
   std::vector<Rgbe> row(static_cast<size_t>(width));
   for (int y = 0; y < height; ++y) {

@@ -51,7 +51,6 @@ class Parts {
   float density(vec2 within) const {
     return parts_.probability(uint32_t(cellOf(within.x, kParts) * kParts + cellOf(within.y, kParts))) * kParts * kParts;
   }
-  bool empty() const { return parts_.empty(); }
 
  private:
   Distribution parts_;
