@@ -73,6 +73,6 @@ void main() {
                    packSnorm2x16(octahedralFromUnit(surface.normal)));
 #endif
 #ifdef GLOSSY
-  outGlossy = vec4(sum.glossy * scale / glossyTint(surface.receiver), 1.0);
+  outGlossy = vec4(sum.glossy * scale / surface.tint, 1.0);
 #endif
 }

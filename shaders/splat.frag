@@ -16,6 +16,6 @@ void main() {
   receive(sum, surface, lights[light], layer, 1.0);
   outIrradiance = vec4(sum.irradiance, 1.0);
 #ifdef GLOSSY
-  outGlossy = vec4(sum.glossy / glossyTint(surface.receiver), 1.0);
+  outGlossy = vec4(sum.glossy / surface.tint, 1.0);
 #endif
 }

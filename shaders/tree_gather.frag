@@ -26,6 +26,7 @@ uniform int endLeaf;
 uniform float diskFactor;
 uniform float largestG;
 uniform float spread; // GLOSSY
+uniform float mirrors; // GLOSSY
 
 /// Every second bit of m, as a number.
 int evenBits(int m) {
@@ -46,7 +47,7 @@ void main() {
   vec3 plane = texelFetch(gbufferNormal, pixel, 0).xyz, normal = normalForLight(pixel, plane);
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
-  Receiver receiver = forVirtualLights(receiverAt(pixel, position, normal));
+  Receiver seen = receiverAt(pixel, position, normal), receiver = forVirtualLights(seen, mirrors);
   vec3 glossy = vec3(0.0);
 #endif
   int depthOfTree = coarsest - finest;
@@ -87,6 +88,6 @@ void main() {
   }
   outIrradiance = vec4(irradiance * float(rootStep), 1.0);
 #ifdef GLOSSY
-  outGlossy = vec4(glossy * float(rootStep) / glossyTint(receiver), 1.0);
+  outGlossy = vec4(glossy * float(rootStep) / glossyTint(seen), 1.0);
 #endif
 }

@@ -35,7 +35,8 @@ enum class Stream : uint32_t {
   SurfaceSamples,
   NearLightTurns,
   LightLists,
-  RayWork
+  RayWork,
+  Mirrors
 };
 
 /// A sequence of numbers addressed by what they are for.

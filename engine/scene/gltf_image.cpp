@@ -105,13 +105,11 @@ TextureImage decode(const Document& doc, int index, bool srgb, std::string& defe
   out.srgb = srgb;
   const size_t count = size_t(width) * size_t(height);
   out.texels.resize(count);
-  glm::dvec4 sum(0);
   for (size_t i = 0; i < count; ++i) {
     const uint8_t* t = texels.get() + 4 * i;
     out.texels[i] = {t[0], t[1], t[2], t[3]};
-    sum += glm::dvec4(decodeTexel(out.texels[i], out.srgb));
   }
-  out.averageLinear = vec4(sum / double(count));
+  measureTexels(out);
   return out;
 }
 

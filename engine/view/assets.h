@@ -18,13 +18,15 @@ enum class AlphaMode : uint8_t { Opaque, Mask };
 enum class AlphaTest : uint8_t { None, Masked, All };
 
 /// 8-bit RGBA image; row 0 is the row at v = 0 (glTF: the top row of the file). `srgb`: colours are sRGB-encoded,
-/// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w).
+/// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w), `least` the smallest of each
+/// channel; measureTexels fills them.
 struct TextureImage {
   std::string name;
   int width = 0, height = 0;
   bool srgb = true;
   std::vector<u8vec4> texels; // width * height
   vec4 averageLinear{1};
+  u8vec4 least{255};
 };
 
 /// A use of an image by a material: which UV set, wrap modes, filter, and KHR_texture_transform as a matrix
@@ -172,6 +174,11 @@ uint64_t bytesOf(const SceneAssets& assets);
 
 /// Linear RGBA of one texel; alpha is never encoded.
 vec4 decodeTexel(const u8vec4& texel, bool srgb);
+
+void measureTexels(TextureImage& image);
+
+/// The smallest roughness that the material has anywhere.
+float leastRoughness(const SceneAssets& assets, const Material& material);
 
 /// Bilinear (or nearest) lookup of a material's texture at mesh coordinates (before uvTransform), as linear RGBA.
 /// White when the reference has no image.

@@ -18,6 +18,21 @@ vec4 decodeTexel(const u8vec4& texel, bool srgb) {
   return {table[texel.x], table[texel.y], table[texel.z], float(texel.w) / 255};
 }
 
+void measureTexels(TextureImage& image) {
+  glm::dvec4 sum(0);
+  image.least = u8vec4(255);
+  for (const u8vec4& t : image.texels) {
+    sum += glm::dvec4(decodeTexel(t, image.srgb));
+    image.least = glm::min(image.least, t);
+  }
+  image.averageLinear = image.texels.empty() ? vec4(1) : vec4(sum / double(image.texels.size()));
+}
+
+float leastRoughness(const SceneAssets& assets, const Material& material) {
+  const uint32_t image = material.roughnessMetalnessTexture.image;
+  return material.roughness * (image == kNone ? 1.0f : float(assets.images[image].least.y) / 255);
+}
+
 namespace {
 
 /// `i` lies in [-1, 2 size + 1], in [-size - 1, 2 size] where it is clamped: as texelCoordinate leaves it.

@@ -20,6 +20,8 @@ constexpr FigureRow kRows[] = {
     {"rays.shadows", "where maps of direct light are in doubt", [](const S& s) -> Figure { return s.raysShadows; }},
     {"rays.soft", "of soft direct light: from the camera, to lights and the sky, and by what surfaces reflect",
      [](const S& s) -> Figure { return s.raysSoft; }},
+    {"rays.mirrors", "of what smooth surfaces mirror: from the camera, by lobes, and of light paths",
+     [](const S& s) -> Figure { return s.raysMirrors; }},
     {"rays.lists", "from the camera, for lists of lights", [](const S& s) -> Figure { return s.raysLists; }},
     {"rays.volume", "between cells of a light propagation volume, and from lights to them",
      [](const S& s) -> Figure { return s.raysVolume; }},

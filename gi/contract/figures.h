@@ -22,7 +22,7 @@ struct FrameStats {
   std::vector<StageTime> stages;   // CPU and GPU, in order
   double wallMs = 0, updateMs = 0; // of the whole frame, and of updating the VPLs, wherever that ran
   RayCounts raysPoints, raysValidation, raysCandidates, raysRadiosity, raysCells, raysGather, raysNear, raysChecks,
-      raysMapTests, raysShadows, raysSoft, raysLists, raysArea, raysVolume, raysCube;
+      raysMapTests, raysShadows, raysSoft, raysMirrors, raysLists, raysArea, raysVolume, raysCube;
   uint64_t patches = 0;                // of the multiresolution buffer that gathered, as far as the GPU has reported
   uint64_t areaFragments = 0;          // of area lights
   uint64_t cubes = 0, cubeEntries = 0; // layered depth cubes, and entries of these that light reaches

@@ -6,6 +6,7 @@
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
+#include "gi/frame/mirror_pass.h"
 #include "gi/frame/world_state.h"
 #include "gi/near/light_at_points.h"
 #include "gi/surfaces/surfaces.h"
@@ -33,6 +34,7 @@ struct GiFrame::Kept {
   SurfacePass surfaces{context};
   PatchPass patches{context, StageId::Patches};
   DirectLight direct{context};
+  MirrorPass mirrors{context};
   std::unique_ptr<LightProvider> indirect; // below the world, which its update reads
   const Technique* indirectOf = nullptr;
   double bytesOfLights = 0; // that were asked for last
@@ -70,7 +72,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   const gl::StateGuard guard;
   const std::function<void(int, int)> progress = gl::callingOut(told);
   Kept& k = *kept_;
-  const Settings settings = asGathered(k.settings);
+  Settings settings = asGathered(k.settings);
   FrameStats& stats = k.stats;
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   k.refuseBeyondMemory(settings);
@@ -89,7 +91,9 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
                                                   .host = host != nullptr,
                                                   .needs = needs,
                                                   .status = indirect.status(),
-                                                  .directPending = settings.direct.on && k.direct.pending()});
+                                                  .directPending = settings.direct.on && k.direct.pending(),
+                                                  .mirrorsPending = k.mirrors.pending()});
+  if (!plan.on(EffectId::Mirrors)) settings.gather.mirrors = 0; // virtual lights bring all of every lobe
   const World world = k.world.place(plan, stats);
   stats.plan = plan;
   const FrameWorld now{.world = world,
@@ -129,6 +133,10 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
     } else if (plan.on(EffectId::Indirect)) {
       const gl::DrawCount ofIndirect;
       out.indirect = indirect.run(frame, stats);
+      if (plan.on(EffectId::Mirrors) && settings.gather.mirrors > 0 && out.indirect.glossy)
+        out.indirect = k.mirrors.add(frame, out.indirect, stats);
+      else
+        k.mirrors.forget();
       stats.of(EffectId::Indirect) += ofIndirect();
     }
     out.patches = plan.onlyDirect() ? last.patches : patches.made();
@@ -179,6 +187,7 @@ void GiFrame::Kept::begin(const SceneView& given) {
   if (!world.open(*given.assets, settings, stats)) return;
   indirect->forget();
   direct.forget();
+  mirrors.forget();
   surfaces.forget();
   outputs = {};
 }
@@ -207,7 +216,7 @@ bool GiFrame::converged() const {
   if (!k.outputs.surfaces.depth || k.world.view().changes.any()) return false;
   const bool gathers = k.indirect && k.stats.plan.on(EffectId::Indirect);
   const ProviderStatus status = gathers ? k.indirect->status() : ProviderStatus{};
-  return status.pending.empty() && status.mapsWaiting == 0 && !(k.settings.direct.on && k.direct.pending());
+  return status.pending.empty() && status.mapsWaiting == 0 && !(k.settings.direct.on && k.direct.pending()) && !k.mirrors.pending();
 }
 const FrameOutputs& GiFrame::outputs() const { return kept_->outputs; }
 PassContext GiFrame::context() const { return kept_->context; }

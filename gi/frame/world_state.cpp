@@ -71,7 +71,8 @@ EffectPlan WorldState::plan(const Settings& settings, const PlanInputs& in) {
                          .drawingChanged = drawingChanged,
                          .needs = in.needs,
                          .status = in.status,
-                         .directPending = in.directPending};
+                         .directPending = in.directPending,
+                         .mirrorsPending = in.mirrorsPending};
   SceneView& view = view_.view();
   EffectPlan plan = planEffects(view, settings, facts);
   const auto everything = [&] {

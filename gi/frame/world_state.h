@@ -19,7 +19,7 @@ struct PlanInputs {
   bool host = false; // the surfaces are a host's, who may have drawn them again
   Needs needs;       // of the technique
   ProviderStatus status;
-  bool directPending = false; // as FrameFacts
+  bool directPending = false, mirrorsPending = false; // as FrameFacts
 };
 
 class WorldState {

@@ -61,6 +61,7 @@ void setShading(const gl::Program& program, const GatherDraw& draw) {
   program.set("diskFactor", draw.bounds.disk / kPi);
   program.set("largestG", draw.bounds.clamp > 0 ? draw.bounds.clamp : kInfinity);
   program.set("spread", draw.bounds.spread);
+  program.set("mirrors", draw.bounds.mirrors > 0 ? 1.0f : 0.0f);
   program.set("finestPatch", draw.finestPatch);
   if (!draw.lights.maps) return;
   program.set("farDistance", draw.lights.maps->farDistance);

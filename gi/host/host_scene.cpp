@@ -66,9 +66,7 @@ uint32_t HostScene::addTexture(TextureImage image) {
     refuse("texture", "has " + std::to_string(image.width) + "x" + std::to_string(image.height) + " texels (1 to " +
                           std::to_string(kMostTexels) + " each way)");
   CHECK_EQ(image.texels.size(), size_t(image.width) * size_t(image.height));
-  glm::dvec4 sum(0);
-  for (const u8vec4& t : image.texels) sum += glm::dvec4(decodeTexel(t, image.srgb));
-  image.averageLinear = vec4(sum / double(image.texels.size()));
+  measureTexels(image);
   assets_.readers.wait();
   assets_.images.push_back(std::move(image));
   textures_.push_back(true);

@@ -57,4 +57,29 @@ float pdfReflection(const Receiver& receiver, const vec3& direction) {
   return 0.5f * (pdfCosineHemisphere(glm::dot(direction, receiver.normal)) + lobe);
 }
 
+vec3 sampleLobe(const Receiver& receiver, vec2 u) {
+  vec3 tangent, bitangent;
+  basisAround(receiver.normal, tangent, bitangent);
+  const float alpha = std::sqrt(receiver.alpha2);
+  const vec3 viewer(glm::dot(tangent, receiver.towardsViewer), glm::dot(bitangent, receiver.towardsViewer),
+                    receiver.cosViewer);
+  const vec3 stretched = glm::normalize(vec3(alpha * viewer.x, alpha * viewer.y, viewer.z));
+  const float z = (1 - u.x) * (1 + stretched.z) - stretched.z, phi = 2 * kPi * u.y;
+  const float sine = std::sqrt(std::max(0.0f, 1 - z * z));
+  const vec3 cap = vec3(sine * std::cos(phi), sine * std::sin(phi), z) + stretched;
+  const vec3 h = glm::normalize(vec3(alpha * cap.x, alpha * cap.y, std::max(cap.z, 0.0f)));
+  const vec3 half = tangent * h.x + bitangent * h.y + receiver.normal * h.z;
+  return glm::normalize(2 * glm::dot(half, receiver.towardsViewer) * half - receiver.towardsViewer);
+}
+
+float pdfLobe(const Receiver& receiver, const vec3& direction) {
+  const vec3 sum = direction + receiver.towardsViewer;
+  const float length2 = glm::dot(sum, sum), along = glm::dot(sum, receiver.normal);
+  if (!(length2 > 1e-12f && along > 0)) return 0;
+  const vec3 across = glm::cross(receiver.normal, sum);
+  const float density = ggxDensity(receiver.alpha2, glm::dot(across, across) / length2, along * along / length2);
+  const float c = receiver.cosViewer, a = receiver.alpha2;
+  return density / (2 * (c + std::sqrt(c * c * (1 - a) + a)));
+}
+
 } // namespace lambent

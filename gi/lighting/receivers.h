@@ -26,4 +26,10 @@ vec3 sampleReflection(const Receiver& receiver, float uChoice, vec2 u);
 /// Density of sampleReflection, per steradian.
 float pdfReflection(const Receiver& receiver, const vec3& direction);
 
+/// Unit direction that the lobe alone mirrors the viewer into, at a normal drawn from those that the viewer sees (Heitz
+/// 2018; as spherical caps, Dupuy and Benyoub 2023). It may lie below the surface. `u` in [0, 1).
+vec3 sampleLobe(const Receiver& receiver, vec2 u);
+/// Density of sampleLobe, per steradian.
+float pdfLobe(const Receiver& receiver, const vec3& direction);
+
 } // namespace lambent

@@ -64,12 +64,12 @@ std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const Surface
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j]) irradiance[i] += values[j];
       if (!glossy) continue;
-      const Receiver receiver = forVirtualLights(receiverOf(glossy->view, h));
+      const Receiver seen = receiverOf(glossy->view, h), receiver = forVirtualLights(seen, settings.mirrors > 0);
       for (size_t j = 0; j < values.size(); ++j)
         if (!blocked[j])
           glossy->radiance[i] +=
               values[j] * glossyReflectance(receiver, glm::normalize(segments[j].direction), spreads[j]);
-      glossy->radiance[i] /= glossyTint(receiver);
+      glossy->radiance[i] /= glossyTint(seen);
     }
   });
   return irradiance;

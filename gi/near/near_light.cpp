@@ -205,11 +205,12 @@ NearLight noNearLight(const NearLightInputs& in) {
 }
 
 /// Adds what a ray brings to a pixel that sees `h`.
-void add(NearLight& out, size_t pixel, const Near& ray, const vec3& light, const SceneView& view, const SurfaceHit& h) {
+void add(NearLight& out, size_t pixel, const Near& ray, const vec3& light, const NearLightInputs& in,
+         const SurfaceHit& h) {
   out.irradiance[pixel] += light;
   if (out.glossy.empty()) return;
-  const Receiver receiver = forVirtualLights(receiverOf(view, h));
-  out.glossy[pixel] += light * glossyReflectance(receiver, ray.direction, ray.spread) / glossyTint(receiver);
+  const Receiver seen = receiverOf(in.view, h), receiver = forVirtualLights(seen, in.gather.mirrors > 0);
+  out.glossy[pixel] += light * glossyReflectance(receiver, ray.direction, ray.spread) / glossyTint(seen);
 }
 
 vec2 centreOf(const CameraView& camera, size_t pixel) {
@@ -282,7 +283,7 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
         surfaces,
         [&](const Near& n, const vec3& light) {
           ++went[n.surface];
-          add(out, begin + n.surface, n, light / expected[n.surface].rays, in.view, surfaces[n.surface]);
+          add(out, begin + n.surface, n, light / expected[n.surface].rays, in, surfaces[n.surface]);
         },
         count);
     for (size_t s = 0; s < surfaces.size(); ++s) {
@@ -352,7 +353,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
     }
     tracer.follow(
         surfaces,
-        [&](const Near& n, const vec3& light) { add(out, asked[n.surface], n, light, in.view, surfaces[n.surface]); },
+        [&](const Near& n, const vec3& light) { add(out, asked[n.surface], n, light, in, surfaces[n.surface]); },
         count);
   });
   if (in.subsets) mixNeighbours(out, {positions, normals, camera.width, std::sqrt(cells.meanArea())}, averaged);

@@ -1,5 +1,7 @@
 #include "gi/plan/effects.h"
 
+#include "shaders/shared/ggx.h"
+
 #include <cmath>
 #include <utility>
 
@@ -21,6 +23,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"filter", "mixes the 4x4 subsets of a gather", "draws"},
     {"history", "indirect light of a pixel is averaged over frames; off: each by itself", "draws"},
     {"glossy", "reflection by roughness and metalness where the camera looks; off: Lambert", "draws"},
+    {"mirrors", "rays for what smooth surfaces mirror; off: VPLs, as by roughness 0.3", "rays"},
     {"normalMaps", "normal maps where the camera looks; off: surfaces are as smooth as their meshes", "draws"},
     {"softShadows", "emissive surfaces are many samples in direct light; off: one each", "samples"},
     {"gather", "light of VPLs is brought to surfaces; off: what a cube holds stays, and else there is none", "draws"},
@@ -30,6 +33,11 @@ constexpr EffectRow kRows[kEffects] = {
 std::string count(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
+
+/// From here on virtual lights alone are mirrored (mirrorShare in shaders/shared/ggx.h).
+const float kMirrored = kLeastVplRoughness + 0.05f;
+/// Says whether a material has a lobe: one of metal, or one of a dielectric with a weight.
+bool reflectsByLobe(const Material& m) { return m.metalness > 0 || m.dielectricLobe > 0; }
 
 /// Whether light that one surface reflects can reach another that reflects. Certain only where it says no: everything
 /// that is not black lies in one plane. Large scenes are not asked. With `glossy` black surfaces count whose lobe
@@ -66,7 +74,7 @@ bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
 
 /// What the scene's lights, materials and instances hold.
 struct SceneFacts {
-  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, normalMaps = 0, moved = 0;
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, smooth = 0, normalMaps = 0, moved = 0;
   bool emittersMoved = false;
 
   explicit SceneFacts(const SceneView& view) {
@@ -81,6 +89,7 @@ struct SceneFacts {
         textured += m.baseColorTexture.image != kNone;
         reflecting += reflects(m);
         glossy += m.glossy();
+        smooth += leastRoughness(*view.assets, m) < kMirrored && reflectsByLobe(m);
         normalMaps += m.normalTexture.image != kNone;
       }
     }
@@ -166,6 +175,11 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   decide(EffectId::Glossy, !settings.gather.glossy ? Answer{false, "gather.glossy is off"}
                            : scene.glossy > 0      ? Answer{true, count(scene.glossy, "glossy surface")}
                                                    : Answer{false, "every material has roughness 1 and no metalness"});
+  decide(EffectId::Mirrors, !indirect                      ? Answer{false, "no indirect light"}
+                            : !plan.on(EffectId::Glossy)   ? Answer{false, "surfaces are Lambert"}
+                            : settings.gather.mirrors == 0 ? Answer{false, "gather.mirrors is 0"}
+                            : scene.smooth > 0             ? Answer{true, count(scene.smooth, "smooth surface")}
+                                                           : Answer{false, "no material is smoother than 0.35"});
   decide(EffectId::NormalMaps,
          {scene.normalMaps > 0, scene.normalMaps > 0 ? count(scene.normalMaps, "surface") + " with normal maps"
                                                      : "no material has a normal map"});
@@ -227,10 +241,11 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                            : waiting              ? Answer{true, "shadow maps are waiting"}
                            : indirect && !status.pending.empty() ? Answer{true, status.pending}
                            : status.averaged < historyFrames     ? Answer{true, "light is averaged over frames"}
+                           : facts.mirrorsPending                ? Answer{true, "reflections are averaged over frames"}
                            : facts.directPending                 ? Answer{true, "direct light is averaged over frames"}
                                                                  : Answer{false, "nothing changed"});
-  plan.onlyDirect_ = facts.directPending && !facts.first && !plan.changed_ && status.averaged >= historyFrames &&
-                     !(indirect && !status.pending.empty());
+  plan.onlyDirect_ = facts.directPending && !facts.mirrorsPending && !facts.first && !plan.changed_ &&
+                     status.averaged >= historyFrames && !(indirect && !status.pending.empty());
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;
     redraw.reason = "there is no frame yet";

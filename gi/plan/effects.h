@@ -36,6 +36,7 @@ struct FrameFacts {
   Needs needs;                 // of the technique that runs
   ProviderStatus status;       // of its provider, after the last frame
   bool directPending = false;  // direct light of the last frame would go on getting better
+  bool mirrorsPending = false; // what smooth surfaces mirror in it would
 };
 
 class EffectPlan {

@@ -154,6 +154,8 @@ class Table {
     flag(SETTING(gather, glossy), Nothing,
          "surfaces that the camera sees reflect by roughness and metalness, VPLs as by 0.3 at least; light paths stay "
          "Lambert");
+    number(SETTING(gather, mirrors), {0, 16, "rays"}, Nothing,
+           "rays per pixel for what surfaces below roughness 0.35 mirror of the scene; 0 = VPLs, as by roughness 0.3");
     number(SETTING(gather, spread), {0, 1000}, Nothing,
            "widens glossy lobes by the angle of a VPL's own area (0 = VPLs are points: sharp spots on polished metal)");
     number(SETTING(multires, coarsest), {1, 1024, "patches", PowersOfTwo}, Nothing,

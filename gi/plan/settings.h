@@ -64,6 +64,7 @@ enum class EffectId : int {
   Filter,
   History,
   Glossy,
+  Mirrors,
   NormalMaps,
   SoftShadows,
   Gather,
@@ -158,6 +159,7 @@ struct GatherSettings {
   bool checks = true;  // subsets, still: rays check what maps say (gi/gather/map_checks.h)
   bool glossy = true;  // visible surfaces reflect by their roughness and metalness too (shaders/shared/ggx.h)
   float spread = 0.5f; // glossy: α² + spread·a·cosθ/(π r²) for a VPL of area a; 0 = a point
+  int mirrors = 1;     // rays per pixel for what smooth surfaces mirror (gi/near/mirror_rays.h); 0: as by 0.3
   bool operator==(const GatherSettings&) const = default;
 };
 

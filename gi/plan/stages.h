@@ -46,6 +46,8 @@ namespace lambent {
   STAGE(Gather, "gather")                                                                                              \
   STAGE(MapChecks, "map checks")                                                                                       \
   STAGE(NearLight, "near light")                                                                                       \
+  STAGE(MirrorRays, "mirror rays") /* by lobes of smooth surfaces */                                                   \
+  STAGE(Mirrors, "mirrors")        /* their light, averaged over frames and denoised */                                \
   STAGE(GatherByRays, "gather by rays")                                                                                \
   STAGE(IrradianceUpload, "irradiance upload")                                                                         \
   STAGE(Stencil, "stencil")                                                                                            \

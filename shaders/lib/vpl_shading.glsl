@@ -22,6 +22,7 @@ layout(binding = 2) uniform sampler2DArray maps;
 uniform float diskFactor;    // GatherSettings::disk / π; 0 for a bare 1/r²
 uniform float largestG;      // 1/m²
 uniform float spread;        // GLOSSY: GatherSettings::spread
+uniform float mirrors;       // GLOSSY: 1 where rays bring what smooth surfaces mirror
 uniform float farDistance;   // metres at map value 1
 uniform float mapResolution; // texels
 uniform float biasTexels;    // ShadowSettings::bias
@@ -30,7 +31,8 @@ uniform float biasTexels;    // ShadowSettings::bias
 struct Surface {
   vec3 position, normal, forLight; // normalForLight
 #ifdef GLOSSY
-  Receiver receiver;
+  Receiver receiver; // forVirtualLights
+  vec3 tint;         // glossyTint
 #endif
 };
 
@@ -57,7 +59,9 @@ Surface surfaceAt(ivec2 pixel, float depth) {
   s.normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   s.forLight = normalForLight(pixel, s.normal);
 #ifdef GLOSSY
-  s.receiver = forVirtualLights(receiverAt(pixel, s.position, s.forLight));
+  Receiver seen = receiverAt(pixel, s.position, s.forLight);
+  s.receiver = forVirtualLights(seen, mirrors);
+  s.tint = glossyTint(seen);
 #endif
   return s;
 }

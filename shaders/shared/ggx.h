@@ -71,9 +71,18 @@ SHARED_INLINE Receiver makeReceiver(vec3 normal, vec3 towardsViewer, vec3 albedo
   return r;
 }
 
-/// The same receiver as virtual lights are mirrored in it.
-SHARED_INLINE Receiver forVirtualLights(Receiver r) {
+/// Share of a lobe's indirect light that rays bring where mirrors are traced (gather.mirrors); the rest is that of
+/// virtual lights. The two meet around the roughness from which on virtual lights are mirrored as they should be.
+SHARED_INLINE float mirrorShare(Receiver r) {
+  return min(max(10.0f * (kLeastVplRoughness + 0.05f - sqrt(sqrt(r.alpha2))), 0.0f), 1.0f);
+}
+
+/// The same receiver as virtual lights are mirrored in it. `mirrors`: 1 where rays bring mirrorShare of it, else 0.
+SHARED_INLINE Receiver forVirtualLights(Receiver r, float mirrors) {
   const float least = kLeastVplRoughness * kLeastVplRoughness * kLeastVplRoughness * kLeastVplRoughness;
+  float share = 1.0f - mirrors * mirrorShare(r);
+  r.specular *= share;
+  r.grazing *= share;
   r.alpha2 = max(r.alpha2, least);
   return r;
 }

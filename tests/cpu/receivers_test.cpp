@@ -115,7 +115,7 @@ TEST(Receivers, RoughDielectricsAreLambertAndSharpOnesAreBounded) {
   const vec3 mirror = atCosine(0.6f, kPi);
   EXPECT_EQ(glossyReflectance(seenAt(0.6f, 0, 1), mirror, 0),
             glossyReflectance(seenAt(0.6f, kLeastRoughness, 1), mirror, 0));
-  EXPECT_FLOAT_EQ(glossyReflectance(forVirtualLights(seenAt(0.6f, 0.1f, 1)), mirror, 0).x /
+  EXPECT_FLOAT_EQ(glossyReflectance(forVirtualLights(seenAt(0.6f, 0.1f, 1), 0), mirror, 0).x /
                       seenAt(0.6f, 0.1f, 1).specular.x,
                   glossyReflectance(seenAt(0.6f, kLeastVplRoughness, 1), mirror, 0).x /
                       seenAt(0.6f, kLeastVplRoughness, 1).specular.x);

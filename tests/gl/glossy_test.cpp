@@ -65,7 +65,7 @@ TEST_F(GlossyTest, OneVplOnAPlane) {
       const Receiver receiver = floor.receiverAt(x, y);
       const vec3 lambert = irradiance * receiver.diffuse / kPi;
       const float spread = lobeSpread(GatherSettings{}.spread, kArea, -glm::dot(normal, towardsLight), r2);
-      const vec3 lobe = irradiance * glossyReflectance(forVirtualLights(receiver), towardsLight, spread);
+      const vec3 lobe = irradiance * glossyReflectance(forVirtualLights(receiver, 0), towardsLight, spread);
       for (int c = 0; c < 3; ++c) {
         const float wanted = lambert[c] + lobe[c];
         ASSERT_NEAR(image.at(x, y)[c], wanted, byHalfFloats(3e-3f, 3e-2f) * wanted + 1e-6f)

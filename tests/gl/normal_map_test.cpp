@@ -106,7 +106,8 @@ TEST_F(NormalMapTest, SoftLightFallsOnTheMappedNormal) {
   const LightSet lights = softLightsOf(traced.lights, SoftParts::All);
   RayCounts counts;
   const SoftLight light = sampleSoftLight(
-      {.rays = traced.rays, .lights = lights, .view = traced.view, .samples = 64, .normalMaps = true}, counts);
+      {.rays = traced.rays, .lights = lights, .view = traced.view, .samples = 64, .more = {}, .normalMaps = true},
+      counts);
   std::vector<float> pixels;
   for (const vec3& e : light.irradiance) pixels.push_back(e.y);
   const Mean mean = meanOf(pixels);

@@ -40,7 +40,7 @@ TEST(SkyImage, ShowsItsTexelsWhereTheyBelong) {
 
 TEST(SkyImage, WhatIsDrawnHasTheDensityThatItSays) {
   SKIP_STATISTICS_WHEN_SANITIZED();
-  for (const auto [width, height] : {std::pair(1, 1), {64, 32}, {1024, 512}}) {
+  for (const auto& [width, height] : {std::pair(1, 1), {64, 32}, {1024, 512}}) {
     const Sky sky = Sky::image(picture(width, height, width / 3, height / 4, 5000), 1, 0.7f);
     const vec3 normals[] = {{0, 1, 0}, glm::normalize(vec3(1, 0.2f, -0.4f)), {0, -1, 0}};
     // Densities are one over the sphere.
@@ -59,7 +59,9 @@ TEST(SkyImage, WhatIsDrawnHasTheDensityThatItSays) {
                       : glm::dvec3(0);
         sum += value;
         squares += value * value;
-        if (s.pdf > 0) ASSERT_NEAR(s.pdf, sky.pdfFacing(n, s.direction), 1e-4f * s.pdf);
+        if (s.pdf > 0) {
+          ASSERT_NEAR(s.pdf, sky.pdfFacing(n, s.direction), 1e-4f * s.pdf);
+        }
       }
       const glm::dvec3 mean = sum / double(count);
       for (int c = 0; c < 3; ++c) {

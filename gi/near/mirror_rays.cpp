@@ -1,0 +1,83 @@
+#include "gi/near/mirror_rays.h"
+
+#include "engine/core/parallel.h"
+#include "engine/core/rng.h"
+#include "engine/core/sampling.h"
+#include "gi/lighting/receivers.h"
+#include "gi/vpl/smc.h"
+
+namespace lambent {
+
+namespace {
+
+constexpr int kPaths = 256; // light paths whose numbers take turns
+
+struct Mirrored {
+  uint32_t pixel;
+  vec3 weight; // glossy light per radiance met
+  int path;
+};
+
+} // namespace
+
+std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
+  const CameraView& camera = in.view.camera;
+  const float epsilon = in.rays.rayEpsilon();
+  std::vector<vec3> glossy(size_t(camera.width) * camera.height, vec3(0));
+  const RadianceUpdate update{.paths = kPaths, .bounces = in.bounces, .seed = in.seed};
+  constexpr size_t kGrain = 512; // pixels
+  parallelCount(glossy.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
+    std::vector<vec2> centres;
+    for (size_t i = begin; i < end; ++i)
+      centres.push_back((vec2(i % size_t(camera.width), i / size_t(camera.width)) + 0.5f) /
+                        vec2(camera.width, camera.height));
+    const std::vector<SurfaceHit> surfaces =
+        surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
+    count.closest += centres.size();
+    std::vector<Ray> rays;
+    std::vector<Mirrored> mirrored;
+    for (size_t i = begin; i < end; ++i) {
+      const SurfaceHit& h = surfaces[i - begin];
+      if (!h.valid()) continue;
+      const Receiver receiver = receiverOf(in.view, h);
+      const float share = mirrorShare(receiver) / float(in.samples);
+      if (!(share > 0)) continue;
+      const vec3 shift = Rng(in.seed, Stream::Mirrors, uint32_t(i)).next3();
+      for (int k = 0; k < in.samples; ++k) {
+        const uint32_t sample = in.sample * uint32_t(in.samples) + uint32_t(k);
+        const vec3 u = additiveRecurrence3(sample, shift);
+        const vec3 direction = sampleLobe(receiver, {u.x, u.y});
+        const float cosine = glm::dot(direction, h.normal);
+        if (!(cosine > 0) || glm::dot(direction, h.geometricNormal) <= 0) continue;
+        rays.push_back({offsetPoint(h.position, h.geometricNormal, epsilon), direction});
+        mirrored.push_back({uint32_t(i),
+                            glossyReflectance(receiver, direction, 0) / glossyTint(receiver) *
+                                (share * cosine / pdfLobe(receiver, direction)),
+                            int(sample % kPaths)});
+      }
+    }
+    std::vector<SurfaceHit> hits(rays.size());
+    in.rays.closest(rays, hits);
+    count.closest += rays.size();
+    std::vector<Vpl> met;
+    size_t kept = 0;
+    for (size_t k = 0; k < hits.size(); ++k) {
+      const SurfaceHit& h = hits[k];
+      if (!h.valid() || maxComponent(h.albedo) <= 0) continue;
+      Vpl& v = met.emplace_back();
+      v.position = h.position;
+      v.normal = h.normal;
+      v.geometricNormal = h.geometricNormal;
+      v.albedo = h.albedo;
+      v.id = 1 + mirrored[k].pixel; // numbers of its own
+      mirrored[kept++] = mirrored[k];
+    }
+    std::vector<RadianceJob> jobs;
+    for (size_t k = 0; k < kept; ++k) jobs.push_back({.vpl = &met[k], .path = mirrored[k].path});
+    count += estimateRadiance(jobs, in.rays, in.lights, update).rays;
+    for (size_t k = 0; k < kept; ++k) glossy[mirrored[k].pixel] += mirrored[k].weight * met[k].radiance;
+  });
+  return glossy;
+}
+
+} // namespace lambent
