@@ -216,7 +216,8 @@ bool GiFrame::converged() const {
   if (!k.outputs.surfaces.depth || k.world.view().changes.any()) return false;
   const bool gathers = k.indirect && k.stats.plan.on(EffectId::Indirect);
   const ProviderStatus status = gathers ? k.indirect->status() : ProviderStatus{};
-  return status.pending.empty() && status.mapsWaiting == 0 && !(k.settings.direct.on && k.direct.pending()) && !k.mirrors.pending();
+  return status.pending.empty() && status.mapsWaiting == 0 && !(k.settings.direct.on && k.direct.pending()) &&
+         !k.mirrors.pending();
 }
 const FrameOutputs& GiFrame::outputs() const { return kept_->outputs; }
 PassContext GiFrame::context() const { return kept_->context; }

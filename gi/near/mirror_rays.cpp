@@ -31,8 +31,7 @@ std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
     for (size_t i = begin; i < end; ++i)
       centres.push_back((vec2(i % size_t(camera.width), i / size_t(camera.width)) + 0.5f) /
                         vec2(camera.width, camera.height));
-    const std::vector<SurfaceHit> surfaces =
-        surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
+    const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
     count.closest += centres.size();
     std::vector<Ray> rays;
     std::vector<Mirrored> mirrored;

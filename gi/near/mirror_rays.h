@@ -1,7 +1,7 @@
-// What smooth surfaces mirror of the scene: rays by their lobes (gather.mirrors). Virtual lights are points, and a sharp
-// lobe would show each of them; below about kLeastVplRoughness (shaders/shared/ggx.h) rays take over mirrorShare of
-// their light. What a ray meets is Lambert, as wherever light is reflected on its way to the camera's surfaces, and its
-// radiance is one light path's. Lamps and skies that rays meet are direct light.
+// What smooth surfaces mirror of the scene: rays by their lobes (gather.mirrors). Virtual lights are points, and a
+// sharp lobe would show each of them; below about kLeastVplRoughness (shaders/shared/ggx.h) rays take over mirrorShare
+// of their light. What a ray meets is Lambert, as wherever light is reflected on its way to the camera's surfaces, and
+// its radiance is one light path's. Lamps and skies that rays meet are direct light.
 #pragma once
 
 #include "engine/trace/ray_query.h"

@@ -74,7 +74,8 @@ bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
 
 /// What the scene's lights, materials and instances hold.
 struct SceneFacts {
-  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, smooth = 0, normalMaps = 0, moved = 0;
+  size_t punctual = 0, emissive = 0, masked = 0, textured = 0, reflecting = 0, glossy = 0, smooth = 0, normalMaps = 0,
+         moved = 0;
   bool emittersMoved = false;
 
   explicit SceneFacts(const SceneView& view) {

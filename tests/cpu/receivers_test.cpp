@@ -147,46 +147,68 @@ TEST(Receivers, SharpLobesAreFoundByTheirSamples) {
     for (const float cosViewer : {0.1f, 0.4f, 1.0f})
       for (const float metalness : {0.0f, 1.0f}) {
         const Receiver r = seenAt(cosViewer, roughness, metalness);
-        double found = 0;
+        double found = 0, byLobe = 0, most = 0;
         const int count = 100000;
         for (int i = 0; i < count; ++i) {
           Rng rng(1, Stream::Test, uint32_t(i));
           const float choice = rng.next();
-          const vec3 d = sampleReflection(r, choice, rng.next2());
+          const vec2 u = rng.next2();
+          const vec3 d = sampleReflection(r, choice, u), visible = sampleLobe(r, u);
           if (d.z > 0) found += double(glossyReflectance(r, d, 0).y * d.z / pdfReflection(r, d));
+          if (!(visible.z > 0)) continue;
+          const double weight = double(glossyReflectance(r, visible, 0).y * visible.z / pdfLobe(r, visible));
+          byLobe += weight;
+          most = std::max(most, weight);
         }
         const double wanted = lobeShareByHalfVectors(double(cosViewer), double(roughness), r);
         EXPECT_NEAR(found / count, wanted, 0.015 * wanted) << roughness << ' ' << cosViewer << ' ' << metalness;
+        EXPECT_NEAR(byLobe / count, wanted, 0.005 * wanted) << roughness << ' ' << cosViewer << ' ' << metalness;
+        EXPECT_LT(most, 1.01 * double(r.specular.y + r.grazing.y)) << "no sample weighs more than its Fresnel term";
       }
+}
+
+/// Counts directions of a sampler in rings of equal height and sectors, against the sum of its density.
+template <class Sample, class Density> double deviateFrom(const Sample& sample, const Density& density, Rng rng) {
+  constexpr int kRings = 24, kSectors = 24, kFine = 24, kSamples = 200000;
+  std::vector<double> counts(kRings * kSectors + 1, 0), expected(kRings * kSectors + 1, 0); // last: all below
+  for (int i = 0; i < kSamples; ++i) {
+    const vec3 d = sample(rng);
+    EXPECT_NEAR(glm::length(d), 1, 1e-5f);
+    const int ring = std::min(int(d.z * kRings), kRings - 1);
+    const int sector = std::clamp(int((std::atan2(d.y, d.x) / kPi + 1) / 2 * kSectors), 0, kSectors - 1);
+    counts[d.z < 0 ? kRings * kSectors : ring * kSectors + sector] += 1;
+  }
+  double above = 0;
+  for (int i = 0; i < kRings * kFine; ++i)
+    for (int j = 0; j < kSectors * kFine; ++j) {
+      const float z = (float(i) + 0.5f) / (kRings * kFine);
+      const float phi = kPi * (2 * (float(j) + 0.5f) / (kSectors * kFine) - 1);
+      const double share = double(density(atCosine(z, phi))) * 2 * double(kPi) / (kRings * kFine) / (kSectors * kFine);
+      expected[i / kFine * kSectors + j / kFine] += share * kSamples;
+      above += share;
+    }
+  expected.back() = (1 - above) * kSamples;
+  return chiSquareDeviate(counts, expected);
 }
 
 TEST(Receivers, SamplesFollowTheirDensity) {
   for (const float roughness : {0.3f, 0.7f})
     for (const float cosViewer : {0.15f, 0.9f}) {
       const Receiver r = seenAt(cosViewer, roughness, 0.5f);
-      constexpr int kRings = 24, kSectors = 24, kFine = 24, kSamples = 200000; // rings of equal height above
-      std::vector<double> counts(kRings * kSectors + 1, 0), expected(kRings * kSectors + 1, 0); // last: all below
-      Rng rng(2, Stream::Test, uint32_t(1000 * roughness + 10 * cosViewer));
-      for (int i = 0; i < kSamples; ++i) {
-        const float choice = rng.next();
-        const vec3 d = sampleReflection(r, choice, rng.next2());
-        ASSERT_NEAR(glm::length(d), 1, 1e-5f);
-        const int ring = std::min(int(d.z * kRings), kRings - 1);
-        const int sector = std::clamp(int((std::atan2(d.y, d.x) / kPi + 1) / 2 * kSectors), 0, kSectors - 1);
-        counts[d.z < 0 ? kRings * kSectors : ring * kSectors + sector] += 1;
-      }
-      double above = 0;
-      for (int i = 0; i < kRings * kFine; ++i)
-        for (int j = 0; j < kSectors * kFine; ++j) {
-          const float z = (float(i) + 0.5f) / (kRings * kFine);
-          const float phi = kPi * (2 * (float(j) + 0.5f) / (kSectors * kFine) - 1);
-          const double share =
-              double(pdfReflection(r, atCosine(z, phi))) * 2 * double(kPi) / (kRings * kFine) / (kSectors * kFine);
-          expected[i / kFine * kSectors + j / kFine] += share * kSamples;
-          above += share;
-        }
-      expected.back() = (1 - above) * kSamples;
-      EXPECT_LT(chiSquareDeviate(counts, expected), kDeviateLimit) << roughness << ' ' << cosViewer;
+      const Rng rng(2, Stream::Test, uint32_t(1000 * roughness + 10 * cosViewer));
+      const auto both = [&](Rng& numbers) {
+        const float choice = numbers.next();
+        return sampleReflection(r, choice, numbers.next2());
+      };
+      EXPECT_LT(deviateFrom(
+                    both, [&](const vec3& d) { return pdfReflection(r, d); }, rng),
+                kDeviateLimit)
+          << roughness << ' ' << cosViewer;
+      const auto lobe = [&](Rng& numbers) { return sampleLobe(r, numbers.next2()); };
+      EXPECT_LT(deviateFrom(
+                    lobe, [&](const vec3& d) { return pdfLobe(r, d); }, rng),
+                kDeviateLimit)
+          << roughness << ' ' << cosViewer;
     }
 }
 

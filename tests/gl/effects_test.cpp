@@ -229,6 +229,22 @@ TEST_F(EffectsTest, GlossyNeedsAGlossyMaterial) {
   EXPECT_GT(lossWithout(Glossy, glossy, metal), 0.1);
 }
 
+TEST_F(EffectsTest, MirrorsNeedASmoothMaterial) {
+  const auto brushed = stillWorld([](World& w) {
+    for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughness = 0.36f;
+  });
+  withoutIt(Mirrors, quick(), brushed);
+  // A texture may make a surface smooth.
+  const auto polished = stillWorld([](World& w) {
+    const uint32_t image = w.scene.texture(1, {{0, 40, 255, 255}}, false).image;
+    for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughnessMetalnessTexture.image = image;
+  });
+  Settings none = quick();
+  none.gather.mirrors = 0;
+  withoutIt(Mirrors, none, polished, 0, true); // nothing can force it
+  EXPECT_GT(lossWithout(Mirrors, quick(), polished), 0.01);
+}
+
 TEST_F(EffectsTest, IndirectReachesBlackGloss) {
   Settings glossy = quick();
   glossy.gather.glossy = true;

@@ -126,4 +126,58 @@ TEST_F(GlossySpheresTest, InAWhiteFurnace) {
   expectTheReference(spheres, "furnace");
 }
 
+/// Indirect light: virtual lights at rough spheres, rays at smooth ones, which show a room of coloured walls.
+TEST_F(GlossySpheresTest, InARoom) {
+  Spheres spheres;
+  const uint32_t white = spheres.scene.material(vec3(0.7f)), red = spheres.scene.material({0.7f, 0.1f, 0.1f}),
+                 green = spheres.scene.material({0.1f, 0.6f, 0.2f});
+  const vec3 low(-7, -4, -4), size(14, 8, 40);
+  const vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  spheres.scene.quad(low, z, x, white);
+  spheres.scene.quad(low + y, x, z, white);
+  spheres.scene.quad(low, x, y, white);
+  spheres.scene.quad(low, y, z, red);
+  spheres.scene.quad(low + x, z, y, green);
+  spheres.scene.lamp({0, 0.5f, 14}, vec3(60));
+  const TracedScene traced(spheres.scene);
+  const Image truth = trace({.rays = traced.rays,
+                             .lights = traced.lights,
+                             .camera = spheres.scene.camera,
+                             .bounces = 3,
+                             .glossy = &traced.view},
+                            2 * kPaths, ReferenceBuffer::Indirect)
+                          .mean;
+  double error[2][10] = {};
+  for (const int mirrors : {0, 1}) {
+    Settings settings;
+    settings.gather.mirrors = mirrors;
+    Viewer gi(settings);
+    gi.run(spheres.scene.view());
+    for (int i = 1; i < kFrames; ++i) gi.run(spheres.scene.view(kStill));
+    EXPECT_EQ(gi.stats().plan.on(EffectId::Mirrors), mirrors > 0);
+    const Image light = gi.read(Buffer::Indirect);
+    double got[10] = {}, wanted[10] = {}, squares[10] = {};
+    for (const auto [px, py] : Pixels(light)) {
+      const CameraRay ray = pixelRay(spheres.scene.camera, px, py);
+      const SurfaceHit hit = traced.rays.closest(Ray{ray.origin, ray.direction});
+      if (!hit.valid() || hit.instance >= 10) continue;
+      const double a = double(luminance(light.at(px, py))), b = double(luminance(truth.at(px, py)));
+      got[hit.instance] += a;
+      wanted[hit.instance] += b;
+      squares[hit.instance] += b * b;
+      error[mirrors][hit.instance] += (a - b) * (a - b);
+    }
+    for (size_t i = 0; i < 10; ++i) {
+      error[mirrors][i] = std::sqrt(error[mirrors][i] / squares[i]);
+      std::printf("room, mirrors %d, roughness %.2f, metalness %zu: %.4f of the reference, RMSE %.3f\n", mirrors,
+                  double(kRoughnesses[i % 5]), i / 5, got[i] / wanted[i], error[mirrors][i]);
+      if (mirrors) {
+        EXPECT_NEAR(got[i], wanted[i], (i == 5 || i == 6 ? 0.015 : 0.07) * wanted[i]) << i;
+      }
+    }
+  }
+  for (const size_t smooth : {5, 6}) EXPECT_LT(error[1][smooth], 0.5 * error[0][smooth]);
+  for (const size_t rough : {7, 8, 9}) EXPECT_NEAR(error[1][rough], error[0][rough], 1e-3);
+}
+
 } // namespace lambent::test::glossy_spheres_test

@@ -31,9 +31,8 @@ TextureRef HandScene::texture(int width, std::vector<u8vec4> texels, bool srgb) 
   image.width = width;
   image.height = int(texels.size()) / width;
   image.srgb = srgb;
-  image.averageLinear = vec4(0);
-  for (const u8vec4& t : texels) image.averageLinear += vec4(t) / (255.0f * float(texels.size()));
   image.texels = std::move(texels);
+  measureTexels(image);
   return {.image = uint32_t(assets.images.size() - 1), .nearest = true};
 }
 

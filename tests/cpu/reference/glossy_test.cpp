@@ -1,6 +1,7 @@
 // Glossy receivers in the reference: closed forms, other integrals, and virtual lights as another way to the same
 // number.
 #include "gi/lighting/receivers.h"
+#include "gi/near/mirror_rays.h"
 #include "gi/reference/state_file.h"
 #include "gi/vpl/smc.h"
 #include "tests/support/reference.h"
@@ -100,6 +101,35 @@ TEST(GlossyReference, PlateUnderTheSkyAndALamp) {
         wanted += double(reflectanceOf(receiver, d).y) * (lamp ? 4 : 0.5) * double(kPi) / kSteps / kSteps;
       }
     EXPECT_TRUE(agrees(plate.direct(400), wanted, 3e-3 * wanted, 1e-3 * wanted));
+  }
+}
+
+/// A metal plate mirrors a wall that a lamp lights, twice reflected light too: rays of the lobe against path tracing.
+/// Between the roughnesses where rays begin and end to take over they bring their share.
+TEST(GlossyReference, MirrorsShowWhatPathTracingShows) {
+  for (const float roughness : {0.0f, 0.15f, 0.28f, 0.4f}) {
+    Plate plate({roughness, 1});
+    plate.scene.quad({-2, -10, 0}, {0, 20, 0}, {0, 0, 6}, plate.scene.material({0.7f, 0.4f, 0.2f}));
+    plate.scene.lamp({1, 1, 2}, vec3(5));
+    const TracedScene s(plate.scene);
+    for (const int bounces : {1, 2}) {
+      const ReferenceInputs in{s.rays, s.lights, plate.scene.camera, bounces, 0, 1, &s.view};
+      const Mean wanted = meanOf(trace(in, 256, ReferenceBuffer::Indirect).mean, {0, 1, 0});
+      RayCounts counts;
+      const MirrorInputs mirrors{.view = s.view, .rays = s.rays, .lights = s.lights, .samples = 64, .bounces = bounces};
+      const Receiver receiver = plate.receiver();
+      std::vector<double> found;
+      for (const vec3& light : traceMirrors(mirrors, counts)) found.push_back(double(light.y * glossyTint(receiver).y));
+      const Mean m = meanOf(found);
+      const double share = double(mirrorShare(receiver));
+      EXPECT_NEAR(m.mean, share * wanted.mean, 4 * (m.error + wanted.error) + 2e-3 * wanted.mean)
+          << roughness << ' ' << bounces;
+      EXPECT_GT(wanted.mean, 20 * wanted.error) << roughness << ' ' << bounces;
+      EXPECT_EQ(share, roughness < 0.25f ? 1 : roughness > 0.35f ? 0 : share);
+      if (share == 0) {
+        EXPECT_EQ(counts.occlusion, 0u) << "rough surfaces cast none";
+      }
+    }
   }
 }
 
