@@ -21,6 +21,11 @@ void MirrorPass::forget() {
 SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& light, FrameStats& stats) {
   const SceneChanges& changes = frame.world.view.changes;
   const GBuffer& surfaces = frame.surfaces;
+  const PixelBox pixels = mirrorsOf(frame.world.view);
+  if (pixels.empty()) {
+    forget();
+    return light;
+  }
   const int frames = frame.plan.on(EffectId::History) ? frame.settings.history.frames : 1;
   if (frames < 2 || changes.first || frame.gatherChanged) forget();
   history_.fit(surfaces);
@@ -30,6 +35,7 @@ SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& light
     found = traceMirrors({.view = frame.world.view,
                           .rays = frame.world.rays,
                           .lights = frame.world.lights,
+                          .pixels = pixels,
                           .samples = frame.settings.gather.mirrors,
                           .bounces = frame.bounces,
                           .normalMaps = surfaces.mappedNormal != nullptr,

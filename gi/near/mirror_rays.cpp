@@ -4,7 +4,10 @@
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "gi/lighting/receivers.h"
+#include "gi/plan/effects.h"
 #include "gi/vpl/smc.h"
+
+#include <algorithm>
 
 namespace lambent {
 
@@ -18,29 +21,64 @@ struct Mirrored {
   int path;
 };
 
+bool hasMirror(const SceneAssets& assets, const Mesh& mesh) {
+  return std::ranges::any_of(mesh.primitives,
+                             [&](const Primitive& p) { return mirrors(assets, assets.materials[p.material]); });
+}
+
 } // namespace
+
+PixelBox mirrorsOf(const SceneView& view) {
+  const vec2 size(view.camera.width, view.camera.height);
+  const mat4 clipFromWorld = clipFromView(view.camera) * glm::inverse(view.camera.worldFromView);
+  vec2 lo(kInfinity), hi(-kInfinity);
+  for (const InstanceView& i : view.instances) {
+    if (!hasMirror(*view.assets, view.assets->meshes[i.mesh])) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::bvec3 upper(corner & 1, corner & 2, corner & 4);
+      const vec4 clip = clipFromWorld * vec4(glm::mix(i.boundsWorld.lo, i.boundsWorld.hi, upper), 1);
+      if (!(clip.w > 1e-6f)) return {{0, 0}, glm::ivec2(size)}; // reaches behind the camera
+      const vec2 at = (vec2(clip.x, -clip.y) / clip.w * 0.5f + 0.5f) * size;
+      lo = glm::min(lo, at);
+      hi = glm::max(hi, at);
+    }
+  }
+  lo = glm::clamp(lo, vec2(0), size);
+  hi = glm::clamp(hi, vec2(0), size);
+  return {glm::ivec2(glm::floor(lo)), glm::ivec2(glm::ceil(hi))};
+}
 
 std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
   const CameraView& camera = in.view.camera;
   const float epsilon = in.rays.rayEpsilon();
   std::vector<vec3> glossy(size_t(camera.width) * camera.height, vec3(0));
   const RadianceUpdate update{.paths = kPaths, .bounces = in.bounces, .seed = in.seed};
+  const glm::ivec2 lo = glm::max(in.pixels.lo, glm::ivec2(0)),
+                   hi = glm::min(in.pixels.hi, glm::ivec2(camera.width, camera.height));
+  if (PixelBox{lo, hi}.empty()) return glossy;
+  const size_t across = size_t(hi.x - lo.x);
+  const auto pixelOf = [&](size_t k) {
+    return (size_t(lo.y) + k / across) * size_t(camera.width) + size_t(lo.x) + k % across;
+  };
   constexpr size_t kGrain = 512; // pixels
-  parallelCount(glossy.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
+  parallelCount(across * size_t(hi.y - lo.y), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<vec2> centres;
-    for (size_t i = begin; i < end; ++i)
+    for (size_t k = begin; k < end; ++k) {
+      const size_t i = pixelOf(k);
       centres.push_back((vec2(i % size_t(camera.width), i / size_t(camera.width)) + 0.5f) /
                         vec2(camera.width, camera.height));
+    }
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
     count.closest += centres.size();
     std::vector<Ray> rays;
     std::vector<Mirrored> mirrored;
-    for (size_t i = begin; i < end; ++i) {
-      const SurfaceHit& h = surfaces[i - begin];
+    for (size_t n = begin; n < end; ++n) {
+      const SurfaceHit& h = surfaces[n - begin];
       if (!h.valid()) continue;
       const Receiver receiver = receiverOf(in.view, h);
       const float share = mirrorShare(receiver) / float(in.samples);
       if (!(share > 0)) continue;
+      const size_t i = pixelOf(n);
       const vec3 shift = Rng(in.seed, Stream::Mirrors, uint32_t(i)).next3();
       for (int k = 0; k < in.samples; ++k) {
         const uint32_t sample = in.sample * uint32_t(in.samples) + uint32_t(k);

@@ -11,12 +11,22 @@
 
 namespace lambent {
 
+/// Pixels of an image, from `lo` up to but not `hi`; rows from the top.
+struct PixelBox {
+  glm::ivec2 lo{0}, hi{1 << 30};
+  bool empty() const { return lo.x >= hi.x || lo.y >= hi.y; }
+};
+
+/// Where the view may show a surface that mirrors: instances that have one, by their bounds.
+PixelBox mirrorsOf(const SceneView& view);
+
 struct MirrorInputs {
   const SceneView& view;
   const RayQuery& rays;
   const LightSet& lights;
-  int samples = 1; // of each pixel
-  int bounces = 1; // of light that reaches what is mirrored, as SmcSettings::bounces
+  PixelBox pixels = {}; // that are asked; the others get none
+  int samples = 1;      // of each
+  int bounces = 1;      // of light that reaches what is mirrored, as SmcSettings::bounces
   bool normalMaps = false;
   uint32_t seed = 1;
   uint32_t sample = 0; // number of the first one: those of a mean follow each other

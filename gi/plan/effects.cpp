@@ -34,11 +34,6 @@ std::string count(size_t n, const char* what) { return std::to_string(n) + " " +
 
 bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
 
-/// From here on virtual lights alone are mirrored (mirrorShare in shaders/shared/ggx.h).
-const float kMirrored = kLeastVplRoughness + 0.05f;
-/// Says whether a material has a lobe: one of metal, or one of a dielectric with a weight.
-bool reflectsByLobe(const Material& m) { return m.metalness > 0 || m.dielectricLobe > 0; }
-
 /// Whether light that one surface reflects can reach another that reflects. Certain only where it says no: everything
 /// that is not black lies in one plane. Large scenes are not asked. With `glossy` black surfaces count whose lobe
 /// reflects.
@@ -90,7 +85,7 @@ struct SceneFacts {
         textured += m.baseColorTexture.image != kNone;
         reflecting += reflects(m);
         glossy += m.glossy();
-        smooth += leastRoughness(*view.assets, m) < kMirrored && reflectsByLobe(m);
+        smooth += mirrors(*view.assets, m);
         normalMaps += m.normalTexture.image != kNone;
       }
     }
@@ -100,6 +95,11 @@ struct SceneFacts {
 using Answer = std::pair<bool, std::string>;
 
 } // namespace
+
+bool mirrors(const SceneAssets& assets, const Material& material) {
+  const bool lobe = material.metalness > 0 || material.dielectricLobe > 0;
+  return lobe && leastRoughness(assets, material) < kLeastVplRoughness + 0.05f; // mirrorShare
+}
 
 const EffectRow& effectRow(EffectId id) { return kRows[size_t(id)]; }
 

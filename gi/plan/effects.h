@@ -63,6 +63,10 @@ class EffectPlan {
   bool changed_ = true, seenChanges_ = true, lightChanges_ = true, onlyDirect_ = false;
 };
 
+/// Says whether a material is somewhere so smooth that rays bring what it mirrors (mirrorShare in
+/// shaders/shared/ggx.h).
+bool mirrors(const SceneAssets& assets, const Material& material);
+
 /// Plans a frame. `view.changes` decides: what did not change needs no work.
 EffectPlan planEffects(const SceneView& view, const Settings& settings, const FrameFacts& facts);
 

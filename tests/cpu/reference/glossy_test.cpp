@@ -133,6 +133,34 @@ TEST(GlossyReference, MirrorsShowWhatPathTracingShows) {
   }
 }
 
+/// Pixels that cannot show a mirror are not asked; those that can get the same light.
+TEST(GlossyReference, MirrorsAreLookedForWhereTheyMayBe) {
+  HandScene scene;
+  scene.quad({-5, -5, 8}, {0, 10, 0}, {10, 0, 0}, scene.material(vec3(0.6f))); // behind the camera
+  const uint32_t chrome = scene.glossyMaterial(vec3(0.9f), 0, 1);
+  scene.lamp({1, 1, 3}, vec3(5));
+  scene.camera = cameraAt({0, 0, 4}, {0, 0, 0}, 0.8f, 48, 32);
+  const auto lightOf = [&](const TracedScene& s, const PixelBox& pixels, RayCounts& counts) {
+    return traceMirrors({.view = s.view, .rays = s.rays, .lights = s.lights, .pixels = pixels, .samples = 4}, counts);
+  };
+  EXPECT_TRUE(mirrorsOf(scene.view()).empty());
+  scene.box({0.3f, -0.6f, -0.5f}, {0.9f, -0.1f, 0.2f}, chrome, false);
+  const TracedScene s(scene);
+  const PixelBox box = mirrorsOf(s.view);
+  EXPECT_GT(box.lo.x, 20);
+  EXPECT_GT(box.lo.y, 14) << "rows count from the top";
+  EXPECT_LT((box.hi.x - box.lo.x) * (box.hi.y - box.lo.y), 48 * 32 / 4);
+  RayCounts whole, part;
+  const std::vector<vec3> all = lightOf(s, {}, whole), some = lightOf(s, box, part);
+  EXPECT_EQ(all, some);
+  EXPECT_GT(maxComponent(*std::ranges::max_element(all, {}, [](const vec3& v) { return maxComponent(v); })), 0);
+  EXPECT_LT(part.closest, whole.closest / 2);
+  scene.box({-1, -1, 3.5f}, {1, -0.5f, 5}, chrome, false); // around the camera
+  const PixelBox around = mirrorsOf(scene.view());
+  EXPECT_EQ(around.lo, glm::ivec2(0));
+  EXPECT_EQ(around.hi, glm::ivec2(48, 32));
+}
+
 TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
   constexpr int kPerSet = 2000, kSets = kSanitized ? 1 : 24;
   constexpr float kClamp = 3; // 1/m²
