@@ -153,6 +153,10 @@ void Play::tellWhereItIsDark() {
 
 /// The stage's settings as the person left them the last time.
 Settings Play::preferred() {
+  constexpr float kAdaptation = 2; // seconds
+  if (const std::vector<std::string> asked = askedFor(options_.launch).settings;
+      !options_.frames && !options_.fps && std::ranges::find(asked, "image.adaptation") == asked.end())
+    stage_->settings.image.adaptation = kAdaptation;
   if (options_.defaults) return stage_->settings;
   std::string complaint;
   const auto technique = [](Settings& s, const std::string& name) { applyTechnique(s, name); };
@@ -197,7 +201,8 @@ void Play::forgetChanges() {
   preferences_ = {};
   preferences_.window = window;
   gi_.settings() = stage_->settings;
-  if (stage_->settings.image.exposure <= 0) gi_.settings().image.exposure = ownExposure_;
+  if (stage_->settings.image.exposure <= 0 && stage_->settings.image.adaptation <= 0)
+    gi_.settings().image.exposure = ownExposure_;
   const LaunchOptions& launch = options_.launch;
   model_.pacer = Pacer(options_.targetMs, launch.preset.empty() && launch.set.empty() && launch.technique.empty());
   model_.preset = launch.preset;
@@ -291,6 +296,7 @@ void Play::step(const Wishes& wishes, double seconds) {
     camera.height = height;
   }
   view_ = extractor_.extract(scene_, camera.scaled(model_.pacer.scale()), model_.time);
+  gi_.passTime(seconds);
   run(view_);
   if (recorded) logFrame();
 

@@ -233,6 +233,7 @@ struct HistorySettings {
 
 struct ImageSettings {
   float exposure = 0; // factor on radiance before tone mapping; 0 = measured once when the first frame is drawn
+  float adaptation = 0; // seconds in which a measured exposure comes half of the way to what the image asks for; 0: never
   ToneMapper toneMapper = ToneMapper::Reinhard;
   AntiAliasing antiAliasing = AntiAliasing::Edges;
   bool operator==(const ImageSettings&) const = default;

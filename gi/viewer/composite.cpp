@@ -34,6 +34,11 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   return radiance_;
 }
 
+namespace {
+constexpr float kMidGrey = 0.18f;
+float exposureOf(double logSum, double count) { return count > 0 ? float(kMidGrey / std::exp(logSum / count)) : 0; }
+} // namespace
+
 float measureExposure(const gl::Texture& radiance) {
   const int width = radiance.width(), height = radiance.height();
   std::vector<vec4> texels(size_t(width) * height);
@@ -46,7 +51,29 @@ float measureExposure(const gl::Texture& radiance) {
     logSum += std::log(double(y));
     ++count;
   }
-  return count == 0 ? 1.0f : float(0.18 / std::exp(logSum / double(count)));
+  return exposureOf(logSum, double(count));
+}
+
+float ExposureMeter::next(const gl::Texture& radiance) {
+  constexpr int kAcross = 64, kDown = 36;
+  glm::dvec2 sum(0);
+  if (logs_) {
+    std::vector<vec2> cells(size_t(logs_.width()) * size_t(logs_.height()));
+    logs_.read(std::span(cells), GL_RG, GL_FLOAT);
+    for (const vec2& cell : cells) sum += glm::dvec2(cell);
+  } else {
+    logs_ = gl::Texture("exposure", {.format = GL_RG32F, .width = kAcross, .height = kDown});
+    framebuffer_ = gl::Framebuffer("exposure", {&logs_});
+  }
+  const gl::PassScope scope = context_.scope(StageId::Display);
+  const gl::Program& program = context_.programs.get({.fragment = "exposure.frag"});
+  program.use();
+  program.set("grid", glm::ivec2(kAcross, kDown));
+  radiance.bind(2);
+  framebuffer_.bind();
+  gl::PipelineState{.width = kAcross, .height = kDown}.apply();
+  gl::drawFullscreen();
+  return exposureOf(sum.x, sum.y);
 }
 
 } // namespace lambent

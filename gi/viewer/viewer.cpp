@@ -5,7 +5,9 @@
 #include "engine/gl/state_guard.h"
 #include "gi/viewer/viewer_stages.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace lambent {
@@ -15,6 +17,7 @@ struct Viewer::Passes {
 
   PassContext context;
   CompositePass composite{context}, part{context}; // part: direct or indirect light by itself
+  ExposureMeter meter{context};
   DisplayPass display{context};
   TruthDisplay truth{context};
   FrameResults results;
@@ -29,7 +32,31 @@ void Viewer::restart() {
   passes_.reset(); // before the programs that it draws with
   gi_.restart();
   passes_ = std::make_unique<Passes>(gi_.context());
-  exposure_ = 0;
+  exposure_ = elapsed_ = 0;
+}
+
+/// Takes the exposure that the settings name, or that the image asks for.
+void Viewer::expose(bool drawn) {
+  constexpr float kMost = 8; // from what the first frame asked for
+  const ImageSettings& image = settings().image;
+  const float elapsed = std::exchange(elapsed_, 0.0f);
+  if (image.exposure > 0) {
+    exposure_ = image.exposure;
+    return;
+  }
+  const bool first = exposure_ <= 0;
+  if (drawn && (first || image.adaptation > 0)) {
+    const gl::Texture& radiance = *passes_->results.radiance;
+    const float measured = first ? measureExposure(radiance) : passes_->meter.next(radiance);
+    if (measured > 0) measured_ = measured; // a black image asks for nothing
+  }
+  if (first)
+    exposure_ = firstMeasured_ = measured_ = measured_ > 0 ? measured_ : 1;
+  else if (image.adaptation > 0 && elapsed > 0 && measured_ > 0) {
+    if (!(firstMeasured_ > 0)) firstMeasured_ = exposure_; // a person's
+    const float wanted = std::clamp(measured_, firstMeasured_ / kMost, firstMeasured_ * kMost);
+    exposure_ *= std::pow(wanted / exposure_, 1 - std::exp2(-elapsed / image.adaptation));
+  }
 }
 
 const FrameStats& Viewer::run(const SceneView& view, const std::function<void(int, int)>& progress,
@@ -49,14 +76,10 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const auto begin = std::chrono::steady_clock::now();
   const gl::Counts before = gl::counts();
   results = {gi_.outputs(), last};
-  if (stats.plan.on(EffectId::Redraw)) {
+  const bool drawn = stats.plan.on(EffectId::Redraw);
+  if (drawn)
     results.radiance = &passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
-    const float asked = settings().image.exposure;
-    if (asked > 0)
-      exposure_ = asked;
-    else if (exposure_ <= 0)
-      exposure_ = measureExposure(*results.radiance);
-  }
+  expose(drawn);
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;
   stats.draws += asked.draws;

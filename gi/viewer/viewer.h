@@ -55,7 +55,9 @@ class Viewer {
     return gi_.compareShadowMaps(view, slots, points, progress);
   }
 
-  /// Factor on radiance before tone mapping: image.exposure, or what the first frame asked for.
+  /// Lets seconds go by before the next frame, for image.adaptation.
+  void passTime(double seconds) { elapsed_ += float(seconds); }
+  /// Factor on radiance before tone mapping: image.exposure, or what the first frame asked for, adapted to later ones.
   float exposure() const { return exposure_; }
 
   /// Reads the last frame as linear values: radiance (beauty, direct, indirect, emission), irradiance, albedo, world
@@ -88,7 +90,10 @@ class Viewer {
 
   GiFrame gi_;
   std::unique_ptr<Passes> passes_;
-  float exposure_ = 0;
+  void expose(bool drawn);
+
+  float exposure_ = 0, measured_ = 0, firstMeasured_ = 0; // 0: not yet
+  float elapsed_ = 0;                                     // seconds since the last frame
 };
 
 } // namespace lambent

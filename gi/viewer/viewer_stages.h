@@ -45,9 +45,23 @@ class CompositePass {
   Background background_;
 };
 
-/// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 1
-/// when there is no light. Reads the image back, so it is meant to run once.
+/// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 0
+/// when there is no light. Reads the image back.
 float measureExposure(const gl::Texture& radiance);
+
+/// The same, a frame late and read from a small grid, so that the CPU does not wait for the image.
+class ExposureMeter {
+ public:
+  explicit ExposureMeter(PassContext context) : context_(context) {}
+  /// Measures the image, and returns what the one before asked for; 0 where there was none, or no light in it.
+  float next(const gl::Texture& radiance);
+  void forget() { logs_ = {}; }
+
+ private:
+  PassContext context_;
+  gl::Texture logs_;
+  gl::Framebuffer framebuffer_;
+};
 
 // Looking at it ----------------------------------------------------------------------------------------------------
 

@@ -81,6 +81,55 @@ TEST_F(FrameTest, NoFrameWaitsForTheGpu) {
     }
 }
 
+/// A lamp that becomes 16 times as bright is followed, half of the way in image.adaptation, but not farther than to an
+/// eighth; without it, or without time, the first frame's exposure stays.
+TEST_F(FrameTest, ExposureAdaptsToTheLight) {
+  Settings settings = quick();
+  settings.smc.vpls = settings.smc.points = 64;
+  settings.smc.warmup = 2;
+  settings.image.exposure = 0;
+  settings.effects[EffectId::Indirect] = EffectMode::Off; // so that light is as the lamp is
+  settings.shadow.rays = false;                           // which reads back too
+  const auto times = [&](float brighter) {
+    scene.lights[0].intensity = vec3(4 * brighter);
+    return scene.view(kLightsChanged);
+  };
+  Viewer gi(settings);
+  gi.run(scene.view());
+  const float first = gi.exposure();
+  EXPECT_GT(first, 0);
+  gi.passTime(1);
+  gi.run(times(4));
+  EXPECT_EQ(gi.exposure(), first) << "it is off";
+  gi.settings().image.adaptation = 2;
+  gi.run(times(4)); // measured here
+  EXPECT_EQ(gi.exposure(), first) << "no time has gone by";
+  gi.passTime(2);
+  EXPECT_EQ(gi.run(times(4)).readBacks, 1u) << "of a small grid";
+  EXPECT_NEAR(gi.exposure(), first / 2, 0.02f * first) << "half of the way, in stops";
+  float before = gi.exposure();
+  for (int i = 0; i < 40; ++i) {
+    gi.passTime(1);
+    gi.run(scene.view(kStill)); // nothing is drawn any more
+    EXPECT_LE(gi.exposure(), before);
+    before = gi.exposure();
+  }
+  EXPECT_NEAR(gi.exposure(), first / 4, 0.02f * first);
+  gi.passTime(100);
+  gi.run(times(100));
+  gi.passTime(100);
+  gi.run(times(100));
+  EXPECT_NEAR(gi.exposure(), first / 8, 1e-3f * first) << "no farther";
+  gi.passTime(100);
+  gi.run(times(0));
+  gi.passTime(100);
+  gi.run(times(0));
+  EXPECT_NEAR(gi.exposure(), first / 8, 1e-3f * first) << "black asks for nothing";
+  gi.settings().image.exposure = 3;
+  gi.run(times(1));
+  EXPECT_EQ(gi.exposure(), 3);
+}
+
 TEST_F(FrameTest, TheSameTwice) {
   const auto second = [&] {
     Viewer gi(quick());

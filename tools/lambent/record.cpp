@@ -235,6 +235,8 @@ void record(const RecordOptions& options) {
   const auto opened = openLaunch(options.launch);
   if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   const std::vector<Settings> settings = settingsOf(options, *opened);
+  if (!options.beside.empty() && opened->settings.image.adaptation > 0)
+    throw InputError("image.adaptation", "cannot be with --beside (both are shown by one exposure; 0 leaves it)");
   say(*opened, options.output.quiet);
   const fs::path folder = resultFolder(options.output, "out/" + nameOf(options.launch.scene));
 
@@ -244,7 +246,7 @@ void record(const RecordOptions& options) {
   RecordingFolder mark(folder, conditionsOf(*opened, options.launch, choicesOf(options, settings)), options.format,
                        {total, ownNames(options)});
   const int kept = options.resume ? mark.kept() : 0; // but those that are no pictures any more
-  mark.write(kept); // with what this one writes besides
+  mark.write(kept);                                  // with what this one writes besides
   GlContext context = GlContext::headless();
   std::vector<Side> sides;
   for (const Settings& s : settings) sides.push_back({techniqueOf(s).name, std::make_unique<Viewer>(s, opened->seed)});
@@ -265,6 +267,7 @@ void record(const RecordOptions& options) {
       const SceneView view = opened->at(t);
       for (size_t i = 0; i < sides.size(); ++i) { // in turn, so that none has the caches to itself
         Side& side = sides[(i + size_t(done)) % sides.size()];
+        if (done > 0) side.gi->passTime(1 / opened->shot->fps);
         side.stats = &side.gi->run(view);
         sayWarning(*side.stats);
         if (done == 0 && i == 0 && sides.size() > 1) sides[1].gi->settings().image.exposure = gi.exposure(); // one eye
