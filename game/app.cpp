@@ -99,11 +99,15 @@ void App::run() {
     else
       choose();
   }
-  endedInOrder();
   if (play_ && !options_.screenshot.empty()) play_->writeScreenshot(options_.screenshot);
   preferences_.save();
   if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty())
     std::cerr << "warning: " << printable(complaint) << "\n";
+  // What is still read is given up at its next step, which may be a long one.
+  endSoon();
+  cancelLoading();
+  cancelled_.clear();
+  endedInOrder();
 }
 
 /// A program that was killed did not end its recording.

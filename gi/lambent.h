@@ -227,13 +227,18 @@ LAMBENT_API lambent_status lambent_light_set(lambent_device* device, lambent_sce
                                              const lambent_light_desc* desc);
 LAMBENT_API lambent_status lambent_light_destroy(lambent_device* device, lambent_scene scene, lambent_light light);
 
-typedef enum lambent_sky_type { LAMBENT_SKY_CONSTANT, LAMBENT_SKY_CLEAR } lambent_sky_type;
+typedef enum lambent_sky_type { LAMBENT_SKY_CONSTANT, LAMBENT_SKY_CLEAR, LAMBENT_SKY_PICTURE } lambent_sky_type;
 typedef struct lambent_sky_desc {
   size_t size;
   int32_t type;          /* lambent_sky_type */
   float radiance[3];     /* of a constant sky; default black */
   float towards_sun[3];  /* of a clear one, +Y up; its sun is a directional light of yours: lambent_sky_sun */
   float turbidity;       /* 2 very clear … 10 nearly fog; default 3 */
+  const float* texels;   /* of a picture: radiance, 3 floats each, 0 to 65504, the uppermost row first; columns are
+                            longitudes: the middle is +X, a quarter right of it +Z. Copied by the call */
+  int32_t width, height; /* of it, texels: 1 to 4096 */
+  float scale;           /* factor on it; default 1 */
+  float turn;            /* of it around +Y, radians, counter-clockwise seen from above */
 } lambent_sky_desc;
 LAMBENT_API lambent_status lambent_scene_set_sky(lambent_device* device, lambent_scene scene,
                                                  const lambent_sky_desc* desc);

@@ -24,8 +24,8 @@ typedef uint32_t lambent_entity; /* of a world; a number that ended is not given
 #define LAMBENT_NO_ENTITY 0xffffffffu
 
 /* Reads a file; `scene` picks one of several by name or number, NULL: the file's default. `file` NULL: a world without
- * anything. What the file names is read from its folder and below alone, unless allowed. Its sky is black: a glTF has
- * none. On failure *world is NULL and lambent_world_message(NULL) says why. */
+ * anything. What the file names is read from its folder and below alone, unless allowed. Its sky is that of the
+ * scene's extras (lambent_sky), else black. On failure *world is NULL and lambent_world_message(NULL) says why. */
 LAMBENT_API lambent_status lambent_world_load(const char* file, const char* scene, lambent_world** world);
 /* Not 0: files loaded from now on, by any thread, may name others anywhere. For files that you trust. */
 LAMBENT_API void lambent_world_allow_outside(int allow);

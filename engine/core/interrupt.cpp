@@ -33,13 +33,17 @@ void cutOff(int) {
 
 int cpuMs = 0; // of all threads
 
+void startTimers() {
+  constexpr int kMs = 10'000;
+  alarmIn(ITIMER_PROF, cpuMs);
+  alarmIn(ITIMER_REAL, kMs);
+}
+
 void request(int) {
   interrupted = true;
   for (const int second : {SIGINT, SIGTERM}) std::signal(second, SIG_DFL);
   std::signal(SIGHUP, SIG_IGN); // a terminal that closes can send two
-  constexpr int kMs = 10'000;
-  alarmIn(ITIMER_PROF, cpuMs);
-  alarmIn(ITIMER_REAL, kMs);
+  startTimers();
 }
 
 } // namespace
@@ -50,6 +54,10 @@ void endOnRequest() {
   for (const int signal : {SIGPROF, SIGALRM}) std::signal(signal, cutOff);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, request);
   if (std::signal(SIGHUP, request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // under nohup
+}
+
+void endSoon() {
+  if (!interrupted && cpuMs > 0) startTimers();
 }
 
 void endedInOrder() {

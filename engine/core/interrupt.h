@@ -12,6 +12,8 @@ extern std::atomic<bool> interrupted;
 /// where it waits) is cut off, exit code 1: files are written whole or not at all, and logs line by line. A second
 /// request ends it at once. HUP stays ignored under `nohup`.
 void endOnRequest();
+/// Cuts off what is not at its end as late as after a request: the program is to end by itself.
+void endSoon();
 /// The work is done: what is left is not cut off.
 void endedInOrder();
 

@@ -75,6 +75,13 @@ Image readExr(const std::filesystem::path& file, const std::string& layer, uint6
     constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;
     if (uint64_t(width) * uint64_t(height) * sizeof(vec3) > kAlways + kDeflate * std::filesystem::file_size(file))
       throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
+    // The library unpacks all channels, also those that nobody asks for.
+    constexpr uint64_t kMostValues = uint64_t(4) * 8192 * 4096; // 0.5 GB, 3 s
+    uint64_t count = 0;
+    for (auto c = channels.begin(); c != channels.end(); ++c) ++count;
+    if (count > 4 && count > kMostValues / (uint64_t(width) * uint64_t(height)))
+      throw InputError(file.string(), "has " + std::to_string(count) + " channels of " + std::to_string(width) + "x" +
+                                          std::to_string(height) + " values, which are too many to unpack");
     Image image{int(width), int(height)};
     // Arithmetic on addresses as integers: the origin of a shifted data window is not inside the array.
     const auto origin =

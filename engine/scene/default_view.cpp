@@ -117,6 +117,7 @@ std::array<vec3, 26> lookDirections() {
 
 struct Place {
   vec3 eye{0};
+  float height = 0; // from floor to ceiling, metres
   bool inside = false;
   float openness = 0;  // geometric mean of the looks' distances, metres
   float reach[4] = {}; // level along +X, -X, +Z, -Z
@@ -142,7 +143,8 @@ std::vector<Place> tryPlaces(PlacedTriangles& placed, const Aabb& bounds) {
     const float ceiling = std::min(middle + vertical[i + 1].distance, bounds.hi.y);
     Place place;
     place.eye = vertical[i].origin;
-    place.eye.y = floor + std::min(kEyeHeight, 0.5f * (ceiling - floor));
+    place.height = ceiling - floor;
+    place.eye.y = floor + std::min(kEyeHeight, 0.5f * place.height);
     places.push_back(place);
     for (const vec3& d : directions) looks.push_back({place.eye, d});
   }
@@ -178,7 +180,7 @@ std::optional<vec3> onlyOpenSide(const std::vector<Place>& places) {
 }
 
 CameraView viewFromOutside(const Aabb& bounds) {
-  const float radius = std::max(0.5f * bounds.diameter(), 1e-3f);
+  const float radius = std::max(0.5f * bounds.diameter(), 1e-12f);
   const vec3 direction = glm::normalize(vec3(0.5f, 0.4f, 1));
   CameraView view = lookAt(bounds.centre() + direction * (radius / std::sin(0.5f * kFovY)), bounds.centre(), kFovY);
   view.near = 0.01f * radius;
@@ -228,6 +230,19 @@ CameraView defaultView(const Scene& scene) {
     return viewFromOutside(bounds);
   if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);
   return viewFromInside(places, bounds);
+}
+
+std::optional<float> roomHeight(const Scene& scene) {
+  const Aabb bounds = worldBounds(scene);
+  if (bounds.empty()) return {};
+  PlacedTriangles placed(scene);
+  std::vector<float> heights;
+  for (const Place& place : tryPlaces(placed, bounds))
+    if (place.inside) heights.push_back(place.height);
+  if (heights.empty()) return {};
+  const auto middle = heights.begin() + std::ptrdiff_t(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return *middle;
 }
 
 } // namespace lambent

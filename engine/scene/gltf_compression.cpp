@@ -2,13 +2,15 @@
 // take the memory that these name.
 #include "engine/scene/gltf_compression.h"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -93,6 +95,7 @@ std::vector<uint8_t> decodeMeshopt(const Document& doc, const tinygltf::Value& p
 /// library takes memory for them before it looks at the rest.
 struct DracoHead {
   uint64_t faces = 0, points = 0;
+  bool sequential = false; // else edgebreaker
   bool known = false;
 };
 DracoHead dracoHead(Bytes bytes) {
@@ -114,7 +117,8 @@ DracoHead dracoHead(Bytes bytes) {
   constexpr unsigned kMetadata = 0x8000;
   if (type != 1 || version != 0x0202 || (flags & kMetadata)) return head;
   at = 11;
-  if (method == 0) { // sequential
+  head.sequential = method == 0;
+  if (head.sequential) {
     head.faces = varint();
     head.points = varint();
   } else { // edgebreaker
@@ -124,6 +128,40 @@ DracoHead dracoHead(Bytes bytes) {
   }
   head.known = at != SIZE_MAX;
   return head;
+}
+
+/// A decoder of the library's that asks before it takes memory for the stream's attributes, which may be many and wide,
+/// and none of them the file's. `spend` is called with bytes of each point, and throws where these are too many.
+template <class Method> class AskingDecoder : public Method {
+ public:
+  explicit AskingDecoder(std::function<void(size_t)> spend) : spend_(std::move(spend)) {}
+
+ protected:
+  bool DecodeAllAttributes() override {
+    constexpr size_t kOfValue = 2 * sizeof(int32_t); // as it is stored, and as it is predicted
+    size_t bytes = 0;
+    for (int32_t i = 0; i < this->point_cloud()->num_attributes(); ++i) {
+      const draco::PointAttribute& a = *this->point_cloud()->attribute(i);
+      bytes += size_t(a.num_components()) * (size_t(draco::DataTypeLength(a.data_type())) + kOfValue);
+    }
+    spend_(bytes);
+    return Method::DecodeAllAttributes();
+  }
+
+ private:
+  std::function<void(size_t)> spend_;
+};
+
+/// The mesh of a stream whose head is known.
+template <class Method>
+std::unique_ptr<draco::Mesh> decodeMesh(Bytes bytes, const std::function<void(size_t)>& spend, std::string& defect) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data), bytes.size);
+  auto mesh = std::make_unique<draco::Mesh>();
+  AskingDecoder<Method> decoder(spend);
+  const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, mesh.get());
+  if (!status.ok()) defect = status.error_msg();
+  return mesh;
 }
 
 template <class T>
@@ -278,12 +316,12 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
   constexpr size_t kBytesPerCorner = 64;
   doc.spend(most, kBytesPerCorner, place);
 
-  draco::DecoderBuffer buffer;
-  buffer.Init(reinterpret_cast<const char*>(bytes.data), bytes.size);
-  draco::Decoder decoder;
-  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) doc.fail(place, std::string("is damaged: ") + decoded.status().error_msg());
-  const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+  const auto spend = [&](size_t bytesOfPoint) { doc.spend(most, bytesOfPoint, place); };
+  std::string defect;
+  const std::unique_ptr<draco::Mesh> mesh = head.sequential
+                                                ? decodeMesh<draco::MeshSequentialDecoder>(bytes, spend, defect)
+                                                : decodeMesh<draco::MeshEdgebreakerDecoder>(bytes, spend, defect);
+  if (!defect.empty()) doc.fail(place, "is damaged: " + defect);
   const size_t points = mesh->num_points();
 
   if (primitive.indices < 0) {

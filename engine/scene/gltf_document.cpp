@@ -13,6 +13,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 namespace lambent::gltf {
 
@@ -86,9 +87,17 @@ struct Reading {
   Budget* budget;
   fs::path folder;
   bool mayOutside;
-  bool outside;                            // it names files that lie elsewhere, and are not read
-  std::map<std::string, std::string> uris; // decoded as the parser does → as RFC 3986 says
-  std::set<std::string> files;             // read before
+  bool outside;                                        // it names files that lie elsewhere, and are not read
+  std::map<std::string, std::string> uris;             // decoded as the parser does → as RFC 3986 says
+  std::set<std::string> files;                         // read before
+  std::unordered_map<std::string, bool> known;         // whether what was asked for may be read
+  std::unordered_map<std::string, std::string> places; // where it lies
+
+  bool may(const std::string& file) {
+    const auto [found, added] = known.try_emplace(file, false);
+    if (added) found->second = mayRead(folder, file, mayOutside);
+    return found->second;
+  }
 };
 
 /// As the parser takes addresses: + as a space, as in forms on the web.
@@ -101,7 +110,9 @@ std::string asInForms(std::string uri) {
 // file from elsewhere may reach, and looks in the working directory too.
 bool fileExists(const std::string& file, void* data) {
   Reading& reading = *static_cast<Reading*>(data);
-  if (mayRead(reading.folder, file, reading.mayOutside)) return true;
+  const bool before = reading.known.contains(file);
+  if (reading.may(file)) return true;
+  if (before) return false;
   // Which paths there are to look in is the parser's: this file's folder, and the working directory.
   reading.outside = reading.outside || (!reading.mayOutside && file.starts_with(reading.folder.string()) &&
                                         leadsOutside(reading.folder, file));
@@ -109,19 +120,28 @@ bool fileExists(const std::string& file, void* data) {
 }
 
 std::string rightPath(const std::string& file, void* data) {
-  for (const auto& [wrong, right] : static_cast<Reading*>(data)->uris)
-    if (file.ends_with(wrong)) return file.substr(0, file.size() - wrong.size()) + right;
+  const Reading& reading = *static_cast<Reading*>(data);
+  if (reading.uris.empty()) return file;
+  for (const std::string& folder :
+       {reading.folder.string() + "/", std::string("./")}) { // those that the parser looks in
+    if (!file.starts_with(folder)) continue;
+    if (const auto uri = reading.uris.find(file.substr(folder.size())); uri != reading.uris.end())
+      return folder + uri->second;
+  }
   return file;
 }
 bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
-  auto& [budget, folder, mayOutside, outside, uris, files] = *static_cast<Reading*>(data);
+  Reading& reading = *static_cast<Reading*>(data);
   try {
-    if (!mayRead(folder, file, mayOutside)) throw InputError(file, "no such file"); // also for who does not ask before
+    if (!reading.may(file)) throw InputError(file, "no such file"); // also for who does not ask before
+    constexpr size_t kOfItself = 2048; // what a reading takes of time beside what is read, in bytes
     std::error_code none;
     const size_t size = fs::file_size(file, none);
-    if (files.insert(fs::weakly_canonical(file, none).string()).second) {
-      budget->read += size;
-    } else if (!budget->take(size, 1)) {
+    const auto [real, added] = reading.places.try_emplace(file);
+    if (added) real->second = fs::weakly_canonical(file, none).string();
+    if (reading.files.insert(real->second).second) {
+      reading.budget->read += size;
+    } else if (!reading.budget->take(size + kOfItself, 1)) {
       throw InputError(file,
                        "is read so often that it needs more memory than the scene may ask for (--allow-large lets it)");
     }
@@ -313,7 +333,7 @@ Document readDocument(const fs::path& file, FileTrust trust) {
   doc.budget.trusted = trust.large;
   constexpr size_t kBytesPerMaterial = 2400; // of the parser's and ours
   doc.spend(json.materials, kBytesPerMaterial, std::to_string(json.materials) + " materials");
-  Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}};
+  Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);
 

@@ -3,10 +3,17 @@
 #include "engine/core/parallel.h"
 #include "engine/scene/gltf_import.h"
 
+#include <algorithm>
 #include <atomic>
+#include <csetjmp>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <memory>
+#include <new>
 
+#include <png.h>
 #include <stb/stb_image.h>
 #include <webp/decode.h>
 
@@ -33,17 +40,91 @@ bool isWebp(Bytes bytes) {
 bool isPng(Bytes bytes) { return bytes.size >= 4 && std::memcmp(bytes.data, "\x89PNG", 4) == 0; }
 bool isJpeg(Bytes bytes) { return bytes.size >= 3 && std::memcmp(bytes.data, "\xff\xd8\xff", 3) == 0; }
 
-struct StbOrWebpFree {
-  bool webp;
-  void operator()(uint8_t* p) const { webp ? WebPFree(p) : stbi_image_free(p); }
+/// A PNG on its way into rows of four bytes for each texel.
+struct PngReading {
+  int width, height;
+  png_bytepp rows;
+  bool interlaced = false;
+  char defect[128] = "";
 };
-using Texels = std::unique_ptr<uint8_t, StbOrWebpFree>;
 
-/// RGBA8, or nothing where the bytes are damaged.
-Texels decodeTexels(Bytes bytes, int& width, int& height) {
-  if (isWebp(bytes)) return {WebPDecodeRGBA(bytes.data, bytes.size, &width, &height), {true}};
-  int channels = 0; // 16 bits of each are rounded to 8 by the decoder
-  return {stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), {false}};
+void beginPng(png_structp png, png_infop info) {
+  PngReading& reading = *static_cast<PngReading*>(png_get_progressive_ptr(png));
+  png_set_expand(png);
+  png_set_strip_16(png); // the upper bytes
+  png_set_gray_to_rgb(png);
+  png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
+  reading.interlaced = png_set_interlace_handling(png) > 1;
+  png_read_update_info(png, info);
+  if (png_get_rowbytes(png, info) != 4 * size_t(reading.width) ||
+      png_get_image_height(png, info) != png_uint_32(reading.height))
+    png_error(png, "it has two sizes");
+}
+
+/// Feeds the file to the library, which stops inflating at the last row, whatever follows it. Objects with destructors
+/// have no place here: the library leaves by longjmp. Returns false where it is damaged.
+bool readPng(Bytes bytes, PngReading& reading) {
+  png_structp png = png_create_read_struct(
+      PNG_LIBPNG_VER_STRING, &reading,
+      [](png_structp p, png_const_charp text) {
+        PngReading& r = *static_cast<PngReading*>(png_get_error_ptr(p));
+        std::snprintf(r.defect, sizeof r.defect, "%s", text);
+        png_longjmp(p, 1);
+      },
+      [](png_structp, png_const_charp) {});
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  if (!info || setjmp(png_jmpbuf(png))) { // NOLINT: its only way
+    png_destroy_read_struct(&png, &info, nullptr);
+    return false;
+  }
+  constexpr png_alloc_size_t kMostOfChunk = 8 << 20; // bytes, of what is beside the picture
+  png_set_user_limits(png, kMostTexels, kMostTexels);
+  png_set_chunk_malloc_max(png, kMostOfChunk);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1); // -1: known ones that show nothing too
+  png_set_crc_action(png, PNG_CRC_QUIET_USE, PNG_CRC_QUIET_USE);
+  png_set_progressive_read_fn(
+      png, &reading, beginPng,
+      [](png_structp p, png_bytep row, png_uint_32 y, int) {
+        const PngReading& r = *static_cast<PngReading*>(png_get_progressive_ptr(p));
+        if (row && y < png_uint_32(r.height)) png_progressive_combine_row(p, r.rows[y], row);
+      },
+      nullptr);
+  png_process_data(png, info, const_cast<png_bytep>(bytes.data), bytes.size);
+  constexpr int kPasses = 7;
+  const bool whole = reading.interlaced ? png_get_current_pass_number(png) >= kPasses
+                                        : png_get_current_row_number(png) >= png_uint_32(reading.height);
+  if (!whole) png_error(png, "it ends before its last row");
+  png_destroy_read_struct(&png, &info, nullptr);
+  return true;
+}
+
+struct TexelsFree {
+  void (*free)(void*);
+  void operator()(uint8_t* p) const { free(p); }
+};
+using Texels = std::unique_ptr<uint8_t, TexelsFree>;
+
+/// RGBA8, or nothing where the bytes are damaged, and why. `width` and `height` are the picture's.
+Texels decodeTexels(Bytes bytes, int& width, int& height, std::string& defect) {
+  if (isPng(bytes)) {
+    Texels texels{static_cast<uint8_t*>(std::malloc(4 * size_t(width) * size_t(height))), {std::free}};
+    if (!texels) throw std::bad_alloc();
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < height; ++y) rows.push_back(texels.get() + 4 * size_t(width) * size_t(y));
+    PngReading reading{width, height, rows.data()};
+    if (readPng(bytes, reading)) return texels;
+    defect = std::string("cannot be decoded: damaged PNG, ") + reading.defect;
+    return {nullptr, {std::free}};
+  }
+  if (isWebp(bytes)) {
+    Texels texels{WebPDecodeRGBA(bytes.data, bytes.size, &width, &height), {WebPFree}};
+    if (!texels) defect = "cannot be decoded: damaged WebP";
+    return texels;
+  }
+  int channels = 0;
+  Texels texels{stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), {stbi_image_free}};
+  if (!texels) defect = std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
+  return texels;
 }
 
 /// Passes over the picture that a JPEG makes, each as long as the picture is large; 0 of other formats. A marker is no
@@ -54,6 +135,9 @@ size_t scansOf(Bytes bytes) {
   for (size_t i = 2; i + 1 < bytes.size; ++i) scans += bytes.data[i] == 0xff && bytes.data[i + 1] == 0xda;
   return scans;
 }
+
+/// Bytes of a texel that decoding takes beside the texels. A JPEG of several passes keeps what they add up.
+size_t workingBytes(Bytes bytes) { return !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
 
 /// Why the image cannot be decoded; empty: it may be.
 std::string defectOf(Bytes bytes, int& width, int& height) {
@@ -92,14 +176,11 @@ TextureImage white(bool srgb) {
 TextureImage decode(const Document& doc, int index, bool srgb, std::string& defect) {
   const Bytes bytes = encodedBytes(doc, index);
   int width = 0, height = 0;
-  const Texels texels = decodeTexels(bytes, width, height);
+  defect = defectOf(bytes, width, height);
   TextureImage out;
-  if (!texels) {
-    defect = isWebp(bytes)
-                 ? "cannot be decoded: damaged WebP"
-                 : std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
-    return out;
-  }
+  if (!defect.empty()) return out;
+  const Texels texels = decodeTexels(bytes, width, height, defect);
+  if (!texels) return out;
   out.width = width;
   out.height = height;
   out.srgb = srgb;
@@ -122,13 +203,21 @@ void decodeImages(Import& import) {
   auto& images = import.scene.assets.images;
   images.resize(order.size());
   std::vector<std::string> defects(order.size());
+  std::vector<std::pair<size_t, std::string>> working; // bytes that decoding takes, and where
   for (size_t i = 0; i < order.size(); ++i) {
     int width = 0, height = 0;
-    defects[i] = defectOf(encodedBytes(doc, order[i].first), width, height);
-    if (defects[i].empty()) // the decoder's and ours
-      doc.spend(size_t(width) * size_t(height), 2 * sizeof(u8vec4),
-                placeOf(doc.model.images[size_t(order[i].first)], order[i].first));
+    const Bytes bytes = encodedBytes(doc, order[i].first);
+    defects[i] = defectOf(bytes, width, height);
+    if (!defects[i].empty()) continue;
+    const size_t texels = size_t(width) * size_t(height);
+    const std::string place = placeOf(doc.model.images[size_t(order[i].first)], order[i].first);
+    doc.spend(texels, 2 * sizeof(u8vec4), place); // the decoder's and ours
+    working.emplace_back(texels * workingBytes(bytes), place);
   }
+  // Those that are decoded at once, the largest at worst.
+  const size_t atOnce = std::min(working.size(), size_t(threadCount()));
+  std::ranges::partial_sort(working, working.begin() + std::ptrdiff_t(atOnce), std::greater());
+  for (size_t i = 0; i < atOnce; ++i) doc.spend(working[i].first, 1, working[i].second);
   std::atomic<size_t> done = 0;
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
     import.tell("textures", Import::kMeshes, 1, done++, order.size());

@@ -39,8 +39,15 @@ struct Import {
   std::map<std::string, size_t> counted; // text → how often
 };
 
-/// Entities for one scene of the file, with cameras, lights and mesh instances.
-void importNodes(Import& import, const std::string& sceneName);
+/// Which of the file's scenes has that name or number, its default where the name is empty; -1: it has none. Throws
+/// InputError.
+int sceneOf(const Document& doc, const std::string& name);
+
+/// Entities for a scene of the file (sceneOf), with cameras, lights and mesh instances.
+void importNodes(Import& import, int scene);
+
+/// The scene's sky, where its extras tell one; `outside`: as FileTrust.
+void importSky(Import& import, int scene, bool outside);
 
 /// A glTF mesh as a slot of SceneAssets::meshes, kNone when it holds no triangles. `skinned`: with its vertices'
 /// joints.

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <compare>
+#include <map>
+#include <utility>
 
 namespace lambent::gltf {
 
@@ -239,32 +241,28 @@ void makeTangents(const Document& doc, Vertices& v, std::vector<uvec3>& triangle
   doc.spend(triangles.size(), kBytesPerMappedTriangle, place);
   const std::vector<CornerTangent> corners = cornerTangents(v.positions, v.normals, uvs, triangles);
   constexpr uint32_t kNobody = 0xffffffffu;
-  struct Copy {
-    uint32_t group, next; // the vertex's next copy
-  };
-  std::vector<Copy> copies(v.positions.size(), {kNobody, kNobody});
+  constexpr size_t kBytesPerCopy = 64;                       // of what finds it
+  std::vector<uint32_t> groups(v.positions.size(), kNobody); // of the vertices as they were read, and
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> copies;  // those of other groups, by vertex and group
   v.tangents.assign(v.positions.size(), vec4(0));
   for (size_t i = 0; i < corners.size(); ++i) {
-    uint32_t at = triangles[i / 3][int(i % 3)];
-    while (copies[at].group != corners[i].group) {
-      if (copies[at].group == kNobody) {
-        copies[at].group = corners[i].group;
-        v.tangents[at] = corners[i].tangent;
-        break;
-      }
-      if (copies[at].next == kNobody) {
-        copies[at].next = uint32_t(copies.size());
-        copies.push_back({kNobody, kNobody});
-        doc.spend(1, bytesPerVertex(v), place);
-        eachArray(v, v, [at](const auto&, auto& array) {
-          if (array.empty()) return;
-          const auto vertex = array[at];
-          array.push_back(vertex);
-        });
-      }
-      at = copies[at].next;
+    uint32_t& corner = triangles[i / 3][int(i % 3)];
+    const uint32_t vertex = corner, group = corners[i].group;
+    if (groups[vertex] == kNobody) {
+      groups[vertex] = group;
+      v.tangents[vertex] = corners[i].tangent;
     }
-    triangles[i / 3][int(i % 3)] = at;
+    if (groups[vertex] == group) continue;
+    const auto [copy, added] = copies.try_emplace({vertex, group}, uint32_t(v.positions.size()));
+    corner = copy->second;
+    if (!added) continue;
+    doc.spend(1, bytesPerVertex(v) + kBytesPerCopy, place);
+    eachArray(v, v, [vertex](const auto&, auto& array) {
+      if (array.empty()) return;
+      const auto value = array[vertex];
+      array.push_back(value);
+    });
+    v.tangents[corner] = corners[i].tangent;
   }
 }
 

@@ -31,21 +31,8 @@ void decompose(Transform& t) {
   t = parts;
 }
 
-std::vector<int> rootsOf(const Document& doc, const std::string& sceneName) {
-  if (!sceneName.empty()) {
-    std::vector<std::string> names;
-    for (size_t i = 0; i < doc.model.scenes.size(); ++i) {
-      if (doc.model.scenes[i].name == sceneName || std::to_string(i) == sceneName) return doc.model.scenes[i].nodes;
-      names.push_back(doc.model.scenes[i].name.empty() ? std::to_string(i) : doc.model.scenes[i].name);
-    }
-    std::string known;
-    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-    throw InputError(doc.file.string(),
-                     "has no scene '" + sceneName + "' (it has: " + (known.empty() ? "none" : known) + ")");
-  }
-  if (doc.model.defaultScene >= 0)
-    return doc.at(doc.model.scenes, doc.model.defaultScene, "scene", "default scene").nodes;
-  if (!doc.model.scenes.empty()) return doc.model.scenes[0].nodes;
+std::vector<int> rootsOf(const Document& doc, int scene) {
+  if (scene >= 0) return doc.model.scenes[size_t(scene)].nodes;
   // A file without scenes is a library of nodes; those without a parent are shown.
   std::vector<bool> isChild(doc.model.nodes.size(), false);
   for (const tinygltf::Node& n : doc.model.nodes)
@@ -148,7 +135,25 @@ std::optional<std::vector<Transform>> instancesOf(const Document& doc, const tin
 
 } // namespace
 
-void importNodes(Import& import, const std::string& sceneName) {
+int sceneOf(const Document& doc, const std::string& name) {
+  const std::vector<tinygltf::Scene>& scenes = doc.model.scenes;
+  if (!name.empty()) {
+    std::string known;
+    for (size_t i = 0; i < scenes.size(); ++i) {
+      if (scenes[i].name == name || std::to_string(i) == name) return int(i);
+      known += (i == 0 ? "" : ", ") + (scenes[i].name.empty() ? std::to_string(i) : scenes[i].name);
+    }
+    throw InputError(doc.file.string(),
+                     "has no scene '" + name + "' (it has: " + (known.empty() ? "none" : known) + ")");
+  }
+  if (doc.model.defaultScene >= 0) {
+    doc.checkIndex(doc.model.defaultScene, scenes.size(), "scene", "default scene");
+    return doc.model.defaultScene;
+  }
+  return scenes.empty() ? -1 : 0;
+}
+
+void importNodes(Import& import, int scene) {
   Document& doc = import.doc;
   Registry& registry = import.scene.registry;
   import.entities.assign(doc.model.nodes.size(), Entity());
@@ -162,7 +167,7 @@ void importNodes(Import& import, const std::string& sceneName) {
   const auto push = [&](const std::vector<int>& nodes, int parent) {
     for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) stack.push_back({*it, parent});
   };
-  push(rootsOf(doc, sceneName), -1);
+  push(rootsOf(doc, scene), -1);
   while (!stack.empty()) {
     const auto [index, parent] = stack.back();
     stack.pop_back();
@@ -224,9 +229,7 @@ void importNodes(Import& import, const std::string& sceneName) {
 
 } // namespace gltf
 
-namespace {
-
-/// See Scene::origin. The middle is where half of the instances lie on either side, so that a few far off do not
+/// The middle is where half of the instances lie on either side, so that a few far off do not
 /// matter. Scenes that lie whole kilometres apart in their files get origins that lie as far apart, and are then the
 /// same to the bit.
 void findOrigin(Scene& scene) {
@@ -255,6 +258,8 @@ void findOrigin(Scene& scene) {
   const double step = near >= 1000 ? 1000 : std::min(8.0, std::exp2(std::ceil(std::log2(near))));
   scene.origin = step * glm::floor(middle / step + 0.29); // not a half: middles of scenes often are whole numbers
 }
+
+namespace {
 
 /// A first frame casts 30 million rays.
 void refuseSlowRays(const Scene& scene, const RayWork& work) {
@@ -291,7 +296,9 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   try {
     import.tell("file", 0, gltf::Import::kRead, 0, 1);
     import.doc = gltf::readDocument(file, trust);
-    gltf::importNodes(import, sceneName);
+    const int shown = gltf::sceneOf(import.doc, sceneName);
+    gltf::importNodes(import, shown);
+    if (shown >= 0) gltf::importSky(import, shown, trust.outside);
     gltf::importAnimations(import);
     gltf::decodeImages(import);
   } catch (const std::bad_alloc&) {

@@ -79,6 +79,17 @@ std::vector<NamedCamera> sceneCameras(const Scene& scene);
 /// default_view.cpp for the rule). Looks at every triangle: up to about a second per million of them.
 CameraView defaultView(const Scene& scene);
 
+/// Finds Scene::origin for the present transforms.
+void findOrigin(Scene& scene);
+
+/// Height of the room that the scene encloses, metres: the middle one of those over the places inside that defaultView
+/// tries; nothing where it encloses none.
+std::optional<float> roomHeight(const Scene& scene);
+
+/// Makes the scene `factor` times as large, as if its file were told in another unit: places, lights' ranges, cameras.
+/// Radiance stays, and so do lights' intensities. Poses it at time 0.
+void rescale(Scene& scene, float factor);
+
 /// Turns the registry into a SceneView; keeps what it needs to find what moved since its last call.
 /// Spans stay valid until the next call.
 class SceneExtractor {

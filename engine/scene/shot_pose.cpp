@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_map>
 
 namespace lambent {
 
@@ -89,19 +91,28 @@ void place(Transform& t, std::optional<dvec3> position, std::optional<quat> rota
   if (position) (*t.matrix)[3] = glm::dvec4(*position, 1);
 }
 
-/// The node called `name`, or an error that names the nearest of those that have a T.
-template <class T> Entity findNode(Scene& scene, const Shot& shot, const std::string& name, const char* what) {
-  std::optional<Entity> found;
-  std::vector<std::string> names;
-  scene.registry.each<Name, T>([&](Entity e, const Name& n, const T&) {
-    if (!found && n.value == name) found = e;
-    names.push_back(n.value);
-  });
-  if (found) return *found;
-  const std::string nearest = nearestName(name, names);
-  throw InputError(shot.file.string(), "the scene has no " + std::string(what) + " called '" + name + "'" +
-                                           (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
-}
+/// The nodes of a scene that have a T, by name; of several with one name the first.
+template <class T> class NamedNodes {
+ public:
+  NamedNodes(const Scene& scene, const Shot& shot, const char* what) : shot_(shot), what_(what) {
+    scene.registry.each<Name, T>([&](Entity e, const Name& n, const T&) { nodes_.emplace(n.value, e); });
+  }
+  /// The one called `name`, or an error that names the nearest.
+  Entity find(const std::string& name) const {
+    if (const auto found = nodes_.find(name); found != nodes_.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [known, node] : nodes_) names.emplace_back(known);
+    std::ranges::sort(names);
+    const std::string nearest = nearestName(name, names);
+    throw InputError(shot_.file.string(), "the scene has no " + std::string(what_) + " called '" + name + "'" +
+                                              (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+  }
+
+ private:
+  const Shot& shot_;
+  const char* what_;
+  std::unordered_map<std::string_view, Entity> nodes_;
+};
 
 void poseNode(Scene& scene, Entity e, const std::vector<NodeKey>& keys, double t) {
   const auto degrees = linear(keys, &NodeKey::rotation, t);
@@ -172,10 +183,14 @@ PlayedMoment playedAt(const Shot& shot, double t) {
 void poseShot(Scene& scene, const Shot& shot, double t) {
   animate(scene, t);
   std::vector<std::pair<Entity, vec3>> aims;
-  for (const auto& [name, keys] : shot.objects)
-    poseNode(scene, findNode<Transform>(scene, shot, name, "node"), keys, t);
+  if (!shot.objects.empty()) {
+    const NamedNodes<Transform> nodes(scene, shot, "node");
+    for (const auto& [name, keys] : shot.objects) poseNode(scene, nodes.find(name), keys, t);
+  }
+  std::optional<NamedNodes<PunctualLight>> lights;
+  if (!shot.lights.empty()) lights.emplace(scene, shot, "light");
   for (const auto& [name, keys] : shot.lights) {
-    const Entity e = findNode<PunctualLight>(scene, shot, name, "light");
+    const Entity e = lights->find(name);
     poseNode(scene, e, keys, t);
     if (const auto intensity = linear(keys, &NodeKey::intensity, t))
       scene.registry.get<PunctualLight>(e).intensity = *intensity;

@@ -37,6 +37,26 @@ void updateWorldTransforms(Scene& scene) {
   });
 }
 
+void rescale(Scene& scene, float factor) {
+  Registry& registry = scene.registry;
+  std::vector<Entity> roots;
+  registry.each<Transform>([&](Entity e, const Transform&) {
+    if (!registry.has<Parent>(e)) roots.push_back(e);
+  });
+  const Entity unit = registry.create();
+  registry.emplace<Name>(unit, "unit");
+  registry.emplace<Transform>(unit).scale = vec3(factor);
+  registry.emplace<WorldTransform>(unit);
+  for (const Entity e : roots) registry.emplace<Parent>(e, unit);
+  registry.each<PunctualLight>([&](Entity, PunctualLight& light) { light.range *= factor; });
+  registry.each<CameraLens>([&](Entity, CameraLens& lens) {
+    lens.near *= factor;
+    lens.orthoHalfHeight *= factor;
+  });
+  animate(scene, 0);
+  findOrigin(scene);
+}
+
 Entity addLight(Scene& scene, const LightView& light, const std::string& name) {
   Registry& registry = scene.registry;
   const Entity e = registry.create();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <string>
 
 namespace lambent::library {
@@ -56,12 +57,30 @@ inline LightView lightOf(const lambent_light_desc* given) {
 
 inline Sky skyOf(const lambent_sky_desc* given) {
   const lambent_sky_desc d = read(given, "sky");
-  requireWithin(d.type, 2, "sky: type");
+  requireWithin(d.type, 3, "sky: type");
   const vec3 radiance = vec3Of(d.radiance), sun = vec3Of(d.towards_sun);
   if (d.type == LAMBENT_SKY_CONSTANT) {
     require(isFinite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0 && maxComponent(radiance) < 1e30f,
             "sky: radiance is below 0, or not finite");
     return Sky(radiance);
+  }
+  if (d.type == LAMBENT_SKY_PICTURE) {
+    constexpr int kLongest = 4096;
+    constexpr float kBrightest = 65504; // of half floats
+    require(d.texels != nullptr, "sky: texels is NULL");
+    require(std::min(d.width, d.height) >= 1 && std::max(d.width, d.height) <= kLongest,
+            "sky: width or height is not 1 to 4096");
+    require(d.scale >= 0 && d.scale <= 1e6f, "sky: scale is not 0 to 1e6");
+    require(std::isfinite(d.turn), "sky: turn is not a number");
+    auto image = std::make_shared<SkyImage>();
+    image->width = d.width;
+    image->height = d.height;
+    for (size_t i = 0; i < size_t(d.width) * size_t(d.height); ++i) {
+      const vec3 texel = vec3Of(d.texels + 3 * i);
+      for (int c = 0; c < 3; ++c) require(texel[c] >= 0 && texel[c] <= kBrightest, "sky: a texel is not 0 to 65504");
+      image->texels.push_back(texel);
+    }
+    return Sky::image(std::move(image), d.scale, d.turn);
   }
   const float length = glm::length(sun);
   require(length > 0 && std::isfinite(length), "sky: towards_sun has no length");

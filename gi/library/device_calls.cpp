@@ -39,6 +39,7 @@ template <> lambent_sky_desc standard() {
   lambent_sky_desc d{};
   d.towards_sun[1] = 1;
   d.turbidity = 3;
+  d.scale = 1;
   return d;
 }
 template <> lambent_view_desc standard() {

@@ -51,6 +51,28 @@ void requireMesh(const lambent_world& world, uint32_t mesh) {
     refuse("no mesh " + std::to_string(mesh) + " (there are " + std::to_string(world.scene.assets.meshes.size()) + ")");
 }
 
+/// Tells the scene's sky as it is kept here: a picture's texels are the scene's own.
+void keepTexels(lambent_world& world) {
+  const Sky::Picture& picture = world.scene.sky.picture();
+  if (picture.image) world.sky.texels = &picture.image->texels[0].x;
+}
+
+/// A sky that a file told: constant, or a picture.
+void describeSky(lambent_world& world) {
+  const Sky& sky = world.scene.sky;
+  if (const Sky::Picture& picture = sky.picture(); picture.image) {
+    world.sky.type = LAMBENT_SKY_PICTURE;
+    world.sky.width = picture.image->width;
+    world.sky.height = picture.image->height;
+    world.sky.scale = picture.scale;
+    world.sky.turn = picture.turn;
+    keepTexels(world);
+    return;
+  }
+  const vec3 radiance = sky.radiance({0, 1, 0});
+  std::copy_n(&radiance.x, 3, world.sky.radiance);
+}
+
 std::atomic<bool> outsideAllowed = false, largeAllowed = false;
 
 } // namespace
@@ -66,6 +88,7 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
     if (file) {
       made->scene = loadScene(file, scene ? scene : "", {}, FileTrust{outsideAllowed, largeAllowed});
       animate(made->scene, 0);
+      describeSky(*made);
     }
     Live<lambent_world>::add(made.get());
     *world = made.release();
@@ -210,6 +233,7 @@ lambent_status lambent_world_set_sky(lambent_world* world, const lambent_sky_des
   return call(world, [&] {
     world->scene.sky = skyOf(sky);
     world->sky = *sky;
+    keepTexels(*world);
   });
 }
 

@@ -316,6 +316,30 @@ TEST_F(Worlds, LargeFilesAreAllowedOnRequest) {
   lambent_world_allow_large(0);
 }
 
+/// A picture of the sky is the world's own: told to the library after the host's copy and the file have gone.
+TEST_F(Worlds, SkiesFromExtrasAndFromTheHost) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + std::string("\x80\x80\x80\x81"));
+  std::string lit = kMorphed;
+  lit.replace(lit.find("2000"), 4, "0");
+  lit.replace(lit.find("\"nodes\":[0,"), 0, R"("extras":{"lambent_sky":{"image":"sky.hdr"}},)");
+  writeBytes(folder / "lit.gltf", lit);
+  Told told((folder / "lit.gltf").c_str());
+  const double byFile = meanOf(told.draw().direct);
+  EXPECT_GT(byFile, 0);
+  {
+    const std::vector<float> texels(6, 3.0f);
+    lambent_sky_desc sky;
+    LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &sky);
+    sky.type = LAMBENT_SKY_PICTURE;
+    sky.texels = texels.data();
+    sky.width = 2;
+    sky.height = 1;
+    ASSERT_EQ(lambent_world_set_sky(told.world, &sky), LAMBENT_OK);
+  }
+  EXPECT_NEAR(meanOf(told.draw().direct), 3 * byFile, 0.1 * byFile);
+}
+
 TEST_F(Worlds, WrongCallsAreStatuses) {
   lambent_world* world = nullptr;
   EXPECT_EQ(lambent_world_load("no-such.gltf", nullptr, &world), LAMBENT_INVALID_ARGUMENT);

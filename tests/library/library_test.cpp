@@ -218,6 +218,38 @@ TEST_F(Library, ASkyTellsItsSunAndItsRadiance) {
   EXPECT_GT(radiance[2], radiance[0]) << "blue";
 }
 
+TEST_F(Library, ASkyMayBeAPicture) {
+  lambent_sky_desc sky;
+  LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &sky);
+  sky.type = LAMBENT_SKY_PICTURE;
+  std::vector<float> texels(size_t(64 * 32 * 3), 0.5f);
+  for (int y = 0; y < 32; ++y) texels[size_t(3 * (64 * y + 48))] = 8; // red at +Z, a quarter right of the middle
+  const float directions[6] = {0, 0, 1, 1, 0, 0};
+  float radiance[6], sun[3], radius;
+  EXPECT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_INVALID_ARGUMENT) << "no texels";
+  sky.texels = texels.data();
+  sky.width = 64;
+  sky.height = 32;
+  ASSERT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_OK) << lambent_message(nullptr);
+  EXPECT_GT(radiance[0], 3);
+  EXPECT_NEAR(radiance[3], 0.5, 1e-3);
+  EXPECT_EQ(lambent_sky_sun(&sky, sun, &radius), LAMBENT_INVALID_ARGUMENT);
+  sky.scale = 2;
+  sky.turn = 1.5707964f; // counter-clockwise from above: from +Z to +X
+  ASSERT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_OK);
+  EXPECT_NEAR(radiance[0], 1, 1e-3);
+  EXPECT_GT(radiance[3], 6);
+  for (const float wrong : {-1.0f, 70000.0f, std::nanf("")}) {
+    texels[100] = wrong;
+    EXPECT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_INVALID_ARGUMENT) << wrong;
+  }
+  texels[100] = 0;
+  for (const int wide : {0, -64, 4097}) {
+    sky.width = wide;
+    EXPECT_EQ(lambent_sky_radiance(&sky, directions, 2, radiance), LAMBENT_INVALID_ARGUMENT) << wide;
+  }
+}
+
 TEST_F(Library, ADestroyedDeviceIsNone) {
   lambent_device* device = nullptr;
   ASSERT_EQ(lambent_create(nullptr, &device), LAMBENT_OK);

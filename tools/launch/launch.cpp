@@ -355,6 +355,11 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
   command.add_option("--sun", options.suns, "add a sun: dx,dy,dz,r,g,b (direction of travel, irradiance)")
       ->allow_extra_args(false);
   command.add_option("--point", options.points, "add a lamp: x,y,z,r,g,b (intensity)")->allow_extra_args(false);
+  command
+      .add_option("--unit", options.unit,
+                  "metres to a unit of the file (0.01: centimetres); else 1, or guessed where rooms would be over "
+                  "100 m high")
+      ->check(CLI::Range(1e-6, 1e6));
   command.add_option("--sky", options.sky,
                      "the sky: its radiance r,g,b, or a picture by longitude and latitude (.hdr, .exr)");
   command.add_option("--sky-scale", options.skyScale, "factor on the radiance of such a picture")
@@ -411,6 +416,27 @@ void useThreads(int threads) {
   requireResources(threadCount() + 1); // of loops, and one that traces beside frames
 }
 
+/// A file in other units than glTF's metres: what the person says, or centimetres where rooms are too high for metres.
+/// A shot's places, and a person's, are in the file's own.
+void chooseUnit(LaunchContext& stage, const LaunchOptions& options) {
+  constexpr float kHighest = 100, kCentimetre = 0.01f; // metres
+  if (options.unit) {
+    if (stage.shot && *options.unit != 1) throw InputError("--unit", "is for a scene (a shot's places are in metres)");
+    if (*options.unit != 1) rescale(stage.scene, float(*options.unit));
+    return;
+  }
+  const bool placed = !options.eye.empty() || !options.points.empty();
+  if (stage.shot || placed || worldBounds(stage.scene).diameter() < kHighest) return;
+  const float height = roomHeight(stage.scene).value_or(0);
+  if (height < kHighest) return;
+  rescale(stage.scene, kCentimetre);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "its rooms would be %.0f m high: the file is taken as told in centimetres (--unit 1 leaves metres)",
+                double(height));
+  stage.notes.push_back(text);
+}
+
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
   useThreads(options.threads);
   return loadLaunch(options, {});
@@ -436,6 +462,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
         throw InputError(written, "the scene is read from this file (name another for the result)");
   for (const fs::path& read : stage->scene.files) keepFromReplacing(read);
   if (stage->shot) keepFromReplacing(options.scene);
+  chooseUnit(*stage, options);
   for (const std::string& text : options.suns) addLight(stage->scene, sunLight(text, options), "sun");
   for (const std::string& text : options.points) addLight(stage->scene, pointLight(text, stage->scene), "lamp");
   if (options.sky.empty() && (options.skyScale != 1 || options.skyTurn != 0))

@@ -21,11 +21,12 @@ class Props;
 
 /// As parsed; texts are checked by openLaunch.
 struct LaunchOptions {
-  std::string scene;     // glTF file or shot file (.json)
-  std::string sceneName; // of several in the file
-  FileTrust trust;       // in what it reads and asks for
+  std::string scene;          // glTF file or shot file (.json)
+  std::string sceneName;      // of several in the file
+  FileTrust trust;            // in what it reads and asks for
+  std::optional<double> unit; // of the file, metres; none: guessed
   std::string camera, eye, target, size, sky, daylight, technique, preset;
-  double skyScale = 1, skyTurn = 0; // of a picture; degrees
+  double skyScale = 1, skyTurn = 0;         // of a picture; degrees
   std::optional<float> fovDegrees, sunSize; // sunSize: degrees across
   std::vector<std::string> set, suns, points;
   std::optional<int> bounces;

@@ -129,6 +129,11 @@ TEST_F(BadInput, TexturesAndPictures) {
   for (int i = 0; i < 2000; ++i) passes += std::string("\xff\xda\x00\x08\x01\x01\x00\x01\x01\x00", 10);
   writeBytes(folder / "missing.png", passes);
   expectWhite("is a JPEG of 2000 passes");
+  // One of a few adds them up in memory of its own: 16 bytes a texel.
+  std::string large("\xff\xd8\xff\xc2\x00\x0b\x08\x18\x00\x18\x00\x01\x01\x11\x00", 15); // 6144 each way
+  for (int i = 0; i < 2; ++i) large += std::string("\xff\xda\x00\x08\x01\x01\x00\x01\x01\x00", 10);
+  writeBytes(folder / "missing.png", large);
+  expectError(b, "needs more memory than a file of");
   std::filesystem::remove(folder / "missing.png");
   expectWhite("cannot be read");
   writeBytes(folder / "missing.png", "no picture");
@@ -141,7 +146,7 @@ TEST_F(BadInput, TexturesAndPictures) {
   const std::string header("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x4e\x20\0\0\0\x01\x08\x02\0\0\0\0\0\0\0", 33);
   writeBytes(folder / "missing.png", header);
   expectWhite("is 20000x1 texels");
-  std::string large = header;
+  large = header;
   large.replace(16, 8, std::string("\0\0\x40\0\0\0\x40\0", 8)); // 16384 each way
   writeBytes(folder / "missing.png", large);
   expectError(b, "needs more memory than a file of");
@@ -402,6 +407,21 @@ TEST_F(BadInput, PosedTrianglesCountForEachNode) {
   for (int i = 1; i < 300; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, i, 0}}});
   b.load(folder);
   primitive["targets"] = {{{"POSITION", primitive["attributes"]["POSITION"]}}};
+  expectError(b, "needs more memory than a file of");
+}
+
+/// Also those that no triangle uses.
+TEST_F(BadInput, PosedVerticesCountForEachNode) {
+  GltfBuilder b;
+  const int many = b.accessor(-1, 5126, "VEC3", 300000); // zeros but for
+  b.json["accessors"][size_t(many)]["sparse"] = {
+      {"count", 3},
+      {"indices", {{"bufferView", b.view(std::vector<uint16_t>{0, 1, 2})}, {"componentType", 5123}}},
+      {"values", {{"bufferView", b.view(std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})}}}};
+  b.addMeshNode({{"attributes", {{"POSITION", many}, {"NORMAL", many}}}, {"indices", b.indices({0, 1, 2})}});
+  for (int i = 1; i < 12; ++i) b.addRoot({{"mesh", 0}, {"translation", {0, i, 0}}});
+  b.load(folder);
+  b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", many}}};
   expectError(b, "needs more memory than a file of");
 }
 

@@ -181,6 +181,48 @@ TEST(DefaultView, IsTheSameOfMoreThanAreKeptAtOnce) {
   EXPECT_LT(std::abs(near.position().x), 5);
 }
 
+/// A room told in centimetres is as high as it says, and rescaled it is the room told in metres: places, lights,
+/// cameras and what is animated.
+TEST(DefaultView, ARoomInCentimetresIsRescaled) {
+  TemporaryFolder folder;
+  EXPECT_FALSE(roomHeight(box(false, false).load(folder)).has_value()) << "an object";
+  EXPECT_NEAR(roomHeight(box(true, false).load(folder)).value(), 4, 1e-3f);
+  const auto roomOf = [&](float unit) {
+    GltfBuilder b = box(true, false);
+    b.json["nodes"][0]["scale"] = {unit, unit, unit};
+    const int mover = b.addMeshNode(b.json["meshes"][0]["primitives"][0]);
+    b.json["nodes"][mover]["scale"] = {0.1 * unit, 0.1 * unit, 0.1 * unit};
+    b.animate(mover, "translation", b.floats({0, 1}), b.floats({0, unit, 0, 2 * unit, unit, 0}, "VEC3"));
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.2 * unit}}}}};
+    b.addRoot({{"camera", 0}, {"translation", {unit, 2 * unit, 0}}});
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 3 * unit}}};
+    b.addRoot({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"translation", {0, 3 * unit, 0}}});
+    return b.load(folder);
+  };
+  Scene metres = roomOf(1), centimetres = roomOf(100);
+  EXPECT_NEAR(roomHeight(centimetres).value(), 400, 0.1f);
+  rescale(centimetres, 0.01f);
+  EXPECT_NEAR(roomHeight(centimetres).value(), 4, 1e-3f);
+  for (const double time : {0.0, 0.5, 0.9}) {
+    animate(metres, time);
+    animate(centimetres, time);
+    SceneExtractor a, b;
+    const SceneView wanted = a.extract(metres, defaultView(metres), time),
+                    got = b.extract(centimetres, defaultView(centimetres), time);
+    expectNear(got.camera.position(), wanted.camera.position());
+    ASSERT_EQ(got.instances.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+      expectNear(got.instances[i].boundsWorld.lo, wanted.instances[i].boundsWorld.lo);
+      expectNear(got.instances[i].boundsWorld.hi, wanted.instances[i].boundsWorld.hi);
+    }
+    ASSERT_EQ(got.lights.size(), 1u);
+    expectNear(got.lights[0].position, wanted.lights[0].position);
+    EXPECT_NEAR(got.lights[0].range, 3, 1e-4f);
+    EXPECT_NEAR(sceneCameras(centimetres).at(0).view.near, 0.2f, 1e-4f);
+    expectNear(sceneCameras(centimetres).at(0).view.position(), {1, 2, 0});
+  }
+}
+
 TEST(DefaultView, StagesAreSeenThroughTheirOpenSide) {
   TemporaryFolder folder;
   const CameraView view = defaultView(box(true, true).load(folder));

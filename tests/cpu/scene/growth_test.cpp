@@ -111,6 +111,37 @@ const Growing kGrowing[] = {
        b.push("materials",
               {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", b.push("textures", {{"source", 0}})}}}}}});
      }},
+    {"addresses with a plus",
+     [](GltfBuilder& b, int i, int) {
+       b.push("images", {{"uri", "a+" + std::to_string(i) + ".png"}});
+     }},
+    {"corners that disagree", // about the tangent of the vertex in the middle
+     [](GltfBuilder& b, int i, int count) {
+       static int primitive;
+       const int n = int(std::sqrt(float(count)));
+       if (i == 0) {
+         std::vector<vec3> positions{vec3(0)};
+         for (const float side : {1.0f, -2.0f})
+           for (int k = 0; k < n; ++k) {
+             const float angle = (side < 0 ? 1.2f : 0) + float(k) / float(n);
+             positions.push_back(side * vec3(-std::cos(angle), 0, std::sin(angle)) * vec3(-1, 1, 1));
+           }
+         std::vector<vec2> uvs;
+         for (const vec3& p : positions) uvs.emplace_back(p.x, p.z);
+         std::vector<uint16_t> corners;
+         for (int a = 0; a < n; ++a)
+           for (int c = 0; c < n; ++c) corners.insert(corners.end(), {0, uint16_t(1 + a), uint16_t(1 + n + c)});
+         b.push("images", {{"uri", "none.png"}});
+         b.push("textures", {{"source", 0}});
+         b.push("materials", {{"normalTexture", {{"index", 0}}}});
+         primitive = b.addMeshNode({{"attributes",
+                                     {{"POSITION", b.positions(positions)},
+                                      {"NORMAL", b.positions(std::vector<vec3>(positions.size(), vec3(0, 1, 0)))},
+                                      {"TEXCOORD_0", b.accessor(b.view(uvs), 5126, "VEC2", uvs.size())}}},
+                                    {"indices", b.indices(corners)},
+                                    {"material", 0}});
+       }
+     }},
     {"unknown things", [](GltfBuilder& b, int i, int) { b.json["extras"]["key" + std::to_string(i)] = i; }},
 };
 

@@ -76,6 +76,19 @@ TEST(Exr, BadFilesAreInputErrors) {
   }
 }
 
+/// All channels are unpacked, whoever asks for three of them.
+TEST(Exr, OfVeryManyChannelsIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "many.exr";
+  {
+    Imf::Header header(8192, 16);
+    for (int i = 0; i < 1100; ++i) header.channels().insert("c" + std::to_string(i), Imf::Channel(Imf::HALF));
+    for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::HALF));
+    Imf::OutputFile out(file.c_str(), header); // without rows
+  }
+  EXPECT_NE(inputErrorOf([&] { readExr(file); }).find("has 1103 channels"), std::string::npos);
+}
+
 TEST(Png, RoundTripIsExact) {
   TemporaryFolder folder;
   Image8 image{3, 2, {0, 1, 2, 3, 4, 5, 250, 251, 252, 9, 9, 9, 8, 8, 8, 7, 0, 7}};

@@ -311,6 +311,55 @@ TEST_F(Import, SceneIsChosenByNameIndexOrDefault) {
   EXPECT_NE(error.find("it has: first, second"), std::string::npos) << error;
 }
 
+TEST_F(Import, ASceneTellsItsSkyInExtras) {
+  const fs::path file = folder / "sky.gltf", picture = folder / "studio.hdr";
+  const std::string texels("\x80\x40\x20\x81\x80\x80\x80\x80", 8);
+  writeBytes(picture, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + texels);
+  GltfBuilder b = oneTriangle();
+  const auto told = [&](const nlohmann::json& sky) {
+    b.json["scenes"][0]["extras"] = {{"lambent_sky", sky}};
+    b.writeGltf(file);
+    scene = loadScene(file);
+  };
+  told({0.5, 1, 2});
+  expectNear(scene.sky.radiance({0, 1, 0}), {0.5f, 1, 2});
+  EXPECT_TRUE(scene.sky.constant());
+  told({{"image", "studio.hdr"}, {"scale", 3}, {"turn", 90}});
+  ASSERT_NE(scene.sky.picture().image, nullptr);
+  EXPECT_EQ(scene.sky.picture().scale, 3);
+  EXPECT_FLOAT_EQ(scene.sky.picture().turn, kPi / 2);
+  EXPECT_NEAR(scene.sky.picture().image->texels[0].x, 1, 0.01f);
+  EXPECT_EQ(scene.files.size(), 2u) << "no result may be written over it";
+  EXPECT_EQ(scene.warnings.size(), 0u);
+
+  // A picture that cannot be read is said. Nor may it lie elsewhere.
+  fs::create_directory(folder / "below");
+  fs::rename(picture, folder / "below" / "studio.hdr");
+  told({{"image", "below/studio.hdr"}});
+  EXPECT_FALSE(scene.sky.black());
+  told({{"image", "studio.hdr"}});
+  EXPECT_TRUE(scene.sky.black());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("studio.hdr: no such file in the scene's folder"), std::string::npos);
+  writeBytes(picture, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + texels.substr(1));
+  told({{"image", "studio.hdr"}});
+  EXPECT_TRUE(scene.sky.black());
+  EXPECT_EQ(scene.warnings.size(), 1u) << "cut off";
+  GltfBuilder inner = oneTriangle();
+  inner.json["scenes"][0]["extras"] = {{"lambent_sky", {{"image", "%2e%2e/below/studio.hdr"}}}};
+  fs::create_directory(folder / "own");
+  inner.writeGltf(folder / "own" / "sky.gltf");
+  EXPECT_TRUE(loadScene(folder / "own" / "sky.gltf").sky.black());
+  EXPECT_FALSE(loadScene(folder / "own" / "sky.gltf", {}, {}, {.outside = true}).sky.black());
+
+  const std::vector<nlohmann::json> wrong = {1,           "studio.hdr", {1, 2},         {1, -2, 3},
+                                             {1, "a", 3}, {1e31, 0, 0}, {{"scale", 1}}, {{"image", 3}}};
+  for (const nlohmann::json& sky : wrong) EXPECT_THROW(told(sky), InputError) << sky;
+  for (const double scale : {0.0, -1.0, 1e9})
+    EXPECT_THROW(told({{"image", "below/studio.hdr"}, {"scale", scale}}), InputError);
+  EXPECT_THROW(told({{"image", "below/studio.hdr"}, {"turn", 361}}), InputError);
+}
+
 TEST_F(Import, SkinnedMeshIsPlacedByItsJointsAlone) {
   GltfBuilder b;
   const int positions = b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});

@@ -2,6 +2,9 @@
 
 #include "engine/scene/shot.h"
 #include "tests/cpu/scene/support.h"
+#include "tests/support/effort.h"
+
+#include <ctime>
 
 namespace lambent::test::shot_test {
 
@@ -187,6 +190,24 @@ TEST(PoseShot, MovesNodesLinearlyAndNamesThoseItLacks) {
   shot.objects.erase("dor");
   shot.lights["door"] = shot.lights["lamp"]; // a node, but not a light
   EXPECT_NE(inputErrorOf([&] { poseShot(scene, shot, 0); }).find("no light called 'door'"), std::string::npos);
+}
+
+/// Each of 16 000 nodes is found at once, not by looking at all of them.
+TEST(PoseShot, FindsManyNodes) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers have costs of their own";
+  GltfBuilder b;
+  Shot shot;
+  constexpr int kNodes = 16000;
+  for (int i = 0; i < kNodes; ++i) {
+    b.addRoot({{"name", "node " + std::to_string(i)}});
+    shot.objects["node " + std::to_string(i)] = {{.t = 0, .position = dvec3(i, 0, 0)}};
+  }
+  const TemporaryFolder folder;
+  Scene scene = b.load(folder);
+  const std::clock_t begin = std::clock();
+  poseShot(scene, shot, 1);
+  EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 0.5) << "it took 2 s";
+  EXPECT_EQ(scene.registry.get<WorldTransform>(*findByName(scene, "node 7")).worldFromNode[3].x, 7);
 }
 
 TEST(PoseShot, WhatEqualKeysHoldDoesNotMove) {
