@@ -168,7 +168,7 @@ TEST(GlossyReference, AgreesWithEvenlySpreadVirtualLights) {
     const ReferenceBox room(finish.roughness, finish.metalness);
     const TracedScene s(room.scene);
     const SceneView& view = s.view;
-    const GatherSettings gather{.disk = 0, .clamp = kClamp, .spread = 0};
+    const GatherSettings gather{.disk = 0, .clamp = kClamp, .spread = 0, .mirrors = 0};
     RayCounts counts;
     std::vector<vec2> centres;
     for (const auto [x, y] : Pixels(24, 16)) centres.push_back((vec2(x, y) + 0.5f) / vec2(24, 16));

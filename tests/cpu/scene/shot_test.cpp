@@ -200,7 +200,7 @@ TEST(PoseShot, FindsManyNodes) {
   constexpr int kNodes = 16000;
   for (int i = 0; i < kNodes; ++i) {
     b.addRoot({{"name", "node " + std::to_string(i)}});
-    shot.objects["node " + std::to_string(i)] = {{.t = 0, .position = dvec3(i, 0, 0)}};
+    shot.objects["node " + std::to_string(i)].emplace_back().position = dvec3(i, 0, 0);
   }
   const TemporaryFolder folder;
   Scene scene = b.load(folder);
