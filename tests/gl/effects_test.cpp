@@ -233,7 +233,7 @@ TEST_F(EffectsTest, MirrorsNeedASmoothMaterial) {
   const auto brushed = stillWorld([](World& w) {
     for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughness = 0.36f;
   });
-  withoutIt(Mirrors, quick(), brushed);
+  withoutIt(Mirrors, quick(), brushed, 0, true); // nor can anything force it
   // A texture may make a surface smooth.
   const auto polished = stillWorld([](World& w) {
     const uint32_t image = w.scene.texture(1, {{0, 40, 255, 255}}, false).image;

@@ -186,6 +186,7 @@ class GatherTest : public GlTest {
   static Settings with(GatherMode mode) {
     Settings settings;
     settings.gather.mode = mode;
+    settings.gather.mirrors = 0; // no part of a gather
     return settings;
   }
   static Image read(Buffer buffer, const GBuffer& gbuffer, const SurfaceLighting& gathered,

@@ -174,7 +174,7 @@ TEST_F(GlossyTest, FullGatherAgreesWithTheReference) {
     scene.camera = cameraAt({1, 0.5f, 0.1f}, {1, 0.4f, 3}, 1, 24, 16);
     const TracedScene traced(scene);
     const GBuffer gbuffer = surfaces(scene);
-    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0};
+    const GatherSettings settings{.mode = GatherMode::Full, .disk = 0, .clamp = 3, .spread = 0, .mirrors = 0};
     Settings all;
     all.gather = settings;
     std::vector<double> means;

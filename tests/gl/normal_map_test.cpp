@@ -36,7 +36,7 @@ TEST_F(NormalMapTest, MappedNormalsAreThoseOfRays) {
   scene.quad({-4, -1, 0}, {2, 0, 0}, {0, 2, 0.5f}, material);
   scene.quad({0, -1, 0}, {-2, 0, 0}, {0, 2, 0.5f}, material);
   const Mesh mesh = scene.assets.meshes[0];
-  scene.add(mesh, glm::translate(mat4(1), vec3(-2.5f, 0, 0)) * glm::scale(mat4(1), vec3(-1, 1, 1)));
+  scene.add(mesh, glm::translate(mat4(1), vec3(-1.8f, 0, 0)) * glm::scale(mat4(1), vec3(-1, 1, 1)));
   scene.add(mesh, glm::translate(mat4(1), vec3(7.5f, 0, 0)) * glm::scale(mat4(1), vec3(1.2f, 0.5f, 2)));
   scene.camera = cameraAt(vec3(0, 0.3f, 5), vec3(0), 1.0f);
   GBuffer frame = surfaces(scene);
