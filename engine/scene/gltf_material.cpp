@@ -21,6 +21,25 @@ vec2 pair(const tinygltf::Value& object, const char* key, vec2 otherwise) {
   return x.IsNumber() && y.IsNumber() ? vec2(x.GetNumberAsDouble(), y.GetNumberAsDouble()) : otherwise;
 }
 
+Minify minifyOf(int filter) {
+  switch (filter) {
+  case TINYGLTF_TEXTURE_FILTER_NEAREST:
+    return Minify::Nearest;
+  case TINYGLTF_TEXTURE_FILTER_LINEAR:
+    return Minify::Linear;
+  case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST:
+    return Minify::NearestMipmapNearest;
+  case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST:
+    return Minify::LinearMipmapNearest;
+  case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR:
+    return Minify::NearestMipmapLinear;
+  case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+    return Minify::LinearMipmapLinear;
+  default:
+    return Minify::Auto;
+  }
+}
+
 Wrap wrapMode(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::ClampToEdge
          : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::MirroredRepeat
@@ -49,6 +68,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
     ref.wrapU = wrapMode(sampler.wrapS);
     ref.wrapV = wrapMode(sampler.wrapT);
     ref.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    ref.minify = minifyOf(sampler.minFilter);
   }
   int texCoord = use.texCoord;
   if (const auto found = use.extensions.find("KHR_texture_transform"); found != use.extensions.end()) {

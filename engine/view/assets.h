@@ -13,13 +13,24 @@ namespace lambent {
 inline constexpr uint32_t kNone = 0xffffffffu;
 
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+/// How a texture is looked up where its texels are smaller than pixels: glTF's minFilter. Auto: what suits the
+/// magnifying filter, texels as they are or all levels mixed.
+enum class Minify : uint8_t {
+  Auto,
+  Nearest,
+  Linear,
+  NearestMipmapNearest,
+  LinearMipmapNearest,
+  NearestMipmapLinear,
+  LinearMipmapLinear
+};
 enum class AlphaMode : uint8_t { Opaque, Mask };
 /// Which surfaces' alpha is tested: none (masks count as solid), masked ones, or all, which lets the others pass.
 enum class AlphaTest : uint8_t { None, Masked, All };
 
 /// 8-bit RGBA image; row 0 is the row at v = 0 (glTF: the top row of the file). `srgb`: colours are sRGB-encoded,
-/// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w), `least` the smallest of each
-/// channel; measureTexels fills them.
+/// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w), `least` the smallest of
+/// each channel; measureTexels fills them.
 struct TextureImage {
   std::string name;
   int width = 0, height = 0;
@@ -35,7 +46,8 @@ struct TextureRef {
   uint32_t image = kNone; // index into SceneAssets::images; kNone = no texture (white)
   uint32_t uvSet = 0;     // 0 or 1
   Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
-  bool nearest = false;
+  bool nearest = false; // between texels that are larger than pixels; rays look textures up by this alone
+  Minify minify = Minify::Auto;
   mat3 uvTransform{1};
 };
 

@@ -10,6 +10,7 @@ void add(Hash& hash, const TextureRef& t) {
   hash.value(t.wrapU);
   hash.value(t.wrapV);
   hash.value(t.nearest);
+  if (t.minify != Minify::Auto) hash.value(t.minify);
   hash.bytes(&t.uvTransform, sizeof t.uvTransform);
 }
 

@@ -15,6 +15,26 @@ namespace lambent {
 
 namespace {
 
+GLenum glMinify(const TextureRef& ref) {
+  switch (ref.minify) {
+  case Minify::Nearest:
+    return GL_NEAREST;
+  case Minify::Linear:
+    return GL_LINEAR;
+  case Minify::NearestMipmapNearest:
+    return GL_NEAREST_MIPMAP_NEAREST;
+  case Minify::LinearMipmapNearest:
+    return GL_LINEAR_MIPMAP_NEAREST;
+  case Minify::NearestMipmapLinear:
+    return GL_NEAREST_MIPMAP_LINEAR;
+  case Minify::LinearMipmapLinear:
+    return GL_LINEAR_MIPMAP_LINEAR;
+  case Minify::Auto:
+    break;
+  }
+  return ref.nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
+}
+
 GLenum glWrap(Wrap wrap) {
   switch (wrap) {
   case Wrap::Repeat:
@@ -212,13 +232,14 @@ gl::VertexArray GpuScene::vertexArrayOf(const char* label, const gl::Buffer& pos
 }
 
 uint32_t GpuScene::samplerFor(const TextureRef& ref) {
-  const uint32_t key = uint32_t(ref.wrapU) | uint32_t(ref.wrapV) << 4 | uint32_t(ref.nearest) << 8;
+  const uint32_t key =
+      uint32_t(ref.wrapU) | uint32_t(ref.wrapV) << 4 | uint32_t(ref.nearest) << 8 | uint32_t(ref.minify) << 9;
   gl::Sampler& sampler = samplers_[key];
   if (!sampler) {
     sampler = gl::Sampler("scene/sampler");
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GLint(glWrap(ref.wrapU)));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GLint(glWrap(ref.wrapV)));
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, ref.nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GLint(glMinify(ref)));
     glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, ref.nearest ? GL_NEAREST : GL_LINEAR);
   }
   return sampler.name();

@@ -145,6 +145,38 @@ TEST_F(GBufferTest, EmissionLeavesTheFrontAlsoOfMirroredInstances) {
   EXPECT_EQ(surfaceBuffer(Buffer::Depth, frame).at(0, 0).x, 0) << "background";
 }
 
+/// A chequer of texels, eight to a pixel: black and white texels by themselves, some of each, or the grey of all.
+TEST_F(GBufferTest, EverySamplerModeMinifiesAsItSays) {
+  HandScene scene;
+  std::vector<u8vec4> texels;
+  Rng rng(1, Stream::Test, 0);
+  for (int i = 0; i < 64 * 64; ++i) texels.emplace_back(u8vec4(vec4(vec3(rng.below(2) * 255.0f), 255)));
+  const uint32_t chequer = scene.material(vec3(1));
+  Material& m = scene.assets.materials[chequer];
+  m.baseColorTexture = scene.texture(64, texels, false);
+  m.baseColorTexture.uvTransform = mat3(16, 0, 0, 0, 16, 0, 0, 0, 1);
+  scene.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, chequer);
+  scene.camera = cameraAt(vec3(0, 0, 12), vec3(0), 1.0f);
+  for (const bool nearest : {false, true})
+    for (int mode = 0; mode <= int(Minify::LinearMipmapLinear); ++mode) {
+      m.baseColorTexture.nearest = nearest;
+      m.baseColorTexture.minify = Minify(mode);
+      ++scene.assets.revision;
+      const Image albedo = surfaceBuffer(Buffer::Albedo, surfaces(scene));
+      double sum = 0, squares = 0;
+      for (const vec3& c : albedo.pixels) sum += double(c.x), squares += double(c.x) * double(c.x);
+      const double n = double(albedo.pixels.size()), mean = sum / n, variance = squares / n - mean * mean;
+      EXPECT_NEAR(mean, 0.5, 0.05) << nearest << ' ' << mode;
+      const bool one = Minify(mode) == Minify::Nearest || (Minify(mode) == Minify::Auto && nearest);
+      if (one)
+        EXPECT_NEAR(variance, 0.25, 0.01) << nearest << ' ' << mode;
+      else if (Minify(mode) == Minify::Linear)
+        EXPECT_NEAR(variance, 0.11, 0.03) << nearest << ' ' << mode;
+      else
+        EXPECT_LT(variance, 0.02) << nearest << ' ' << mode;
+    }
+}
+
 /// A mask that cuts nothing out cuts nothing out far away either, whatever its cutoff.
 TEST_F(GBufferTest, MasksOfWhatIsOpaqueStayOpaqueFarAway) {
   for (const float cutoff : {0.33f, 0.51f, 0.75f, 1.0f}) {

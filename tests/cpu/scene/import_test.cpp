@@ -173,7 +173,7 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   const int picture = b.view(png({255, 0, 188, 255}));
   b.json["images"] = {{{"bufferView", picture}, {"mimeType", "image/png"}, {"name", "pink"}}};
-  b.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  b.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9986}}};
   b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
   b.json["materials"] = {
       {{"pbrMetallicRoughness",
@@ -202,6 +202,7 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
   EXPECT_EQ(t.wrapU, Wrap::ClampToEdge);
   EXPECT_EQ(t.wrapV, Wrap::MirroredRepeat);
   EXPECT_TRUE(t.nearest);
+  EXPECT_EQ(t.minify, Minify::NearestMipmapLinear);
   expectNear(t.uvTransform * vec3(1, 1, 1), {2.5f, 3, 1});
   const TextureImage& image = scene.assets.images.at(t.image);
   EXPECT_EQ(image.name, "pink");
