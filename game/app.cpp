@@ -99,7 +99,9 @@ void App::run() {
     else
       choose();
   }
+  endedInOrder();
   if (play_ && !options_.screenshot.empty()) play_->writeScreenshot(options_.screenshot);
+  play_.reset(); // with what it records
   preferences_.save();
   if (const std::string complaint = preferences_.takeComplaint(); !complaint.empty())
     std::cerr << "warning: " << printable(complaint) << "\n";

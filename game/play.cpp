@@ -154,9 +154,10 @@ void Play::tellWhereItIsDark() {
 /// The stage's settings as the person left them the last time.
 Settings Play::preferred() {
   constexpr float kAdaptation = 2; // seconds
-  if (const std::vector<std::string> asked = askedFor(options_.launch).settings;
-      !options_.frames && !options_.fps && std::ranges::find(asked, "image.adaptation") == asked.end())
-    stage_->settings.image.adaptation = kAdaptation;
+  const std::vector<std::string> asked = askedFor(options_.launch).settings;
+  adapts_ = !options_.frames && !options_.fps && std::ranges::find(asked, "image.adaptation") == asked.end() &&
+            !(shot_ && shot_->set.contains("image.adaptation"));
+  if (adapts_) stage_->settings.image.adaptation = kAdaptation;
   if (options_.defaults) return stage_->settings;
   std::string complaint;
   const auto technique = [](Settings& s, const std::string& name) { applyTechnique(s, name); };

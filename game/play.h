@@ -97,6 +97,7 @@ class Play {
   const std::unique_ptr<Solids> solids_;
   const std::unique_ptr<Goal> goal_; // null: the scene has none
   const std::optional<Shot>& shot_;
+  bool adapts_ = false; // image.adaptation is the window's own; before gi_, which asks for settings
   Scene& scene_;
   const float diameter_; // of the scene as it starts, metres
   Player player_;

@@ -57,8 +57,10 @@ void Play::toggleRecording() {
   std::map<std::string, std::string> set;
   for (const SettingRow& row : settingRows(gi_.settings()))
     if (const double value = row.get(gi_.settings()); value != row.standard) set[row.name] = row.text(value);
+  if (adapts_ && gi_.settings().image.adaptation == stage_->settings.image.adaptation)
+    set.erase("image.adaptation"); // the window's own
   recorder_.begin(scene_.file, shot_ ? &*shot_ : nullptr, options_.fps.value_or(kRecordedFps), std::move(set),
-                  fs::absolute("out"));
+                  fs::absolute("out"), stage_->unit);
   if (options_.fps) {
     gi_.restart();
     extractor_ = {};

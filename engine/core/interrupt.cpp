@@ -57,7 +57,7 @@ void endOnRequest() {
 }
 
 void endSoon() {
-  if (!interrupted && cpuMs > 0) startTimers();
+  if (cpuMs > 0) startTimers();
 }
 
 void endedInOrder() {

@@ -95,6 +95,7 @@ std::vector<uint8_t> decodeMeshopt(const Document& doc, const tinygltf::Value& p
 /// library takes memory for them before it looks at the rest.
 struct DracoHead {
   uint64_t faces = 0, points = 0;
+  uint64_t tables = 0;     // of corners: edgebreaker has one for each decoder of attributes
   bool sequential = false; // else edgebreaker
   bool known = false;
 };
@@ -125,6 +126,7 @@ DracoHead dracoHead(Bytes bytes) {
     byte();
     head.points = varint();
     head.faces = varint();
+    head.tables = byte();
   }
   head.known = at != SIZE_MAX;
   return head;
@@ -313,8 +315,8 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
     doc.fail(place, "names " + std::to_string(head.points) + " vertices and " + std::to_string(head.faces) +
                         " faces, but its accessors have " + std::to_string(count) + " elements");
   // What the decoder takes for a corner and a vertex, by measurement.
-  constexpr size_t kBytesPerCorner = 64;
-  doc.spend(most, kBytesPerCorner, place);
+  constexpr size_t kBytesPerCorner = 64, kBytesPerTable = 8;
+  doc.spend(most, kBytesPerCorner + kBytesPerTable * size_t(head.tables), place);
 
   const auto spend = [&](size_t bytesOfPoint) { doc.spend(most, bytesOfPoint, place); };
   std::string defect;

@@ -30,11 +30,11 @@ struct Budget {
   bool trusted = false;   // may ask for all of that, and show what it likes
   /// Takes from the budget; returns false where that is too much.
   bool take(size_t count, size_t each) {
-    const size_t left = limit() - std::min(spent, limit());
-    const bool fits = each == 0 || count <= left / each;
+    const bool fits = each == 0 || count <= left() / each;
     spent = fits ? spent + count * each : limit() + 1;
     return fits;
   }
+  size_t left() const { return limit() - std::min(spent, limit()); }
   bool overdrawn() const { return spent > limit(); }
   size_t limit() const { return trusted ? free : std::min(free, bySize()); }
   size_t bySize() const {
@@ -67,7 +67,7 @@ struct Document {
   std::vector<PunctualLight> lights; // `type` not yet set
   std::vector<std::string> warnings;
   std::map<std::pair<int, int>, int> dracoIndices; // accessors made of indices, by Draco's view and its POSITION
-  std::map<int, std::string> viewDefects; // of compressed buffer views that cannot be decoded
+  std::map<int, std::string> viewDefects;          // of compressed buffer views that cannot be decoded
 
   /// Throws an InputError for `place` in this file, for example "mesh 3 'Wall', primitive 0".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;

@@ -3,6 +3,7 @@
 #include "engine/scene/gltf_import.h"
 #include "engine/scene/sky_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lambent::gltf {
@@ -24,8 +25,12 @@ Sky pictureOf(Document& doc, const tinygltf::Value& given, const std::string& pl
     return black(std::string("no such file in the scene's folder") +
                  (!outside && leadsOutside(folder, picture) ? " (--allow-outside lets it read others)" : ""));
   try {
+    constexpr size_t kBytesPerTexel = 2 * sizeof(vec3); // as read, and halved
+    doc.budget.read += std::filesystem::file_size(picture);
     std::vector<std::string> notes;
-    const Sky sky = Sky::image(readSky(picture, notes), scale, glm::radians(turn));
+    const auto image = readSky(picture, notes, std::min<uint64_t>(kMostSkyTexels, doc.budget.left() / kBytesPerTexel));
+    doc.spend(image->texels.size(), kBytesPerTexel, place);
+    const Sky sky = Sky::image(image, scale, glm::radians(turn));
     for (std::string& note : notes) doc.warn(std::move(note));
     doc.files.push_back(picture);
     return sky;

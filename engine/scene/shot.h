@@ -51,6 +51,7 @@ struct PlayedMoment {
 struct Shot {
   std::filesystem::path file;
   std::filesystem::path scene;
+  double unit = 1; // of the scene's file, metres: what the shot says is in metres
   double fps = 30, seconds = 0;
   std::vector<CameraKey> camera;                      // empty: the scene's own camera
   std::map<std::string, std::vector<NodeKey>> lights; // by node name

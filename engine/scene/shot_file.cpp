@@ -282,6 +282,7 @@ json headOf(const Shot& shot, const fs::path& file) {
   fs::path scene = fs::proximate(shot.scene, file.parent_path().empty() ? "." : file.parent_path(), error);
   if (error) scene = fs::absolute(shot.scene);
   json out{{"shot", 1}, {"scene", scene.generic_string()}, {"fps", shot.fps}};
+  if (shot.unit != 1) out["unit"] = shot.unit;
   if (!shot.lights.empty()) out["lights"] = toJson(shot.lights);
   if (!shot.objects.empty()) out["objects"] = toJson(shot.objects);
   for (const vec2& p : shot.pixels) out["pixels"].push_back(toJson(p));
@@ -321,11 +322,13 @@ Shot loadShot(const fs::path& file) {
   if (cut) text = text.substr(0, *cut) + endLine(0);
   const json document = parse(file, text);
   const Field root(document, file.string(), "");
-  root.checkKeys({"shot", "scene", "fps", "seconds", "camera", "lights", "objects", "played", "pixels", "set"});
+  root.checkKeys({"shot", "scene", "unit", "fps", "seconds", "camera", "lights", "objects", "played", "pixels", "set"});
   if (root["shot"].number() != 1) root["shot"].fail("is not a version this program reads (1 expected)");
   Shot shot;
   shot.file = file;
   shot.scene = (file.parent_path() / root["scene"].text()).lexically_normal();
+  if (root.has("unit")) shot.unit = root["unit"].number();
+  if (!(shot.unit >= 1e-6 && shot.unit <= 1e6)) root["unit"].fail("is out of range (metres, 1e-6 to 1e6)");
   if (root.has("fps")) shot.fps = root["fps"].number();
   if (!(shot.fps > 0 && shot.fps <= 1000)) root["fps"].fail("is out of range (frames per second, above 0 to 1000)");
   shot.seconds = root["seconds"].number();

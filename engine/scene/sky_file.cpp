@@ -12,7 +12,6 @@ namespace lambent {
 namespace {
 
 constexpr int kLongest = 4096;
-constexpr uint64_t kMostSkyTexels = 8192 * 4096;
 constexpr float kMostRadiance = 65504; // of half floats
 
 std::string extensionOf(const std::filesystem::path& file) {
@@ -39,11 +38,12 @@ bool namesSky(const std::filesystem::path& file) {
   return extension == ".hdr" || extension == ".exr";
 }
 
-std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes) {
+std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes,
+                                        uint64_t mostTexels) {
   if (!namesSky(file)) throw InputError(file.string(), "not a picture of the sky (.hdr or .exr)");
   if (std::filesystem::is_directory(file))
     throw InputError(file.string(), "is a folder (a picture of the sky expected)");
-  Image image = extensionOf(file) == ".hdr" ? readHdr(file, kMostSkyTexels) : readExr(file, {}, kMostSkyTexels);
+  Image image = extensionOf(file) == ".hdr" ? readHdr(file, mostTexels) : readExr(file, {}, mostTexels);
   size_t invalid = 0, bright = 0;
   for (vec3& texel : image.pixels)
     for (int c = 0; c < 3; ++c) {

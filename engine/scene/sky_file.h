@@ -9,12 +9,15 @@
 
 namespace lambent {
 
+inline constexpr uint64_t kMostSkyTexels = 8192 * 4096; // of a file
+
 /// Says whether a name is that of a picture that readSky reads (.hdr or .exr, in any case).
 bool namesSky(const std::filesystem::path& file);
 
 /// Reads a picture by longitude and latitude. Ones longer than 4096 are halved until they are not. Adds to `notes` what
 /// is shown differently: what is not a number, or negative, is black; what is more than a half float holds is the most
 /// it holds. Throws InputError.
-std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes);
+std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes,
+                                        uint64_t mostTexels = kMostSkyTexels);
 
 } // namespace lambent

@@ -23,7 +23,7 @@ fs::path newFileIn(const fs::path& folder) {
 } // namespace
 
 void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, std::map<std::string, std::string> set,
-                         const fs::path& folder) {
+                         const fs::path& folder, double unit) {
   *this = {};
   walk_ = shot ? *shot : Shot{};
   walk_->scene = fs::absolute(scene);
@@ -32,6 +32,7 @@ void PathRecorder::begin(const fs::path& scene, const Shot* shot, double fps, st
   walk_->pixels.clear();
   walk_->seconds = 0;
   walk_->fps = fps;
+  walk_->unit = unit;
   walk_->set = std::move(set);
   folder_ = folder;
 }

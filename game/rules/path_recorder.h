@@ -13,9 +13,9 @@ namespace lambent {
 class PathRecorder {
  public:
   /// Begins a walk through `scene`, for a new file walk-N.json in `folder`. What moves by `shot` (may be null) becomes
-  /// part of the new one, with these settings: scene time starts with the walk.
+  /// part of the new one, with these settings: scene time starts with the walk. `unit`: of the scene's file, metres.
   void begin(const std::filesystem::path& scene, const Shot* shot, double fps, std::map<std::string, std::string> set,
-             const std::filesystem::path& folder);
+             const std::filesystem::path& folder, double unit = 1);
   bool recording() const { return walk_.has_value(); }
   double seconds() const { return walk_ ? walk_->seconds : 0; }
   size_t frames() const { return frames_; }

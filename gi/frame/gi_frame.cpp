@@ -128,17 +128,17 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
       out.direct = k.direct.run(frame, stats);
     else
       k.direct.forget();
+    bool mirrored = plan.onlyDirect(); // in the light that stays
     if (plan.onlyDirect()) {
       out.indirect = last.indirect;
     } else if (plan.on(EffectId::Indirect)) {
       const gl::DrawCount ofIndirect;
       out.indirect = indirect.run(frame, stats);
-      if (plan.on(EffectId::Mirrors) && settings.gather.mirrors > 0 && out.indirect.glossy)
-        out.indirect = k.mirrors.add(frame, out.indirect, stats);
-      else
-        k.mirrors.forget();
+      mirrored = settings.gather.mirrors > 0 && out.indirect.glossy;
+      if (mirrored) out.indirect = k.mirrors.add(frame, out.indirect, stats);
       stats.of(EffectId::Indirect) += ofIndirect();
     }
+    if (!mirrored) k.mirrors.forget();
     out.patches = plan.onlyDirect() ? last.patches : patches.made();
     k.outputs = out;
     stats.of(EffectId::Redraw) = draws();

@@ -3,13 +3,15 @@
 #include "gi/gather/add_pixels.h"
 #include "gi/near/mirror_rays.h"
 
+#include <algorithm>
+
 namespace lambent {
 
 namespace {
 
-constexpr float kReflectedFollow = 0.3f; // of a coarse change, in its first frame; as soft light
-// Earlier frames while camera or light moves. What a mirror shows does not move with its surface.
-constexpr int kInMotion = 8;
+// Earlier frames in a mean while the camera moves, and while light does: what a mirror shows does not move with its
+// surface, and no coarse change of irradiance tells that it changes.
+constexpr int kCameraMoves = 8, kLightChanges = 2;
 
 } // namespace
 
@@ -18,18 +20,22 @@ void MirrorPass::forget() {
   averaged_ = 0;
 }
 
-SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& light, FrameStats& stats) {
+SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& others, FrameStats& stats) {
   const SceneChanges& changes = frame.world.view.changes;
   const GBuffer& surfaces = frame.surfaces;
   const PixelBox pixels = mirrorsOf(frame.world.view);
   if (pixels.empty()) {
     forget();
-    return light;
+    return others;
   }
-  const int frames = frame.plan.on(EffectId::History) ? frame.settings.history.frames : 1;
+  // Rays are drawn at random whether other light is averaged or not.
+  const bool averages = frame.settings.effects[EffectId::History] != EffectMode::Off;
+  const int frames = averages ? std::max(1, frame.settings.history.frames) : 1;
   if (frames < 2 || changes.first || frame.gatherChanged) forget();
   history_.fit(surfaces);
   std::vector<vec3> found;
+  finish_.resize(size_t(surfaces.width) * size_t(surfaces.height));
+  surfaces.finish->read(std::span(finish_), GL_RGBA, GL_FLOAT);
   {
     const CpuScope scope(stats.stages, key(StageId::MirrorRays));
     found = traceMirrors({.view = frame.world.view,
@@ -38,6 +44,7 @@ SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& light
                           .pixels = pixels,
                           .samples = frame.settings.gather.mirrors,
                           .bounces = frame.bounces,
+                          .finish = finish_,
                           .normalMaps = surfaces.mappedNormal != nullptr,
                           .seed = frame.seed,
                           .sample = history_.sample()},
@@ -54,25 +61,23 @@ SurfaceLighting MirrorPass::add(const Frame& frame, const SurfaceLighting& light
   }
   if (history_.sample() == 0)
     rests_ = frames;
-  else if (frame.plan.seenChanges())
+  else if (frame.restart)
     rests_ = 3 * frames; // until what frames in motion blurred is forgotten
-  averaged_ = frame.plan.seenChanges() ? 1 : averaged_ + 1;
-  const SurfaceLighting mean =
-      history_.run({.surfaces = surfaces,
-                    .gathered = sampled,
-                    .cameraMoved = changes.camera,
-                    .lightChanges = changes.lights || changes.geometry || changes.instances || frame.settingsChanged,
-                    .settings = {.frames = frames},
-                    .filter = frame.settings.filter,
-                    .follow = kReflectedFollow,
-                    .smooth = history_.sample() > 0 ? denoised_ : SurfaceLighting{},
-                    .apart = true,
-                    .glossyFrames = kInMotion});
+  averaged_ = frame.restart ? 1 : averaged_ + 1;
+  const bool light = changes.lights || changes.geometry || changes.instances || frame.settingsChanged;
+  const SurfaceLighting mean = history_.run({.surfaces = surfaces,
+                                             .gathered = sampled,
+                                             .cameraMoved = changes.camera || light,
+                                             .lightChanges = false, // of irradiance, which is black here
+                                             .settings = {.frames = frames},
+                                             .filter = frame.settings.filter,
+                                             .smooth = history_.sample() > 0 ? denoised_ : SurfaceLighting{},
+                                             .glossyFrames = light ? kLightChanges : kCameraMoves});
   denoised_ = denoise_.run({surfaces, mean, history_.variance(), history_.worth(), frame.settings.filter});
   const gl::PassScope scope = context_.scope(StageId::Mirrors);
   sum_.fit(surfaces);
   sum_.clear();
-  addLight(context_, light, sum_);
+  addLight(context_, others, sum_);
   addLight(context_, denoised_, sum_);
   return sum_.light();
 }

@@ -21,10 +21,12 @@ void applyNormalMap(const SceneView& view, SurfaceHit& hit) {
                               towardsViewerAt(view.camera, hit.position));
 }
 
+Receiver receiverOf(const SceneView& view, const SurfaceHit& hit, const vec4& finish) {
+  return makeReceiver(hit.normal, towardsViewerAt(view.camera, hit.position), hit.albedo, finish);
+}
+
 Receiver receiverOf(const SceneView& view, const SurfaceHit& hit) {
-  const vec3 towardsViewer = towardsViewerAt(view.camera, hit.position);
-  return makeReceiver(hit.normal, towardsViewer, hit.albedo,
-                      finishAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric));
+  return receiverOf(view, hit, finishAt(view, hit.instance, hit.primitive, hit.triangle, hit.barycentric));
 }
 
 vec3 reflectanceOf(const Receiver& receiver, const vec3& direction) {

@@ -12,8 +12,9 @@ namespace lambent {
 /// Gives a valid hit the normal that its normal map has for `view`'s camera.
 void applyNormalMap(const SceneView& view, SurfaceHit& hit);
 
-/// The surface that `view`'s camera sees at a valid hit, as the G-buffer holds it.
+/// The surface that `view`'s camera sees at a valid hit, as the G-buffer holds it; the second with a finish of its own.
 Receiver receiverOf(const SceneView& view, const SurfaceHit& hit);
+Receiver receiverOf(const SceneView& view, const SurfaceHit& hit, const vec4& finish);
 
 /// Radiance towards the viewer per irradiance from `direction` (unit), both parts of the reflection, 1/sr. Zero below
 /// the surface.

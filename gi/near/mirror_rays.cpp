@@ -75,10 +75,14 @@ std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
     for (size_t n = begin; n < end; ++n) {
       const SurfaceHit& h = surfaces[n - begin];
       if (!h.valid()) continue;
-      const Receiver receiver = receiverOf(in.view, h);
+      const size_t i = pixelOf(n);
+      const size_t row = i / size_t(camera.width), column = i % size_t(camera.width);
+      const Receiver receiver =
+          in.finish.empty()
+              ? receiverOf(in.view, h)
+              : receiverOf(in.view, h, in.finish[(size_t(camera.height) - 1 - row) * size_t(camera.width) + column]);
       const float share = mirrorShare(receiver) / float(in.samples);
       if (!(share > 0)) continue;
-      const size_t i = pixelOf(n);
       const vec3 shift = Rng(in.seed, Stream::Mirrors, uint32_t(i)).next3();
       for (int k = 0; k < in.samples; ++k) {
         const uint32_t sample = in.sample * uint32_t(in.samples) + uint32_t(k);

@@ -7,6 +7,7 @@
 #include "engine/trace/ray_query.h"
 #include "gi/lighting/light_set.h"
 
+#include <span>
 #include <vector>
 
 namespace lambent {
@@ -27,6 +28,9 @@ struct MirrorInputs {
   PixelBox pixels = {}; // that are asked; the others get none
   int samples = 1;      // of each
   int bounces = 1;      // of light that reaches what is mirrored, as SmcSettings::bounces
+  /// What the image has at its pixels, as makeReceiver takes it, rows from the bottom: virtual lights leave the share
+  /// of this. Empty: what the surface has where a ray through the pixel's centre meets it.
+  std::span<const vec4> finish = {};
   bool normalMaps = false;
   uint32_t seed = 1;
   uint32_t sample = 0; // number of the first one: those of a mean follow each other

@@ -236,16 +236,17 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
   plan.lightChanges_ = changes.first || changes.lights || moved || facts.settingsChanged || waiting;
   plan.seenChanges_ = !still || facts.drawingChanged || facts.first;
   plan.changed_ = !still || facts.drawingChanged || newLight || waiting;
+  const bool mirrorsPending = facts.mirrorsPending && plan.on(EffectId::Mirrors);
   decide(EffectId::Redraw, !still                 ? Answer{true, "the view, the scene or settings changed"}
                            : facts.drawingChanged ? Answer{true, "settings or shaders changed"}
                            : newLight             ? Answer{true, "VPLs change"}
                            : waiting              ? Answer{true, "shadow maps are waiting"}
                            : indirect && !status.pending.empty() ? Answer{true, status.pending}
                            : status.averaged < historyFrames     ? Answer{true, "light is averaged over frames"}
-                           : facts.mirrorsPending                ? Answer{true, "reflections are averaged over frames"}
+                           : mirrorsPending                      ? Answer{true, "reflections are averaged over frames"}
                            : facts.directPending                 ? Answer{true, "direct light is averaged over frames"}
                                                                  : Answer{false, "nothing changed"});
-  plan.onlyDirect_ = facts.directPending && !facts.mirrorsPending && !facts.first && !plan.changed_ &&
+  plan.onlyDirect_ = facts.directPending && !mirrorsPending && !facts.first && !plan.changed_ &&
                      status.averaged >= historyFrames && !(indirect && !status.pending.empty());
   if (Effect& redraw = plan.effects_[size_t(EffectId::Redraw)]; facts.first && !redraw.on) {
     redraw.on = true;

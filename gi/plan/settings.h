@@ -107,10 +107,10 @@ struct SmcSettings {
 struct ShadowSettings {
   int resolution = 128; // texels per side of a VPL's paraboloid map
   ShadowMaker maker = ShadowMaker::Auto;
-  float bias = 0.4f;   // depth left for round-off and curved receivers, texels of the map at the receiver
-  int refresh = 48;    // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
+  float bias = 0.4f; // depth left for round-off and curved receivers, texels of the map at the receiver
+  int refresh = 48;  // VPL maps' worth of texels drawn again per frame where objects moved, brightest lights first
   FirstMaps firstMaps = FirstMaps::Auto; // how the first VPL maps of a scene are drawn
-  int motionRays = 16; // rays that look whether a light sees a moved object; 0 = assume that it does
+  int motionRays = 16;                   // rays that look whether a light sees a moved object; 0 = assume that it does
   // Texels per side of a punctual light's map; 0 follows the frame, with w its width rounded up to a power of two.
   int sunResolution = 0;   // 2w
   int pointResolution = 0; // w/2 per cube face
@@ -232,8 +232,8 @@ struct HistorySettings {
 };
 
 struct ImageSettings {
-  float exposure = 0; // factor on radiance before tone mapping; 0 = measured once when the first frame is drawn
-  float adaptation = 0; // seconds in which a measured exposure comes half of the way to what the image asks for; 0: never
+  float exposure = 0;   // factor on radiance before tone mapping; 0 = what the first frame asks for
+  float adaptation = 0; // seconds until a measured exposure is half of the way to what later frames ask for; 0: never
   ToneMapper toneMapper = ToneMapper::Reinhard;
   AntiAliasing antiAliasing = AntiAliasing::Edges;
   bool operator==(const ImageSettings&) const = default;

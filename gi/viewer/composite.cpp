@@ -3,6 +3,7 @@
 #include "gi/viewer/viewer_stages.h"
 
 #include <cmath>
+#include <utility>
 
 namespace lambent {
 
@@ -54,14 +55,9 @@ float measureExposure(const gl::Texture& radiance) {
   return exposureOf(logSum, double(count));
 }
 
-float ExposureMeter::next(const gl::Texture& radiance) {
+void ExposureMeter::measure(const gl::Texture& radiance) {
   constexpr int kAcross = 64, kDown = 36;
-  glm::dvec2 sum(0);
-  if (logs_) {
-    std::vector<vec2> cells(size_t(logs_.width()) * size_t(logs_.height()));
-    logs_.read(std::span(cells), GL_RG, GL_FLOAT);
-    for (const vec2& cell : cells) sum += glm::dvec2(cell);
-  } else {
+  if (!logs_) {
     logs_ = gl::Texture("exposure", {.format = GL_RG32F, .width = kAcross, .height = kDown});
     framebuffer_ = gl::Framebuffer("exposure", {&logs_});
   }
@@ -73,6 +69,15 @@ float ExposureMeter::next(const gl::Texture& radiance) {
   framebuffer_.bind();
   gl::PipelineState{.width = kAcross, .height = kDown}.apply();
   gl::drawFullscreen();
+  unread_ = true;
+}
+
+float ExposureMeter::read() {
+  if (!std::exchange(unread_, false)) return 0;
+  std::vector<vec2> cells(size_t(logs_.width()) * size_t(logs_.height()));
+  logs_.read(std::span(cells), GL_RG, GL_FLOAT);
+  glm::dvec2 sum(0);
+  for (const vec2& cell : cells) sum += glm::dvec2(cell);
   return exposureOf(sum.x, sum.y);
 }
 

@@ -32,37 +32,37 @@ void Viewer::restart() {
   passes_.reset(); // before the programs that it draws with
   gi_.restart();
   passes_ = std::make_unique<Passes>(gi_.context());
-  exposure_ = elapsed_ = 0;
+  exposure_ = measured_ = firstMeasured_ = elapsed_ = 0;
 }
 
 /// Takes the exposure that the settings name, or that the image asks for.
-void Viewer::expose(bool drawn) {
-  constexpr float kMost = 8; // from what the first frame asked for
+void Viewer::expose(bool drawn, float elapsed) {
+  constexpr float kMost = 8; // from what the first image with light asked for
   const ImageSettings& image = settings().image;
-  const float elapsed = std::exchange(elapsed_, 0.0f);
   if (image.exposure > 0) {
     exposure_ = image.exposure;
     return;
   }
-  const bool first = exposure_ <= 0;
-  if (drawn && (first || image.adaptation > 0)) {
-    const gl::Texture& radiance = *passes_->results.radiance;
-    const float measured = first ? measureExposure(radiance) : passes_->meter.next(radiance);
-    if (measured > 0) measured_ = measured; // a black image asks for nothing
+  const gl::Texture* const radiance = passes_->results.radiance;
+  if (exposure_ <= 0 && drawn) {
+    measured_ = firstMeasured_ = measureExposure(*radiance);
+    exposure_ = measured_ > 0 ? measured_ : 1;
   }
-  if (first)
-    exposure_ = firstMeasured_ = measured_ = measured_ > 0 ? measured_ : 1;
-  else if (image.adaptation > 0 && elapsed > 0 && measured_ > 0) {
-    if (!(firstMeasured_ > 0)) firstMeasured_ = exposure_; // a person's
-    const float wanted = std::clamp(measured_, firstMeasured_ / kMost, firstMeasured_ * kMost);
-    exposure_ *= std::pow(wanted / exposure_, 1 - std::exp2(-elapsed / image.adaptation));
-  }
+  if (!(image.adaptation > 0)) return;
+  if (drawn) passes_->meter.measure(*radiance);
+  if (!(measured_ > 0 && elapsed > 0)) return;
+  const float wanted = std::clamp(measured_, firstMeasured_ / kMost, firstMeasured_ * kMost);
+  exposure_ *= std::pow(wanted / exposure_, 1 - std::exp2(-elapsed / image.adaptation));
 }
 
 const FrameStats& Viewer::run(const SceneView& view, const std::function<void(int, int)>& progress,
                               const HostSurfaces* host) {
   const gl::StateGuard guard;
   FrameResults& results = passes_->results;
+  if (const float measured = passes_->meter.read(); measured > 0) { // a black image asks for nothing
+    measured_ = measured;
+    if (!(firstMeasured_ > 0)) firstMeasured_ = measured;
+  }
   FrameStats& stats = passes_->stats;
   const gl::Texture* const last = results.radiance;
   try {
@@ -79,7 +79,7 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   const bool drawn = stats.plan.on(EffectId::Redraw);
   if (drawn)
     results.radiance = &passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
-  expose(drawn);
+  expose(drawn, std::exchange(elapsed_, 0.0f));
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;
   stats.draws += asked.draws;

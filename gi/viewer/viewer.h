@@ -87,11 +87,10 @@ class Viewer {
   struct Passes;
   bool show(Buffer buffer) const; // false: there is no frame
   Look look() const;
+  void expose(bool drawn, float elapsed);
 
   GiFrame gi_;
   std::unique_ptr<Passes> passes_;
-  void expose(bool drawn);
-
   float exposure_ = 0, measured_ = 0, firstMeasured_ = 0; // 0: not yet
   float elapsed_ = 0;                                     // seconds since the last frame
 };

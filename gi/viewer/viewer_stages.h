@@ -49,18 +49,20 @@ class CompositePass {
 /// when there is no light. Reads the image back.
 float measureExposure(const gl::Texture& radiance);
 
-/// The same, a frame late and read from a small grid, so that the CPU does not wait for the image.
+/// The same, a frame late and read from a small grid.
 class ExposureMeter {
  public:
   explicit ExposureMeter(PassContext context) : context_(context) {}
-  /// Measures the image, and returns what the one before asked for; 0 where there was none, or no light in it.
-  float next(const gl::Texture& radiance);
-  void forget() { logs_ = {}; }
+  void measure(const gl::Texture& radiance);
+  /// What the image measured last asks for, once; 0 where there is no light in it, or nothing new. Called before a
+  /// frame is drawn it waits for the one before alone.
+  float read();
 
  private:
   PassContext context_;
   gl::Texture logs_;
   gl::Framebuffer framebuffer_;
+  bool unread_ = false;
 };
 
 // Looking at it ----------------------------------------------------------------------------------------------------

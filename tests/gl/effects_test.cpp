@@ -127,6 +127,13 @@ class EffectsTest : public GlTest {
   }
 };
 
+/// Frames until nothing is done any more.
+int framesToSettle(Viewer& gi, const SceneView& still, int most) {
+  int frames = 0;
+  while (frames < most && gi.run(still).plan.on(Redraw)) ++frames;
+  return frames;
+}
+
 // Every effect has both a scene without it and one with it below
 
 TEST_F(EffectsTest, IndirectNeedsLight) {
@@ -245,6 +252,35 @@ TEST_F(EffectsTest, MirrorsNeedASmoothMaterial) {
   EXPECT_GT(lossWithout(Mirrors, quick(), polished), 0.01);
 }
 
+/// What mirrors show is averaged whether other light is or not, until the view rests; and where it goes off, it rests.
+TEST_F(EffectsTest, MirrorsAreAveragedByEveryTechnique) {
+  for (const VplSource source : {VplSource::Smc, VplSource::Rsm}) {
+    Settings settings = quick();
+    settings.vpl.source = source;
+    settings.vpl.visibility = source == VplSource::Smc ? VplVisibility::Maps : VplVisibility::None;
+    settings.gather.mode = GatherMode::Full;
+    settings.gather.near = 0;
+    settings.history.frames = 16;
+    settings.smc.moves = 0;
+    World w;
+    for (Material& m : w.scene.assets.materials) m.metalness = 1, m.roughness = 0.15f;
+    Viewer gi(settings);
+    const Image first = nextFrame(gi, w.first(), Buffer::Indirect);
+    EXPECT_TRUE(gi.stats().plan.on(Mirrors));
+    EXPECT_FALSE(gi.gi().converged());
+    const Image second = nextFrame(gi, w.still(), Buffer::Indirect);
+    EXPECT_GT(relativeRmse(second, first), 1e-4) << "other rays";
+    EXPECT_FALSE(gi.stats().plan.onlyDirect());
+    const int frames = framesToSettle(gi, w.still(), 60);
+    EXPECT_GE(frames, 13);
+    EXPECT_LE(frames, 20);
+    EXPECT_TRUE(gi.gi().converged());
+    nextFrame(gi, w.view(kCameraChanged), Buffer::Indirect);
+    gi.settings().smc.bounces = 0;
+    EXPECT_LT(framesToSettle(gi, w.still(), 60), 6) << "without indirect light nothing is left to average";
+  }
+}
+
 TEST_F(EffectsTest, IndirectReachesBlackGloss) {
   Settings glossy = quick();
   glossy.gather.glossy = true;
@@ -262,13 +298,6 @@ TEST_F(EffectsTest, IndirectReachesBlackGloss) {
 }
 
 // A still world
-
-/// Frames until nothing is done any more.
-int framesToSettle(Viewer& gi, const SceneView& still, int most) {
-  int frames = 0;
-  while (frames < most && gi.run(still).plan.on(Redraw)) ++frames;
-  return frames;
-}
 
 TEST_F(EffectsTest, AStillWorldSettlesAndSleeps) {
   World w;

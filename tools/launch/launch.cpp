@@ -416,25 +416,26 @@ void useThreads(int threads) {
   requireResources(threadCount() + 1); // of loops, and one that traces beside frames
 }
 
-/// A file in other units than glTF's metres: what the person says, or centimetres where rooms are too high for metres.
-/// A shot's places, and a person's, are in the file's own.
+/// A file in other units than glTF's metres: what the shot or the person says, or centimetres where rooms are too high
+/// for metres. Who types places without a word about units means the file's, and is not guessed for.
 void chooseUnit(LaunchContext& stage, const LaunchOptions& options) {
-  constexpr float kHighest = 100, kCentimetre = 0.01f; // metres
-  if (options.unit) {
-    if (stage.shot && *options.unit != 1) throw InputError("--unit", "is for a scene (a shot's places are in metres)");
-    if (*options.unit != 1) rescale(stage.scene, float(*options.unit));
-    return;
-  }
+  constexpr float kHighest = 100; // metres
+  constexpr double kCentimetre = 0.01;
+  if (options.unit && stage.shot)
+    throw InputError("--unit", "is for a scene (a shot has a unit of its own: \"unit\" in its file)");
+  stage.unit = stage.shot ? stage.shot->unit : options.unit.value_or(1);
   const bool placed = !options.eye.empty() || !options.points.empty();
-  if (stage.shot || placed || worldBounds(stage.scene).diameter() < kHighest) return;
-  const float height = roomHeight(stage.scene).value_or(0);
-  if (height < kHighest) return;
-  rescale(stage.scene, kCentimetre);
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "its rooms would be %.0f m high: the file is taken as told in centimetres (--unit 1 leaves metres)",
-                double(height));
-  stage.notes.push_back(text);
+  if (!stage.shot && !options.unit && !placed && worldBounds(stage.scene).diameter() >= kHighest) {
+    if (const float height = roomHeight(stage.scene).value_or(0); height >= kHighest) {
+      stage.unit = kCentimetre;
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "its rooms would be %.0f m high: the file is taken as told in centimetres (--unit 1 leaves metres)",
+                    double(height));
+      stage.notes.push_back(text);
+    }
+  }
+  if (stage.unit != 1) rescale(stage.scene, float(stage.unit));
 }
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {

@@ -57,6 +57,7 @@ class LaunchContext {
   std::unique_ptr<Props> props; // what somebody plays or, as the shot has it, played with; null: nobody
   HeldMemory held{"scene"};     // its meshes and textures
   CameraView camera; // of the command line, the file or a default; the shot's camera comes first where it has one
+  double unit = 1;   // of the scene's file, metres
   bool cameraGiven = false; // from the command line: overrides the shot's
   Settings settings;
   uint32_t seed = 1;

@@ -131,11 +131,12 @@ const std::vector<NoKnob>& noKnobTable() {
       {{"multires.detail", "multires.light"}, "of splatting (technique multires-splat)"},
       {{"gather.glossy", "gather.mirrors", "gather.spread"}, "another picture: what is measured here is diffuse"},
       {{"direct.on"}, "whose light it is, an engine's choice"},
-      {{"image.exposure", "image.adaptation", "image.toneMapper", "image.antiAliasing", "debug.nan", "debug.timing"}, "how it is shown"},
+      {{"image.exposure", "image.adaptation", "image.toneMapper", "image.antiAliasing", "debug.nan", "debug.timing"},
+       "how it is shown"},
       {{"effects.indirect", "effects.bounces", "effects.emissive", "effects.sky", "effects.alpha", "effects.textures",
         "effects.motion", "effects.mapRefresh", "effects.relight", "effects.replace", "effects.filter",
-        "effects.history", "effects.glossy", "effects.mirrors", "effects.normalMaps", "effects.softShadows", "effects.gather",
-        "effects.redraw"},
+        "effects.history", "effects.glossy", "effects.mirrors", "effects.normalMaps", "effects.softShadows",
+        "effects.gather", "effects.redraw"},
        "the plan leaves out only what shows nowhere"},
   };
   return table;

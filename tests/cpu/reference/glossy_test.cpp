@@ -133,6 +133,32 @@ TEST(GlossyReference, MirrorsShowWhatPathTracingShows) {
   }
 }
 
+/// The share of rays is that of the image, which virtual lights leave out, whatever the surface is where a ray meets
+/// it.
+TEST(GlossyReference, MirrorsGoByTheFinishOfTheImage) {
+  Plate plate({0.6f, 1});
+  plate.scene.quad({-2, -10, 0}, {0, 20, 0}, {0, 0, 6}, plate.scene.material({0.7f, 0.4f, 0.2f}));
+  plate.scene.lamp({1, 1, 2}, vec3(5));
+  const TracedScene s(plate.scene);
+  const size_t pixels = size_t(plate.scene.camera.width) * size_t(plate.scene.camera.height);
+  const auto light = [&](std::vector<vec4> finish) {
+    RayCounts counts;
+    double sum = 0;
+    for (const vec3& v :
+         traceMirrors({.view = s.view, .rays = s.rays, .lights = s.lights, .samples = 16, .finish = finish}, counts))
+      sum += double(v.y);
+    return sum;
+  };
+  EXPECT_EQ(light({}), 0) << "too rough";
+  EXPECT_GT(light(std::vector<vec4>(pixels, plainFinish(0.1f, 1))), 0);
+  std::vector<vec4> lower(pixels, plainFinish(0.6f, 1)); // rows from the bottom
+  std::fill_n(lower.begin(), pixels / 4, plainFinish(0.1f, 1));
+  RayCounts counts;
+  const std::vector<vec3> some =
+      traceMirrors({.view = s.view, .rays = s.rays, .lights = s.lights, .samples = 16, .finish = lower}, counts);
+  for (size_t i = 0; i < pixels; ++i) EXPECT_EQ(some[i] == vec3(0), i < 3 * pixels / 4) << i;
+}
+
 /// Pixels that cannot show a mirror are not asked; those that can get the same light.
 TEST(GlossyReference, MirrorsAreLookedForWhereTheyMayBe) {
   HandScene scene;

@@ -342,6 +342,27 @@ TEST(Compression, DracoAttributesAreCountedBeforeTheyAreDecoded) {
   EXPECT_NE(why.find("Draco: needs more memory than a file of"), std::string::npos) << why;
 }
 
+/// Nor may edgebreaker's decoders of attributes, of which each has a table of all corners. The stream ends there.
+TEST(Compression, DracoTablesAreCountedBeforeTheyAreMade) {
+  constexpr size_t kFaces = 100000;
+  std::vector<uint8_t> stream{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0, 0}; // 2.2, a mesh, edgebreaker, standard
+  for (const size_t n : {size_t(1000), kFaces}) {
+    size_t rest = n;
+    for (; rest > 127; rest >>= 7) stream.push_back(uint8_t(rest & 127) | 128);
+    stream.push_back(uint8_t(rest));
+  }
+  stream.push_back(254);
+  GltfBuilder b;
+  const int view = b.view(stream);
+  nlohmann::json primitive = {{"attributes", {{"POSITION", b.accessor(-1, 5126, "VEC3", 1000)}}},
+                              {"indices", b.accessor(-1, 5125, "SCALAR", 3 * kFaces)}};
+  primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}};
+  b.addMeshNode(primitive);
+  const TemporaryFolder folder;
+  const std::string why = refusal([&] { b.load(folder); });
+  EXPECT_NE(why.find("Draco: needs more memory than a file of"), std::string::npos) << why;
+}
+
 std::vector<uint8_t> chunk(const char* type, const std::vector<uint8_t>& data) {
   std::vector<uint8_t> out;
   const auto number = [&](uint32_t n) {
@@ -356,7 +377,8 @@ std::vector<uint8_t> chunk(const char* type, const std::vector<uint8_t>& data) {
 
 /// A PNG of that kind whose rows, filters and all, are `rows`.
 std::vector<uint8_t> pngOf(int width, int height, int depth, int color, bool interlaced,
-                           const std::vector<uint8_t>& rows, const std::vector<std::vector<uint8_t>>& before = {}) {
+                           const std::vector<uint8_t>& rows, const std::vector<std::vector<uint8_t>>& before = {},
+                           int level = 9) {
   std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   const auto add = [&](const std::vector<uint8_t>& bytes) { out.insert(out.end(), bytes.begin(), bytes.end()); };
   add(chunk("IHDR", {0, 0, uint8_t(width >> 8), uint8_t(width), 0, 0, uint8_t(height >> 8), uint8_t(height),
@@ -364,7 +386,7 @@ std::vector<uint8_t> pngOf(int width, int height, int depth, int color, bool int
   for (const auto& bytes : before) add(bytes);
   std::vector<uint8_t> packed(compressBound(uLong(rows.size())));
   uLongf size = packed.size();
-  EXPECT_EQ(compress2(packed.data(), &size, rows.data(), uLong(rows.size()), 9), Z_OK);
+  EXPECT_EQ(compress2(packed.data(), &size, rows.data(), uLong(rows.size()), level), Z_OK);
   packed.resize(size);
   add(chunk("IDAT", packed));
   add(chunk("IEND", {}));
@@ -424,10 +446,12 @@ TEST(Compression, PngsOfEveryKindAreDecoded) {
           EXPECT_EQ(std::memcmp(got.texels.data(), wanted, size_t(4 * width * height)), 0)
               << "depth " << depth << ", colour " << color << ", interlaced " << interlaced << ", key " << keyed;
           stbi_image_free(wanted);
-          // Cut off in its rows, it is white, and said.
+          // Cut off in its last row, it is white, and said: its data as they are, without the last byte of it.
+          const std::vector<uint8_t> plain = pngOf(width, height, depth, color, interlaced, rows, before, 0);
           constexpr std::string_view kData = "IDAT";
-          const auto data = std::ranges::search(bytes, kData).begin();
-          const std::vector<uint8_t> cut(bytes.begin(), data + 7);
+          constexpr ptrdiff_t kHead = 4 + 2 + 5; // name, zlib's and the only block's
+          const auto data = std::ranges::search(plain, kData).begin();
+          const std::vector<uint8_t> cut(plain.begin(), data + kHead + ptrdiff_t(rows.size()) - 1);
           EXPECT_TRUE(hasWarning(withImage(cut, folder), "white instead"))
               << "depth " << depth << ", colour " << color << ", interlaced " << interlaced << ' ' << width << 'x'
               << height;

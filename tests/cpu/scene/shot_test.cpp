@@ -9,7 +9,7 @@
 namespace lambent::test::shot_test {
 
 const char* kShot = R"({
-  "shot": 1, "scene": "models/room.glb", "fps": 24, "seconds": 2.5,
+  "shot": 1, "scene": "models/room.glb", "unit": 0.01, "fps": 24, "seconds": 2.5,
   "camera": {"keys": [{"t": 0, "eye": [0, 1, 5], "target": [0, 1, 0], "fov": 60},
                       {"t": 2, "eye": [4, 1, 5], "target": [0, 1, 0]}]},
   "lights": {"lamp": {"keys": [{"t": 0, "intensity": [0, 0, 0], "direction": [0, -1, 0]},
@@ -36,6 +36,7 @@ class ShotFile : public ::testing::Test {
 
 void expectShotsEqual(const Shot& a, const Shot& b) {
   EXPECT_EQ(a.scene.lexically_normal(), b.scene.lexically_normal());
+  EXPECT_DOUBLE_EQ(a.unit, b.unit);
   EXPECT_DOUBLE_EQ(a.fps, b.fps);
   EXPECT_DOUBLE_EQ(a.seconds, b.seconds);
   ASSERT_EQ(a.camera.size(), b.camera.size());
