@@ -121,6 +121,25 @@ void importDielectric(Import& import, const tinygltf::Material& in, const std::s
   if (out.dielectricF0 < 1e-4f) out.dielectricF0 = 0, out.dielectricLobe = 0;
 }
 
+/// KHR_materials_clearcoat. There is room for one lobe: the coat of what is no metal takes the place of its own gloss.
+/// Returns false where the coat stays out.
+bool importCoat(Import& import, const tinygltf::Material& in, lambent::Material& out) {
+  const auto coat = in.extensions.find("KHR_materials_clearcoat");
+  if (coat == in.extensions.end()) return false;
+  constexpr float kLeast = 0.5f; // of the coat, or the own gloss is more of what is seen
+  const float factor = number(coat->second, "clearcoatFactor", 0);
+  if (!(factor > 0)) return true; // none
+  if (factor < kLeast || out.metalness > 0) return false;
+  out.roughness = std::clamp(number(coat->second, "clearcoatRoughnessFactor", 0), 0.0f, 1.0f);
+  out.roughnessMetalnessTexture.image = kNone;
+  out.dielectricF0 = 0; // of an index of refraction of 1.5
+  out.dielectricLobe = std::min(factor, 1.0f);
+  import.counted["material(s) whose coat takes the place of their own gloss"]++;
+  for (const char* texture : {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"})
+    if (coat->second.Has(texture)) import.counted[std::string("material(s) whose ") + texture + " is not used"]++;
+  return true;
+}
+
 } // namespace
 
 uint32_t importMaterial(Import& import, int index) {
@@ -180,8 +199,10 @@ uint32_t importMaterial(Import& import, int index) {
     import.counted["material(s) with alpha blending shown with a mask, solid where alpha is at least 0.5"]++;
   }
   importDielectric(import, in, place, out);
+  const bool coated = importCoat(import, in, out);
   for (const auto& [extension, value] : in.extensions)
-    if (std::find(kAppliedExtensions.begin(), kAppliedExtensions.end(), extension) == kAppliedExtensions.end())
+    if (!(coated && extension == "KHR_materials_clearcoat") &&
+        std::find(kAppliedExtensions.begin(), kAppliedExtensions.end(), extension) == kAppliedExtensions.end())
       import.counted["material(s) with " + extension + " shown without it"]++;
   materials.push_back(std::move(out));
   return slot;

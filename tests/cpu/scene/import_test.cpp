@@ -491,7 +491,27 @@ TEST_F(Import, IndexOfRefractionAndSpecularGiveF0AndWeight) {
                vec2(0.04f * 0.2126f, 1));
   EXPECT_PRED2(near, finishOf(specular({{"specularTexture", {{"index", 0}}}}), "specularTexture is not used"),
                vec2(0.04f, 1));
-  finishOf({{"KHR_materials_clearcoat", nlohmann::json::object()}}, "KHR_materials_clearcoat shown without it");
+}
+
+TEST_F(Import, ACoatTakesThePlaceOfTheGlossOfWhatIsNoMetal) {
+  const auto materialOf = [&](double metalness, const nlohmann::json& coat) {
+    GltfBuilder b = oneTriangle();
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    b.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", metalness}, {"roughnessFactor", 0.8}}},
+                            {"extensions", {{"KHR_materials_clearcoat", coat}}}}};
+    scene = b.load(folder);
+    return scene.assets.materials.at(0);
+  };
+  const Material coated = materialOf(0, {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.1}});
+  EXPECT_FLOAT_EQ(coated.roughness, 0.1f);
+  EXPECT_FLOAT_EQ(coated.dielectricLobe, 0.75f);
+  EXPECT_TRUE(hasWarning(scene, "1 material(s) whose coat takes the place of their own gloss"));
+  for (const auto& [metalness, factor] : {std::pair(1.0, 1.0), {0.0, 0.25}}) {
+    EXPECT_FLOAT_EQ(materialOf(metalness, {{"clearcoatFactor", factor}}).roughness, 0.8f);
+    EXPECT_TRUE(hasWarning(scene, "KHR_materials_clearcoat shown without it"));
+  }
+  EXPECT_FLOAT_EQ(materialOf(0, nlohmann::json::object()).roughness, 0.8f);
+  EXPECT_TRUE(scene.warnings.empty()) << "no coat";
 }
 
 } // namespace lambent::test::import_test
