@@ -26,6 +26,7 @@ layout(location = 1) out vec4 outSeen;
 #ifdef GLOSSY
 layout(binding = 5) uniform sampler2D glossy;
 layout(binding = 8) uniform sampler2D keptGlossy; // a: frames in its mean
+layout(binding = 7) uniform sampler2D gbufferFinish;
 uniform float mostGlossyFrames; // as `mostFrames`
 layout(location = 2) out vec4 outGlossy;
 #endif
@@ -38,6 +39,7 @@ layout(location = 3) out vec2 outVariance; // of irradiance, of glossy light
 
 const float kOnPlane = 0.4;  // deviation from the pixel's plane, pixels
 const float kAlike = 0.9;    // cosine between normals: a moulding's faces see other lights
+const float kSmears = 0.35;  // roughness from which on glossy light in motion is of as many frames as may be
 const float kMoving = 16.0;  // frames in the mean of a place that moves over the pixels: looking up blurs a little
 
 /// Position that a pixel of the frame before saw.
@@ -126,7 +128,10 @@ void main() {
   if (weights > 0.0) keptLobe /= weights;
   if (any(isnan(keptLobe)) || any(isinf(keptLobe))) keptLobe = vec4(0.0);
   if (cycleFrames > 0.0) keptLobe.a *= min(keptLobe.a / cycleFrames, 1.0);
-  keptLobe.a = min(keptLobe.a, mostGlossyFrames);
+  // What a sharp lobe shows does not move with its surface: the sharper, the fewer frames hold it. Its rays have the
+  // less noise.
+  float sharp = min(texelFetch(gbufferFinish, pixel, 0).r / kSmears, 1.0);
+  keptLobe.a = min(keptLobe.a, stands ? mostGlossyFrames : mostGlossyFrames * sharp * sharp);
   vec3 lobe = texelFetch(glossy, placeOf(pixel), 0).rgb;
   float lobeCounts = keptLobe.a;
   outVariance.g = varianceWith(variance.g, dot(kLuminance, lobe), lobeSpan, known);

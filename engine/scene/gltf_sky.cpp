@@ -18,7 +18,7 @@ Sky pictureOf(Document& doc, const tinygltf::Value& given, const std::string& pl
   if (!(std::abs(turn) <= 360)) doc.fail(place, "turn is out of range (-360 to 360 degrees)");
   const std::filesystem::path folder = doc.file.parent_path(), picture = folder / pathOfUri(uri);
   const auto black = [&](const std::string& why) {
-    doc.warn(place + ": " + uri + ": " + why + "; the sky is black");
+    doc.warn(place + ": " + uri + ": " + why + "; the scene has no sky of its own");
     return Sky();
   };
   if (!mayRead(folder, picture, outside))
@@ -47,6 +47,10 @@ void importSky(Import& import, int scene, bool outside) {
   if (!in.extras.IsObject() || !in.extras.Has("lambent_sky")) return;
   const std::string place = label("scene", size_t(scene), in.name) + ", extras.lambent_sky";
   const tinygltf::Value& given = in.extras.Get("lambent_sky");
+  if (given.IsObject())
+    for (const std::string& key : given.Keys())
+      if (key != "image" && key != "scale" && key != "turn")
+        doc.fail(place, "has no key '" + key + "' (image, scale, turn)");
   if (given.IsObject() && given.Has("image") && given.Get("image").IsString()) {
     import.scene.sky = pictureOf(doc, given, place, outside);
     return;

@@ -234,8 +234,8 @@ class Table {
     number(SETTING(image, exposure), {0, kNoLimit}, Nothing,
            "factor on radiance before tone mapping; 0 = measured at the first frame");
     number(SETTING(image, adaptation), {0, 3600, "s"}, Nothing,
-           "a measured exposure follows the image: seconds of the scene's time to half of the way, up to 8 times the "
-           "first frame's or an eighth; 0 = it stays; the window begins with 2");
+           "a measured exposure follows the image: seconds of the scene's time to half of the way, up to 64 times the "
+           "first frame's or a 64th; 0 = it stays; the window begins with 2");
     choice(
         SETTING(image, toneMapper), {"reinhard", "neutral", "filmic"}, Nothing,
         "reinhard: on luminance, as paper 1, bright colours are cut off; neutral: Khronos PBR Neutral, colours as they "

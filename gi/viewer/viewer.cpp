@@ -37,7 +37,7 @@ void Viewer::restart() {
 
 /// Takes the exposure that the settings name, or that the image asks for.
 void Viewer::expose(bool drawn, float elapsed) {
-  constexpr float kMost = 8; // from what the first image with light asked for
+  constexpr float kMost = 64; // from what the first image with light asked for
   const ImageSettings& image = settings().image;
   if (image.exposure > 0) {
     exposure_ = image.exposure;

@@ -353,8 +353,15 @@ TEST_F(Import, ASceneTellsItsSkyInExtras) {
   EXPECT_TRUE(loadScene(folder / "own" / "sky.gltf").sky.black());
   EXPECT_FALSE(loadScene(folder / "own" / "sky.gltf", {}, {}, {.outside = true}).sky.black());
 
-  const std::vector<nlohmann::json> wrong = {1,           "studio.hdr", {1, 2},         {1, -2, 3},
-                                             {1, "a", 3}, {1e31, 0, 0}, {{"scale", 1}}, {{"image", 3}}};
+  const std::vector<nlohmann::json> wrong = {1,
+                                             "studio.hdr",
+                                             {1, 2},
+                                             {1, -2, 3},
+                                             {1, "a", 3},
+                                             {1e31, 0, 0},
+                                             {{"scale", 1}},
+                                             {{"image", 3}},
+                                             {{"image", "below/studio.hdr"}, {"scal", 1}}};
   for (const nlohmann::json& sky : wrong) EXPECT_THROW(told(sky), InputError) << sky;
   for (const double scale : {0.0, -1.0, 1e9})
     EXPECT_THROW(told({{"image", "below/studio.hdr"}, {"scale", scale}}), InputError);
