@@ -187,24 +187,25 @@ TEST_F(GlossySpheresTest, MirrorsInMotionStaySharp) {
   for (int i = -8; i < 8; ++i) // behind the camera, and facing away from it
     scene.quad({float(i), -4, 6}, {0, 8, 0}, {1, 0, 0}, i % 2 ? light : dark);
   scene.quad({-3, -2, 0}, {6, 0, 0}, {0, 4, 0}, scene.glossyMaterial(vec3(0.9f), 0, 1));
-  scene.lamp({0, 3, 2}, vec3(30));
+  for (int i = 0; i < 6; ++i)
+    scene.lamp({float(i) - 2.5f, 3, 2}, vec3(5)); // rays draw one of them: noise, as of bounces
   const auto at = [&](float x) { scene.camera = cameraAt({x, 0.5f, 4}, {x, 0, 0}, 0.8f, 96, 64); };
   Settings settings;
   settings.smc.vpls = settings.smc.points = 128;
   settings.smc.warmup = 4;
   settings.smc.bounces = 1; // what is mirrored has no noise
-  at(-0.6f);
+  at(-1.5f);
   Viewer gi(settings);
   gi.run(scene.view());
   for (int i = 1; i <= 12; ++i) {
-    at(-0.6f + 0.1f * float(i));
+    at(-1.5f + 0.25f * float(i));
     gi.run(scene.view(kCameraChanged));
   }
   const Image moving = gi.read(Buffer::Indirect);
   for (int i = 0; i < 192; ++i) gi.run(scene.view(kStill));
   const double error = relativeRmse(moving, gi.read(Buffer::Indirect));
   std::printf("stripes in a mirror that the camera passes: RMSE %.3f\n", error);
-  EXPECT_LT(error, 0.2);
+  EXPECT_LT(error, 0.3) << "it was 0.6";
 }
 
 } // namespace lambent::test::glossy_spheres_test
