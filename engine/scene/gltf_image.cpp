@@ -173,13 +173,10 @@ TextureImage white(bool srgb) {
 }
 
 /// Without texels: it could not be decoded, `defect` says why.
-TextureImage decode(const Document& doc, int index, bool srgb, std::string& defect) {
-  const Bytes bytes = encodedBytes(doc, index);
-  int width = 0, height = 0;
-  defect = defectOf(bytes, width, height);
+TextureImage decode(const Document& doc, int index, bool srgb, const glm::ivec2& size, std::string& defect) {
+  int width = size.x, height = size.y;
   TextureImage out;
-  if (!defect.empty()) return out;
-  const Texels texels = decodeTexels(bytes, width, height, defect);
+  const Texels texels = decodeTexels(encodedBytes(doc, index), width, height, defect);
   if (!texels) return out;
   out.width = width;
   out.height = height;
@@ -203,13 +200,13 @@ void decodeImages(Import& import) {
   auto& images = import.scene.assets.images;
   images.resize(order.size());
   std::vector<std::string> defects(order.size());
+  std::vector<glm::ivec2> sizes(order.size());
   std::vector<std::pair<size_t, std::string>> working; // bytes that decoding takes, and where
   for (size_t i = 0; i < order.size(); ++i) {
-    int width = 0, height = 0;
     const Bytes bytes = encodedBytes(doc, order[i].first);
-    defects[i] = defectOf(bytes, width, height);
+    defects[i] = defectOf(bytes, sizes[i].x, sizes[i].y);
     if (!defects[i].empty()) continue;
-    const size_t texels = size_t(width) * size_t(height);
+    const size_t texels = size_t(sizes[i].x) * size_t(sizes[i].y);
     const std::string place = placeOf(doc.model.images[size_t(order[i].first)], order[i].first);
     doc.spend(texels, 2 * sizeof(u8vec4), place); // the decoder's and ours
     working.emplace_back(texels * workingBytes(bytes), place);
@@ -222,7 +219,7 @@ void decodeImages(Import& import) {
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
     import.tell("textures", Import::kMeshes, 1, done++, order.size());
     for (size_t i = begin; i < end; ++i)
-      if (defects[i].empty()) images[i] = decode(doc, order[i].first, order[i].second, defects[i]);
+      if (defects[i].empty()) images[i] = decode(doc, order[i].first, order[i].second, sizes[i], defects[i]);
   });
   for (size_t i = 0; i < order.size(); ++i) {
     const auto [index, srgb] = order[i];

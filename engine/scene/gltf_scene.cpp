@@ -229,9 +229,8 @@ void importNodes(Import& import, int scene) {
 
 } // namespace gltf
 
-/// The middle is where half of the instances lie on either side, so that a few far off do not
-/// matter. Scenes that lie whole kilometres apart in their files get origins that lie as far apart, and are then the
-/// same to the bit.
+/// The middle is where half of the instances lie on either side, so that a few far off do not matter. Scenes that lie
+/// whole kilometres apart in their files get origins that lie as far apart, and are then the same to the bit.
 void findOrigin(Scene& scene) {
   std::vector<double> places[3];
   scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
