@@ -4,8 +4,8 @@
 //    room above it where that is lower) and look in 26 directions. A place is *inside* when at least 70 % of these
 //    looks meet the front of a surface: seen from within a closed object they meet the backs, and over open ground the
 //    upper half meets nothing.
-// 2. No place inside: an object. View it from outside: from the front, a little to the right and above, so far away
-//    that its bounding sphere fits a vertical angle of 50 degrees.
+// 2. No place inside: an object. View it from outside: from the front, a little to the right and above, so near that
+//    it fills nine tenths of the height of an image, or of the width of one of 4:3.
 // 3. Inside, but exactly one of the four sides is open (a stage, a Cornell box): view it straight through that side.
 // 4. Else stand at the inside place that sees farthest in the (geometric) mean, take the longer of its two lines
 //    along the plan's axes, step back almost to the wall behind, and look level along that line.
@@ -179,10 +179,40 @@ std::optional<vec3> onlyOpenSide(const std::vector<Place>& places) {
   return open;
 }
 
-CameraView viewFromOutside(const Aabb& bounds) {
-  const float radius = std::max(0.5f * bounds.diameter(), 1e-12f);
-  const vec3 direction = glm::normalize(vec3(0.5f, 0.4f, 1));
-  CameraView view = lookAt(bounds.centre() + direction * (radius / std::sin(0.5f * kFovY)), bounds.centre(), kFovY);
+/// How far the scene reaches along each direction, from `centre`. Looks only where one may be exceeded.
+template <size_t N>
+std::array<float, N> reachAlong(const std::array<vec3, N>& directions, PlacedTriangles& placed, const vec3& centre) {
+  std::array<float, N> reach;
+  reach.fill(-kInfinity);
+  const auto mayExceed = [&](const Aabb& box) {
+    for (size_t i = 0; i < N; ++i)
+      if (glm::dot(box.centre() - centre, directions[i]) + glm::dot(0.5f * box.size(), glm::abs(directions[i])) >
+          reach[i])
+        return true;
+    return false;
+  };
+  placed.forEachBlock(mayExceed, [&](const TriangleBlock& block) {
+    for (const uint32_t t : block.triangles)
+      for (const vec3& p : block.corners(t))
+        for (size_t i = 0; i < N; ++i) reach[i] = std::max(reach[i], glm::dot(p - centre, directions[i]));
+  });
+  return reach;
+}
+
+/// A point at (x, y, z) along the camera's axes is below the image's upper edge, which rises by `up` over a length,
+/// where y / up + z is no more than the camera's own: so the farthest along four directions say where it may stand.
+CameraView viewFromOutside(PlacedTriangles& placed, const Aabb& bounds) {
+  constexpr float kFilled = 0.9f, kAspect = 4.0f / 3;
+  const float radius = std::max(0.5f * bounds.diameter(), 1e-12f), up = kFilled * std::tan(0.5f * kFovY);
+  const vec3 centre = bounds.centre(), direction = glm::normalize(vec3(0.5f, 0.4f, 1));
+  const mat3 axes(lookAt(centre + direction * radius, centre, kFovY).worldFromView);
+  const vec3 x = axes[0] / (kAspect * up), y = axes[1] / up, z = axes[2];
+  const std::array<float, 5> reach = reachAlong<5>({z + x, z - x, z + y, z - y, z}, placed, centre);
+  const float distance =
+      std::max({0.5f * (reach[0] + reach[1]), 0.5f * (reach[2] + reach[3]), reach[4] + 0.02f * radius});
+  const vec3 target =
+      centre + 0.5f * (reach[0] - reach[1]) * kAspect * up * axes[0] + 0.5f * (reach[2] - reach[3]) * up * axes[1];
+  CameraView view = lookAt(target + direction * distance, target, kFovY);
   view.near = 0.01f * radius;
   return view;
 }
@@ -227,7 +257,7 @@ CameraView defaultView(const Scene& scene) {
   PlacedTriangles placed(scene);
   const std::vector<Place> places = tryPlaces(placed, bounds);
   if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; }))
-    return viewFromOutside(bounds);
+    return viewFromOutside(placed, bounds);
   if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);
   return viewFromInside(places, bounds);
 }

@@ -118,13 +118,21 @@ TEST(DefaultView, ObjectsAreSeenFromOutside) {
   EXPECT_GT(view.position().z, bounds.hi.z); // from the front, to the right and above
   EXPECT_GT(view.position().x, bounds.centre().x);
   EXPECT_GT(view.position().y, bounds.centre().y);
+  vec2 lo(kInfinity), hi(-kInfinity);
   for (int i = 0; i < 8; ++i) { // all of it is in the picture
     const vec3 corner(i & 1 ? bounds.hi.x : bounds.lo.x, i & 2 ? bounds.hi.y : bounds.lo.y,
                       i & 4 ? bounds.hi.z : bounds.lo.z);
     const vec4 clip = clipFromView(view) * glm::inverse(view.worldFromView) * vec4(corner, 1);
-    EXPECT_LT(std::abs(clip.y), clip.w);
-    EXPECT_LT(std::abs(clip.x), clip.w);
+    ASSERT_GT(clip.w, view.near);
+    lo = glm::min(lo, vec2(clip) / clip.w);
+    hi = glm::max(hi, vec2(clip) / clip.w);
   }
+  // In its middle, as wide as nine tenths of one of 4:3.
+  const float width = 0.9f * 4 / 3 / view.aspect();
+  EXPECT_NEAR(lo.x, -width, 1e-3f);
+  EXPECT_NEAR(hi.x, width, 1e-3f);
+  EXPECT_LT(hi.y, 0.9f);
+  EXPECT_NEAR(lo.y, -hi.y, 0.1f);
 }
 
 TEST(DefaultView, RoomsAreSeenFromInsideAtEyeHeightAlongTheLongerAxis) {
