@@ -14,7 +14,7 @@ namespace lambent {
 /// object space, with unit normals. Triangles, texture coordinates and colours stay the mesh's.
 struct DeformedMesh {
   std::vector<vec3> positions, normals;
-  std::vector<vec4> tangents; // as the mesh's; empty: those of the mesh
+  std::vector<vec4> tangents;              // as the mesh's; empty: those of the mesh
   std::vector<Aabb> primitiveBoundsObject; // parallel to Mesh::primitives
   Aabb boundsObject;
   /// Different for every shape that this process has made: who keeps a copy knows by it whether the copy still holds.
@@ -92,7 +92,7 @@ struct SceneView {
   CameraView camera;
   Aabb boundsWorld; // of all instances
   SceneChanges changes;
-  double time = 0; // seconds
+  double time = 0;   // seconds
   float rayWork = 0; // what a ray has to look at, in the mean (RayWork::sum, engine/scene/ray_work.h); 0: not known
 };
 
@@ -101,6 +101,11 @@ struct CameraRay {
   vec3 origin, direction; // direction is unit
 };
 CameraRay cameraRay(const CameraView& camera, float u, float v);
+
+/// Where in the image the centre of a pixel is, as cameraRay takes it; pixels row by row from the top.
+inline vec2 pixelCentre(const CameraView& camera, size_t pixel) {
+  return (vec2(pixel % size_t(camera.width), pixel / size_t(camera.width)) + 0.5f) / vec2(camera.width, camera.height);
+}
 
 /// Reversed-Z projection with infinite far plane (perspective: depth = near / distance along -Z; 0 at infinity), for
 /// glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE). For an orthographic camera depth falls linearly from 1 to 0 over

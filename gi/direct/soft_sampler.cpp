@@ -167,7 +167,7 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
       const glm::ivec2 at(int(i % size_t(camera.width)), int(i / size_t(camera.width)));
       if (in.surfaces && !in.surfaces->seen({at.x, camera.height - 1 - at.y})) continue;
       seen.push_back(uint32_t(i));
-      centres.push_back((vec2(at) + 0.5f) / vec2(camera.width, camera.height));
+      centres.push_back(pixelCentre(camera, i));
     }
     std::vector<SurfaceHit> hits = surfacesAt(in.rays, camera, centres);
     count.closest += centres.size();

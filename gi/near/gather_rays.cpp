@@ -79,8 +79,7 @@ std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, s
                                const GatherSettings& settings, RayCounts& counts, GlossyGather* glossy,
                                const SceneView* normalMaps) {
   std::vector<vec2> centres;
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) centres.push_back((vec2(x, y) + 0.5f) / vec2(camera.width, camera.height));
+  for (size_t i = 0; i < size_t(camera.width) * size_t(camera.height); ++i) centres.push_back(pixelCentre(camera, i));
   counts.closest += centres.size();
   return irradianceByRays(rays, surfacesAt(rays, camera, centres, normalMaps), lights, settings, counts, glossy);
 }

@@ -33,12 +33,8 @@ std::vector<vec3> directAtPoints(const PointInputs& in, std::span<const SurfaceH
   std::vector<Vpl> patches(points.size());
   std::vector<Vpl*> lit;
   for (size_t i = 0; i < points.size(); ++i) {
-    Vpl& patch = patches[i];
-    patch.position = points[i].position;
-    patch.normal = points[i].normal;
-    patch.geometricNormal = points[i].geometricNormal;
-    patch.albedo = vec3(1);
-    patch.id = i + 1;
+    patches[i] = patchOf(points[i], i + 1);
+    patches[i].albedo = vec3(1);
     if (points[i].valid()) lit.push_back(&patches[i]);
   }
   RayCounts counts;

@@ -63,11 +63,7 @@ std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
   constexpr size_t kGrain = 512; // pixels
   parallelCount(across * size_t(hi.y - lo.y), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<vec2> centres;
-    for (size_t k = begin; k < end; ++k) {
-      const size_t i = pixelOf(k);
-      centres.push_back((vec2(i % size_t(camera.width), i / size_t(camera.width)) + 0.5f) /
-                        vec2(camera.width, camera.height));
-    }
+    for (size_t k = begin; k < end; ++k) centres.push_back(pixelCentre(camera, pixelOf(k)));
     const std::vector<SurfaceHit> surfaces = surfacesAt(in.rays, camera, centres, in.normalMaps ? &in.view : nullptr);
     count.closest += centres.size();
     std::vector<Ray> rays;
@@ -105,12 +101,7 @@ std::vector<vec3> traceMirrors(const MirrorInputs& in, RayCounts& counts) {
     for (size_t k = 0; k < hits.size(); ++k) {
       const SurfaceHit& h = hits[k];
       if (!h.valid() || maxComponent(h.albedo) <= 0) continue;
-      Vpl& v = met.emplace_back();
-      v.position = h.position;
-      v.normal = h.normal;
-      v.geometricNormal = h.geometricNormal;
-      v.albedo = h.albedo;
-      v.id = 1 + mirrored[k].pixel; // numbers of its own
+      met.push_back(patchOf(h, 1 + mirrored[k].pixel)); // numbers of its own
       mirrored[kept++] = mirrored[k];
     }
     std::vector<RadianceJob> jobs;

@@ -149,12 +149,7 @@ struct NearTracer {
       n.spread = lobeSpread(gather.spread, light->area, cosLight, distance2);
       if (gather.nearLimit > 0) n.most = gather.nearLimit * luminance(light->radiance);
       near[kept++] = n;
-      Vpl& v = met.emplace_back();
-      v.position = h.position;
-      v.normal = h.normal;
-      v.geometricNormal = h.geometricNormal;
-      v.albedo = h.albedo;
-      v.id = 1;
+      met.push_back(patchOf(h, 1));
     }
     std::vector<RadianceJob> jobs;
     for (size_t j = 0; j < kept; ++j) jobs.push_back({.vpl = &met[j], .path = int(near[j].lightPath)});
@@ -213,10 +208,6 @@ void add(NearLight& out, size_t pixel, const Near& ray, const vec3& light, const
   out.glossy[pixel] += light * glossyReflectance(receiver, ray.direction, ray.spread) / glossyTint(seen);
 }
 
-vec2 centreOf(const CameraView& camera, size_t pixel) {
-  return (vec2(pixel % size_t(camera.width), pixel / size_t(camera.width)) + 0.5f) / vec2(camera.width, camera.height);
-}
-
 /// What the camera sees at these points, as what is gathered has it.
 std::vector<SurfaceHit> surfacesOf(const NearLightInputs& in, std::span<const vec2> points) {
   return surfacesAt(in.rays, in.view.camera, points, in.normalMaps ? &in.view : nullptr);
@@ -235,7 +226,7 @@ std::vector<SurfaceHit> someSurfaces(const NearLightInputs& in, RayCounts& count
   std::vector<vec2> centres;
   for (int y = step / 2; y < camera.height; y += step)
     for (int x = step / 2; x < camera.width; x += step)
-      centres.push_back(centreOf(camera, size_t(y) * size_t(camera.width) + size_t(x)));
+      centres.push_back(pixelCentre(camera, size_t(y) * size_t(camera.width) + size_t(x)));
   counts.closest += centres.size();
   return surfacesOf(in, centres);
 }
@@ -254,7 +245,7 @@ NearLight traceInMotion(const NearLightInputs& in, const Cells& cells, RayCounts
   const RadianceUpdate update{.paths = int(kPatterns * kPattern), .bounces = in.bounces, .seed = in.seed};
   parallelCount(out.irradiance.size(), kGrain, counts, [&](size_t begin, size_t end, RayCounts& count) {
     std::vector<vec2> centres;
-    for (size_t i = begin; i < end; ++i) centres.push_back(centreOf(camera, i));
+    for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(camera, i));
     const std::vector<SurfaceHit> surfaces = surfacesOf(in, centres);
     count.closest += centres.size();
 
@@ -334,7 +325,7 @@ NearLight traceNearLight(const NearLightInputs& in, RayCounts& counts) {
       if (averaged && path >= uint32_t(perBlock)) continue;
       asked.push_back(uint32_t(i));
       paths.push_back(path);
-      centres.push_back(centreOf(camera, i));
+      centres.push_back(pixelCentre(camera, i));
     }
     const std::vector<SurfaceHit> surfaces = surfacesOf(in, centres);
     count.closest += centres.size();

@@ -22,8 +22,7 @@ std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, siz
   const CameraView& camera = in.camera;
   std::vector<vec2> centres;
   for (size_t i = begin; i < end; ++i)
-    centres.push_back({(float(i % camera.width) + 0.5f) / float(camera.width),
-                       (float(i / camera.width) + 0.5f) / float(camera.height)});
+    centres.push_back(pixelCentre(camera, i));
   return surfacesAt(in.rays, camera, centres, in.normalMaps);
 }
 

@@ -47,6 +47,17 @@ struct Vpl {
   float intensity() const { return luminance(radiance) * area; }
 };
 
+/// A place that light paths may start from, to find what it reflects (estimateRadiance); in no set, of no area.
+inline Vpl patchOf(const SurfaceHit& h, uint64_t id) {
+  Vpl v;
+  v.position = h.position;
+  v.normal = h.normal;
+  v.geometricNormal = h.geometricNormal;
+  v.albedo = h.albedo;
+  v.id = id;
+  return v;
+}
+
 /// What rendering needs of it.
 inline VirtualLight lightOf(const Vpl& v) {
   return {v.position, v.normal, v.geometricNormal, v.radiance, v.alive ? v.area : 0, v.alive};
