@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 
 #include <stb/stb_image_resize.h>
 #include <stb/stb_image_write.h>
@@ -80,6 +81,33 @@ Image readPfm(const fs::path& file) {
       }
   }
   return image;
+}
+
+bool isWholePng(const fs::path& file, int width, int height) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto big = [&](size_t at) {
+    uint32_t v = 0;
+    for (size_t i = 0; i < 4; ++i) v = v << 8 | uint8_t(text[at + i]);
+    return v;
+  };
+  constexpr size_t kHead = 33, kAround = 12; // signature and header; of a chunk: length, name, checksum
+  if (text.size() < kHead || !text.starts_with("\x89PNG\r\n\x1a\n") || text.compare(12, 4, "IHDR") != 0) return false;
+  if (big(16) != uint32_t(width) || big(20) != uint32_t(height)) return false;
+  for (size_t at = 8; text.size() - at >= kAround;) {
+    const size_t length = big(at);
+    if (length > text.size() - at - kAround) return false;
+    uint32_t crc = ~0u; // of name and content, polynomial 0xedb88320
+    for (size_t i = 0; i < length + 4; ++i) {
+      crc ^= uint8_t(text[at + 4 + i]);
+      for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    if (~crc != big(at + 8 + length)) return false;
+    const bool last = text.compare(at + 4, 4, "IEND") == 0;
+    at += length + kAround;
+    if (last) return at == text.size();
+  }
+  return false;
 }
 
 } // namespace lambent

@@ -48,5 +48,7 @@ Image readHdr(const std::filesystem::path& file, uint64_t mostTexels = kMaxImage
 /// byte order only.
 Image readPfm(const std::filesystem::path& file);
 void writePng(const std::filesystem::path& file, const Image8& image);
+/// Whether it is a PNG of that size to its end, each part as its checksum says.
+bool isWholePng(const std::filesystem::path& file, int width, int height);
 
 } // namespace lambent

@@ -75,6 +75,22 @@ bool readSize(std::string_view line, int& width, int& height) {
   return number("-Y ", height) && number(" +X ", width) && line.empty();
 }
 
+/// "EXPOSURE=2" and "COLORCORR=1 1 2" say what the texels were multiplied by, each line by more.
+void takeFactors(std::string_view line, vec3& factor) {
+  std::array<float, 3> values{};
+  const bool exposure = line.starts_with("EXPOSURE=");
+  if (!exposure && !line.starts_with("COLORCORR=")) return;
+  line.remove_prefix(line.find('=') + 1);
+  const size_t count = exposure ? 1 : 3;
+  for (size_t i = 0; i < count; ++i) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), values[i]);
+    if (error != std::errc() || !(values[i] > 1e-9f && values[i] < 1e9f)) return; // none that is meant
+    line.remove_prefix(size_t(end - line.data()));
+  }
+  factor *= exposure ? vec3(values[0]) : vec3(values[0], values[1], values[2]);
+}
+
 } // namespace
 
 Image readHdr(const std::filesystem::path& file, uint64_t mostTexels) {
@@ -84,7 +100,11 @@ Image readHdr(const std::filesystem::path& file, uint64_t mostTexels) {
   if (in.bad()) throw InputError(file.string(), "cannot be read to its end");
   std::string_view bytes = content, line;
   bool known = takeLine(bytes, line) && (line == "#?RADIANCE" || line == "#?RGBE"), rgbe = false;
-  while (known && (known = takeLine(bytes, line)) && !line.empty()) rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
+  vec3 factor(1);
+  while (known && (known = takeLine(bytes, line)) && !line.empty()) {
+    rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
+    takeFactors(line, factor);
+  }
   int width = 0, height = 0;
   if (!known || !rgbe || !takeLine(bytes, line) || !readSize(line, width, height))
     throw InputError(file.string(), "is not a Radiance picture (.hdr, RGBE, rows from the top)");
@@ -99,7 +119,7 @@ Image readHdr(const std::filesystem::path& file, uint64_t mostTexels) {
   std::vector<Rgbe> row(static_cast<size_t>(width));
   for (int y = 0; y < height; ++y) {
     if (!readRow(bytes, row)) throw cutOff(y);
-    std::ranges::transform(row, &image.at(0, y), radianceOf);
+    std::ranges::transform(row, &image.at(0, y), [&](const Rgbe& t) { return radianceOf(t) / factor; });
   }
   return image;
 }

@@ -5,7 +5,7 @@
 //    looks meet the front of a surface: seen from within a closed object they meet the backs, and over open ground the
 //    upper half meets nothing.
 // 2. No place inside: an object. View it from outside: from the front, a little to the right and above, so near that
-//    it fills nine tenths of the height of an image, or of the width of one of 4:3.
+//    it fills nine tenths of the image's height or width.
 // 3. Inside, but exactly one of the four sides is open (a stage, a Cornell box): view it straight through that side.
 // 4. Else stand at the inside place that sees farthest in the (geometric) mean, take the longer of its two lines
 //    along the plan's axes, step back almost to the wall behind, and look level along that line.
@@ -29,6 +29,7 @@ constexpr float kEyeHeight = 1.6f;   // metres
 constexpr float kInsideShare = 0.7f; // of looks that must meet a front
 constexpr int kPlaces = 3;           // along each side of the plan
 constexpr float kOwnRadius = 0.3f;   // metres kept between the eye and the wall behind it
+constexpr float kFilled = 0.9f;      // of the image's height or width, by an object or an open side
 
 struct Triangle {
   vec3 a, edge1, edge2;
@@ -117,7 +118,8 @@ std::array<vec3, 26> lookDirections() {
 
 struct Place {
   vec3 eye{0};
-  float height = 0; // from floor to ceiling, metres
+  float height = 0;    // from floor to ceiling, metres
+  bool roofed = false; // else the ceiling is the scene's own top
   bool inside = false;
   float openness = 0;  // geometric mean of the looks' distances, metres
   float reach[4] = {}; // level along +X, -X, +Z, -Z
@@ -144,6 +146,7 @@ std::vector<Place> tryPlaces(PlacedTriangles& placed, const Aabb& bounds) {
     Place place;
     place.eye = vertical[i].origin;
     place.height = ceiling - floor;
+    place.roofed = vertical[i + 1].distance < kInfinity;
     place.eye.y = floor + std::min(kEyeHeight, 0.5f * place.height);
     places.push_back(place);
     for (const vec3& d : directions) looks.push_back({place.eye, d});
@@ -201,27 +204,25 @@ std::array<float, N> reachAlong(const std::array<vec3, N>& directions, PlacedTri
 
 /// A point at (x, y, z) along the camera's axes is below the image's upper edge, which rises by `up` over a length,
 /// where y / up + z is no more than the camera's own: so the farthest along four directions say where it may stand.
-CameraView viewFromOutside(PlacedTriangles& placed, const Aabb& bounds) {
-  constexpr float kFilled = 0.9f, kAspect = 4.0f / 3;
+CameraView viewFromOutside(PlacedTriangles& placed, const Aabb& bounds, float aspect) {
   const float radius = std::max(0.5f * bounds.diameter(), 1e-12f), up = kFilled * std::tan(0.5f * kFovY);
   const vec3 centre = bounds.centre(), direction = glm::normalize(vec3(0.5f, 0.4f, 1));
   const mat3 axes(lookAt(centre + direction * radius, centre, kFovY).worldFromView);
-  const vec3 x = axes[0] / (kAspect * up), y = axes[1] / up, z = axes[2];
+  const vec3 x = axes[0] / (aspect * up), y = axes[1] / up, z = axes[2];
   const std::array<float, 5> reach = reachAlong<5>({z + x, z - x, z + y, z - y, z}, placed, centre);
   const float distance =
       std::max({0.5f * (reach[0] + reach[1]), 0.5f * (reach[2] + reach[3]), reach[4] + 0.02f * radius});
   const vec3 target =
-      centre + 0.5f * (reach[0] - reach[1]) * kAspect * up * axes[0] + 0.5f * (reach[2] - reach[3]) * up * axes[1];
+      centre + 0.5f * (reach[0] - reach[1]) * aspect * up * axes[0] + 0.5f * (reach[2] - reach[3]) * up * axes[1];
   CameraView view = lookAt(target + direction * distance, target, kFovY);
   view.near = 0.01f * radius;
   return view;
 }
 
-CameraView viewThroughSide(const Aabb& bounds, const vec3& side) {
+CameraView viewThroughSide(const Aabb& bounds, const vec3& side, float aspect) {
   const float depth = std::abs(glm::dot(bounds.size(), side));
   const float width = std::abs(glm::dot(bounds.size(), vec3(side.z, 0, side.x)));
-  // The opening fills nine tenths of the image's height, or of a 16:9 image's width.
-  const float height = std::max(bounds.size().y, width * 9 / 16) / 0.9f;
+  const float height = std::max(bounds.size().y, width / aspect) / kFilled;
   const float distance = 0.5f * depth + 0.5f * height / std::tan(0.5f * kFovY);
   CameraView view = lookAt(bounds.centre() + distance * side, bounds.centre(), kFovY);
   view.near = 0.01f * distance;
@@ -251,14 +252,14 @@ CameraView viewFromInside(const std::vector<Place>& places, const Aabb& bounds) 
 
 } // namespace
 
-CameraView defaultView(const Scene& scene) {
+CameraView defaultView(const Scene& scene, float aspect) {
   const Aabb bounds = worldBounds(scene);
   if (bounds.empty()) return lookAt(vec3(0, 0, 2), vec3(0), kFovY);
   PlacedTriangles placed(scene);
   const std::vector<Place> places = tryPlaces(placed, bounds);
   if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.inside; }))
-    return viewFromOutside(placed, bounds);
-  if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side);
+    return viewFromOutside(placed, bounds, aspect);
+  if (const auto side = onlyOpenSide(places)) return viewThroughSide(bounds, *side, aspect);
   return viewFromInside(places, bounds);
 }
 
@@ -268,7 +269,7 @@ std::optional<float> roomHeight(const Scene& scene) {
   PlacedTriangles placed(scene);
   std::vector<float> heights;
   for (const Place& place : tryPlaces(placed, bounds))
-    if (place.inside) heights.push_back(place.height);
+    if (place.inside && place.roofed) heights.push_back(place.height);
   if (heights.empty()) return {};
   const auto middle = heights.begin() + std::ptrdiff_t(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());

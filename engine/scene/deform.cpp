@@ -91,7 +91,7 @@ std::optional<PlacedPose> poseOf(const Scene& scene, Entity entity, const MeshIn
                                  const WorldTransform& world) {
   const Mesh& mesh = scene.assets.meshes[instance.mesh];
   PlacedPose out;
-  const mat4 worldFromNode = scene.fromOrigin(world.worldFromNode);
+  const mat4 worldFromNode = scene.fromOrigin(placeFor(mesh, world.worldFromNode));
   out.worldFromObject = worldFromNode;
   const bool shown = makeInvertible(out.worldFromObject);
   const Skin* skin = mesh.jointSets.empty() ? nullptr : scene.registry.tryGet<Skin>(entity);

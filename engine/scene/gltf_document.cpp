@@ -22,10 +22,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Extensions that a file may require because it is shown as meant (unlit: as a Lambert surface of its colour).
-constexpr std::array<const char*, 12> kSupportedExtensions = {
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",   "KHR_mesh_quantization",
-    "KHR_materials_unlit", "KHR_draco_mesh_compression",      "EXT_meshopt_compression", "KHR_meshopt_compression",
-    "EXT_texture_webp",    "EXT_mesh_gpu_instancing",         "KHR_materials_ior",       "KHR_materials_specular"};
+constexpr std::array<const char*, 13> kSupportedExtensions = {
+    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_texture_transform",   "KHR_mesh_quantization",
+    "KHR_materials_unlit",    "KHR_draco_mesh_compression",      "EXT_meshopt_compression", "KHR_meshopt_compression",
+    "EXT_texture_webp",       "EXT_mesh_gpu_instancing",         "KHR_materials_ior",       "KHR_materials_specular",
+    "KHR_materials_clearcoat"};
 
 /// Reads the bytes of a file. Throws InputError when it cannot be read.
 std::vector<uint8_t> readFileBytes(const fs::path& file) {
@@ -247,7 +248,7 @@ void checkCamerasAndLights(Document& doc) {
       lens.fovY = float(c.perspective.yfov);
     else
       doc.warn(place + ": the size of its view is out of range; taken as a perspective view of 57 degrees");
-    if ((near >= kNearest || (ortho && near == 0)) && near <= kFarthest)
+    if ((near >= kNearest || (lens.orthoHalfHeight > 0 && near == 0)) && near <= kFarthest)
       lens.near = float(near);
     else
       doc.warn(place + ": the near plane is out of range; taken as 0.05 m");

@@ -136,8 +136,9 @@ size_t scansOf(Bytes bytes) {
   return scans;
 }
 
-/// Bytes of a texel that decoding takes beside the texels. A JPEG of several passes keeps what they add up.
-size_t workingBytes(Bytes bytes) { return !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
+/// Bytes of a texel that decoding takes beside the texels. A JPEG of several passes keeps what they add up, a WebP
+/// without loss the picture before it is written.
+size_t workingBytes(Bytes bytes) { return isWebp(bytes) ? 4 : !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
 
 /// Why the image cannot be decoded; empty: it may be.
 std::string defectOf(Bytes bytes, int& width, int& height) {

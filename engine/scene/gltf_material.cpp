@@ -15,6 +15,12 @@ namespace {
 constexpr std::array<std::string_view, 4> kAppliedExtensions = {"KHR_materials_emissive_strength", "KHR_materials_ior",
                                                                 "KHR_materials_specular", "KHR_materials_unlit"};
 
+/// -1 where it is none.
+int wholeNumber(const tinygltf::Value& object, const char* key, int otherwise) {
+  const float value = number(object, key, float(otherwise));
+  return std::abs(value) < 1e9f ? int(value) : -1;
+}
+
 vec2 pair(const tinygltf::Value& object, const char* key, vec2 otherwise) {
   if (!object.IsObject() || !object.Has(key) || object.Get(key).ArrayLen() < 2) return otherwise;
   const tinygltf::Value &x = object.Get(key).Get(0), &y = object.Get(key).Get(1);
@@ -53,7 +59,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   const tinygltf::Texture& texture = doc.at(doc.model.textures, use.index, "texture", place);
   const auto sourceBy = [&](const char* extension) {
     const auto found = texture.extensions.find(extension);
-    return found == texture.extensions.end() ? -1 : int(number(found->second, "source", -1));
+    return found == texture.extensions.end() ? -1 : wholeNumber(found->second, "source", -1);
   };
   const int webp = sourceBy("EXT_texture_webp"), source = webp >= 0 ? webp : texture.source;
   if (source < 0 || size_t(source) >= doc.model.images.size()) {
@@ -73,7 +79,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   int texCoord = use.texCoord;
   if (const auto found = use.extensions.find("KHR_texture_transform"); found != use.extensions.end()) {
     const tinygltf::Value& t = found->second;
-    texCoord = int(number(t, "texCoord", float(texCoord)));
+    texCoord = wholeNumber(t, "texCoord", texCoord);
     const vec2 offset = pair(t, "offset", vec2(0)), scale = pair(t, "scale", vec2(1));
     const float angle = number(t, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
     // Translation × rotation × scale as the extension writes it: positive angles turn counter-clockwise in a uv space
@@ -135,6 +141,8 @@ bool importCoat(Import& import, const tinygltf::Material& in, lambent::Material&
   out.dielectricF0 = 0; // of an index of refraction of 1.5
   out.dielectricLobe = std::min(factor, 1.0f);
   import.counted["material(s) whose coat takes the place of their own gloss"]++;
+  if (out.normalTexture.image != kNone && !coat->second.Has("clearcoatNormalTexture"))
+    import.counted["material(s) whose coat is bent by their own normal map"]++;
   for (const char* texture : {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"})
     if (coat->second.Has(texture)) import.counted[std::string("material(s) whose ") + texture + " is not used"]++;
   return true;
@@ -198,8 +206,16 @@ uint32_t importMaterial(Import& import, int index) {
     out.alphaCutoff = 0.5f;
     import.counted["material(s) with alpha blending shown with a mask, solid where alpha is at least 0.5"]++;
   }
-  importDielectric(import, in, place, out);
-  const bool coated = importCoat(import, in, out);
+  bool coated = false;
+  if (in.extensions.contains("KHR_materials_unlit")) { // its colour, with no lobe and no bumps
+    out.roughness = 1;
+    out.metalness = 0;
+    out.roughnessMetalnessTexture = out.normalTexture = {};
+    out.dielectricLobe = 0;
+  } else {
+    importDielectric(import, in, place, out);
+    coated = importCoat(import, in, out);
+  }
   for (const auto& [extension, value] : in.extensions)
     if (!(coated && extension == "KHR_materials_clearcoat") &&
         std::find(kAppliedExtensions.begin(), kAppliedExtensions.end(), extension) == kAppliedExtensions.end())

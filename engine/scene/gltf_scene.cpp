@@ -237,7 +237,8 @@ void findOrigin(Scene& scene) {
     const Skin* skin = scene.registry.tryGet<Skin>(e);
     const auto* joint =
         skin && !skin->joints.empty() ? scene.registry.tryGet<WorldTransform>(skin->joints[0]) : nullptr;
-    const dvec3 centre(scene.assets.meshes[m.mesh].boundsObject.centre());
+    const Mesh& mesh = scene.assets.meshes[m.mesh];
+    const dvec3 centre = mesh.centre + dvec3(mesh.boundsObject.centre());
     const dvec3 place = joint ? dvec3(joint->worldFromNode[3]) : dvec3(w.worldFromNode * glm::dvec4(centre, 1));
     if (!(glm::length(place) < 1e12)) return; // not finite, or left out
     for (int axis = 0; axis < 3; ++axis) places[axis].push_back(place[axis]);
@@ -259,6 +260,22 @@ void findOrigin(Scene& scene) {
 }
 
 namespace {
+
+/// Meshes whose vertices are farther from zero than 16 times what the scene reaches: baked into a place far off, or
+/// moved back from there by a node. Skinned ones go where their joints are.
+void bringMeshesHome(Scene& scene) {
+  const Aabb bounds = worldBounds(scene);
+  if (bounds.empty()) return;
+  const float reach = std::max(maxComponent(glm::abs(bounds.lo)), maxComponent(glm::abs(bounds.hi)));
+  std::vector<bool> far(scene.assets.meshes.size());
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance& m, const WorldTransform& w) {
+    const Mesh& mesh = scene.assets.meshes[m.mesh];
+    const vec3 place(glm::abs(glm::dmat3(w.worldFromNode) * dvec3(mesh.boundsObject.centre())));
+    if (mesh.jointSets.empty() && maxComponent(place) > 16 * reach) far[m.mesh] = true;
+  });
+  for (size_t i = 0; i < far.size(); ++i)
+    if (far[i]) countFromMiddle(scene.assets.meshes[i]);
+}
 
 /// A first frame casts 30 million rays.
 void refuseSlowRays(const Scene& scene, const RayWork& work) {
@@ -312,6 +329,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   if (scene.registry.count<MeshInstance>() == 0) scene.warnings.push_back("the scene holds no triangles");
   animate(scene, 0);
   findOrigin(scene);
+  bringMeshesHome(scene);
   if (!trust.large) refuseManyLights(scene, import.doc.budget.shown, import.doc.budget.read);
   const RayWork work = rayWork(scene);
   if (!trust.large) refuseSlowRays(scene, work);

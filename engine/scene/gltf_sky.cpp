@@ -13,6 +13,8 @@ namespace {
 /// Reads a picture that the file names; a black sky, said, where it cannot be read.
 Sky pictureOf(Document& doc, const tinygltf::Value& given, const std::string& place, bool outside) {
   const std::string uri = given.Get("image").Get<std::string>();
+  for (const char* key : {"scale", "turn"})
+    if (given.Has(key) && !given.Get(key).IsNumber()) doc.fail(place, std::string(key) + " is no number");
   const float scale = number(given, "scale", 1), turn = number(given, "turn", 0);
   if (!(scale >= 1e-6f && scale <= 1e6f)) doc.fail(place, "scale is out of range (1e-6 to 1e6)");
   if (!(std::abs(turn) <= 360)) doc.fail(place, "turn is out of range (-360 to 360 degrees)");

@@ -74,16 +74,16 @@ struct NamedCamera {
 };
 std::vector<NamedCamera> sceneCameras(const Scene& scene);
 
-/// View for a file without camera: the whole scene from the front, a little to the right and above, 50° vertical;
-/// inside and level when the scene encloses its middle, through the open side when it has just one (see
-/// default_view.cpp for the rule). Looks at every triangle: up to about a second per million of them.
-CameraView defaultView(const Scene& scene);
+/// View for a file without camera, in an image of that aspect: the whole scene from the front, a little to the right
+/// and above, 50° vertical; inside and level when the scene encloses its middle, through the open side when it has just
+/// one (see default_view.cpp for the rule). Looks at every triangle: up to about a second per million of them.
+CameraView defaultView(const Scene& scene, float aspect = 16.0f / 9);
 
 /// Finds Scene::origin for the present transforms.
 void findOrigin(Scene& scene);
 
 /// Height of the room that the scene encloses, metres: the middle one of those over the places inside that defaultView
-/// tries; nothing where it encloses none.
+/// tries and that have something above; nothing where there are none.
 std::optional<float> roomHeight(const Scene& scene);
 
 /// Makes the scene `factor` times as large, as if its file were told in another unit: places, lights' ranges, cameras.

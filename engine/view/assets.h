@@ -107,10 +107,17 @@ struct Mesh {
   std::vector<uvec3> triangles; // indices into the vertex arrays; sorted by primitive
   std::vector<Primitive> primitives;
   Aabb boundsObject;
+  dvec3 centre{0}; // in the coordinates of its file or host: where all the above counts from (countFromMiddle)
   // How an instance of it may be deformed (deform.h); the vertices above are those of the bind pose, unmorphed.
   std::vector<JointSet> jointSets;
   std::vector<MorphTarget> morphTargets;
 };
+
+/// Has positions and boxes count from the middle of the mesh's box. Of vertices that are far from zero, single
+/// precision loses more in a transform that brings them back than rays and shadows can bear.
+void countFromMiddle(Mesh& mesh);
+/// Where an instance stands whose transform is told for the mesh's own coordinates.
+dmat4 placeFor(const Mesh& mesh, const dmat4& transform);
 
 /// Which contents an object holds: a number that no other of this process ever had. A copy, and what is moved or
 /// assigned to, hold others, for whatever was made of them keeps pointers to the first. Who keeps something made of an

@@ -63,15 +63,52 @@ LitMap cubeMap(const LightView& light, int resolution, float near) {
   return out;
 }
 
-LitMap spotMap(const LightView& light, int resolution, float near) {
-  LitMap out = punctual(light, near);
+/// What the map of a lamp looks at where that is small from there: a sphere around all that is seen. Radius 0: it looks
+/// all around, or over its cone.
+struct LampAim {
+  vec3 position{0}, centre{0}; // of the lamp; of the sphere
+  float radius = 0;
+
+  explicit operator bool() const { return radius > 0; }
+  vec3 direction() const { return glm::normalize(centre - position); }
+  float tanHalf() const { // no less than the map's matrix holds in single precision
+    const float ratio = radius / glm::distance(centre, position);
+    return std::max(1e-4f, ratio / std::sqrt(1 - ratio * ratio));
+  }
+};
+
+/// Aims from three radii off, and goes on to two. Keeps `previous` while it covers the receivers and is not more than
+/// twice as large as needed, so that a slow camera redraws nothing. (All around, a texel of 320×240 is 4 m wide at 300
+/// m: what is smaller threw no shadow.)
+LampAim aimAt(const LightView& light, const Aabb& receivers, const Aabb& casters, const LampAim& previous) {
+  constexpr float kBegins = 3, kEnds = 2, kSpare = 1.1f, kLoosest = 2;
+  if (!aims(light, casters)) return {};
+  const bool same = previous && previous.position == light.position;
+  if (receivers.empty()) return same ? previous : LampAim{};
+  const vec3 centre = receivers.centre();
+  const float needed = std::max({0.5f * receivers.diameter(), 1e-5f * casters.diameter(), 1e-20f});
+  if (same && glm::distance(previous.centre, centre) + needed <= previous.radius &&
+      previous.radius <= kLoosest * needed)
+    return previous;
+  const float radius = kSpare * needed;
+  if (glm::distance(light.position, centre) < (previous ? kEnds : kBegins) * radius) return {};
+  return {light.position, centre, radius};
+}
+
+float tanHalfOfCone(const LightView& light) {
   const float sine = std::sqrt(std::max(0.0f, 1 - light.outerConeCos * light.outerConeCos));
+  return std::max(1e-3f, sine / light.outerConeCos);
+}
+
+/// One perspective of a spot's cone, or of what a lamp aims at.
+LitMap spotMap(const LightView& light, const LampAim& aim, int resolution, float near) {
+  LitMap out = punctual(light, near);
   // One texel and a half beyond the cone on each side, for the 3×3 comparison.
-  const float tanHalf = std::max(1e-3f, sine / light.outerConeCos) * (1 + 3.0f / float(resolution));
+  const float tanHalf = (aim ? aim.tanHalf() : tanHalfOfCone(light)) * (1 + 3.0f / float(resolution));
   out.light.directionTexel.w = 2 * tanHalf / float(resolution);
   mat3 frame;
-  frame[2] = light.direction;
-  const vec3 helper = std::abs(light.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+  frame[2] = aim ? aim.direction() : light.direction;
+  const vec3 helper = std::abs(frame[2].y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
   frame[0] = glm::normalize(glm::cross(helper, frame[2]));
   frame[1] = glm::cross(frame[2], frame[0]);
   out.clipFromWorld.push_back(clipFromForwardView(tanHalf, near) *
@@ -115,6 +152,12 @@ struct KeptBlock {
 
 } // namespace
 
+bool aims(const LightView& light, const Aabb& scene) {
+  if (light.type == LightType::Directional || scene.empty()) return false;
+  const vec3 nearest = glm::clamp(light.position, scene.lo, scene.hi);
+  return glm::distance(light.position, nearest) > 0.1f * scene.diameter();
+}
+
 void LightRecords::hold(std::vector<LightRecord> lights, gl::Ring& uploads) {
   const size_t bytes = lights.size() * sizeof(LightRecord);
   if (lights.size() == held_.size() && std::memcmp(lights.data(), held_.data(), bytes) == 0) return;
@@ -131,6 +174,7 @@ struct LightShadowState {
   gl::Ring changedLights{"light maps/changed lights"};
   std::vector<KeptBlock> blocks;
   std::vector<SunFit> sunFits, skyFits;
+  std::vector<LampAim> aims; // of lamps and spots that shine
   uint32_t mapsDrawn = 0, skyMapsDrawn = 0;
 
   void fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps, const LightShadowInputs& in);
@@ -235,21 +279,35 @@ std::vector<LightBlock> LightShadowPass::run(const LightShadowInputs& in) {
   s.changedLights.reserve((in.lights.size() + size_t(in.shadow.skyMaps)) * sizeof(LightRecord));
   const float near = nearPlane(in.casters);
 
-  std::vector<const LightView*> cubes, spots, suns;
+  struct Lamp {
+    const LightView* light;
+    LampAim aim;
+  };
+  std::vector<Lamp> cubes, spots;
+  std::vector<const LightView*> suns;
+  std::vector<LampAim> lampAims;
   for (const LightView& light : in.lights) {
     if (!shines(light)) continue;
     const LightKind kind = kindOf(light);
-    (kind == LightKind::Sun ? suns : kind == LightKind::Spot ? spots : cubes).push_back(&light);
+    if (kind == LightKind::Sun) {
+      suns.push_back(&light);
+      continue;
+    }
+    const LampAim before = lampAims.size() < s.aims.size() ? s.aims[lampAims.size()] : LampAim{};
+    LampAim& aim = lampAims.emplace_back(aimAt(light, in.sunReceivers, in.casters, before));
+    if (kind == LightKind::Spot && aim && aim.tanHalf() >= tanHalfOfCone(light)) aim = {};
+    (kind == LightKind::Spot || aim ? spots : cubes).push_back({&light, aim});
   }
+  s.aims = std::move(lampAims);
   std::vector<LitMap> maps;
   size_t block = 0;
   int resolution = affordableResolution(in.shadow.pointResolution, cubes.size() * 6);
-  for (const LightView* light : cubes) maps.push_back(cubeMap(*light, resolution, near));
+  for (const Lamp& lamp : cubes) maps.push_back(cubeMap(*lamp.light, resolution, near));
   s.fill(block, MapKind::Cube, resolution, maps, in);
 
   maps.clear();
   resolution = affordableResolution(in.shadow.spotResolution, spots.size());
-  for (const LightView* light : spots) maps.push_back(spotMap(*light, resolution, near));
+  for (const Lamp& lamp : spots) maps.push_back(spotMap(*lamp.light, lamp.aim, resolution, near));
   s.fill(block, MapKind::Spot, resolution, maps, in);
 
   // Directions of suns and sky are fitted to the receivers; nothing to fit or light in an empty scene.

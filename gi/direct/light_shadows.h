@@ -13,8 +13,8 @@
 
 namespace lambent {
 
-/// How the map of a direct light is made: a cube of depths, one perspective, parallel rays (suns, and directions of the
-/// sky), distances over a hemisphere (samples of emissive surfaces).
+/// How the map of a direct light is made: a cube of depths, one perspective (spots, and lamps far from what is seen),
+/// parallel rays (suns, and directions of the sky), distances over a hemisphere (samples of emissive surfaces).
 enum class MapKind { Cube, Spot, Sun, Sky, Emitter };
 
 /// Up to kLightsPerBlock lights of one kind, with their maps in one texture array.
@@ -52,6 +52,9 @@ struct SunFit {
 /// than twice as large as needed, so that a slow camera redraws nothing; a new fit has a tenth to spare on each side.
 SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous);
 
+/// Whether a lamp or spot stands so far outside of the scene that its map may aim at what is seen.
+bool aims(const LightView& light, const Aabb& scene);
+
 /// Leaves out places, at most a thirtieth, that make their box much larger than the rest needs.
 std::vector<vec3> withoutOutliers(std::vector<vec3> places);
 
@@ -69,7 +72,7 @@ struct LightShadowInputs {
   std::span<const LightView> lights;
   bool drawSky = false;
   Sky sky;
-  Aabb receivers, sunReceivers; // what maps of the sky, and of suns, are fitted to
+  Aabb receivers, sunReceivers; // what maps of the sky, and of suns and far lamps, are fitted to
   Aabb casters;                 // box of the whole scene
   bool allChanged = false;      // draw every map
   std::span<const Aabb> moved;  // where geometry changed: maps that show none of it stay

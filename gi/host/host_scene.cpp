@@ -168,6 +168,8 @@ uint32_t HostScene::addMesh(const HostMesh& in) {
     mesh.boundsObject.add(primitive.boundsObject);
   }
   if (covered != in.triangles.size()) refuse(which, "has triangles that are of no part");
+  constexpr float kFar = 64; // diameters
+  if (maxComponent(glm::abs(mesh.boundsObject.centre())) > kFar * mesh.boundsObject.diameter()) countFromMiddle(mesh);
   assets_.readers.wait();
   assets_.meshes.push_back(std::move(mesh));
   meshes_.push_back(true);
@@ -193,7 +195,7 @@ uint32_t HostScene::addInstance(uint32_t mesh, const mat4& worldFromObject) {
   InstanceView v;
   v.id = nextInstance_;
   v.mesh = mesh;
-  v.worldFromObject = worldFromObject;
+  v.worldFromObject = mat4(placeFor(assets_.meshes[mesh], dmat4(worldFromObject)));
   instances_.emplace(nextInstance_, v);
   return nextInstance_++;
 }
@@ -206,7 +208,8 @@ InstanceView& HostScene::at(uint32_t instance) {
 
 void HostScene::moveInstance(uint32_t instance, const mat4& worldFromObject) {
   requirePlacement(worldFromObject);
-  at(instance).worldFromObject = worldFromObject;
+  InstanceView& v = at(instance);
+  v.worldFromObject = mat4(placeFor(assets_.meshes[v.mesh], dmat4(worldFromObject)));
 }
 
 void HostScene::deformInstance(uint32_t instance, std::span<const vec3> positions, std::span<const vec3> normals) {
@@ -222,12 +225,12 @@ void HostScene::deformInstance(uint32_t instance, std::span<const vec3> position
                       ", as its mesh)");
   requireFinite(which + ", position", positions, kMostSide);
   const std::shared_ptr<DeformedMesh> shape = newShape();
-  shape->positions.assign(positions.begin(), positions.end());
+  for (const vec3& p : positions) shape->positions.push_back(vec3(dvec3(p) - mesh.centre));
   shape->normals = normalsOf(positions, mesh.triangles, normals);
   for (const Primitive& primitive : mesh.primitives) {
     Aabb& box = shape->primitiveBoundsObject.emplace_back();
     for (uint32_t t = 0; t < primitive.triangleCount; ++t)
-      for (int c = 0; c < 3; ++c) box.add(positions[mesh.triangles[primitive.firstTriangle + t][c]]);
+      for (int c = 0; c < 3; ++c) box.add(shape->positions[mesh.triangles[primitive.firstTriangle + t][c]]);
     shape->boundsObject.add(box);
   }
   v.deformed = shape;

@@ -41,10 +41,11 @@ void Viewer::expose(bool drawn, float elapsed) {
   const ImageSettings& image = settings().image;
   if (image.exposure > 0) {
     exposure_ = image.exposure;
+    given_ = true;
     return;
   }
   const gl::Texture* const radiance = passes_->results.radiance;
-  if (exposure_ <= 0 && drawn) {
+  if (std::exchange(given_, false) || (exposure_ <= 0 && drawn)) {
     measured_ = firstMeasured_ = measureExposure(*radiance);
     exposure_ = measured_ > 0 ? measured_ : 1;
   }
@@ -59,10 +60,12 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
                               const HostSurfaces* host) {
   const gl::StateGuard guard;
   FrameResults& results = passes_->results;
+  const gl::Counts start = gl::counts();
   if (const float measured = passes_->meter.read(); measured > 0) { // a black image asks for nothing
     measured_ = measured;
     if (!(firstMeasured_ > 0)) firstMeasured_ = measured;
   }
+  const gl::Counts metered = gl::counts() - start;
   FrameStats& stats = passes_->stats;
   const gl::Texture* const last = results.radiance;
   try {
@@ -83,8 +86,8 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;
   stats.draws += asked.draws;
-  stats.waits += asked.waits;
-  stats.readBacks += asked.readBacks;
+  stats.waits += asked.waits + metered.waits;
+  stats.readBacks += asked.readBacks + metered.readBacks;
   stats.of(EffectId::Redraw) += asked.draws;
   if (results.surfaces.finish) stats.of(EffectId::Glossy) += asked.draws;
   stats.wallMs += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -92,6 +92,7 @@ class Viewer {
   GiFrame gi_;
   std::unique_ptr<Passes> passes_;
   float exposure_ = 0, measured_ = 0, firstMeasured_ = 0; // 0: not yet
+  bool given_ = false;                                    // exposure_: by the settings
   float elapsed_ = 0;                                     // seconds since the last frame
 };
 

@@ -41,7 +41,8 @@ float shadowOf(LightRecord light, vec3 position, vec3 normal, float cosine) {
   vec3 fromLight = liftedReceiver(position, normal, cosine, texel, 1.5) - light.positionRange.xyz;
   return texture(maps, vec4(fromLight, layer), light.coneNear.z / axisDistance(fromLight));
 #else
-  float texel = light.directionTexel.w * dot(light.directionTexel.xyz, -toLight);
+  vec4 own = light.mapFromWorld * vec4(position, 1.0); // w: along the map's axis
+  float texel = light.directionTexel.w * own.w;
   vec4 map = light.mapFromWorld * vec4(liftedReceiver(position, normal, cosine, texel, 2.0), 1.0);
   return filteredShadow(map.xyz / map.w, layer);
 #endif

@@ -214,6 +214,30 @@ TEST_F(DoubtTest, RaysDecideAtTheEdgesOfShadows) {
   }
 }
 
+/// A map all around a lamp that stands for the moon has texels larger than all that it shines on.
+TEST_F(DoubtTest, LampsFarOffThrowShadows) {
+  settings.pointResolution = 160;
+  settings.spotResolution = 320;
+  for (const float far : {60.0f, 3000.0f, 1e5f})
+    for (Case c : cases()) {
+      if (c.lights.empty() || c.parallel) continue;
+      SCOPED_TRACE(testing::Message() << c.name << " at " << far << " m");
+      c.from = far * glm::normalize(vec3(0.13f, 1, 0.07f));
+      c.lights[0].position = c.from;
+      c.lights[0].intensity = vec3(far * far);
+      c.lights[0].direction = glm::normalize(vec3(0.1f, -1, 0)); // not at what is seen
+      settings.rays = false;
+      Image image = picture(c);
+      EXPECT_LT(wrong(c, image), 250) << "texels at the edge";
+      EXPECT_EQ(image.at(32, 24).x, 0);
+      EXPECT_NEAR(image.at(0, 0).x, glm::normalize(c.from).y, 0.05f);
+      settings.rays = true;
+      image = picture(c);
+      EXPECT_EQ(wrong(c, image), 0);
+      EXPECT_LT(stats.raysShadows.occlusion, 64u * 48u / 3) << "at edges only";
+    }
+}
+
 TEST_F(DoubtTest, MoreDoubtsThanTheListHolds) {
   Case c = cases()[0];
   settings.pointResolution = 16;

@@ -103,7 +103,7 @@ TEST_F(FrameTest, ExposureAdaptsToTheLight) {
   gi.run(times(4)); // measured here
   EXPECT_EQ(gi.exposure(), first) << "no time has gone by";
   gi.passTime(2);
-  EXPECT_EQ(gi.run(times(4)).readBacks, 0u) << "but for a small grid, before the frame";
+  EXPECT_EQ(gi.run(times(4)).readBacks, 1u) << "a small grid, before the frame";
   EXPECT_NEAR(gi.exposure(), first / 2, 0.02f * first) << "half of the way, in stops";
   const auto rests = [&](float wanted, const char* why) {
     float distance = std::abs(std::log(gi.exposure() / wanted));

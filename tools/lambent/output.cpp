@@ -1,6 +1,7 @@
 #include "engine/core/error.h"
 #include "engine/core/rng.h"
 #include "engine/gl/program.h"
+#include "engine/scene/sky_file.h"
 #include "tools/lambent/commands.h"
 #include "tools/lambent/picture.h"
 
@@ -93,10 +94,12 @@ Value figuresOf(const FrameStats& s) {
 
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
   std::string text = more + '\n' + o.scene + '\n' + readText(o.scene);
-  for (const std::string& option : {std::string(o.trust.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size,
-                                    o.sky, o.daylight, o.sceneName, std::to_string(o.fovDegrees.value_or(0)),
-                                    std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed)})
+  for (const std::string& option :
+       {std::string(o.trust.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size, o.sky, o.daylight,
+        o.sceneName, std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.sunSize.value_or(-1)),
+        std::to_string(o.seed), format("%.17g %.17g %.17g", o.skyScale, o.skyTurn, opened.unit)})
     text += '\n' + option;
+  if (namesSky(o.sky)) text += readText(o.sky);
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
   for (const auto* list : {&o.suns, &o.points})
     for (const std::string& light : *list) text += '\n' + light;

@@ -102,15 +102,15 @@ std::string videoCommand(const fs::path& folder, double fps) {
          quoted(fs::absolute(folder / "video.mp4").string());
 }
 
-/// Whether a picture is one that record wrote, to its end: nobody has emptied or cut it, or put something else in its
-/// place.
-bool isPicture(const fs::path& file) {
+/// Whether a picture is one that record wrote, to its end: nobody has emptied, cut or damaged it, or put one of another
+/// size in its place.
+bool isPicture(const fs::path& file, int width, int height) {
   std::error_code none;
   if (!fs::is_regular_file(fs::symlink_status(file, none))) return false;
   try {
-    if (file.extension() == ".exr") return readExr(file).width > 0;
-    const std::string text = readText(file);
-    return text.starts_with("\x89PNG") && text.ends_with("IEND\xae\x42\x60\x82");
+    if (file.extension() != ".exr") return isWholePng(file, width, height);
+    const Image image = readExr(file);
+    return image.width == width && image.height == height;
   } catch (const std::exception&) {
     return false;
   }
@@ -193,10 +193,10 @@ void tell(const RecordOptions& options, const std::vector<Side>& sides, const fs
   writeJson(options.output.json, figures);
   if (options.output.quiet) return;
   for (const Side& side : sides)
-    std::printf("%s: %s, %d of %d frames, %.2f frames per second after the first\n", folder.c_str(),
+    std::printf("%s: %s, %d of %d frames, %.2f frames per second after the first\n", printable(folder.string()).c_str(),
                 side.technique.c_str(), done, total, side.log.framesPerSecond());
   std::printf("peak memory %.0f MiB\n", peakMemoryMiB());
-  if (filmed) std::printf("video: %s\n", video.c_str());
+  if (filmed) std::printf("video: %s\n", printable(video).c_str());
 }
 
 /// What it writes into its folder, but the pictures and recording.json.
@@ -274,7 +274,8 @@ void record(const RecordOptions& options) {
       }
       const auto begin = std::chrono::steady_clock::now();
       // Frames of before are computed: later ones build on them.
-      if (options.format != "none" && !(done < kept && isPicture(mark.picture(done)))) {
+      if (options.format != "none" &&
+          !(done < kept && isPicture(mark.picture(done), whole.width * int(sides.size()), whole.height))) {
         writeFrame(mark.picture(done), sides, options, done, whole);
         mark.write(std::max(kept, done + 1));
       }

@@ -16,7 +16,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <tuple>
 
@@ -73,6 +72,7 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
     throw InputError(eye ? "--eye " + options.eye : "--target " + options.target, "--eye and --target go together");
   if (options.fovDegrees && !(*options.fovDegrees > 1 && *options.fovDegrees < 179))
     throw InputError("--fov", "out of range (1 to 179 degrees)");
+  const auto [width, height] = sizeOf(options.size.empty() ? "320x180" : options.size);
   const std::vector<NamedCamera> cameras = sceneCameras(stage.scene);
   if (eye && !options.camera.empty()) throw InputError("--camera " + options.camera, "and --eye exclude each other");
   stage.cameraGiven = eye || !options.camera.empty();
@@ -88,14 +88,14 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
   } else if (!cameras.empty()) {
     stage.camera = cameras[0].view;
   } else {
-    stage.camera = defaultView(stage.scene);
+    stage.camera = defaultView(stage.scene, float(width) / float(height));
     if (!stage.shot || stage.shot->camera.empty())
       stage.notes.push_back("the file has no camera: a default view was chosen (--eye, --target)");
   }
   if (!isNear(stage.camera.position()))
     throw InputError(stage.scene.file.string(), "its camera is farther than 1e12 m away (--eye, --target)");
   if (options.fovDegrees) stage.camera.fovY = glm::radians(*options.fovDegrees);
-  std::tie(stage.camera.width, stage.camera.height) = sizeOf(options.size.empty() ? "320x180" : options.size);
+  std::tie(stage.camera.width, stage.camera.height) = std::pair(width, height);
   checkPictureFits(stage.camera);
 }
 

@@ -102,6 +102,26 @@ TEST(Png, RoundTripIsExact) {
   stbi_image_free(back);
 }
 
+TEST(Png, DamageOfAnyByteIsSeen) {
+  TemporaryFolder folder;
+  const fs::path file = folder / "a.png";
+  writePng(file, {3, 2, {0, 1, 2, 3, 4, 5, 250, 251, 252, 9, 9, 9, 8, 8, 8, 7, 0, 7}});
+  std::ifstream in(file, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_TRUE(isWholePng(file, 3, 2));
+  EXPECT_FALSE(isWholePng(file, 2, 3));
+  for (size_t i = 0; i < whole.size(); ++i) {
+    std::string bytes = whole;
+    bytes[i] = char(bytes[i] ^ 4);
+    std::ofstream(file, std::ios::binary) << bytes;
+    EXPECT_FALSE(isWholePng(file, 3, 2)) << "byte " << i;
+    std::ofstream(file, std::ios::binary) << whole.substr(0, i);
+    EXPECT_FALSE(isWholePng(file, 3, 2)) << "cut at " << i;
+  }
+  std::ofstream(file, std::ios::binary) << whole << '\n';
+  EXPECT_FALSE(isWholePng(file, 3, 2)) << "more than it";
+}
+
 TEST(Pfm, BothByteOrdersAndGreyAreRead) {
   TemporaryFolder folder;
   const auto floats = [](std::vector<float> values, bool big) {

@@ -504,12 +504,22 @@ TEST_F(Import, ACoatTakesThePlaceOfTheGlossOfWhatIsNoMetal) {
   const auto materialOf = [&](double metalness, const nlohmann::json& coat) {
     GltfBuilder b = oneTriangle();
     b.json["meshes"][0]["primitives"][0]["material"] = 0;
-    b.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", metalness}, {"roughnessFactor", 0.8}}},
-                            {"extensions", {{"KHR_materials_clearcoat", coat}}}}};
+    b.json["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"metallicFactor", metalness}, {"roughnessFactor", 0.8}, {"metallicRoughnessTexture", {{"index", 0}}}}},
+         {"extensions", {{"KHR_materials_clearcoat", coat}, {"KHR_materials_ior", {{"ior", 2}}}}}}};
+    b.json["images"] = {
+        {{"uri", "data:image/png;base64,"
+                 "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5Erk"
+                 "Jggg=="}}};
+    b.json["textures"] = {{{"source", 0}}};
+    b.json["extensionsRequired"] = {"KHR_materials_clearcoat"};
     scene = b.load(folder);
     return scene.assets.materials.at(0);
   };
   const Material coated = materialOf(0, {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.1}});
+  EXPECT_EQ(coated.dielectricF0, 0) << "of an index of refraction of 1.5, whatever the base has";
+  EXPECT_EQ(coated.roughnessMetalnessTexture.image, kNone) << "the base's";
   EXPECT_FLOAT_EQ(coated.roughness, 0.1f);
   EXPECT_FLOAT_EQ(coated.dielectricLobe, 0.75f);
   EXPECT_TRUE(hasWarning(scene, "1 material(s) whose coat takes the place of their own gloss"));
@@ -519,6 +529,43 @@ TEST_F(Import, ACoatTakesThePlaceOfTheGlossOfWhatIsNoMetal) {
   }
   EXPECT_FLOAT_EQ(materialOf(0, nlohmann::json::object()).roughness, 0.8f);
   EXPECT_TRUE(scene.warnings.empty()) << "no coat";
+}
+
+TEST_F(Import, UnlitIsALambertSurfaceOfItsColour) {
+  GltfBuilder b = oneTriangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 1, 1}}}},
+                          {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}};
+  b.json["extensionsRequired"] = {"KHR_materials_unlit"};
+  scene = b.load(folder);
+  const Material& unlit = scene.assets.materials.at(0);
+  expectNear(unlit.baseColor, {0.5f, 0.25f, 1});
+  EXPECT_FALSE(unlit.glossy()) << "glTF's default is a metal";
+  EXPECT_EQ(unlit.dielectricLobe, 0);
+}
+
+/// The same triangle baked into a place far off, and moved back by its node: what rays and shaders get is small
+/// numbers.
+TEST_F(Import, MeshesFarFromTheirOriginCountFromTheirMiddle) {
+  const std::vector<vec3> corners = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  for (const float far : {0.0f, 1000.0f, 65536.0f})
+    for (const bool back : {false, true}) {
+      GltfBuilder b;
+      std::vector<vec3> moved;
+      for (const vec3& p : corners) moved.push_back(p + vec3(far, -far, far));
+      b.addMeshNode({{"attributes", {{"POSITION", b.positions(moved)}}}});
+      if (back) b.json["nodes"][0]["translation"] = {-far, far, -far};
+      scene = b.load(folder);
+      const Mesh& mesh = scene.assets.meshes.at(0);
+      for (const vec3& p : mesh.positions) EXPECT_LE(maxComponent(glm::abs(p)), 2) << far << back;
+      SceneExtractor extractor;
+      const SceneView view = extractor.extract(scene, {}, 0);
+      const mat4& m = view.instances[0].worldFromObject;
+      const dvec3 home = back ? dvec3(0) : dvec3(far, -far, far);
+      for (size_t i = 0; i < 3; ++i)
+        expectNear(vec3(dvec3(vec3(m * vec4(mesh.positions[i], 1))) + scene.origin - home), corners[i]);
+      expectNear(view.boundsWorld.size(), {2, 2, 0});
+    }
 }
 
 } // namespace lambent::test::import_test

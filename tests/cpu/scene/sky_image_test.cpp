@@ -120,6 +120,11 @@ TEST_F(SkyFile, ReadsOpenExrAndRadiance) {
   EXPECT_EQ(hdr->width, 2);
   EXPECT_EQ(hdr->texels[0], vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(hdr->texels[1], vec3(0.5f));
+  // What its texels were multiplied by is taken back; what is no factor is none.
+  const std::string factors = "#?RADIANCE\nEXPOSURE=4\nEXPOSURE= 0.5\nCOLORCORR= 1 2 4\nEXPOSURE=0\nEXPOSURE=x\n";
+  const auto exposed = readSky(
+      written("e.hdr", factors + header.substr(11) + std::string("\x80\x40\x20\x81\x80\x80\x80\x80", 8)), notes);
+  EXPECT_EQ(exposed->texels[0], vec3(0.5f, 0.125f, 0.03125f));
   // In runs: red 1 eight times, green by itself, blue in two runs.
   const std::string wide = "#?RGBE\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
   const std::string runs("\x02\x02\x00\x08\x88\x80\x08\x00\x10\x20\x30\x40\x50\x60\x70\x83\x40\x85\x80\x88\x81", 21);
