@@ -52,6 +52,33 @@ Wrap wrapMode(int mode) {
                                                          : Wrap::Repeat;
 }
 
+/// What a sampler asks for that glTF does not know: taken as if it did not ask.
+void warnOfUnknown(Document& doc, const tinygltf::Sampler& sampler, const std::string& place) {
+  for (const int wrap : {sampler.wrapS, sampler.wrapT})
+    if (wrap != TINYGLTF_TEXTURE_WRAP_REPEAT && wrap != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE &&
+        wrap != TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
+      doc.warn(place + ": wrap mode " + std::to_string(wrap) + " is none of glTF's; repeated instead");
+  if (sampler.minFilter != -1 && minifyOf(sampler.minFilter) == Minify::Auto)
+    doc.warn(place + ": minFilter " + std::to_string(sampler.minFilter) + " is none of glTF's; not used");
+  if (sampler.magFilter != -1 && sampler.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST &&
+      sampler.magFilter != TINYGLTF_TEXTURE_FILTER_LINEAR)
+    doc.warn(place + ": magFilter " + std::to_string(sampler.magFilter) + " is none of glTF's; not used");
+}
+
+void warnOfUnknown(Document& doc, const tinygltf::Value& transform, const std::string& place) {
+  const auto isPair = [](const tinygltf::Value& v) {
+    return v.IsArray() && v.ArrayLen() == 2 && v.Get(0).IsNumber() && v.Get(1).IsNumber();
+  };
+  for (const char* key : {"offset", "scale", "rotation", "texCoord"})
+    if (transform.IsObject() && transform.Has(key)) {
+      const tinygltf::Value& value = transform.Get(key);
+      const bool two = key == std::string_view("offset") || key == std::string_view("scale");
+      if (two ? !isPair(value) : !value.IsNumber())
+        doc.warn(place + ": KHR_texture_transform's " + key + " is no " + (two ? "pair of numbers" : "number") +
+                 "; not used");
+    }
+}
+
 TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const std::string& place, bool srgb = true) {
   Document& doc = import.doc;
   TextureRef ref;
@@ -71,6 +98,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   ref.image = import.images.emplace(std::pair(source, srgb), uint32_t(import.images.size())).first->second;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = doc.model.samplers[size_t(texture.sampler)];
+    warnOfUnknown(doc, sampler, place);
     ref.wrapU = wrapMode(sampler.wrapS);
     ref.wrapV = wrapMode(sampler.wrapT);
     ref.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
@@ -79,6 +107,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   int texCoord = use.texCoord;
   if (const auto found = use.extensions.find("KHR_texture_transform"); found != use.extensions.end()) {
     const tinygltf::Value& t = found->second;
+    warnOfUnknown(doc, t, place);
     texCoord = wholeNumber(t, "texCoord", texCoord);
     const vec2 offset = pair(t, "offset", vec2(0)), scale = pair(t, "scale", vec2(1));
     const float angle = number(t, "rotation", 0), c = std::cos(angle), s = std::sin(angle);

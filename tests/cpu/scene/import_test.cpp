@@ -531,6 +531,29 @@ TEST_F(Import, ACoatTakesThePlaceOfTheGlossOfWhatIsNoMetal) {
   EXPECT_TRUE(scene.warnings.empty()) << "no coat";
 }
 
+TEST_F(Import, SamplersAndTransformsThatAreNoneAreTold) {
+  const auto load = [&](const nlohmann::json& sampler, const nlohmann::json& transform) {
+    GltfBuilder b = oneTriangle();
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    b.json["images"] = {
+        {{"uri", "data:image/png;base64,"
+                 "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5Erk"
+                 "Jggg=="}}};
+    b.json["samplers"] = {sampler};
+    b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    b.json["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}}}}}};
+    scene = b.load(folder);
+  };
+  load({{"wrapS", 33071}, {"minFilter", 9987}, {"magFilter", 9728}}, {{"scale", {2, 3}}, {"rotation", 1}});
+  EXPECT_TRUE(scene.warnings.empty());
+  load({{"wrapS", 3}, {"minFilter", 7}, {"magFilter", 9984}}, {{"scale", "x"}, {"offset", {1}}, {"rotation", {1}}});
+  for (const char* said : {"wrap mode 3 is none", "minFilter 7 is none", "magFilter 9984 is none",
+                           "'s scale is no pair", "'s offset is no pair", "'s rotation is no number"})
+    EXPECT_TRUE(hasWarning(scene, said)) << said;
+}
+
 TEST_F(Import, UnlitIsALambertSurfaceOfItsColour) {
   GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
