@@ -84,6 +84,7 @@ void takeFactors(std::string_view line, vec3& factor) {
   const size_t count = exposure ? 1 : 3;
   for (size_t i = 0; i < count; ++i) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.starts_with('+')) line.remove_prefix(1);
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), values[i]);
     if (error != std::errc() || !(values[i] > 1e-9f && values[i] < 1e9f)) return; // none that is meant
     line.remove_prefix(size_t(end - line.data()));

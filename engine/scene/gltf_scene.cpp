@@ -253,7 +253,7 @@ void findOrigin(Scene& scene) {
   scene.origin = middle; // the scene's size is right from here
   const double diameter = worldBounds(scene).diameter();
   scene.origin = dvec3(0);
-  const double near = 16 * diameter; // as far off, single precision does, and places stay what the file says
+  const double near = 4 * diameter; // as far off, single precision does, and places stay what the file says
   if (!(diameter > 0) || !(maxComponent(vec3(glm::abs(middle))) > near)) return;
   const double step = near >= 1000 ? 1000 : std::min(8.0, std::exp2(std::ceil(std::log2(near))));
   scene.origin = step * glm::floor(middle / step + 0.29); // not a half: middles of scenes often are whole numbers
@@ -261,17 +261,22 @@ void findOrigin(Scene& scene) {
 
 namespace {
 
-/// Meshes whose vertices are farther from zero than 16 times what the scene reaches: baked into a place far off, or
-/// moved back from there by a node. Skinned ones go where their joints are.
+/// Meshes whose vertices are farther from zero than four times what they reach in the world: baked into a place far
+/// off, or moved back from there by a node. Skinned ones go where their joints are.
 void bringMeshesHome(Scene& scene) {
-  const Aabb bounds = worldBounds(scene);
-  if (bounds.empty()) return;
-  const float reach = std::max(maxComponent(glm::abs(bounds.lo)), maxComponent(glm::abs(bounds.hi)));
   std::vector<bool> far(scene.assets.meshes.size());
-  scene.registry.each<MeshInstance, WorldTransform>([&](Entity, const MeshInstance& m, const WorldTransform& w) {
+  scene.registry.each<MeshInstance, WorldTransform>([&](Entity e, const MeshInstance& m, const WorldTransform& w) {
     const Mesh& mesh = scene.assets.meshes[m.mesh];
-    const vec3 place(glm::abs(glm::dmat3(w.worldFromNode) * dvec3(mesh.boundsObject.centre())));
-    if (mesh.jointSets.empty() && maxComponent(place) > 16 * reach) far[m.mesh] = true;
+    if (!mesh.jointSets.empty() || mesh.boundsObject.empty()) return;
+    const std::optional<PlacedPose> placed = poseOf(scene, e, m, w);
+    if (!placed) return;
+    const auto reach = [](const Aabb& box) {
+      return std::max(maxComponent(glm::abs(box.lo)), maxComponent(glm::abs(box.hi)));
+    };
+    const mat4 turned(mat3(placed->worldFromObject)); // and scaled, but not moved
+    if (reach(transformed(mesh.boundsObject, turned)) >
+        4 * reach(transformed(mesh.boundsObject, placed->worldFromObject)))
+      far[m.mesh] = true;
   });
   for (size_t i = 0; i < far.size(); ++i)
     if (far[i]) countFromMiddle(scene.assets.meshes[i]);

@@ -23,7 +23,7 @@ struct Scene {
   SceneAssets assets;
   std::vector<AnimationClip> animations; // from the file; all play, looped
   Sky sky;
-  /// Origin of a scene that lies farther from its file's origin than 16 times its size: where its middle is, roughly;
+  /// Origin of a scene that lies farther from its file's origin than 4 times its size: where its middle is, roughly;
   /// else zero. Transforms and what a person types are in the file's coordinates and double precision; cameras, views,
   /// boxes and all that follows count from here, so that single precision is as good there as at home. Whole steps of 8
   /// m, of less in scenes below half a metre, of 1000 m above 60 m.

@@ -272,10 +272,7 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
 /// Nothing needs the boxes where no map is fitted to them.
 void DirectLight::fitReceivers(const Frame& in, FrameStats& stats) {
   const SceneView& view = in.world.view;
-  const bool fitted = skyByMaps(in) || std::ranges::any_of(sharp_, [&](const LightView& l) {
-                        return l.type == LightType::Directional || aims(l, view.boundsWorld);
-                      });
-  if (!fitted) {
+  if (!skyByMaps(in) && sharp_.empty()) {
     receivers_ = mostReceivers_ = {};
     return;
   }

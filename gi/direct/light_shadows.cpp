@@ -77,12 +77,11 @@ struct LampAim {
   }
 };
 
-/// Aims from three radii off, and goes on to two. Keeps `previous` while it covers the receivers and is not more than
-/// twice as large as needed, so that a slow camera redraws nothing. (All around, a texel of 320×240 is 4 m wide at 300
-/// m: what is smaller threw no shadow.)
+/// Aims from three radii off, of a scene that it stands in from twelve, and goes on to two. Keeps `previous` while it
+/// covers the receivers and is not more than twice as large as needed, so that a slow camera redraws nothing. (All
+/// around, a texel of 320×240 is 4 m wide at 300 m: what is smaller threw no shadow.)
 LampAim aimAt(const LightView& light, const Aabb& receivers, const Aabb& casters, const LampAim& previous) {
-  constexpr float kBegins = 3, kEnds = 2, kSpare = 1.1f, kLoosest = 2;
-  if (!aims(light, casters)) return {};
+  constexpr float kBegins = 3, kBeginsWithin = 12, kEnds = 2, kSpare = 1.1f, kLoosest = 2;
   const bool same = previous && previous.position == light.position;
   if (receivers.empty()) return same ? previous : LampAim{};
   const vec3 centre = receivers.centre();
@@ -91,7 +90,9 @@ LampAim aimAt(const LightView& light, const Aabb& receivers, const Aabb& casters
       previous.radius <= kLoosest * needed)
     return previous;
   const float radius = kSpare * needed;
-  if (glm::distance(light.position, centre) < (previous ? kEnds : kBegins) * radius) return {};
+  const bool within =
+      glm::distance(light.position, glm::clamp(light.position, casters.lo, casters.hi)) < 0.1f * casters.diameter();
+  if (glm::distance(light.position, centre) < (previous ? kEnds : within ? kBeginsWithin : kBegins) * radius) return {};
   return {light.position, centre, radius};
 }
 
@@ -151,12 +152,6 @@ struct KeptBlock {
 };
 
 } // namespace
-
-bool aims(const LightView& light, const Aabb& scene) {
-  if (light.type == LightType::Directional || scene.empty()) return false;
-  const vec3 nearest = glm::clamp(light.position, scene.lo, scene.hi);
-  return glm::distance(light.position, nearest) > 0.1f * scene.diameter();
-}
 
 void LightRecords::hold(std::vector<LightRecord> lights, gl::Ring& uploads) {
   const size_t bytes = lights.size() * sizeof(LightRecord);

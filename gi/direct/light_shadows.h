@@ -52,9 +52,6 @@ struct SunFit {
 /// than twice as large as needed, so that a slow camera redraws nothing; a new fit has a tenth to spare on each side.
 SunFit fitSun(const vec3& direction, const Aabb& receivers, const Aabb& casters, const SunFit& previous);
 
-/// Whether a lamp or spot stands so far outside of the scene that its map may aim at what is seen.
-bool aims(const LightView& light, const Aabb& scene);
-
 /// Leaves out places, at most a thirtieth, that make their box much larger than the rest needs.
 std::vector<vec3> withoutOutliers(std::vector<vec3> places);
 

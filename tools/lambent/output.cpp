@@ -101,8 +101,8 @@ std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, co
     text += '\n' + option;
   if (namesSky(o.sky)) text += readText(o.sky);
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);
-  for (const auto* list : {&o.suns, &o.points})
-    for (const std::string& light : *list) text += '\n' + light;
+  for (const std::string& light : o.suns) text += "\nsun " + light;
+  for (const std::string& light : o.points) text += "\npoint " + light;
   uint64_t hash = hashOf(text, hashOfProgram());
   for (const fs::path& file : opened.scene.files) hash = hashOf(readText(file), hash);
   return format("%016llx", static_cast<unsigned long long>(hash));

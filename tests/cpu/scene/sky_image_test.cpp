@@ -121,7 +121,7 @@ TEST_F(SkyFile, ReadsOpenExrAndRadiance) {
   EXPECT_EQ(hdr->texels[0], vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(hdr->texels[1], vec3(0.5f));
   // What its texels were multiplied by is taken back; what is no factor is none.
-  const std::string factors = "#?RADIANCE\nEXPOSURE=4\nEXPOSURE= 0.5\nCOLORCORR= 1 2 4\nEXPOSURE=0\nEXPOSURE=x\n";
+  const std::string factors = "#?RADIANCE\nEXPOSURE=4\nEXPOSURE= +0.5\nCOLORCORR= 1 +2 4\nEXPOSURE=0\nEXPOSURE=x\n";
   const auto exposed = readSky(
       written("e.hdr", factors + header.substr(11) + std::string("\x80\x40\x20\x81\x80\x80\x80\x80", 8)), notes);
   EXPECT_EQ(exposed->texels[0], vec3(0.5f, 0.125f, 0.03125f));
