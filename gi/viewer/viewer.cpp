@@ -45,7 +45,8 @@ void Viewer::expose(bool drawn, float elapsed) {
     return;
   }
   const gl::Texture* const radiance = passes_->results.radiance;
-  if (std::exchange(given_, false) || (exposure_ <= 0 && drawn)) {
+  const bool released = std::exchange(given_, false) && radiance; // what was drawn last says it
+  if (released || (exposure_ <= 0 && drawn)) {
     measured_ = firstMeasured_ = measureExposure(*radiance);
     exposure_ = measured_ > 0 ? measured_ : 1;
   }

@@ -124,6 +124,10 @@ TEST_F(FrameTest, ExposureAdaptsToTheLight) {
   gi.settings().image.exposure = 3;
   gi.run(times(1));
   EXPECT_EQ(gi.exposure(), 3);
+  gi.settings().image.adaptation = 0;
+  gi.settings().image.exposure = 0;
+  gi.run(scene.view(kStill));
+  EXPECT_NEAR(gi.exposure(), first, 0.02f * first) << "measured again, though nothing is drawn";
 }
 
 /// What the first frame with light asks for is what exposure keeps to, not a black one before it.
