@@ -341,8 +341,10 @@ TEST_F(StateGuardTest, CostsLittle) {
   RecordProperty("guard_inner_us", std::to_string(inner));
   std::printf("a guard takes %.1f us, %.1f us where every binding is taken, %.3f us inside another\n", empty, full,
               inner);
-  EXPECT_LT(empty, 20 * asked) << "of a hundred questions to GL, " << asked << " us";
-  EXPECT_LT(full, 20 * asked);
+  // 100 us are 0.6 % of a frame at 60 Hz; a driver whose answers are slow may take 2000 of them.
+  const double limit = std::max(100.0, 20 * asked);
+  EXPECT_LT(empty, limit) << "of a hundred questions to GL, " << asked << " us";
+  EXPECT_LT(full, limit);
   EXPECT_LT(inner, 0.05 * empty);
 }
 
