@@ -237,7 +237,7 @@ void checkWritable(const fs::path& named) {
 bool sameFile(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
-  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(leadsTo(file)), none); };
+  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(leadsTo(file), none), none); };
   return !a.empty() && !b.empty() && !there(a).empty() && there(a) == there(b);
 }
 

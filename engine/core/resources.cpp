@@ -34,9 +34,12 @@ int threadsOf(int wanted) {
 void requireResources(int wanted) {
   constexpr size_t kAddresses = size_t(1) << 30; // what a small scene's frame takes on software Mesa
   void* const room = mmap(nullptr, kAddresses, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED)
-    throw RunError("this process may not take 1 GB of memory (is there a limit? ulimit -v unlimited lifts it)");
-  munmap(room, kAddresses);
+  if (room != MAP_FAILED) munmap(room, kAddresses);
+  rlimit data{};
+  const bool little = getrlimit(RLIMIT_DATA, &data) == 0 && data.rlim_cur < kAddresses;
+  if (room == MAP_FAILED || little)
+    throw RunError(std::string("this process may not take 1 GB of memory (is there a limit? ulimit -") +
+                   (little ? "d" : "v") + " unlimited lifts it)");
   constexpr rlim_t kStack = 256 * 1024; // each thread's default too; 128 KB were enough
   rlimit stack{};
   if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kStack)

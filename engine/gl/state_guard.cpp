@@ -93,6 +93,7 @@ constexpr Value kValues[] = {
     {GL_DEPTH_FUNC, [](GLint v) { glDepthFunc(GLenum(v)); }},
     {GL_DEPTH_WRITEMASK, [](GLint v) { glDepthMask(GLboolean(v)); }},
     {GL_FRONT_FACE, [](GLint v) { glFrontFace(GLenum(v)); }},
+    {GL_CULL_FACE_MODE, [](GLint v) { glCullFace(GLenum(v)); }},
     {GL_PROVOKING_VERTEX, [](GLint v) { glProvokingVertex(GLenum(v)); }},
     {GL_PIXEL_PACK_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_PIXEL_PACK_BUFFER, GLuint(v)); }},
     {GL_PIXEL_UNPACK_BUFFER_BINDING, [](GLint v) { glBindBuffer(GL_PIXEL_UNPACK_BUFFER, GLuint(v)); }},

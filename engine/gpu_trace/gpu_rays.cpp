@@ -105,6 +105,10 @@ template <class T> std::vector<T> GpuRays::trace(std::span<const Ray> rays, bool
   return out;
 }
 
+void GpuRays::seen(std::span<const Ray>, std::span<SurfaceHit>) const {
+  CHECK(!"asked: what an eye sees is Embree's alone");
+}
+
 void GpuRays::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const {
   CHECK_EQ(rays.size(), hits.size());
   const std::vector<Hit> met = trace<Hit>(rays, false);

@@ -23,6 +23,7 @@ class GpuRays final : public RayQuery {
   void bind(const gl::Program& program) const;
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
+  void seen(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
   void distances(std::span<const Ray> rays, std::span<float> t) const override;
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const override;
   bool ownThread() const override { return true; }

@@ -3,19 +3,47 @@
 #include <algorithm>
 #include <system_error>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace lambent {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Whether a place without links on its way is in a folder or below.
+bool isIn(const fs::path& folder, const fs::path& place) {
+  std::error_code failure;
+  const fs::path root = fs::canonical(folder.empty() ? "." : folder, failure);
+  return !failure && std::mismatch(root.begin(), root.end(), place.begin(), place.end()).first == root.end();
+}
+
+} // namespace
 
 bool mayRead(const fs::path& folder, const fs::path& file, bool outside) {
   std::error_code failure;
   if (file.native().find('\0') != std::string::npos) return false; // the system reads the part before it
   const fs::path there = fs::canonical(file, failure);             // without links; fails where there is nothing
   if (failure || !fs::is_regular_file(there, failure)) return false;
-  if (outside) return true;
-  const fs::path root = fs::canonical(folder.empty() ? "." : folder, failure);
-  if (failure) return false;
-  return std::mismatch(root.begin(), root.end(), there.begin(), there.end()).first == root.end();
+  return outside || isIn(folder, there);
+}
+
+HeldFile::HeldFile(const fs::path& folder, const fs::path& file, bool outside)
+    : descriptor_(mayRead(folder, file, outside) ? open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)
+                                                 : -1) {
+  if (descriptor_ < 0) return;
+  struct stat status {};
+  std::error_code failure;
+  const bool regular = fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+  if (regular && (outside || isIn(folder, fs::read_symlink(opened(), failure)))) return;
+  close(descriptor_);
+  descriptor_ = -1;
+}
+
+HeldFile::~HeldFile() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 bool leadsOutside(const fs::path& folder, const fs::path& file) {

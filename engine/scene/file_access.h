@@ -16,6 +16,23 @@ struct FileTrust {
 /// or below, wherever links on the way lead. What lies elsewhere is as if it were not there.
 bool mayRead(const std::filesystem::path& folder, const std::filesystem::path& file, bool outside);
 
+/// A file that a scene may read (mayRead), held open: what is read is what was checked, whatever others put into its
+/// place meanwhile.
+class HeldFile {
+ public:
+  HeldFile(const std::filesystem::path& folder, const std::filesystem::path& file, bool outside);
+  ~HeldFile();
+  HeldFile(const HeldFile&) = delete;
+  HeldFile& operator=(const HeldFile&) = delete;
+
+  explicit operator bool() const { return descriptor_ >= 0; }
+  /// Returns a name that leads to it as long as this lives.
+  std::filesystem::path opened() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
 /// Says whether the way to a file leads out of a folder, by what it says or by a link on it, whether there is anything
 /// or not.
 bool leadsOutside(const std::filesystem::path& folder, const std::filesystem::path& file);

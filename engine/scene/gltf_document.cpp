@@ -134,19 +134,20 @@ std::string rightPath(const std::string& file, void* data) {
 bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const std::string& file, void* data) {
   Reading& reading = *static_cast<Reading*>(data);
   try {
-    if (!reading.may(file)) throw InputError(file, "no such file"); // also for who does not ask before
-    constexpr size_t kOfItself = 2048; // what a reading takes of time beside what is read, in bytes
+    const HeldFile held(reading.folder, file, reading.mayOutside);
+    if (!held) throw InputError(file, "no such file"); // also for who does not ask before
+    constexpr size_t kOfItself = 2048;                 // what a reading takes of time beside what is read, in bytes
     std::error_code none;
-    const size_t size = fs::file_size(file, none);
+    const size_t size = fs::file_size(held.opened(), none);
     const auto [real, added] = reading.places.try_emplace(file);
-    if (added) real->second = fs::weakly_canonical(file, none).string();
+    if (added) real->second = fs::weakly_canonical(held.opened(), none).string();
     if (reading.files.insert(real->second).second) {
       reading.budget->read += size;
     } else if (!reading.budget->take(size + kOfItself, 1)) {
       throw InputError(file,
                        "is read so often that it needs more memory than the scene may ask for (--allow-large lets it)");
     }
-    *out = readFileBytes(file);
+    *out = readFileBytes(held.opened());
     return true;
   } catch (const std::exception& e) {
     if (error) *error += e.what();

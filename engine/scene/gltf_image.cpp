@@ -140,8 +140,9 @@ size_t scansOf(Bytes bytes) {
 /// without loss the picture before it is written.
 size_t workingBytes(Bytes bytes) { return isWebp(bytes) ? 4 : !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
 
-/// Why the image cannot be decoded; empty: it may be.
-std::string defectOf(Bytes bytes, int& width, int& height) {
+/// Why the image cannot be decoded; empty: it may be. `passed`: texels that the file's JPEGs pass over in more passes
+/// than are usual, so far.
+std::string defectOf(Bytes bytes, int& width, int& height, uint64_t& passed) {
   int channels = 0;
   if (bytes.size == 0) return "cannot be read (no such file, or it is empty)";
   if (bytes.size > size_t(std::numeric_limits<int>::max())) return "is larger than 2 GiB";
@@ -157,9 +158,13 @@ std::string defectOf(Bytes bytes, int& width, int& height) {
   if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)
     return "is " + std::to_string(width) + "x" + std::to_string(height) + " texels (1 to " +
            std::to_string(kMostTexels) + " each way)";
-  constexpr uint64_t kMostPassed = uint64_t(1) << 35; // 2 s
-  if (const size_t scans = scansOf(bytes); uint64_t(width) * uint64_t(height) * scans > kMostPassed)
-    return "is a JPEG of " + std::to_string(scans) + " passes, which take very long to decode (some ten are usual)";
+  constexpr uint64_t kMostPassed = uint64_t(1) << 33, kUsual = 16; // 3 s, for all of a file's together
+  if (const uint64_t scans = scansOf(bytes); scans > kUsual) {
+    const uint64_t more = uint64_t(width) * uint64_t(height) * (scans - kUsual);
+    if (more > kMostPassed - passed)
+      return "is a JPEG of " + std::to_string(scans) + " passes, which take very long to decode (some ten are usual)";
+    passed += more;
+  }
   return {};
 }
 
@@ -203,9 +208,10 @@ void decodeImages(Import& import) {
   std::vector<std::string> defects(order.size());
   std::vector<glm::ivec2> sizes(order.size());
   std::vector<std::pair<size_t, std::string>> working; // bytes that decoding takes, and where
+  uint64_t passed = 0;
   for (size_t i = 0; i < order.size(); ++i) {
     const Bytes bytes = encodedBytes(doc, order[i].first);
-    defects[i] = defectOf(bytes, sizes[i].x, sizes[i].y);
+    defects[i] = defectOf(bytes, sizes[i].x, sizes[i].y, passed);
     if (!defects[i].empty()) continue;
     const size_t texels = size_t(sizes[i].x) * size_t(sizes[i].y);
     const std::string place = placeOf(doc.model.images[size_t(order[i].first)], order[i].first);

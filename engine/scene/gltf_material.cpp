@@ -227,6 +227,7 @@ uint32_t importMaterial(Import& import, int index) {
   if (maxComponent(emissive) > 1)
     doc.warn(place + ": emissiveFactor is above 1 (KHR_materials_emissive_strength is meant for that); used as it is");
   out.doubleSided = in.doubleSided;
+  out.backHidden = !in.doubleSided;
   if (in.alphaMode == "MASK") {
     out.alphaMode = AlphaMode::Mask;
     out.alphaCutoff = float(in.alphaCutoff);

@@ -347,4 +347,10 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   return scene;
 }
 
+void requireQuickRays(Scene& scene, const CameraView& camera, FileTrust trust) {
+  const RayWork work = rayWork(scene, camera);
+  if (!trust.large) refuseSlowRays(scene, work);
+  scene.rayWork = std::max(scene.rayWork, work.sum());
+}
+
 } // namespace lambent

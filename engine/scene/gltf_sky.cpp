@@ -23,14 +23,16 @@ Sky pictureOf(Document& doc, const tinygltf::Value& given, const std::string& pl
     doc.warn(place + ": " + uri + ": " + why + "; the scene has no sky of its own");
     return Sky();
   };
-  if (!mayRead(folder, picture, outside))
+  const HeldFile held(folder, picture, outside);
+  if (!held)
     return black(std::string("no such file in the scene's folder") +
                  (!outside && leadsOutside(folder, picture) ? " (--allow-outside lets it read others)" : ""));
   try {
     constexpr size_t kBytesPerTexel = 2 * sizeof(vec3); // as read, and halved
-    doc.budget.read += std::filesystem::file_size(picture);
+    doc.budget.read += std::filesystem::file_size(held.opened());
     std::vector<std::string> notes;
-    const auto image = readSky(picture, notes, std::min<uint64_t>(kMostSkyTexels, doc.budget.left() / kBytesPerTexel));
+    const auto image =
+        readSky(picture, notes, std::min<uint64_t>(kMostSkyTexels, doc.budget.left() / kBytesPerTexel), held.opened());
     doc.spend(image->texels.size(), kBytesPerTexel, place);
     const Sky sky = Sky::image(image, scale, glm::radians(turn));
     for (std::string& note : notes) doc.warn(std::move(note));

@@ -212,10 +212,8 @@ Ray onward(const Ray& ray, Rng& random) {
   return next;
 }
 
-/// Through the picture that a file is first drawn as.
-std::vector<Ray> cameraRays(const Scene& scene, size_t count) {
-  const std::vector<NamedCamera> cameras = sceneCameras(scene);
-  const CameraView camera = cameras.empty() ? defaultView(scene) : cameras.front().view;
+/// Through a camera's picture.
+std::vector<Ray> cameraRays(const CameraView& camera, size_t count) {
   std::vector<Ray> rays(count);
   for (size_t i = 0; i < count; ++i) {
     const vec3 at = additiveRecurrence3(uint32_t(i), vec3(0));
@@ -254,17 +252,17 @@ struct Counted {
   }
 };
 
-} // namespace
-
-RayWork rayWork(const Scene& scene) {
+/// From what a camera shows, and from all surfaces too.
+RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
   const std::vector<double> areas = areasOfInstances(scene);
   if (std::ranges::none_of(areas, [](double area) { return area > 0; })) return {}; // nothing for light to fall on
   uint64_t triangles = 0;
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { triangles += mesh.triangles.size(); });
   const auto wanted = size_t(std::clamp<uint64_t>((uint64_t(1) << 28) / triangles, 64, 256));
   Rng random(1, Stream::RayWork, 0);
-  std::vector<Ray> rays = surfaceRays(scene, areas, wanted, random);
-  std::ranges::move(cameraRays(scene, wanted), std::back_inserter(rays));
+  std::vector<Ray> rays;
+  if (surfaces) rays = surfaceRays(scene, areas, wanted, random);
+  std::ranges::move(cameraRays(camera, wanted), std::back_inserter(rays));
   Tracing trace(scene);
   std::array<Counted, kWalks> walks;
   for (int step = 0; step < kSteps && !rays.empty(); ++step) {
@@ -291,5 +289,14 @@ RayWork rayWork(const Scene& scene) {
   }
   return std::ranges::max(walks[kFromSurfaces].mean(), walks[kFromCamera].mean(), {}, &RayWork::sum);
 }
+
+} // namespace
+
+RayWork rayWork(const Scene& scene) {
+  const std::vector<NamedCamera> cameras = sceneCameras(scene);
+  return workOf(scene, cameras.empty() ? defaultView(scene) : cameras.front().view, true);
+}
+
+RayWork rayWork(const Scene& scene, const CameraView& camera) { return workOf(scene, camera, false); }
 
 } // namespace lambent

@@ -22,5 +22,7 @@ struct RayWork {
 /// a million of them, and goes on from each to what is met, twice: where many triangles share a place, only what can be
 /// seen of them counts. As many rays leave the camera, and 16 times as many what they meet.
 RayWork rayWork(const Scene& scene);
+/// The same of what one camera shows alone.
+RayWork rayWork(const Scene& scene, const CameraView& camera);
 
 } // namespace lambent

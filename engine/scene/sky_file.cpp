@@ -39,11 +39,18 @@ bool namesSky(const std::filesystem::path& file) {
 }
 
 std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes,
-                                        uint64_t mostTexels) {
+                                        uint64_t mostTexels, const std::filesystem::path& opened) {
   if (!namesSky(file)) throw InputError(file.string(), "not a picture of the sky (.hdr or .exr)");
-  if (std::filesystem::is_directory(file))
+  const std::filesystem::path& source = opened.empty() ? file : opened;
+  if (std::filesystem::is_directory(source))
     throw InputError(file.string(), "is a folder (a picture of the sky expected)");
-  Image image = extensionOf(file) == ".hdr" ? readHdr(file, mostTexels) : readExr(file, {}, mostTexels);
+  Image image;
+  try {
+    image = extensionOf(file) == ".hdr" ? readHdr(source, mostTexels) : readExr(source, {}, mostTexels);
+  } catch (const InputError& e) {
+    const std::string said = e.what(), name = source.string() + ": ";
+    throw InputError(file.string(), said.starts_with(name) ? said.substr(name.size()) : said);
+  }
   size_t invalid = 0, bright = 0;
   for (vec3& texel : image.pixels)
     for (int c = 0; c < 3; ++c) {

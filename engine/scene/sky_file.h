@@ -16,8 +16,8 @@ bool namesSky(const std::filesystem::path& file);
 
 /// Reads a picture by longitude and latitude. Ones longer than 4096 are halved until they are not. Adds to `notes` what
 /// is shown differently: what is not a number, or negative, is black; what is more than a half float holds is the most
-/// it holds. Throws InputError.
+/// it holds. `opened`: another name of the file, by which it is read. Throws InputError.
 std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::vector<std::string>& notes,
-                                        uint64_t mostTexels = kMostSkyTexels);
+                                        uint64_t mostTexels = kMostSkyTexels, const std::filesystem::path& opened = {});
 
 } // namespace lambent

@@ -26,10 +26,12 @@ class AnalyticQuery final : public RayQuery {
   }
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
+  void seen(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override { closest(rays, hits); }
   void distances(std::span<const Ray> rays, std::span<float> t) const override;
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const override;
   using RayQuery::closest;
   using RayQuery::occluded;
+  using RayQuery::seen;
 
  private:
   enum class Kind { Box, Sphere, Plane };

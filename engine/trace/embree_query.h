@@ -31,15 +31,19 @@ class EmbreeQuery final : public RayQuery {
   Work takeWork() const;
 
   void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
+  void seen(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
   void distances(std::span<const Ray> rays, std::span<float> t) const override;
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const override;
   using RayQuery::closest;
   using RayQuery::occluded;
+  using RayQuery::seen;
 
   /// Version of the library in use, e.g. "3.13.5".
   static std::string version();
 
  private:
+  void trace(std::span<const Ray> rays, std::span<SurfaceHit> hits, bool eye) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -36,7 +36,7 @@ Glow glowOnSeen(const RayQuery& rays, const CameraView& camera) {
   for (uint32_t i = 0; i < kPlaces; ++i) {
     const vec3 at = additiveRecurrence3(i, vec3(0));
     const CameraRay through = cameraRay(camera, at.x, at.y);
-    const SurfaceHit hit = rays.closest(Ray{through.origin, through.direction});
+    const SurfaceHit hit = rays.seen(Ray{through.origin, through.direction});
     if (!hit.valid()) continue;
     ++seen;
     shown += double(luminance(hit.emission));

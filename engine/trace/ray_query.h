@@ -53,6 +53,8 @@ class RayQuery {
 
   /// Finds closest hits; hits.size() == rays.size(). Coherent neighbours are traced faster. NaN rays count as misses.
   virtual void closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) const = 0;
+  /// Finds what an eye sees along rays: as closest(), but through the backs of materials that hide theirs.
+  virtual void seen(std::span<const Ray> rays, std::span<SurfaceHit> hits) const = 0;
   /// Finds distances only, in units of each ray's direction, kInfinity where nothing is met.
   virtual void distances(std::span<const Ray> rays, std::span<float> t) const = 0;
   /// Sets `blocked` to 1 where something lies on the segment (0, tMax), else to 0.
@@ -64,6 +66,11 @@ class RayQuery {
   SurfaceHit closest(const Ray& ray) const {
     SurfaceHit h;
     closest({&ray, 1}, {&h, 1});
+    return h;
+  }
+  SurfaceHit seen(const Ray& ray) const {
+    SurfaceHit h;
+    seen({&ray, 1}, {&h, 1});
     return h;
   }
   bool occluded(const Ray& ray) const {

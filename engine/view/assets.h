@@ -70,6 +70,7 @@ struct Material {
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
+  bool backHidden = false; // the eye looks through its back, as glTF has it where not doubleSided; light does not
 
   bool emits() const { return maxComponent(emission) > 0; }
   /// Says whether the material is anything but Lambert; a texture may make it so.

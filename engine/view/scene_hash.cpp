@@ -34,6 +34,7 @@ void add(Hash& hash, const SceneAssets& assets, bool glossy, bool normalMaps) {
     hash.value(m.alphaMode);
     hash.value(m.alphaCutoff);
     hash.value(m.doubleSided);
+    hash.value(m.backHidden);
     if (glossy) {
       hash.value(m.roughness);
       hash.value(m.metalness);

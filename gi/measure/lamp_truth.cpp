@@ -52,7 +52,7 @@ LampTruth traceLamps(const SceneView& view, int rays) {
       for (int x = 0; x < camera.width; ++x) {
         const CameraRay seen =
             cameraRay(camera, (float(x) + 0.5f) / float(camera.width), (float(y) + 0.5f) / float(camera.height));
-        const SurfaceHit hit = query.closest(Ray{seen.origin, seen.direction});
+        const SurfaceHit hit = query.seen(Ray{seen.origin, seen.direction});
         if (!hit.valid() || maxComponent(hit.emission) > 0) continue;
         out.distance.at(x, y) = vec3(glm::dot(hit.position - camera.position(), -vec3(camera.worldFromView[2])));
         out.normal.at(x, y) = hit.normal;

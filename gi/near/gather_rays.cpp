@@ -21,7 +21,7 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
     block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction});
   }
   std::vector<SurfaceHit> hits(block.size());
-  rays.closest(block, hits);
+  rays.seen(block, hits);
   for (SurfaceHit& h : hits)
     if (normalMaps && h.valid()) applyNormalMap(*normalMaps, h);
   return hits;

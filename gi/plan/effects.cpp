@@ -38,10 +38,10 @@ bool reflects(const Material& m) { return maxComponent(m.baseColor) > 0; }
 /// that is not black lies in one plane. Large scenes are not asked. With `glossy` black surfaces count whose lobe
 /// reflects.
 bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
-  constexpr uint32_t kAsked = 4096; // triangles
-  const float tolerance = 1e-5f * std::max(1e-20f, view.boundsWorld.diameter());
+  constexpr uint32_t kAsked = 4096;                                                        // triangles
+  const double tolerance = 0x1p-21 * std::max(1e-20, double(view.boundsWorld.diameter())); // some steps of floats
   uint32_t triangles = 0;
-  vec3 origin(0), normal(0);
+  dvec3 origin(0), normal(0);
   for (const InstanceView& i : view.instances) {
     const Mesh& mesh = view.assets->meshes[i.mesh];
     for (const Primitive& p : mesh.primitives) {
@@ -51,15 +51,15 @@ bool reflectorsSeeOneAnother(const SceneView& view, bool glossy) {
       if (triangles > kAsked || i.deformed) return true;
       for (uint32_t t = 0; t < p.triangleCount; ++t) {
         const uvec3 corners = mesh.triangles[p.firstTriangle + t];
-        vec3 at[3];
-        for (int c = 0; c < 3; ++c) at[c] = vec3(i.worldFromObject * vec4(mesh.positions[corners[c]], 1));
-        if (normal == vec3(0)) {
-          const vec3 n = glm::cross(at[1] - at[0], at[2] - at[0]);
+        dvec3 at[3];
+        for (int c = 0; c < 3; ++c) at[c] = dvec3(dmat4(i.worldFromObject) * glm::dvec4(mesh.positions[corners[c]], 1));
+        if (normal == dvec3(0)) {
+          const dvec3 n = glm::cross(at[1] - at[0], at[2] - at[0]);
           if (!(glm::length(n) > 0)) return true;
           normal = glm::normalize(n);
           origin = at[0];
         }
-        for (const vec3& corner : at)
+        for (const dvec3& corner : at)
           if (!(std::abs(glm::dot(corner - origin, normal)) <= tolerance)) return true;
       }
     }

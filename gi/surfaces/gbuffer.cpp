@@ -108,7 +108,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   const float zero[4] = {0, 0, 0, 0};
   for (int i = 0; i < 5; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
-  in.scene.draw(gBufferWith(glossy, mapped), block.clipFromWorld, in.camera.position());
+  in.scene.drawSeen(gBufferWith(glossy, mapped), block.clipFromWorld, in.camera.position());
   return out;
 }
 

@@ -46,20 +46,22 @@ void GpuScene::place(std::span<const InstanceView> instances) {
     const InstanceView& instance = instances[i];
     const mat4 transposed = glm::transpose(instance.worldFromObject);
     rows.insert(rows.end(), {transposed[0], transposed[1], transposed[2]});
+    const bool mirrored = glm::determinant(glm::dmat3(instance.worldFromObject)) < 0;
     for (PrimitiveRange range : meshes_[instance.mesh].primitives) {
       if (instance.deformed) {
         range.baseVertex = deformed_.baseVertex[i];
         range.boundsObject = instance.deformed->primitiveBoundsObject[range.primitive];
       }
-      items_.push_back(
-          {i, range, transformed(range.boundsObject, instance.worldFromObject), instance.deformed != nullptr});
+      items_.push_back({i, range, transformed(range.boundsObject, instance.worldFromObject),
+                        instance.deformed != nullptr, mirrored});
       bounds_.add(items_.back().boundsWorld);
       triangleCount_ += range.indexCount / 3;
     }
   }
   // Sorted once here, not per draw: by material, since binding one costs more than anything else of a draw.
-  std::stable_sort(items_.begin(), items_.end(),
-                   [](const Item& a, const Item& b) { return a.range.material < b.range.material; });
+  std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
+    return std::pair(a.range.material, a.mirrored) < std::pair(b.range.material, b.mirrored);
+  });
 
   // Room for a G-buffer and the maps of a few lights per frame; of more, the ring waits for the oldest.
   commands_.reserve(std::min<uint64_t>(16 * items_.size() * sizeof(gl::IndexedDraw), kMostCommandBytes));
@@ -130,7 +132,7 @@ void GpuScene::bindMaterial(uint32_t index) const {
 }
 
 uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which,
-                        const mat3& wayFromPixel) const {
+                        const mat3& wayFromPixel, bool seen) const {
   const Frustum frustum = Frustum::ofClip(clipFromWorld);
   std::vector<const Item*> shown;
   for (const Item& item : items_) {
@@ -160,10 +162,11 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   for (size_t first = 0, end = 0; first < shown.size(); first = end) {
     const Item& item = *shown[first];
     const MaterialDraw& material = materialDraws_[item.range.material];
-    const bool anyMaterial = plain(item);
+    const bool anyMaterial = plain(item), culled = seen && material.backHidden;
     const auto sameRun = [&](const Item& other) {
       return other.deformed == item.deformed && plain(other) == anyMaterial &&
-             (anyMaterial || other.range.material == item.range.material);
+             (anyMaterial || other.range.material == item.range.material) &&
+             (!culled || other.mirrored == item.mirrored);
     };
     for (end = first + 1; end < shown.size() && sameRun(*shown[end]);) ++end;
     const gl::Program& wanted = programFor(kind, material);
@@ -175,11 +178,14 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
       if (kind == DrawKind::DistanceNormal) program->set("wayFromPixel", mat4(wayFromPixel));
     }
     if (!anyMaterial) bindMaterial(item.range.material);
+    culled ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
+    glCullFace(item.mirrored ? GL_FRONT : GL_BACK);
     glBindVertexArray(item.deformed ? deformed_.array.name() : vertexArray_.name());
     gl::drawIndexed(slice, first, end - first);
     ++draws;
     testedDraws_ += tested(material);
   }
+  glDisable(GL_CULL_FACE);
   for (const GLuint unit : {2, 3, 4, 5}) gl::bindSampler(unit, 0);
   glBindVertexArray(0);
   return draws;

@@ -1,5 +1,5 @@
-// The scene's assets in GPU memory and the drawing of its instances. Nothing is ever culled by facing: both sides of a
-// surface reflect, and the ray tracer sees both.
+// The scene's assets in GPU memory and the drawing of its instances. Light meets both sides of every surface, so what
+// is drawn for it is not culled by facing.
 #pragma once
 
 #include "engine/gl/objects.h"
@@ -49,7 +49,13 @@ class GpuScene {
   /// camera block, and for distances gives the directions of pixels: of window coordinates (x, y, 1), world axes.
   /// Returns the number of calls.
   uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye = vec3(0), Instances which = Instances::All,
-                const mat3& wayFromPixel = mat3(1)) const;
+                const mat3& wayFromPixel = mat3(1)) const {
+    return draw(kind, clipFromWorld, eye, which, wayFromPixel, false);
+  }
+  /// Draws a G-buffer of what an eye sees: without the backs of materials that hide theirs, as RayQuery::seen.
+  uint32_t drawSeen(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
+    return draw(kind, clipFromWorld, eye, Instances::All, mat3(1), true);
+  }
 
   /// Sets which alpha test draws use; AlphaTest::Masked at the start.
   void setAlphaTest(AlphaTest test) {
@@ -76,7 +82,7 @@ class GpuScene {
   struct MaterialDraw {
     GLuint baseTexture, emissiveTexture, roughnessMetalnessTexture, normalTexture; // 0 = none
     GLuint baseSampler, emissiveSampler, finishSampler, normalSampler;
-    bool masked;
+    bool masked, backHidden;
   };
   struct MeshRange {
     uint32_t baseVertex, vertexCount;
@@ -86,7 +92,7 @@ class GpuScene {
     uint32_t instance;
     PrimitiveRange range;
     Aabb boundsWorld;
-    bool deformed;
+    bool deformed, mirrored;
   };
   /// What place() was last given; revision 0: rigid.
   struct Placed {
@@ -102,6 +108,8 @@ class GpuScene {
     std::vector<uint32_t> baseVertex; // by instance; kNone: rigid
   };
 
+  uint32_t draw(DrawKind kind, const mat4& clipFromWorld, const vec3& eye, Instances which, const mat3& wayFromPixel,
+                bool seen) const;
   static uint64_t nextVersion();
   void uploadMeshes(const SceneAssets& assets);
   gl::VertexArray vertexArrayOf(const char* label, const gl::Buffer& positions, const gl::Buffer& normals,

@@ -89,34 +89,64 @@ struct AlphaHistogram {
     for (int i = int(std::ceil(alpha * kMost)); i <= kMost; ++i) sum += counts[size_t(i)];
     return sum;
   }
-  /// The alpha that `share` of them have at least; 0: they have none.
+  /// An alpha that `share` of them have at least, halfway to what the others have at most; 0: they have none.
   float quantile(double share) const {
     uint64_t left = uint64_t(std::llround(share * double(total)));
     for (int i = kMost; i > 0 && left > 0; --i) {
-      if (counts[size_t(i)] >= left) return float(i) / kMost;
+      if (counts[size_t(i)] >= left) {
+        int below = i - 1;
+        while (below >= 0 && counts[size_t(below)] == 0) --below;
+        return 0.5f * float(i + (below < 0 ? i : below)) / kMost;
+      }
       left -= counts[size_t(i)];
     }
     return 0;
   }
 };
 
+/// In [0, 1), evenly spread over any few texels, also over every second or fourth (Roberts 2018, R2).
+float evenlySpread(int x, int y) {
+  const double at = 0.7548776662466927 * x + 0.5698402909980532 * y;
+  return float(at - std::floor(at));
+}
+
 /// Scales alpha in the coarser levels, so that as large a share of each passes the test as of the finest: else a mean
-/// of few leaves and much that is empty fails it everywhere (Castaño 2010, "Computing alpha mipmaps").
+/// of few leaves and much that is empty fails it everywhere (Castaño 2010, "Computing alpha mipmaps"). Where many
+/// texels have the same mean, as those of a grille, no factor lets a share of them pass: they are dithered first. The
+/// last level is the one of some 64 texels, for one texel passes or does not.
 void keepCoverage(const gl::Texture& texture, const TextureImage& image, float cutoff) {
   const AlphaHistogram finest(image.texels, image.width, image.height);
   const double share = double(finest.from(cutoff)) / double(finest.total);
   if (share == 1) return;
+  constexpr double kAlike = 0.02;
+  constexpr float kDither = 64; // of 255, from the least to the most
+  constexpr int kFewest = 64;
+  const auto keepsShare = [&](const AlphaHistogram& histogram) {
+    const float least = histogram.quantile(share);
+    return std::abs(double(least > 0 ? histogram.from(least) : 0) / double(histogram.total) - share) <= kAlike;
+  };
   std::vector<u8vec4> texels;
-  for (int level = 1, width = image.width, height = image.height; width > 1 || height > 1; ++level) {
+  int last = 0;
+  for (int level = 1, width = image.width, height = image.height; width * height >= 4 * kFewest; ++level) {
+    last = level;
     width = std::max(1, width / 2), height = std::max(1, height / 2);
     texels.resize(size_t(width) * size_t(height));
     gl::pulse();
     texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level);
-    const float least = AlphaHistogram(texels, width, height).quantile(share);
+    AlphaHistogram histogram(texels, width, height);
+    if (!keepsShare(histogram)) {
+      for (int i = 0; i < width * height; ++i) {
+        const float shift = kDither * (evenlySpread(i % width, i / width) - 0.5f);
+        texels[size_t(i)].w = uint8_t(std::clamp(float(texels[size_t(i)].w) + shift, 1.0f, 254.0f));
+      }
+      histogram = AlphaHistogram(texels, width, height);
+    }
+    const float least = histogram.quantile(share);
     if (!(least > 0 && least < 1)) continue;
     for (u8vec4& t : texels) t.w = uint8_t(std::min(255.0f, std::ceil(float(t.w) * (cutoff / least))));
     glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
   }
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAX_LEVEL, last);
 }
 
 /// `cutoff`: alpha of it at least passes the test of the material that shows the image; 0: none tests it.
@@ -267,10 +297,11 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
     const Material& m = assets.materials[i];
     const MaterialBlock block = blockOf(m);
     std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
-    materialDraws_.push_back(
-        {textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.roughnessMetalnessTexture),
-         textureOf(m.normalTexture), samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
-         samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture), m.alphaMode == AlphaMode::Mask});
+    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture),
+                              textureOf(m.roughnessMetalnessTexture), textureOf(m.normalTexture),
+                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
+                              samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture),
+                              m.alphaMode == AlphaMode::Mask, m.backHidden});
   }
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
 }

@@ -18,7 +18,7 @@ std::vector<SurfaceHit> visibleSurfaces(const RayQuery& rays, const CameraView& 
   std::vector<SurfaceHit> out;
   for (int i = 0; i < columns * rows; ++i) {
     const CameraRay r = cameraRay(camera, (float(i % columns) + 0.5f) / columns, (float(i / columns) + 0.5f) / rows);
-    const SurfaceHit h = rays.closest(Ray{r.origin, r.direction});
+    const SurfaceHit h = rays.seen(Ray{r.origin, r.direction});
     if (h.valid()) out.push_back(h);
   }
   return out;

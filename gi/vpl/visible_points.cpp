@@ -23,7 +23,7 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
           cameraRay(camera, (float(i % columns) + jitter.x) / columns, (float(i / columns) + jitter.y) / rows);
       block.push_back({r.origin, r.direction});
     }
-    rays.closest(block, std::span(hits).subspan(begin, end - begin));
+    rays.seen(block, std::span(hits).subspan(begin, end - begin));
   });
   counts.closest += cells;
 

@@ -39,6 +39,37 @@ TEST(Trace, EmbreeAgreesWithClosedForms) {
   EXPECT_GT(hits, 1000);
 }
 
+/// Back to back in one place, mirrored, reshaped and cut out: an eye sees the front behind each back, light meets both.
+TEST(Trace, AnEyeLooksThroughHiddenBacks) {
+  HandScene scene;
+  const uint32_t hidden = scene.material(vec3(0.2f)), shown = scene.material(vec3(0.8f)), holes = scene.lattice();
+  scene.assets.materials[hidden].backHidden = scene.assets.materials[holes].backHidden = true;
+  const auto facing = [&](float y, float sign, uint32_t material) { // front sign · +y
+    return sign > 0 ? scene.quad({-1, y, -1}, {0, 0, 2}, {2, 0, 0}, material)
+                    : scene.quad({-1, y, -1}, {2, 0, 0}, {0, 0, 2}, material);
+  };
+  facing(0, 1, shown);
+  facing(1, 1, hidden), facing(1, -1, hidden);
+  facing(2, -1, hidden);
+  scene.place(facing(3, -1, hidden), glm::scale(mat4(1), vec3(-1, 1, 1)));
+  scene.reshape(facing(4, -1, hidden), {{-1, 4, -1}, {1, 4, -1}, {1, 4.5f, 1}, {-1, 4.5f, 1}});
+  scene.quad({-1, 5, 1}, {2, 0, 0}, {0, 0, -2}, holes); // cut out where x is below 0
+  const TracedScene traced(scene);
+  const auto met = [&](float x, float y, float way, bool eye) {
+    const Ray ray{{x, y, 0.3f}, {0, way, 0}};
+    return eye ? traced.rays.seen(ray) : traced.rays.closest(ray);
+  };
+  EXPECT_NEAR(met(0.5f, 6, -1, true).t, 1, 1e-5f) << "the front of what is not cut out";
+  EXPECT_NEAR(met(-0.5f, 6, -1, true).t, 5, 1e-5f) << "through the hole and four backs, to the front at 1";
+  EXPECT_NEAR(met(-0.5f, 6, -1, true).normal.y, 1, 1e-5f);
+  EXPECT_NEAR(met(-0.5f, 6, -1, false).t, 6 - 4.325f, 1e-5f) << "light meets backs";
+  EXPECT_NEAR(met(-0.5f, 2.5f, 1, true).t, 0.5f, 1e-5f) << "a mirrored front stays one";
+  EXPECT_FALSE(met(0.5f, 4.4f, 1, true).valid()) << "a back alone is above";
+  EXPECT_NEAR(met(0.5f, -1, 1, true).t, 1, 1e-5f) << "backs that are not hidden are seen";
+  EXPECT_NEAR(met(0.5f, 0.5f, 1, true).t, 0.5f, 1e-5f);
+  EXPECT_NEAR(met(0.5f, 0.5f, 1, true).normal.y, -1, 1e-5f);
+}
+
 TEST(Trace, InstancesWithRotationScaleAndMirror) {
   HandScene scene;
   const uint32_t lamp = scene.material(vec3(0.5f), vec3(3));

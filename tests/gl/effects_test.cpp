@@ -154,6 +154,21 @@ TEST_F(EffectsTest, IndirectNeedsSurfacesThatReflectToOneAnother) {
   withoutIt(Indirect, quick(), stillWorld(black));
 }
 
+/// Of a ground of 10 km, flat however it is turned, and one with a box of 10 cm on it.
+TEST_F(EffectsTest, IndirectIsOfWhatIsSmallOnAWideGroundToo) {
+  for (const bool box : {false, true}) {
+    HandScene scene;
+    const uint32_t grey = scene.material(vec3(0.5f));
+    scene.quad({-5000, 0, -5000}, {0, 0, 10000}, {10000, 0, 0}, grey);
+    scene.quad({5000, 0, -5000}, {0, 0, 10000}, {10000, 0, 0}, grey);
+    if (box) scene.box({-0.05f, 0, -0.05f}, {0.05f, 0.1f, 0.05f}, grey, false);
+    scene.turn(glm::rotate(mat4(1), 0.7f, glm::normalize(vec3(1, 2, 3))));
+    scene.lamp(vec3(0, 3, 0));
+    Viewer gi(quick());
+    EXPECT_EQ(gi.run(scene.view()).plan.on(Indirect), box);
+  }
+}
+
 TEST_F(EffectsTest, BouncesNeedSurfacesThatReflectToOneAnother) {
   Settings settings = quick();
   settings.effects[Indirect] = EffectMode::On;

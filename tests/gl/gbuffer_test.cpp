@@ -18,7 +18,7 @@ class GBufferTest : public GatherTest {
       for (const vec2 corner : {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)}) {
         const vec2 at = (vec2(x, y) + 0.5f + corner / 256.0f) / vec2(depth.width, depth.height);
         const CameraRay ray = cameraRay(room.scene.camera, at.x, at.y);
-        const SurfaceHit hit = room.rays.closest(Ray{ray.origin, ray.direction});
+        const SurfaceHit hit = room.rays.seen(Ray{ray.origin, ray.direction});
         const float distance = glm::dot(hit.position - room.scene.camera.position(), forward);
         nearest = std::min(nearest, distance), farthest = std::max(farthest, distance);
         faces |= glm::length(normal.at(x, y) - hit.normal) <= 1e-3f;
@@ -37,6 +37,33 @@ TEST_F(GBufferTest, OrthographicAgreesWithRays) {
   room.scene.camera = cameraAt(vec3(0.1f, 0.1f, 0.85f), vec3(0, -0.1f, -1), 1);
   room.scene.camera.orthoHalfHeight = 0.6f; // all rays start inside the room
   expectAgreesWithRays(room);
+}
+
+/// A room seen from outside through its walls' hidden backs, with a block and its mirror image in it: as by rays.
+TEST_F(GBufferTest, HiddenBacksAreNotThere) {
+  for (const bool hidden : {true, false}) {
+    HandScene scene;
+    const uint32_t wall = scene.material(vec3(0.7f)), red = scene.material(vec3(0.7f, 0.1f, 0.1f));
+    scene.assets.materials[wall].backHidden = scene.assets.materials[red].backHidden = hidden;
+    scene.box(vec3(-1), vec3(1), wall, true);
+    const uint32_t mesh = scene.instances[scene.add(block(vec3(0.3f), red))].mesh;
+    scene.place(uint32_t(scene.instances.size() - 1), glm::translate(mat4(1), vec3(-0.5f, 0, 0)));
+    scene.instance(mesh, glm::translate(mat4(1), vec3(0.5f, 0, 0)) * glm::scale(mat4(1), vec3(-1, 1, 1)));
+    scene.camera = cameraAt(vec3(0.2f, 0.3f, 4), vec3(0), 0.7f);
+    const TracedScene traced(scene);
+    const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
+    const vec3 forward = -vec3(scene.camera.worldFromView[2]);
+    int differing = 0, seen = 0;
+    for (const auto [x, y] : Pixels(depth)) {
+      const SurfaceHit hit = surfacesAt(traced.rays, scene.camera, std::array{(vec2(x, y) + 0.5f) / vec2(64, 48)})[0];
+      const float distance = hit.valid() ? glm::dot(hit.position - scene.camera.position(), forward) : 0;
+      differing += !(std::abs(depth.at(x, y).x - distance) <= 1e-2f * distance);
+      seen += hit.valid();
+    }
+    EXPECT_LE(differing, 20) << "edges of blocks";
+    EXPECT_GT(seen, 1000);
+    EXPECT_EQ(depth.at(32, 24).x > 3.5f, hidden) << "the wall before the camera is 3 m off";
+  }
 }
 
 TEST_F(GBufferTest, LeftAndUpAreWhereTheyShouldBe) {
@@ -219,6 +246,36 @@ TEST_F(GBufferTest, MasksKeepTheirCoverageFarAway) {
       int passed = 0;
       for (const vec3& d : depth.pixels) passed += d.x > 0;
       EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, 0.05) << covered << ' ' << distance;
+    }
+  }
+}
+
+/// So do bars and holes of one kind, which all average to the same alpha at once. (Between two levels of a texture
+/// their contrast is less, so that the larger share grows.)
+TEST_F(GBufferTest, MasksOfRegularPatternsKeepTheirCoverageFarAway) {
+  for (const auto& [open, of] : {std::pair(1, 4), {2, 4}, {3, 4}, {1, 2}, {6, 16}}) {
+    HandScene scene;
+    const uint32_t grille = scene.material(vec3(1));
+    std::vector<u8vec4> texels;
+    for (int i = 0; i < 128 * 128; ++i) texels.emplace_back(255, 255, 255, i % 128 % of < open ? 0 : 255);
+    Material& m = scene.assets.materials[grille];
+    m.baseColorTexture = scene.texture(128, texels);
+    m.baseColorTexture.nearest = false;
+    m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
+    m.alphaMode = AlphaMode::Mask;
+    scene.quad({-90, -90, 0}, {180, 0, 0}, {0, 180, 0}, grille);
+    Rng rng(1, Stream::Test, 0);
+    double wanted = 0; // what rays meet
+    constexpr int kRays = 20000;
+    for (int i = 0; i < kRays; ++i)
+      wanted += (sampleAlpha(scene.assets, m.baseColorTexture, rng.next2()) >= 0.5f) / double(kRays);
+    for (const float distance : {6.0f, 12.0f, 25.0f, 50.0f, 90.0f}) {
+      scene.camera = cameraAt(vec3(0.3f, 0.2f, distance), vec3(0), 1.0f);
+      const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
+      int passed = 0;
+      for (const vec3& d : depth.pixels) passed += d.x > 0;
+      EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, 0.12)
+          << open << " of " << of << ' ' << distance;
     }
   }
 }

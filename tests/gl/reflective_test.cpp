@@ -137,6 +137,18 @@ TEST_F(ReflectiveTest, APointLightInAClosedRoomReflectsAllItsFlux) {
   }
 }
 
+/// What an eye looks through light does not.
+TEST_F(ReflectiveTest, HiddenBacksReflectAsAll) {
+  HandScene scene;
+  const uint32_t wall = scene.material(vec3(0.5f, 0.25f, 1));
+  scene.assets.materials[wall].backHidden = true;
+  scene.box(vec3(-1), vec3(1), wall, false);
+  place(scene);
+  const RsmSettings rsm{.resolution = 64};
+  const ReflectiveMaps sheet = maps({pointLight(vec3(0.3f, -0.2f, 0.1f), vec3(1, 2, 3))}, rsm, kTrees);
+  expectAllReflected(glm::dvec3(sum(*sheet.flux, 0)));
+}
+
 TEST_F(ReflectiveTest, ASpotReflectsWhatItsConeLetsThrough) {
   placeBox(vec3(0.5f));
   const LightView spot = spotLight(vec3(0.1f, 0.3f, -0.2f), vec3(0.2f, -1, 0.4f));

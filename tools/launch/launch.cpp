@@ -9,6 +9,7 @@
 #include "engine/core/resources.h"
 #include "engine/core/text.h"
 #include "engine/gl/program.h"
+#include "engine/trace/embree_query.h"
 #include "game/rules/props.h"
 #include "gi/plan/presets.h"
 #include "tools/launch/launch_light.h"
@@ -99,6 +100,16 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
   checkPictureFits(stage.camera);
 }
 
+/// The file was tried from its own first camera; another may look into what is slow.
+void tryOtherCameras(LaunchContext& stage, FileTrust trust) {
+  constexpr int kTimes = 5; // of a shot's camera
+  if (stage.cameraGiven) requireQuickRays(stage.scene, stage.camera, trust);
+  if (stage.cameraGiven || !stage.shot || stage.shot->camera.empty()) return;
+  for (int i = 0; i < kTimes; ++i)
+    requireQuickRays(stage.scene, shotCamera(*stage.shot, stage.shot->seconds * i / (kTimes - 1), stage.scene.origin),
+                     trust);
+}
+
 /// What the first frames of a scene whose rays are slow leave for later ones.
 void tellOfSlowRays(LaunchContext& stage, float rayWork) {
   const Settings& settings = stage.settings;
@@ -110,6 +121,25 @@ void tellOfSlowRays(LaunchContext& stage, float rayWork) {
   if (needs.lights == LightSupply::Kept && warmup < settings.smc.warmup)
     stage.notes.push_back("its rays are slow: " + std::to_string(warmup) + " iterations before the first frame, not " +
                           std::to_string(settings.smc.warmup) + " (smc.shortWarmup)");
+}
+
+/// Where the eye looks through most of what is before it, the picture is not what the person expects.
+void tellOfHiddenBacks(LaunchContext& stage, const SceneView& view) {
+  constexpr int kAcross = 16;
+  if (std::ranges::none_of(view.assets->materials, &Material::backHidden)) return;
+  EmbreeQuery rays(*view.assets);
+  rays.update(view);
+  int met = 0, through = 0;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const vec2 at = (vec2(i % kAcross, i / kAcross) + 0.5f) / float(kAcross);
+    const CameraRay way = cameraRay(view.camera, at.x, at.y);
+    const SurfaceHit hit = rays.closest(Ray{way.origin, way.direction});
+    met += hit.valid();
+    through += hit.valid() && rays.seen(Ray{way.origin, way.direction}).t != hit.t;
+  }
+  if (2 * through > met)
+    stage.notes.push_back("the camera looks through surfaces that are shown from their fronts alone (--two-sided shows "
+                          "their backs)");
 }
 
 /// One note for each setting that is called by a name of before.
@@ -167,6 +197,8 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options) {
                    "let a file read what it names outside of its folder: for files that you trust");
   command.add_flag("--allow-large", options.trust.large,
                    "let a file ask for more memory and time than its size explains: for files that you trust");
+  command.add_flag("--two-sided", options.twoSided,
+                   "show the backs of surfaces that a file shows from their fronts alone");
   command.add_option("--camera", options.camera, "camera of the file, by name");
   command.add_option("--eye", options.eye, "view from x,y,z");
   command.add_option("--target", options.target, "look at x,y,z");
@@ -292,6 +324,8 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
         throw InputError(written, "the scene is read from this file (name another for the result)");
   for (const fs::path& read : stage->scene.files) keepFromReplacing(read);
   if (stage->shot) keepFromReplacing(options.scene);
+  if (options.twoSided)
+    for (Material& m : stage->scene.assets.materials) m.backHidden = false;
   chooseUnit(*stage, options);
   addGivenLights(*stage, options);
   if (!options.cube.empty() && !needsOf(stage->settings).stored)
@@ -302,11 +336,13 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   };
   tell("view");
   chooseCamera(*stage, options);
+  tryOtherCameras(*stage, options.trust);
   tell("light");
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
   lightWhatIsDark(*stage, options, view);
   tellOfSlowRays(*stage, view.rayWork);
+  tellOfHiddenBacks(*stage, view);
   tellWhatIsLeftOut(*stage, stage->settings);
   if (stage->shot && !stage->shot->played.empty()) {
     stage->props = std::make_unique<Props>(stage->scene);

@@ -24,6 +24,7 @@ struct LaunchOptions {
   std::string scene;          // glTF file or shot file (.json)
   std::string sceneName;      // of several in the file
   FileTrust trust;            // in what it reads and asks for
+  bool twoSided = false;      // no back is hidden
   std::optional<double> unit; // of the file, metres; none: guessed
   std::string camera, eye, target, size, sky, daylight, technique, preset;
   double skyScale = 1, skyTurn = 0;         // of a picture; degrees

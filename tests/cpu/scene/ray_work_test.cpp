@@ -286,6 +286,19 @@ TEST(RayWork, CountsWhereLightsArePut) {
   EXPECT_NE(refusalOf(pileOnAFloor(4000, true)), "");
 }
 
+/// The file's first camera is not the one that a person looks through.
+TEST(RayWork, CountsFromTheCameraInUse) {
+  Scene scene = pileOnAFloor(4000, false).load(TemporaryFolder());
+  const float before = scene.rayWork;
+  CameraView camera = sceneCameras(scene).front().view;
+  EXPECT_NO_THROW(requireQuickRays(scene, camera, {}));
+  EXPECT_EQ(scene.rayWork, before);
+  camera.worldFromView[3].z = 5;
+  EXPECT_THROW(requireQuickRays(scene, camera, {}), InputError);
+  EXPECT_NO_THROW(requireQuickRays(scene, camera, {.large = true}));
+  EXPECT_GT(scene.rayWork, 120) << "told to who draws";
+}
+
 /// Nor need it be seen, or be met by many rays of what is seen.
 TEST(RayWork, CountsWhereLightsArePutThatFewRaysMeet) {
   GltfBuilder b = pileOnAFloor(1500, true);
