@@ -16,6 +16,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace lambent {
@@ -237,7 +238,9 @@ void checkWritable(const fs::path& named) {
 bool sameFile(const fs::path& a, const fs::path& b) {
   std::error_code none;
   if (fs::exists(a, none) && fs::exists(b, none)) return fs::is_regular_file(a, none) && fs::equivalent(a, b, none);
-  const auto there = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(leadsTo(file), none), none); };
+  const auto there = [&](const fs::path& file) {
+    return fs::weakly_canonical(fs::absolute(leadsTo(file), none), none);
+  };
   return !a.empty() && !b.empty() && !there(a).empty() && there(a) == there(b);
 }
 
@@ -321,9 +324,15 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
 }
 
 FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  for (int tries = 0; tries < 500; ++tries) {
+  constexpr int kTries = 500, kMost = 5000; // since the folder last changed, and of a queue
+  struct stat before {};
+  for (int tries = 0, all = 0; tries < kTries && all < kMost; ++tries, ++all) {
     if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    struct stat now {};
+    fstat(descriptor_, &now);
+    const bool changed = now.st_mtim.tv_sec != before.st_mtim.tv_sec || now.st_mtim.tv_nsec != before.st_mtim.tv_nsec;
+    if (changed) tries = 0, before = now; // others write in turn
   }
   held_ = false;
 }

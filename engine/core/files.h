@@ -46,15 +46,16 @@ void writeAtomically(const std::filesystem::path& file, const std::function<void
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Keeps others who ask for it out of a folder while it lives. Waits a second for them at most, and then no longer: a
-/// program that is stopped holds nobody up. Nothing where the disk knows no locks.
+/// Keeps others who ask for it out of a folder while it lives. Waits for them until nothing in the folder has changed for
+/// a second, ten at most, and then no longer: a program that is stopped holds nobody up. Nothing where the disk knows no
+/// locks.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
 
-  /// False where somebody else kept it for all of the second.
+  /// False where somebody else kept it for all of that time.
   bool held() const { return held_; }
 
  private:

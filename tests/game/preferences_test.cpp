@@ -155,6 +155,22 @@ TEST_F(PreferencesTest, WaitForNobodyForLong) {
   EXPECT_EQ(loadPreferences(file_).speed, 3);
 }
 
+// One of many that save in turn is no such program.
+TEST_F(PreferencesTest, WaitAsLongAsOthersWrite) {
+  savePreferences({}, file_);
+  std::optional<FolderLock> busy(file_.parent_path());
+  std::thread other([&] {
+    for (int i = 0; i < 16; ++i) {
+      writeBytes(file_.parent_path() / std::to_string(i), "");
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    busy.reset();
+  });
+  const FolderLock next(file_.parent_path());
+  EXPECT_TRUE(next.held());
+  other.join();
+}
+
 TEST_F(PreferencesTest, WithoutAPlaceNothingIsKept) {
   KeptPreferences kept({});
   kept.now.speed = 3;
