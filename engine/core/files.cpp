@@ -48,6 +48,8 @@ class Temporary {
       : file_(open(temporary.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666)) {
     if (file_ < 0) throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(errno));
     flock(file_, LOCK_EX | LOCK_NB); // where the disk knows no locks it is as one that was left
+    struct stat replaced {};
+    if (stat(file.c_str(), &replaced) == 0) fchmod(file_, (replaced.st_mode & 0777) | S_IRUSR | S_IWUSR);
   }
   ~Temporary() { close(file_); }
   Temporary(const Temporary&) = delete;

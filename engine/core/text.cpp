@@ -9,6 +9,16 @@ namespace lambent {
 
 namespace {
 
+/// Bytes of the character that a text begins with; 0: it is no UTF-8.
+size_t characterLength(std::string_view text) {
+  const auto c = static_cast<unsigned char>(text[0]);
+  const size_t length = c < 0x80 ? 1 : c < 0xc2 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
+  if (length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
 /// Levenshtein distance, one row at a time.
 size_t editDistance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -65,8 +75,11 @@ std::string printable(std::string_view text) {
     } else if (const std::string_view turning = directionMark(text.substr(i)); !turning.empty()) {
       for (const char byte : turning) escape(static_cast<unsigned char>(byte));
       i += turning.size() - 1;
+    } else if (const size_t length = characterLength(text.substr(i)); length == 0) {
+      escape(c);
     } else {
-      out += text[i];
+      out += text.substr(i, length);
+      i += length - 1;
     }
   }
   return out;

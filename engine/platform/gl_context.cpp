@@ -11,7 +11,8 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <spdlog/spdlog.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_sinks.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -100,15 +101,21 @@ EGLDisplay displayOf(int device, const std::vector<EGLDeviceEXT>& devices) {
 
 std::atomic<uint64_t> debugErrors{0};
 
+/// To standard error: what programs print is for others to read.
+spdlog::logger& driverLog() {
+  static spdlog::logger logger("OpenGL", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  return logger;
+}
+
 void APIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei, const GLchar* text,
                              const void*) {
   // Our own group markers come back as notifications; compilers' messages reach the user with the program's log.
   if (source == GL_DEBUG_SOURCE_APPLICATION || source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
   if (severity == GL_DEBUG_SEVERITY_HIGH || type == GL_DEBUG_TYPE_ERROR) {
     ++debugErrors;
-    spdlog::error("OpenGL {:#x}: {}", id, text);
+    driverLog().error("OpenGL {:#x}: {}", id, text);
   } else if (severity == GL_DEBUG_SEVERITY_MEDIUM) {
-    spdlog::debug("OpenGL {:#x}: {}", id, text);
+    driverLog().debug("OpenGL {:#x}: {}", id, text);
   }
 }
 

@@ -302,10 +302,12 @@ void refuseManyLights(const Scene& scene, size_t triangles, size_t read) {
   const size_t lights = scene.registry.count<PunctualLight>();
   const double most = kMost * std::max(1.0, double(read) / double(gltf::Budget::kSmall));
   if (double(lights) * double(kOfItself + triangles) <= most) return;
+  const auto fit = size_t(most / double(kOfItself + triangles)); // lights
   throw InputError(scene.file.string(),
                    std::to_string(lights) + " lights, of which each has a shadow map of " + std::to_string(triangles) +
-                       " triangles: a first picture would take very long; let there be " +
-                       std::to_string(size_t(most / double(kOfItself + triangles))) + " at most, or --allow-large");
+                       " triangles: a first picture would take very long; " +
+                       (fit > 0 ? "let there be " + std::to_string(fit) + " at most" : "let them be fewer") +
+                       ", or --allow-large");
 }
 
 } // namespace

@@ -80,6 +80,7 @@ ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceIn
   int width = 0, height = 0;
   reader.value(width);
   reader.value(height);
+  if (width < 1 || height < 1) reader.damaged();
   if (width != in.camera.width || height != in.camera.height)
     reader.refuse("holds an image of " + std::to_string(width) + "x" + std::to_string(height) + " (this run's is " +
                   std::to_string(in.camera.width) + "x" + std::to_string(in.camera.height) + ")");

@@ -174,6 +174,15 @@ TEST(WriteAtomically, AFullDiskIsSaidAndKeepsTheOldFile) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full")) << "a file was put in the place of the device";
 }
 
+TEST(WriteAtomically, WhoMayReadStaysAsItWas) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "private.txt", "old");
+  fs::permissions(folder / "private.txt", fs::perms(0640));
+  writeAtomically(folder / "private.txt", "new");
+  EXPECT_EQ(readBytes(folder / "private.txt"), "new");
+  EXPECT_EQ(fs::status(folder / "private.txt").permissions(), fs::perms(0640));
+}
+
 TEST(WriteAtomically, ReplacesNothingThatIsKept) {
   TemporaryFolder folder;
   writeBytes(folder / "texture.png", "old");
@@ -417,6 +426,8 @@ TEST(Printable, ShowsControlCharactersAsNumbers) {
             "\\x9b31m")
       << "a terminal's own language in UTF-8";
   EXPECT_EQ(printable("\xc3\xa4 \xe2\x82\xac \\"), "\xc3\xa4 \xe2\x82\xac \\");
+  EXPECT_EQ(printable("\xff\xc3(\xe2\x82\xf0\x9f\x98\x80\xc3"), "\\xff\\xc3(\\xe2\\x82\xf0\x9f\x98\x80\\xc3")
+      << "no UTF-8";
   EXPECT_EQ(printable("a\xe2\x80\xaegnp.\xe2\x81\xa9z"), "a\\xe2\\x80\\xaegnp.\\xe2\\x81\\xa9z") << "turned around";
   EXPECT_EQ(printable("\xd8\x9c\xe2\x80\x94"), "\\xd8\\x9c\xe2\x80\x94") << "a dash turns nothing";
 }
