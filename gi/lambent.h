@@ -160,6 +160,7 @@ typedef struct lambent_material_desc {
   float alpha, alpha_cutoff; /* default 1, 0.5 */
   int32_t base_uv_set, emission_uv_set; /* 0: uvs of the mesh, 1: uvs1 */
   float base_uv[6], emission_uv[6]; /* m: a texture is read at (m0 u + m1 v + m2, m3 u + m4 v + m5); default u, v */
+  int back_hidden; /* your camera looks through its back, as where you cull by facing; light meets both sides */
 } lambent_material_desc;
 LAMBENT_API lambent_status lambent_material_create(lambent_device* device, lambent_scene scene,
                                                    const lambent_material_desc* desc, lambent_material* material);

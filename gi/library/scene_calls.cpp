@@ -36,6 +36,7 @@ Material materialOf(const Scene& s, lambent_scene scene, const lambent_material_
   m.emission = vec3Of(d.emission);
   m.emissiveTexture = textureOf(d.emission_texture, d.emission_uv_set, d.emission_uv);
   m.doubleSided = d.double_sided != 0;
+  m.backHidden = d.back_hidden != 0;
   m.alphaMode = d.masked ? AlphaMode::Mask : AlphaMode::Opaque;
   m.alpha = d.alpha;
   m.alphaCutoff = d.alpha_cutoff;

@@ -112,6 +112,7 @@ class Syncing {
       uses(m.baseColorTexture, d.base_texture, d.base_uv_set, d.base_uv);
       uses(m.emissiveTexture, d.emission_texture, d.emission_uv_set, d.emission_uv);
       d.double_sided = m.doubleSided;
+      d.back_hidden = m.backHidden;
       d.masked = m.alphaMode == AlphaMode::Mask;
       d.alpha = m.alpha;
       d.alpha_cutoff = m.alphaCutoff;

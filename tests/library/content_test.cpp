@@ -73,6 +73,29 @@ TEST_F(Library, TexturesAndMaterialsChangeAndEnd) {
   EXPECT_NEAR(seen(0), 0.8, 0.01);
 }
 
+TEST_F(Library, HiddenBacksAreNotSeen) {
+  Room room;
+  lambent_material_desc m;
+  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &m);
+  for (float& c : m.base_color) c = 1;
+  lambent_material material = 0;
+  room.ok(lambent_material_create(room.device, room.scene, &m, &material));
+  lambent_instance instance = 0;
+  float place[16];
+  std::copy(kIdentity, kIdentity + 16, place);
+  place[14] = -0.8f; // its fronts are inside, and the far one is behind the wall
+  room.ok(lambent_instance_create(room.device, room.scene, room.box(0.4f, true, material), place, &instance));
+  const lambent_view view = room.view();
+  const auto seen = [&] {
+    const std::vector<float> albedo = Room::read(room.render(view).albedo, GL_RGB);
+    return albedo[3 * size_t((Room::kHeight / 2) * Room::kWidth + Room::kWidth / 2)];
+  };
+  EXPECT_NEAR(seen(), 1, 0.01) << "a back";
+  m.back_hidden = 1;
+  room.ok(lambent_material_set(room.device, room.scene, material, &m));
+  EXPECT_NEAR(seen(), 0.8, 0.01) << "the wall behind";
+}
+
 TEST_F(Library, ShadersAreReadAgainWhileAHostRuns) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("lambent-reload-" + std::to_string(getpid()));
