@@ -1,20 +1,20 @@
 #version 450
-// Log luminance of an image's surfaces, summed over the pixels of each cell of a grid, and how many there are; black
-// ones say nothing about exposure.
+// Log luminance of an image's surfaces and luminance, summed over the pixels of each cell of a grid, and how many there
+// are; black ones say nothing about exposure.
 #include "lib/variance.glsl"
 
 layout(binding = 2) uniform sampler2D radiance; // a = 1 on surfaces
 uniform ivec2 grid;                             // cells
-layout(location = 0) out vec2 outLogs;
+layout(location = 0) out vec4 outSums;
 
 void main() {
   ivec2 size = textureSize(radiance, 0), cell = ivec2(gl_FragCoord.xy);
   ivec2 begin = size * cell / grid, end = size * (cell + 1) / grid;
-  outLogs = vec2(0.0);
+  outSums = vec4(0.0);
   for (int y = begin.y; y < end.y; ++y)
     for (int x = begin.x; x < end.x; ++x) {
       vec4 texel = texelFetch(radiance, ivec2(x, y), 0);
       float light = dot(kLuminance, texel.rgb);
-      if (texel.a > 0.0 && light > 0.0 && !isinf(light)) outLogs += vec2(log(light), 1.0);
+      if (texel.a > 0.0 && light > 0.0 && !isinf(light)) outSums += vec4(log(light), light, 1.0, 0.0);
     }
 }

@@ -75,6 +75,21 @@ void saveReference(const std::filesystem::path& file, const ReferenceSums& sums,
   });
 }
 
+uint32_t samplesIn(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key) {
+  try {
+    CheckedReader reader(file, kKind);
+    int width = 0, height = 0;
+    uint32_t samples = 0;
+    reader.value(width);
+    reader.value(height);
+    reader.value(samples);
+    const bool same = reader.key() == key && width == in.camera.width && height == in.camera.height;
+    return same && samples <= ReferenceSums::kMostSamples ? samples : 0;
+  } catch (const InputError&) { // none, or something else
+    return 0;
+  }
+}
+
 ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key) {
   CheckedReader reader(file, kKind);
   int width = 0, height = 0;

@@ -14,6 +14,8 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in);
 
 /// Saves the sums, replacing the file in one step.
 void saveReference(const std::filesystem::path& file, const ReferenceSums& sums, uint64_t key);
+/// Returns how many samples a file holds of the same image, by its head alone; 0: none.
+uint32_t samplesIn(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key);
 /// Loads sums. Throws InputError for a file that is no state, is damaged, or belongs to another image.
 ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceInputs& in, uint64_t key);
 

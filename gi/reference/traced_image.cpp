@@ -1,6 +1,7 @@
 #include "gi/reference/traced_image.h"
 
 #include "engine/trace/embree_query.h"
+#include "gi/contract/exposure.h"
 #include "gi/reference/state_file.h"
 
 #include <algorithm>
@@ -22,7 +23,9 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
   if (!plan.state.empty() && std::filesystem::exists(plan.state)) sums = loadReference(plan.state, in, key);
   uint32_t saved = sums.samples;
   const auto save = [&] {
-    if (!plan.state.empty() && saved != sums.samples) saveReference(plan.state, sums, key);
+    // Of two programs with one state, that with fewer samples leaves the other's.
+    if (!plan.state.empty() && saved != sums.samples && samplesIn(plan.state, in, key) <= sums.samples)
+      saveReference(plan.state, sums, key);
     saved = sums.samples;
   };
   // A pass takes about a second: progress moves, and a wish to stop is heard.
@@ -64,13 +67,12 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
 } // namespace
 
 float exposureFor(std::span<const vec3> radiance) {
-  double sum = 0;
-  size_t count = 0;
+  std::vector<LightSums> lit;
   for (const vec3& r : radiance) {
     const float y = luminance(r);
-    if (y > 0 && std::isfinite(y)) sum += std::log(double(y)), ++count;
+    if (y > 0 && std::isfinite(y)) lit.push_back({std::log(double(y)), double(y), 1});
   }
-  return count ? float(0.18 / std::exp(sum / double(count))) : 1.0f;
+  return lit.empty() ? 1.0f : exposureOf(lit);
 }
 
 bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {

@@ -43,8 +43,8 @@ bool tracesNormalMaps(const SceneView& view, const Settings& settings);
 /// Traces a view. Throws InputError for a state file of another image.
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
-/// Returns the exposure that takes the log-average luminance of radiance, as far as it is above 0, to 0.18, as GiFrame
-/// measures an image; 1 without light.
+/// Returns the exposure that suits radiance (exposureOf, gi/contract/exposure.h), as the viewer measures an image; 1
+/// without light.
 float exposureFor(std::span<const vec3> radiance);
 
 } // namespace lambent

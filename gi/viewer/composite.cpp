@@ -1,4 +1,5 @@
 // The image from its parts, and the exposure that suits it.
+#include "gi/contract/exposure.h"
 #include "gi/gather/draw_gather.h"
 #include "gi/viewer/viewer_stages.h"
 
@@ -35,30 +36,23 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   return radiance_;
 }
 
-namespace {
-constexpr float kMidGrey = 0.18f;
-float exposureOf(double logSum, double count) { return count > 0 ? float(kMidGrey / std::exp(logSum / count)) : 0; }
-} // namespace
-
 float measureExposure(const gl::Texture& radiance) {
   const int width = radiance.width(), height = radiance.height();
   std::vector<vec4> texels(size_t(width) * height);
   radiance.read(std::span(texels), GL_RGBA, GL_FLOAT);
-  double logSum = 0;
-  size_t count = 0;
+  std::vector<LightSums> lit;
   for (const vec4& texel : texels) {
     const float y = luminance(vec3(texel));
     if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
-    logSum += std::log(double(y));
-    ++count;
+    lit.push_back({std::log(double(y)), double(y), 1});
   }
-  return exposureOf(logSum, double(count));
+  return exposureOf(lit);
 }
 
 void ExposureMeter::measure(const gl::Texture& radiance) {
   constexpr int kAcross = 64, kDown = 36;
   if (!logs_) {
-    logs_ = gl::Texture("exposure", {.format = GL_RG32F, .width = kAcross, .height = kDown});
+    logs_ = gl::Texture("exposure", {.format = GL_RGBA32F, .width = kAcross, .height = kDown});
     framebuffer_ = gl::Framebuffer("exposure", {&logs_});
   }
   const gl::PassScope scope = context_.scope(StageId::Display);
@@ -74,11 +68,11 @@ void ExposureMeter::measure(const gl::Texture& radiance) {
 
 float ExposureMeter::read() {
   if (!std::exchange(unread_, false)) return 0;
-  std::vector<vec2> cells(size_t(logs_.width()) * size_t(logs_.height()));
-  logs_.read(std::span(cells), GL_RG, GL_FLOAT);
-  glm::dvec2 sum(0);
-  for (const vec2& cell : cells) sum += glm::dvec2(cell);
-  return exposureOf(sum.x, sum.y);
+  std::vector<vec4> cells(size_t(logs_.width()) * size_t(logs_.height()));
+  logs_.read(std::span(cells), GL_RGBA, GL_FLOAT);
+  std::vector<LightSums> sums;
+  for (const vec4& cell : cells) sums.push_back({double(cell.x), double(cell.y), double(cell.z)});
+  return exposureOf(sums);
 }
 
 } // namespace lambent

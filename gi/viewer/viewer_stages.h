@@ -45,8 +45,7 @@ class CompositePass {
   Background background_;
 };
 
-/// Returns the factor that brings the log-average luminance of the image's surfaces (black ones left out) to 0.18; 0
-/// when there is no light. Reads the image back.
+/// Returns the exposure that suits the image's surfaces (exposureOf); 0 when there is no light. Reads the image back.
 float measureExposure(const gl::Texture& radiance);
 
 /// The same, a frame late and read from a small grid.

@@ -1,4 +1,5 @@
 // What is shown: exposure, tone mapping, markers, the views, and which way up they are.
+#include "gi/reference/traced_image.h"
 #include "gl_fixture.h"
 #include "shaders/shared/tone_map.h"
 
@@ -98,6 +99,12 @@ TEST_F(DisplayTest, ExposureBringsTheLogAverageToMidGrey) {
   // The upload has no alpha of its own: 1, a surface.
   EXPECT_NEAR(measureExposure(*frameWith(image).radiance), 0.18 / std::exp(logAverage), 1e-4);
   EXPECT_EQ(measureExposure(*frameWith(Image(64, 48)).radiance), 0) << "no light at all";
+  // What one lamp lights is what there is to see, not the night around it.
+  Image dark(60, 50, vec3(1e-5f));
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 50; ++y) dark.at(x, y) = vec3(1);
+  EXPECT_NEAR(measureExposure(*frameWith(dark).radiance), 0.18, 1e-3);
+  EXPECT_NEAR(exposureFor(dark.pixels), 0.18, 1e-3) << "of the reference";
 }
 
 TEST_F(DisplayTest, EveryViewDraws) {

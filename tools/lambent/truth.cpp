@@ -165,8 +165,12 @@ void compare(const CompareOptions& options) {
                      " pixels are NaN or infinite");
   };
   if (options.output.quiet || e.pixels == 0) return refuse();
-  std::printf("RMSE    %.6g\nrelMSE  %.6g\nbias    %+.3f %%   mean(A-B)/mean(B)\nmax     %.6g\nmean B  %.6g\n", e.rmse,
-              e.relMse, 100 * e.bias, e.largest, e.meanTruth);
+  std::printf("RMSE    %.6g\nrelMSE  %.6g\n", e.rmse, e.relMse);
+  if (e.meanTruth == 0 && e.rmse > 0)
+    std::printf("bias    none, for B is black\n");
+  else
+    std::printf("bias    %+.3f %%   mean(A-B)/mean(B)\n", 100 * e.bias);
+  std::printf("max     %.6g\nmean B  %.6g\n", e.largest, e.meanTruth);
   if (e.notFinite > 0) std::printf("%zu pixels with NaN or infinity left out\n", e.notFinite);
   refuse();
 }

@@ -1,6 +1,7 @@
 // The reference is the same however it is run, and honest about its own error.
 #include "engine/core/parallel.h"
 #include "gi/reference/state_file.h"
+#include "gi/reference/traced_image.h"
 #include "tests/support/checked.h"
 #include "tests/support/files.h"
 #include "tests/support/reference.h"
@@ -69,6 +70,26 @@ TEST_F(Room, PassesAndThreadsDoNotMatter) {
     EXPECT_TRUE(same(one, sumsOf({12}))) << threads << " threads";
   }
   EXPECT_FALSE(same(one, sumsOf({12}, 2)));
+}
+
+/// Another program takes more samples into the same file meanwhile: they stay.
+TEST_F(Room, AStateOfMoreSamplesIsLeft) {
+  Settings settings;
+  settings.smc.bounces = 3;
+  TracePlan plan;
+  plan.samples = 64;
+  plan.state = file_;
+  uint64_t key = 0;
+  plan.progress = [&](int, int) {
+    if (key != 0) return;
+    const ReferenceInputs in = inputs();
+    key = referenceKey(traced_->view, in);
+    saveReference(file_, sumsOf({200}), key);
+  };
+  const TracedImage image = traceImage(traced_->view, settings, plan);
+  EXPECT_EQ(image.samples, 64);
+  EXPECT_EQ(samplesIn(file_, inputs(), key), 200u);
+  EXPECT_EQ(samplesIn(file_, inputs(), key + 1), 0u);
 }
 
 TEST_F(Room, ResumedEqualsOneRun) {
