@@ -113,21 +113,20 @@ float evenlySpread(int x, int y) {
 /// Scales alpha in the coarser levels, so that as large a share of each passes the test as of the finest: else a mean
 /// of few leaves and much that is empty fails it everywhere (Castaño 2010, "Computing alpha mipmaps"). Where many
 /// texels have the same mean, as those of a grille, no factor lets a share of them pass: they are dithered first. The
-/// last level is the one of some 64 texels, for one texel passes or does not.
+/// last level has at least 64 texels, and 8 of the rarer kind, for one texel passes or does not.
 void keepCoverage(const gl::Texture& texture, const TextureImage& image, float cutoff) {
   const AlphaHistogram finest(image.texels, image.width, image.height);
   const double share = double(finest.from(cutoff)) / double(finest.total);
   if (share == 1) return;
-  constexpr double kAlike = 0.02;
-  constexpr float kDither = 64; // of 255, from the least to the most
-  constexpr int kFewest = 64;
+  const double rarer = std::min(share, 1 - share), alike = std::min(0.02, 0.15 * rarer);
+  const int fewest = int(std::clamp(8 / rarer, 64.0, 1e6));
   const auto keepsShare = [&](const AlphaHistogram& histogram) {
     const float least = histogram.quantile(share);
-    return std::abs(double(least > 0 ? histogram.from(least) : 0) / double(histogram.total) - share) <= kAlike;
+    return std::abs(double(least > 0 ? histogram.from(least) : 0) / double(histogram.total) - share) <= alike;
   };
   std::vector<u8vec4> texels;
   int last = 0;
-  for (int level = 1, width = image.width, height = image.height; width * height >= 4 * kFewest; ++level) {
+  for (int level = 1, width = image.width, height = image.height; width * height >= 4 * fewest; ++level) {
     last = level;
     width = std::max(1, width / 2), height = std::max(1, height / 2);
     texels.resize(size_t(width) * size_t(height));
@@ -135,10 +134,8 @@ void keepCoverage(const gl::Texture& texture, const TextureImage& image, float c
     texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level);
     AlphaHistogram histogram(texels, width, height);
     if (!keepsShare(histogram)) {
-      for (int i = 0; i < width * height; ++i) {
-        const float shift = kDither * (evenlySpread(i % width, i / width) - 0.5f);
-        texels[size_t(i)].w = uint8_t(std::clamp(float(texels[size_t(i)].w) + shift, 1.0f, 254.0f));
-      }
+      for (int i = 0; i < width * height; ++i) // half of what is there, and as much by place
+        texels[size_t(i)].w = uint8_t(1 + texels[size_t(i)].w / 2 + int(126 * evenlySpread(i % width, i / width)));
       histogram = AlphaHistogram(texels, width, height);
     }
     const float least = histogram.quantile(share);
