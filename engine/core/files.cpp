@@ -325,7 +325,8 @@ void writeAtomically(const fs::path& file, std::string_view bytes) {
   });
 }
 
-FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+FolderLock::FolderLock(const fs::path& folder, bool inTurn)
+    : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   constexpr int kTries = 500, kMost = 5000; // since the folder last changed, and of a queue
   struct stat before {};
   for (int tries = 0, all = 0; tries < kTries && all < kMost; ++tries, ++all) {
@@ -334,7 +335,7 @@ FolderLock::FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str()
     struct stat now {};
     fstat(descriptor_, &now);
     const bool changed = now.st_mtim.tv_sec != before.st_mtim.tv_sec || now.st_mtim.tv_nsec != before.st_mtim.tv_nsec;
-    if (changed) tries = 0, before = now; // others write in turn
+    if (inTurn && changed) tries = 0, before = now;
   }
   held_ = false;
 }

@@ -46,12 +46,12 @@ void writeAtomically(const std::filesystem::path& file, const std::function<void
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Keeps others who ask for it out of a folder while it lives. Waits for them until nothing in the folder has changed for
-/// a second, ten at most, and then no longer: a program that is stopped holds nobody up. Nothing where the disk knows no
-/// locks.
+/// Keeps others who ask for it out of a folder while it lives. Waits a second for them, and then no longer: a program that
+/// is stopped holds nobody up. Of some that write `inTurn` it waits until nothing in the folder has changed for a second,
+/// ten at most. Nothing where the disk knows no locks.
 class FolderLock {
  public:
-  explicit FolderLock(const std::filesystem::path& folder);
+  explicit FolderLock(const std::filesystem::path& folder, bool inTurn = false);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
 

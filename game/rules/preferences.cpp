@@ -188,7 +188,7 @@ void KeptPreferences::save() {
   saved_ = now; // also where it fails: reported once, tried again when something else changes
   try {
     makeFolder(file_.parent_path());
-    const FolderLock alone(file_.parent_path());
+    const FolderLock alone(file_.parent_path(), true);
     savePreferences(heldBy(file_, now).with(inFile_, now), file_);
     inFile_ = now;
   } catch (const RunError& e) {

@@ -166,7 +166,7 @@ TEST_F(PreferencesTest, WaitAsLongAsOthersWrite) {
     }
     busy.reset();
   });
-  const FolderLock next(file_.parent_path());
+  const FolderLock next(file_.parent_path(), true);
   EXPECT_TRUE(next.held());
   other.join();
 }
