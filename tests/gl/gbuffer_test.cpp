@@ -28,6 +28,32 @@ class GBufferTest : public GatherTest {
     }
     EXPECT_LE(differing, 3) << "only pixels whose centre lies on an edge may differ";
   }
+
+  /// A square of `size` metres whose mask repeats four times, seen from some distances: as large a share of it is drawn
+  /// as rays meet.
+  void expectCoverage(const std::vector<u8vec4>& texels, float size, const vec2& middle,
+                      std::span<const float> distances, double tolerance, const std::string& what) {
+    HandScene scene;
+    const uint32_t masked = scene.material(vec3(1));
+    Material& m = scene.assets.materials[masked];
+    m.baseColorTexture = scene.texture(128, texels);
+    m.baseColorTexture.nearest = false;
+    m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
+    m.alphaMode = AlphaMode::Mask;
+    scene.quad({-0.5f * size, -0.5f * size, 0}, {size, 0, 0}, {0, size, 0}, masked);
+    Rng rng(1, Stream::Test, 1);
+    double wanted = 0; // what rays meet
+    constexpr int kRays = 20000;
+    for (int i = 0; i < kRays; ++i)
+      wanted += (sampleAlpha(scene.assets, m.baseColorTexture, rng.next2()) >= 0.5f) / double(kRays);
+    for (const float distance : distances) {
+      scene.camera = cameraAt(vec3(middle, distance), vec3(0), 1.0f);
+      const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
+      int passed = 0;
+      for (const vec3& d : depth.pixels) passed += d.x > 0;
+      EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, tolerance) << what << ' ' << distance;
+    }
+  }
 };
 
 TEST_F(GBufferTest, PerspectiveAgreesWithRays) { expectAgreesWithRays(Room()); }
@@ -225,28 +251,11 @@ TEST_F(GBufferTest, MasksOfWhatIsOpaqueStayOpaqueFarAway) {
 /// Leaves that are smaller than pixels still cover their share of them.
 TEST_F(GBufferTest, MasksKeepTheirCoverageFarAway) {
   for (const float covered : {0.15f, 0.3f, 0.8f}) {
-    HandScene scene;
-    const uint32_t leaves = scene.material(vec3(1));
     std::vector<u8vec4> texels;
     Rng rng(1, Stream::Test, 0);
     for (int i = 0; i < 128 * 128; ++i) texels.emplace_back(255, 255, 255, rng.next() < covered ? 255 : 0);
-    Material& m = scene.assets.materials[leaves];
-    m.baseColorTexture = scene.texture(128, texels);
-    m.baseColorTexture.nearest = false;
-    m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
-    m.alphaMode = AlphaMode::Mask;
-    scene.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, leaves);
-    double wanted = 0; // what rays meet
-    constexpr int kRays = 20000;
-    for (int i = 0; i < kRays; ++i)
-      wanted += (sampleAlpha(scene.assets, m.baseColorTexture, rng.next2()) >= 0.5f) / double(kRays);
-    for (const float distance : {2.0f, 6.0f, 12.0f}) { // 1.3, 4 and 8 texels to a pixel
-      scene.camera = cameraAt(vec3(0, 0, distance), vec3(0), 1.0f);
-      const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
-      int passed = 0;
-      for (const vec3& d : depth.pixels) passed += d.x > 0;
-      EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, 0.05) << covered << ' ' << distance;
-    }
+    expectCoverage(texels, 18, vec2(0), std::array{2.0f, 6.0f, 12.0f}, 0.05, // 1.3, 4 and 8 texels to a pixel
+                   std::to_string(covered));
   }
 }
 
@@ -254,29 +263,10 @@ TEST_F(GBufferTest, MasksKeepTheirCoverageFarAway) {
 /// their contrast is less, so that the larger share grows.)
 TEST_F(GBufferTest, MasksOfRegularPatternsKeepTheirCoverageFarAway) {
   for (const auto& [open, of] : {std::pair(1, 4), {2, 4}, {3, 4}, {1, 2}, {6, 16}}) {
-    HandScene scene;
-    const uint32_t grille = scene.material(vec3(1));
     std::vector<u8vec4> texels;
     for (int i = 0; i < 128 * 128; ++i) texels.emplace_back(255, 255, 255, i % 128 % of < open ? 0 : 255);
-    Material& m = scene.assets.materials[grille];
-    m.baseColorTexture = scene.texture(128, texels);
-    m.baseColorTexture.nearest = false;
-    m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
-    m.alphaMode = AlphaMode::Mask;
-    scene.quad({-90, -90, 0}, {180, 0, 0}, {0, 180, 0}, grille);
-    Rng rng(1, Stream::Test, 0);
-    double wanted = 0; // what rays meet
-    constexpr int kRays = 20000;
-    for (int i = 0; i < kRays; ++i)
-      wanted += (sampleAlpha(scene.assets, m.baseColorTexture, rng.next2()) >= 0.5f) / double(kRays);
-    for (const float distance : {6.0f, 12.0f, 25.0f, 50.0f, 90.0f}) {
-      scene.camera = cameraAt(vec3(0.3f, 0.2f, distance), vec3(0), 1.0f);
-      const Image depth = surfaceBuffer(Buffer::Depth, surfaces(scene));
-      int passed = 0;
-      for (const vec3& d : depth.pixels) passed += d.x > 0;
-      EXPECT_NEAR(double(passed) / double(depth.pixels.size()), wanted, 0.12)
-          << open << " of " << of << ' ' << distance;
-    }
+    expectCoverage(texels, 180, vec2(0.3f, 0.2f), std::array{6.0f, 12.0f, 25.0f, 50.0f, 90.0f}, 0.12,
+                   std::to_string(open) + " of " + std::to_string(of));
   }
 }
 

@@ -95,9 +95,10 @@ Value figuresOf(const FrameStats& s) {
 std::string conditionsOf(const LaunchContext& opened, const LaunchOptions& o, const std::string& more) {
   std::string text = more + '\n' + o.scene + '\n' + readText(o.scene);
   for (const std::string& option :
-       {std::string(o.trust.outside ? "outside" : ""), o.camera, o.eye, o.target, o.size, o.sky, o.daylight,
-        o.sceneName, std::to_string(o.fovDegrees.value_or(0)), std::to_string(o.sunSize.value_or(-1)),
-        std::to_string(o.seed), format("%.17g %.17g %.17g", o.skyScale, o.skyTurn, opened.unit)})
+       {std::string(o.trust.outside ? "outside" : ""), std::string(o.twoSided ? "two-sided" : ""), o.camera, o.eye,
+        o.target, o.size, o.sky, o.daylight, o.sceneName, std::to_string(o.fovDegrees.value_or(0)),
+        std::to_string(o.sunSize.value_or(-1)), std::to_string(o.seed),
+        format("%.17g %.17g %.17g", o.skyScale, o.skyTurn, opened.unit)})
     text += '\n' + option;
   if (namesSky(o.sky)) text += readText(o.sky);
   for (const SettingRow& row : settingRows(opened.settings)) text += '\n' + settingText(opened.settings, row.name);

@@ -206,7 +206,8 @@ void lightWhatIsDark(LaunchContext& stage, const LaunchOptions& options, const S
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage.scene);
   if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "light")) {
     addSkyAndSun(stage.scene, {}, sunRadius(options, kSunRadius));
-    stage.notes.push_back("the scene has no light: added a clear sky and its sun (--daylight 60; --sky 0,0,0 leaves it dark)");
+    stage.notes.push_back(
+        "the scene has no light: added a clear sky and its sun (--daylight 60; --sky 0,0,0 leaves it dark)");
   } else if (lit && onlyGlows(stage, view)) {
     addSkyAndSun(stage.scene, {}, sunRadius(options, kSunRadius));
     stage.notes.push_back("what shines in the scene hardly lights it: added a clear sky and its sun (--daylight 60; "
