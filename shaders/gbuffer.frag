@@ -31,9 +31,7 @@ void main() {
   // What differs from pixel to pixel comes before any discard: afterwards a driver may have no neighbours to ask.
   vec4 base = baseColorAt(uv, color);
   vec3 emission = emissionAt(uv), across = dFdx(positionEye), up = dFdy(positionEye);
-#ifdef GLOSSY
   vec2 roughnessMetalness = roughnessMetalnessAt(uv);
-#endif
 #ifdef NORMAL_TEXTURE
   vec3 normalTexel = normalTexelAt(uv);
 #endif
@@ -63,8 +61,10 @@ void main() {
 #ifdef NORMAL_TEXTURE
   vec3 mapped =
       mappedNormal(normalWorld, tangentWorld.xyz, sign(tangentWorld.w), normalTexel, material.roughnessMetalness.z);
+  mapped = facingViewer(side * mapped, towardsViewer);
   bool any = dot(tangentWorld.xyz, tangentWorld.xyz) > 0.0;
-  outMappedNormal = any ? vec4(facingViewer(side * mapped, towardsViewer), 1.0) : outNormal;
+  outMappedNormal =
+      any ? vec4(mirroringOutwards(mapped, geometric, towardsViewer, roughnessMetalness.y), 1.0) : outNormal;
 #elif defined(MAPPED_NORMALS)
   outMappedNormal = outNormal;
 #endif

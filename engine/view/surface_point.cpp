@@ -74,8 +74,12 @@ vec3 mappedNormalAt(const SceneView& view, uint32_t instanceIndex, uint32_t prim
   const vec3 texel(sampleTexture(*view.assets, material.normalTexture, uvAt(mesh, place, material.normalTexture)));
   const vec3 mapped = mappedNormal(smooth, worldFromObject * vec3(tangent), side, texel, material.normalScale);
   // Normals may oppose the triangle's winding: theirs is the side that is shown.
-  const bool turned = (glm::dot(front, towardsViewer) < 0) != (glm::dot(front, smooth) < 0);
-  return facingViewer(turned ? -mapped : mapped, towardsViewer);
+  const bool behind = glm::dot(front, towardsViewer) < 0, turned = behind != (glm::dot(front, smooth) < 0);
+  const vec3 facing = facingViewer(turned ? -mapped : mapped, towardsViewer);
+  if (!(material.metalness > 0)) return facing;
+  const vec3 geometric = glm::normalize(behind ? -front : front);
+  const float metalness = finishAt(view, instanceIndex, primitiveIndex, triangle, barycentric).y;
+  return mirroringOutwards(facing, geometric, towardsViewer, metalness);
 }
 
 vec4 finishAt(const SceneView& view, uint32_t instance, uint32_t primitiveIndex, uint32_t triangle, vec2 barycentric) {

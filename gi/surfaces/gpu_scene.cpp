@@ -112,7 +112,8 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   if (material.baseTexture && (shows || tested(material))) desc.defines.push_back("BASE_TEXTURE");
   if (material.emissiveTexture && shows) desc.defines.push_back("EMISSIVE_TEXTURE");
   if (showsFinish(kind)) desc.defines.push_back("GLOSSY");
-  if (material.roughnessMetalnessTexture && showsFinish(kind)) desc.defines.push_back("FINISH_TEXTURE");
+  if (material.roughnessMetalnessTexture && (showsFinish(kind) || showsNormalMaps(kind)))
+    desc.defines.push_back("FINISH_TEXTURE");
   if (showsNormalMaps(kind)) desc.defines.push_back("MAPPED_NORMALS");
   if (material.normalTexture && tangents_ && showsNormalMaps(kind)) desc.defines.push_back("NORMAL_TEXTURE");
   return context_.programs.get(desc);

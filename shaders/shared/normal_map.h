@@ -22,4 +22,21 @@ SHARED_INLINE vec3 facingViewer(vec3 normal, vec3 towardsViewer) {
   return cosine < kEdgeOn ? normalize(normal + towardsViewer * (kEdgeOn - cosine)) : normal;
 }
 
+/// A metal's normal that mirrors the viewer into the surface, where nothing is to be seen: turned towards the surface's
+/// until it mirrors them along the surface, or as far above it as they are (Keller et al. 2017, "The Iray Light
+/// Transport Simulation and Rendering System", on shading normals). All unit, world space; `geometric` on the viewer's
+/// side. Other surfaces have a Lambert part, which would show the turn, and keep theirs.
+SHARED_INLINE vec3 mirroringOutwards(vec3 normal, vec3 geometric, vec3 towardsViewer, float metalness) {
+  const float kAlong = 0.1f;
+  vec3 across = normal - geometric * dot(normal, geometric);
+  float slope = length(across), up = dot(towardsViewer, geometric), height = min(kAlong, up);
+  float mirrored = 2.0f * dot(normal, towardsViewer) * dot(normal, geometric) - up;
+  if (!(metalness > 0.0f && mirrored < height && slope > 0.0f)) return normal;
+  // In the plane of both normals: halfway between the viewer and that height.
+  across *= 1.0f / slope;
+  float along = dot(towardsViewer, across), r = max(length(vec2(along, up)), 1e-6f), c = min(height / r, 1.0f);
+  vec3 turned = across * (along / r + sqrt(1.0f - c * c)) + geometric * (up / r + c);
+  return normalize(mix(normal, normalize(turned), metalness));
+}
+
 SHARED_END

@@ -28,7 +28,7 @@ class NormalMapTest : public GatherTest {
   FrameStats of;
 };
 
-/// From in front, from behind, mirrored, and stretched.
+/// From in front, from behind, mirrored, and stretched; matt, and metal, which mirrors nobody into the surface.
 TEST_F(NormalMapTest, MappedNormalsAreThoseOfRays) {
   scene.assets.images[0].texels.push_back({230, 140, 160, 255});
   scene.assets.images[0].width = 2;
@@ -39,24 +39,34 @@ TEST_F(NormalMapTest, MappedNormalsAreThoseOfRays) {
   scene.add(mesh, glm::translate(mat4(1), vec3(-1.8f, 0, 0)) * glm::scale(mat4(1), vec3(-1, 1, 1)));
   scene.add(mesh, glm::translate(mat4(1), vec3(7.5f, 0, 0)) * glm::scale(mat4(1), vec3(1.2f, 0.5f, 2)));
   scene.camera = cameraAt(vec3(0, 0.3f, 5), vec3(0), 1.0f);
-  GBuffer frame = surfaces(scene);
-  ASSERT_TRUE(frame.mappedNormal);
-  const Image smooth = surfaceBuffer(Buffer::Normal, frame);
-  frame.normal = frame.mappedNormal;
-  const Image mapped = surfaceBuffer(Buffer::Normal, frame);
-  const TracedScene traced(scene);
-  int differ = 0, seen = 0, edges = 0;
-  for (const auto [x, y] : Pixels(mapped)) {
-    const vec2 centre = (vec2(x, y) + 0.5f) / vec2(mapped.width, mapped.height);
-    const SurfaceHit hit = surfacesAt(traced.rays, scene.camera, std::array{centre}, &traced.view)[0];
-    if (!hit.valid()) continue;
-    ++seen;
-    differ += glm::length(mapped.at(x, y) - smooth.at(x, y)) > 0.1f;
-    edges += glm::length(mapped.at(x, y) - hit.normal) > 3e-3f;
+  for (const float metalness : {0.0f, 1.0f}) {
+    SCOPED_TRACE(metalness);
+    scene.assets.materials[material].metalness = metalness;
+    GBuffer frame = surfaces(scene);
+    ASSERT_TRUE(frame.mappedNormal);
+    const Image smooth = surfaceBuffer(Buffer::Normal, frame);
+    frame.normal = frame.mappedNormal;
+    const Image mapped = surfaceBuffer(Buffer::Normal, frame);
+    const TracedScene traced(scene);
+    int differ = 0, seen = 0, edges = 0, inwards = 0;
+    for (const auto [x, y] : Pixels(mapped)) {
+      const vec2 centre = (vec2(x, y) + 0.5f) / vec2(mapped.width, mapped.height);
+      const SurfaceHit hit = surfacesAt(traced.rays, scene.camera, std::array{centre}, &traced.view)[0];
+      if (!hit.valid()) continue;
+      ++seen;
+      differ += glm::length(mapped.at(x, y) - smooth.at(x, y)) > 0.1f;
+      edges += glm::length(mapped.at(x, y) - hit.normal) > 3e-3f;
+      const vec3 mirrored = glm::reflect(glm::normalize(hit.position - scene.camera.position()), mapped.at(x, y));
+      inwards += glm::dot(mirrored, hit.geometricNormal) < 0;
+    }
+    EXPECT_GT(seen, 400);
+    EXPECT_GT(differ, seen * 9 / 10);
+    EXPECT_LE(edges, seen / 50) << "only at edges of texels and quads";
+    if (metalness > 0)
+      EXPECT_LE(inwards, seen / 50);
+    else
+      EXPECT_GT(inwards, seen / 5);
   }
-  EXPECT_GT(seen, 400);
-  EXPECT_GT(differ, seen * 9 / 10);
-  EXPECT_LE(edges, seen / 50) << "only at edges of texels and quads";
 }
 
 TEST_F(NormalMapTest, DirectLightFallsOnTheMappedNormalAndNeverFromBelow) {

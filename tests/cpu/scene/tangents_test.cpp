@@ -204,6 +204,7 @@ TEST_F(TangentsOfFiles, AMapThatCannotBeDecodedIsNone) {
 /// Seen from in front and from behind, placed by a mirroring matrix and by one that is not uniform.
 TEST_F(TangentsOfFiles, MappedNormalsAreThoseOfASlantedSurface) {
   Scene scene = mirrored().load(folder);
+  scene.assets.materials[0].metalness = 0;
   SceneExtractor extractor;
   const auto at = [&](const mat4& placed, uint32_t triangle, const vec3& towardsViewer) {
     SceneView view = extractor.extract(scene, {}, 0);
@@ -232,6 +233,23 @@ TEST_F(TangentsOfFiles, MappedNormalsAreThoseOfASlantedSurface) {
   const vec3 grazing = glm::normalize(vec3(-1, 0, 0.01f));
   EXPECT_GT(glm::dot(at(mat4(1), 0, grazing), grazing), 0);
   EXPECT_NEAR(glm::length(at(mat4(1), 0, grazing)), 1, 1e-5f);
+  // One of metal that would mirror the viewer into the surface mirrors them along it: from either side, and half of the
+  // way where half of it is metal.
+  for (const vec3& viewer : {vec3(0, 0, 1), vec3(0, 0, -1), vec3(-0.8f, 0.2f, 0.5f)}) {
+    const vec3 towards = glm::normalize(viewer), geometric(0, 0, viewer.z > 0 ? 1.0f : -1.0f);
+    const auto heightOf = [&](const vec3& n) { return glm::dot(glm::reflect(-towards, n), geometric); };
+    scene.assets.materials[0].metalness = 0;
+    const vec3 matt = at(mat4(1), 0, towards);
+    ASSERT_LT(heightOf(matt), -0.1f);
+    scene.assets.materials[0].metalness = 1;
+    const vec3 metal = at(mat4(1), 0, towards);
+    EXPECT_NEAR(heightOf(metal), 0.1f, 1e-4f);
+    EXPECT_LT(glm::length(glm::cross(glm::cross(metal, geometric), glm::cross(matt, geometric))), 1e-4f);
+    scene.assets.materials[0].metalness = 0.5f;
+    expectNormal(at(mat4(1), 0, towards), glm::normalize(matt + metal));
+  }
+  scene.assets.materials[0].metalness = 1;
+  expectNormal(at(mat4(1), 0, slope), slope);
 }
 
 /// Turned with their vertices; on the other side where a joint mirrors them; in the plane of normals that a morph
