@@ -10,7 +10,7 @@ constexpr float kArm = 1.5f; // heights from the eye within which things are use
 /// The instance before the eyes, within reach.
 std::optional<uint32_t> Play::lookedAt() const {
   const float reach = kArm * player_.body().size().height;
-  const SurfaceHit hit = solids_->rays().closest(Ray{player_.position(), player_.forward(), reach});
+  const SurfaceHit hit = solids_->rays().seen(Ray{player_.position(), player_.forward(), reach});
   return hit.valid() ? std::optional(solids_->view().instances[hit.instance].id) : std::nullopt;
 }
 

@@ -1,10 +1,10 @@
 #version 450
-// Log luminance of an image's surfaces and luminance, summed over the pixels of each cell of a grid, and how many there
-// are; black ones say nothing about exposure.
+// What an image asks for as exposure (engine/image/exposure.h), summed over the pixels of each cell of a grid.
 #include "lib/variance.glsl"
 
 layout(binding = 2) uniform sampler2D radiance; // a = 1 on surfaces
 uniform ivec2 grid;                             // cells
+uniform float dark;                             // luminance that has half a weight
 layout(location = 0) out vec4 outSums;
 
 void main() {
@@ -15,6 +15,8 @@ void main() {
     for (int x = begin.x; x < end.x; ++x) {
       vec4 texel = texelFetch(radiance, ivec2(x, y), 0);
       float light = dot(kLuminance, texel.rgb);
-      if (texel.a > 0.0 && light > 0.0 && !isinf(light)) outSums += vec4(log(light), light, 1.0, 0.0);
+      if (!(texel.a > 0.0 && light > 0.0) || isinf(light)) continue;
+      float relative = dark / light, weight = 1.0 / (1.0 + relative * relative);
+      outSums += vec4(weight * log(light), weight, sqrt(light), 1.0);
     }
 }

@@ -1,6 +1,7 @@
 #include "engine/scene/file_access.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <system_error>
 
 #include <fcntl.h>
@@ -33,7 +34,10 @@ bool mayRead(const fs::path& folder, const fs::path& file, bool outside) {
 HeldFile::HeldFile(const fs::path& folder, const fs::path& file, bool outside)
     : descriptor_(mayRead(folder, file, outside) ? open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)
                                                  : -1) {
-  if (descriptor_ < 0) return;
+  if (descriptor_ < 0) {
+    if (errno == EACCES && mayRead(folder, file, outside)) why_ = "cannot be opened for reading";
+    return;
+  }
   struct stat status {};
   std::error_code failure;
   const bool regular = fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);

@@ -26,11 +26,14 @@ class HeldFile {
   HeldFile& operator=(const HeldFile&) = delete;
 
   explicit operator bool() const { return descriptor_ >= 0; }
+  /// Why it is not held.
+  const std::string& why() const { return why_; }
   /// Returns a name that leads to it as long as this lives.
   std::filesystem::path opened() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
  private:
   int descriptor_;
+  std::string why_ = "no such file";
 };
 
 /// Says whether the way to a file leads out of a folder, by what it says or by a link on it, whether there is anything

@@ -135,8 +135,8 @@ bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const st
   Reading& reading = *static_cast<Reading*>(data);
   try {
     const HeldFile held(reading.folder, file, reading.mayOutside);
-    if (!held) throw InputError(file, "no such file"); // also for who does not ask before
-    constexpr size_t kOfItself = 2048;                 // what a reading takes of time beside what is read, in bytes
+    if (!held) throw InputError(file, held.why()); // also for who does not ask before
+    constexpr size_t kOfItself = 2048;             // what a reading takes of time beside what is read, in bytes
     std::error_code none;
     const size_t size = fs::file_size(held.opened(), none);
     const auto [real, added] = reading.places.try_emplace(file);

@@ -187,6 +187,7 @@ uint32_t importMaterial(Import& import, int index) {
   lambent::Material out;
   if (index < 0) {
     out.name = "default";
+    out.backHidden = true;
     materials.push_back(out);
     return slot;
   }

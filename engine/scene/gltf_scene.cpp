@@ -289,7 +289,8 @@ void refuseSlowRays(const Scene& scene, const RayWork& work) {
   const dvec3 at = dvec3(work.place) + scene.origin;
   std::ostringstream text;
   text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
-  if (work.cutOut >= 1) text << ", " << std::lround(work.cutOut) << " that are cut out or blended counted 7 times";
+  if (work.cutOut >= 1)
+    text << ", " << std::lround(work.cutOut) << " that are cut out, blended or hidden backs counted 7 times";
   text << " (most from " << at.x << ", " << at.y << ", " << at.z
        << "): pictures would take very long; thin them out, or --allow-large";
   throw InputError(scene.file.string(), text.str());

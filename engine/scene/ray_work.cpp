@@ -20,23 +20,24 @@ constexpr int kSteps = 3;              // of a walk
 constexpr size_t kSent = 16;           // rays from each place that is seen
 
 /// Where walks begin: in front of surfaces, drawn by their area; at the camera. What is small beside a scene, but is
-/// what one looks at, is found by the second.
-enum Walk { kFromSurfaces, kFromCamera, kWalks };
+/// what one looks at, is found by the second. What an eye looks through counts by itself.
+enum Walk { kFromSurfaces, kFromCamera, kThroughBacks, kWalks };
 
 struct Ray {
   Walk walk = kFromSurfaces;
   bool leads = false;           // only to where it ends: it keeps no lists, of which there would be too many
+  bool looks = false;           // the camera's own: passes backs that are hidden, and keeps a list of them
   vec3 origin{0}, direction{0}; // unit
   float end = kInfinity;        // distance of the first surface that is not cut out
   vec3 normal{0};               // there; its length is of no account
   std::vector<float> boxes;     // distances at which it enters those of triangles
-  std::vector<float> cutOut;    // distances of triangles that it passes
+  std::vector<float> passed;    // distances of triangles that it passes
   size_t entered = 0;           // boxes, those behind its end too
   bool full = false;            // has met so much that it looks no further
 
   void forgetBehindEnd() {
     std::erase_if(boxes, [&](float t) { return t > end; });
-    std::erase_if(cutOut, [&](float t) { return t > end; });
+    std::erase_if(passed, [&](float t) { return t > end; });
   }
 };
 
@@ -60,11 +61,15 @@ std::optional<Meeting> meetingOf(const Ray& ray, const std::array<vec3, 3>& corn
   return Meeting{glm::dot(edge2, q) / det, {u, v}, glm::cross(edge1, edge2)};
 }
 
-/// Whether a triangle is masked, and cut out at a place of it.
-bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, const vec2& barycentric) {
-  const Primitive& p = *std::ranges::partition_point(mesh.primitives, [&](const Primitive& before) {
+const Primitive& primitiveOf(const Mesh& mesh, uint32_t triangle) {
+  return *std::ranges::partition_point(mesh.primitives, [&](const Primitive& before) {
     return before.firstTriangle + before.triangleCount <= triangle; // they are in the order of their triangles
   });
+}
+
+/// Whether a triangle is masked, and cut out at a place of it.
+bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, const vec2& barycentric) {
+  const Primitive& p = primitiveOf(mesh, triangle);
   const Material& material = assets.materials[p.material];
   return material.alphaMode == AlphaMode::Mask &&
          alphaAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric)) <
@@ -112,11 +117,19 @@ class Tracing {
     const float longest = std::max(glm::distance(corners[0], corners[1]), glm::distance(corners[0], corners[2]));
     const float skipped = 0x1p-16f * std::max(longest, maxComponent(glm::abs(ray.origin))); // what it begins on
     if (!met || !(met->t > skipped && met->t < ray.end)) return;
-    if (isCutOut(assets_, block.mesh, triangle, met->barycentric)) {
-      if (!ray.leads) ray.cutOut.push_back(met->t);
+    if (ray.looks && isHiddenBack(block, triangle, glm::dot(met->normal, ray.direction))) {
+      ray.passed.push_back(met->t);
+    } else if (isCutOut(assets_, block.mesh, triangle, met->barycentric)) {
+      if (!ray.leads) ray.passed.push_back(met->t);
     } else {
       ray.end = met->t, ray.normal = met->normal;
     }
+  }
+
+  /// `along`: of the ray's direction and the normal of the corners' winding in world space.
+  bool isHiddenBack(const TriangleBlock& block, uint32_t triangle, float along) const {
+    if (!assets_.materials[primitiveOf(block.mesh, triangle).material].backHidden) return false;
+    return (along > 0) != (glm::determinant(mat3(block.worldFromObject)) < 0);
   }
 
   const SceneAssets& assets_;
@@ -218,7 +231,7 @@ std::vector<Ray> cameraRays(const CameraView& camera, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     const vec3 at = additiveRecurrence3(uint32_t(i), vec3(0));
     const CameraRay through = cameraRay(camera, at.x, at.y);
-    rays[i].walk = kFromCamera, rays[i].leads = true;
+    rays[i].walk = kFromCamera, rays[i].leads = rays[i].looks = true;
     rays[i].origin = through.origin, rays[i].direction = through.direction;
   }
   return rays;
@@ -241,7 +254,7 @@ struct Counted {
 
   void add(const Ray& ray) {
     ++rays;
-    const auto boxes = float(ray.leads ? ray.entered : ray.boxes.size()), cutOut = float(ray.cutOut.size());
+    const auto boxes = float(ray.leads ? ray.entered : ray.boxes.size()), cutOut = float(ray.passed.size());
     work.boxes += boxes, work.cutOut += cutOut;
     if (const float sum = boxes + RayWork::kCutOut * cutOut; sum > most) most = sum, work.place = ray.origin;
   }
@@ -274,9 +287,10 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
     for (const Ray& ray : rays) {
       // A walk's first ray leads to where light may be, unless it leaves the scene or is full. From the camera its
       // second leads to where lights are put, since they shine on what is seen: many are sent, for few may meet
-      // anything.
+      // anything. What it passes itself counts alone.
       const bool fromCamera = ray.walk == kFromCamera;
       if (ray.full || (fromCamera ? step == 2 : step > 0 || !ends(ray))) walks[ray.walk].add(ray);
+      if (ray.looks && !ray.full) walks[kThroughBacks].add({.origin = ray.origin, .passed = ray.passed});
       if (!ends(ray)) continue;
       const size_t sent = !fromCamera ? 1 : step == 0 ? kSent : 1 + 2 * wanted / (1 + met);
       for (size_t i = 0; i < sent; ++i) {
@@ -287,7 +301,8 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
     if (step == 1) keepSome(next, wanted);
     rays = std::move(next);
   }
-  return std::ranges::max(walks[kFromSurfaces].mean(), walks[kFromCamera].mean(), {}, &RayWork::sum);
+  return std::ranges::max({walks[kFromSurfaces].mean(), walks[kFromCamera].mean(), walks[kThroughBacks].mean()}, {},
+                          &RayWork::sum);
 }
 
 } // namespace

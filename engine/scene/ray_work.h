@@ -6,11 +6,12 @@
 namespace lambent {
 
 /// Means over rays, each from in front of a surface in a random direction to where it ends. Rays that only lead to
-/// where others begin are not counted. Of two means the larger: from surfaces by their area, and from what rays meet
-/// that leave what a picture by the file's first camera (or the default view) shows.
+/// where others begin are not counted. Of three means the largest: from surfaces by their area, from what rays meet
+/// that leave what a picture by the file's first camera (or the default view) shows, and of what that camera's own
+/// pass.
 struct RayWork {
   float boxes = 0;  // of triangles, which it enters: no tree of boxes can do without a look at what is in them
-  float cutOut = 0; // triangles that it passes where they are cut out
+  float cutOut = 0; // triangles that it passes, cut out there or with hidden backs
   vec3 place{0};    // world space; where the ray begins that has most to look at
 
   /// In boxes: to ask a texture whether a triangle is cut out takes as long as these many.

@@ -43,7 +43,7 @@ std::string checkSurfaces(const GBuffer& surfaces, const CameraView& camera, con
   if (seen >= kEnough && 2 * there < seen)
     return "only " + share(there, seen) +
            " lie where the scene that was told has a surface (is it all told? "
-           "world_from_view, fov_y, near_plane, far_plane, depth_type, origin_top)";
+           "back_hidden, world_from_view, fov_y, near_plane, far_plane, depth_type, origin_top)";
   if (there >= kEnough && 2 * facing < there)
     return "only " + share(facing, there) +
            " have normals like those of the scene that was told (normal_type, normal_space)";

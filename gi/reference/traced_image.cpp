@@ -1,7 +1,7 @@
 #include "gi/reference/traced_image.h"
 
+#include "engine/image/exposure.h"
 #include "engine/trace/embree_query.h"
-#include "gi/contract/exposure.h"
 #include "gi/reference/state_file.h"
 
 #include <algorithm>
@@ -65,15 +65,6 @@ ReferenceSums sampled(const TracePlan& plan, const ReferenceInputs& in, uint64_t
 }
 
 } // namespace
-
-float exposureFor(std::span<const vec3> radiance) {
-  std::vector<LightSums> lit;
-  for (const vec3& r : radiance) {
-    const float y = luminance(r);
-    if (y > 0 && std::isfinite(y)) lit.push_back({std::log(double(y)), double(y), 1});
-  }
-  return lit.empty() ? 1.0f : exposureOf(lit);
-}
 
 bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {
   return settings.gather.glossy && settings.effects[EffectId::Glossy] != EffectMode::Off &&

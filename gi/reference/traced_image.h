@@ -43,8 +43,4 @@ bool tracesNormalMaps(const SceneView& view, const Settings& settings);
 /// Traces a view. Throws InputError for a state file of another image.
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);
 
-/// Returns the exposure that suits radiance (exposureOf, gi/contract/exposure.h), as the viewer measures an image; 1
-/// without light.
-float exposureFor(std::span<const vec3> radiance);
-
 } // namespace lambent

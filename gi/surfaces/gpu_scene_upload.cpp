@@ -113,13 +113,13 @@ float evenlySpread(int x, int y) {
 /// Scales alpha in the coarser levels, so that as large a share of each passes the test as of the finest: else a mean
 /// of few leaves and much that is empty fails it everywhere (Castaño 2010, "Computing alpha mipmaps"). Where many
 /// texels have the same mean, as those of a grille, no factor lets a share of them pass: they are dithered first. The
-/// last level has at least 64 texels, and 8 of the rarer kind, for one texel passes or does not.
+/// last level has at least 64 texels, and up to 1024 for 8 of the rarer kind, for one texel passes or does not.
 void keepCoverage(const gl::Texture& texture, const TextureImage& image, float cutoff) {
   const AlphaHistogram finest(image.texels, image.width, image.height);
   const double share = double(finest.from(cutoff)) / double(finest.total);
   if (share == 1) return;
   const double rarer = std::min(share, 1 - share), alike = std::min(0.02, 0.15 * rarer);
-  const int fewest = int(std::clamp(8 / rarer, 64.0, 1e6));
+  const int fewest = int(std::clamp(8 / rarer, 64.0, 1024.0));
   const auto keepsShare = [&](const AlphaHistogram& histogram) {
     const float least = histogram.quantile(share);
     return std::abs(double(least > 0 ? histogram.from(least) : 0) / double(histogram.total) - share) <= alike;

@@ -1,5 +1,5 @@
 // The image from its parts, and the exposure that suits it.
-#include "gi/contract/exposure.h"
+#include "engine/image/exposure.h"
 #include "gi/gather/draw_gather.h"
 #include "gi/viewer/viewer_stages.h"
 
@@ -36,29 +36,28 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   return radiance_;
 }
 
-float measureExposure(const gl::Texture& radiance) {
-  const int width = radiance.width(), height = radiance.height();
-  std::vector<vec4> texels(size_t(width) * height);
+float ExposureMeter::measureNow(const gl::Texture& radiance) {
+  std::vector<vec4> texels(size_t(radiance.width()) * size_t(radiance.height()));
   radiance.read(std::span(texels), GL_RGBA, GL_FLOAT);
-  std::vector<LightSums> lit;
-  for (const vec4& texel : texels) {
-    const float y = luminance(vec3(texel));
-    if (texel.w == 0 || !(y > 0) || !std::isfinite(y)) continue;
-    lit.push_back({std::log(double(y)), double(y), 1});
-  }
-  return exposureOf(lit);
+  std::vector<vec3> surfaces;
+  for (const vec4& texel : texels)
+    if (texel.w > 0) surfaces.push_back(vec3(texel));
+  const ExposureSums sums = sumForExposure(surfaces);
+  dark_ = float(sums.dark());
+  return sums.exposure();
 }
 
 void ExposureMeter::measure(const gl::Texture& radiance) {
   constexpr int kAcross = 64, kDown = 36;
-  if (!logs_) {
-    logs_ = gl::Texture("exposure", {.format = GL_RGBA32F, .width = kAcross, .height = kDown});
-    framebuffer_ = gl::Framebuffer("exposure", {&logs_});
+  if (!sums_) {
+    sums_ = gl::Texture("exposure", {.format = GL_RGBA32F, .width = kAcross, .height = kDown});
+    framebuffer_ = gl::Framebuffer("exposure", {&sums_});
   }
   const gl::PassScope scope = context_.scope(StageId::Display);
   const gl::Program& program = context_.programs.get({.fragment = "exposure.frag"});
   program.use();
   program.set("grid", glm::ivec2(kAcross, kDown));
+  program.set("dark", dark_);
   radiance.bind(2);
   framebuffer_.bind();
   gl::PipelineState{.width = kAcross, .height = kDown}.apply();
@@ -68,11 +67,15 @@ void ExposureMeter::measure(const gl::Texture& radiance) {
 
 float ExposureMeter::read() {
   if (!std::exchange(unread_, false)) return 0;
-  std::vector<vec4> cells(size_t(logs_.width()) * size_t(logs_.height()));
-  logs_.read(std::span(cells), GL_RGBA, GL_FLOAT);
-  std::vector<LightSums> sums;
-  for (const vec4& cell : cells) sums.push_back({double(cell.x), double(cell.y), double(cell.z)});
-  return exposureOf(sums);
+  std::vector<vec4> cells(size_t(sums_.width()) * size_t(sums_.height()));
+  sums_.read(std::span(cells), GL_RGBA, GL_FLOAT);
+  ExposureSums sums;
+  for (const vec4& cell : cells) {
+    sums.logs += double(cell.x), sums.weights += double(cell.y);
+    sums.roots += double(cell.z), sums.count += double(cell.w);
+  }
+  dark_ = float(sums.dark());
+  return sums.exposure();
 }
 
 } // namespace lambent

@@ -47,7 +47,7 @@ void Viewer::expose(bool drawn, float elapsed) {
   const gl::Texture* const radiance = passes_->results.radiance;
   const bool released = std::exchange(given_, false) && radiance; // what was drawn last says it
   if (released || (exposure_ <= 0 && drawn)) {
-    measured_ = firstMeasured_ = measureExposure(*radiance);
+    measured_ = firstMeasured_ = passes_->meter.measureNow(*radiance);
     exposure_ = measured_ > 0 ? measured_ : 1;
   }
   if (!(image.adaptation > 0)) return;

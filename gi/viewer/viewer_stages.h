@@ -45,13 +45,13 @@ class CompositePass {
   Background background_;
 };
 
-/// Returns the exposure that suits the image's surfaces (exposureOf); 0 when there is no light. Reads the image back.
-float measureExposure(const gl::Texture& radiance);
-
-/// The same, a frame late and read from a small grid.
+/// The exposure that suits an image's surfaces (engine/image/exposure.h).
 class ExposureMeter {
  public:
   explicit ExposureMeter(PassContext context) : context_(context) {}
+  /// Returns it; 0 when there is no light. Reads the image back.
+  float measureNow(const gl::Texture& radiance);
+  /// Measures it for the next read, with the weights that the measurement before found.
   void measure(const gl::Texture& radiance);
   /// What the image measured last asks for, once; 0 where there is no light in it, or nothing new. Called before a
   /// frame is drawn it waits for the one before alone.
@@ -59,8 +59,9 @@ class ExposureMeter {
 
  private:
   PassContext context_;
-  gl::Texture logs_;
+  gl::Texture sums_;
   gl::Framebuffer framebuffer_;
+  float dark_ = 0; // ExposureSums::dark
   bool unread_ = false;
 };
 

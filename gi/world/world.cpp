@@ -73,7 +73,7 @@ void describeSky(lambent_world& world) {
   std::copy_n(&radiance.x, 3, world.sky.radiance);
 }
 
-std::atomic<bool> outsideAllowed = false, largeAllowed = false;
+std::atomic<bool> outsideAllowed = false, largeAllowed = false, twoSided = false;
 
 } // namespace
 
@@ -87,6 +87,8 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
     LAMBENT_DEFAULTS(LAMBENT_SKY_DESC, &made->sky);
     if (file) {
       made->scene = loadScene(file, scene ? scene : "", {}, FileTrust{outsideAllowed, largeAllowed});
+      if (twoSided)
+        for (Material& m : made->scene.assets.materials) m.backHidden = false;
       animate(made->scene, 0);
       describeSky(*made);
     }
@@ -97,6 +99,7 @@ lambent_status lambent_world_load(const char* file, const char* scene, lambent_w
 
 void lambent_world_allow_outside(int allow) { outsideAllowed = allow != 0; }
 void lambent_world_allow_large(int allow) { largeAllowed = allow != 0; }
+void lambent_world_two_sided(int shown) { twoSided = shown != 0; }
 
 void lambent_world_destroy(lambent_world* world) {
   if (!Live<lambent_world>::has(world) || world->busy.exchange(true)) return;

@@ -226,6 +226,21 @@ TEST(InstantRadiosity, TakesNoNoticeOfTheCamera) {
   EXPECT_TRUE(world.update().movedSlots.empty());
 }
 
+/// Where lights are wanted is where the eye comes to: behind backs that it looks through.
+TEST(VisiblePoints, LieBehindHiddenBacks) {
+  HandScene scene;
+  const uint32_t hidden = scene.material(vec3(0.5f));
+  scene.assets.materials[hidden].backHidden = true;
+  scene.quad({-9, -9, -2}, {0, 18, 0}, {18, 0, 0}, hidden); // its front away from the camera
+  scene.quad({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, scene.material(vec3(0.5f)));
+  const TracedScene traced(scene);
+  RayCounts counts;
+  const std::vector<VisiblePoint> points =
+      findVisiblePoints(traced.rays, cameraAlong(vec3(0), {0, 0, -1}), 64, 1, 1, counts);
+  ASSERT_FALSE(points.empty());
+  for (const VisiblePoint& p : points) EXPECT_NEAR(p.position.z, -4, 1e-3f);
+}
+
 TEST(MetropolisInstantRadiosity, EveryVplBringsTheSameToThePicture) {
   // What a VPL brings: luminance of its power times the mean of G V over the picture, by rays to 4096 points. Noise:
   // the density of 16 neighbours, 25 %, and the points'.

@@ -1,5 +1,5 @@
 // What is shown: exposure, tone mapping, markers, the views, and which way up they are.
-#include "gi/reference/traced_image.h"
+#include "engine/image/exposure.h"
 #include "gl_fixture.h"
 #include "shaders/shared/tone_map.h"
 
@@ -90,21 +90,56 @@ TEST_F(DisplayTest, MarksWhatIsNoNumber) {
 }
 
 TEST_F(DisplayTest, ExposureBringsTheLogAverageToMidGrey) {
+  ExposureMeter meter(passes);
+  const auto of = [&](const Image& image) { return meter.measureNow(*frameWith(image).radiance); };
+  // The upload has no alpha of its own: 1, a surface.
+  EXPECT_EQ(of(Image(64, 48)), 0) << "no light at all";
+  EXPECT_EQ(exposureFor(Image(64, 48).pixels), 1);
   Image image(64, 48, vec3(2));
   for (int x = 0; x < 64; ++x) image.at(x, 0) = vec3(0); // black says nothing about exposure
+  image.at(5, 0) = vec3(kInfinity);
   for (int y = 1; y < 48; y += 2)
     for (int x = 0; x < 64; ++x) image.at(x, y) = vec3(8);
-  const int bright = 24, dim = 23;
-  const double logAverage = (bright * std::log(8.0) + dim * std::log(2.0)) / (bright + dim);
-  // The upload has no alpha of its own: 1, a surface.
-  EXPECT_NEAR(measureExposure(*frameWith(image).radiance), 0.18 / std::exp(logAverage), 1e-4);
-  EXPECT_EQ(measureExposure(*frameWith(Image(64, 48)).radiance), 0) << "no light at all";
-  // What one lamp lights is what there is to see, not the night around it.
-  Image dark(60, 50, vec3(1e-5f));
-  for (int x = 0; x < 6; ++x)
-    for (int y = 0; y < 50; ++y) dark.at(x, y) = vec3(1);
-  EXPECT_NEAR(measureExposure(*frameWith(dark).radiance), 0.18, 1e-3);
-  EXPECT_NEAR(exposureFor(dark.pixels), 0.18, 1e-3) << "of the reference";
+  const double bright = 24.0 / 47, root = bright * std::sqrt(8) + (1 - bright) * std::sqrt(2), dark = root * root / 50;
+  const double wide = 64 / (64 + dark * dark), narrow = 4 / (4 + dark * dark);
+  const double logs = bright * wide * std::log(8) + (1 - bright) * narrow * std::log(2);
+  const double wanted = 0.18 / std::exp(logs / (bright * wide + (1 - bright) * narrow));
+  EXPECT_NEAR(of(image), wanted, 1e-4 * wanted);
+  EXPECT_NEAR(wanted, 0.18 / 4, 0.02 * 0.18 / 4) << "their log-average, or nearly";
+  EXPECT_NEAR(exposureFor(image.pixels), wanted, 1e-4 * wanted) << "of the reference";
+  // From the grid, with what the measurement before found: the same.
+  meter.measure(*frameWith(image).radiance);
+  EXPECT_NEAR(meter.read(), wanted, 1e-4 * wanted);
+  EXPECT_EQ(meter.read(), 0) << "nothing new";
+}
+
+/// What one lamp lights is what there is to see, not the night around it; and a room is, not a lamp or a patch of sun
+/// in it. From one to the other there is no step.
+TEST_F(DisplayTest, ExposureIsThatOfWhatThereIsToSee) {
+  ExposureMeter meter(passes);
+  const auto of = [&](int brightColumns, float bright, float rest) {
+    Image image(100, 40, vec3(rest));
+    for (int x = 0; x < brightColumns; ++x)
+      for (int y = 0; y < 40; ++y) image.at(x, y) = vec3(bright);
+    const FrameResults frame = frameWith(image);
+    const float now = meter.measureNow(*frame.radiance);
+    for (int frames = 0; frames < 3; ++frames) {
+      meter.measure(*frame.radiance);
+      EXPECT_NEAR(meter.read(), now, 1e-3f * now) << "from the grid";
+    }
+    return now / 0.18f;
+  };
+  EXPECT_NEAR(of(10, 1, 1e-5f), 1, 0.3f) << "a lit tenth in the night";
+  EXPECT_NEAR(of(30, 1, 1e-4f), 1, 0.1f);
+  EXPECT_GT(of(2, 1e4f, 1), 0.5f) << "a bulb: the room loses a stop at most";
+  EXPECT_GT(of(5, 2e3f, 1), 0.5f) << "a patch of sun";
+  float before = of(1, 1e4f, 1);
+  for (int columns = 2; columns < 100; ++columns) {
+    const float now = of(columns, 1e4f, 1);
+    EXPECT_LT(now, before);
+    EXPECT_GT(now, before / 4) << columns;
+    before = now;
+  }
 }
 
 TEST_F(DisplayTest, EveryViewDraws) {

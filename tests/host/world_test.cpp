@@ -316,6 +316,21 @@ TEST_F(Worlds, LargeFilesAreAllowedOnRequest) {
   lambent_world_allow_large(0);
 }
 
+/// Backs of what is not double-sided are not shown, unless the host shows them.
+TEST_F(Worlds, TheBacksOfAFileAreHiddenUnlessTheHostShowsThem) {
+  const TemporaryFolder folder;
+  std::string turned = kMorphed;
+  const std::string sheet = R"({"name":"sheet","mesh":0)";
+  turned.replace(turned.find(sheet), sheet.size(), sheet + R"(,"rotation":[1,0,0,0])");
+  writeBytes(folder / "turned.gltf", turned);
+  const std::string file = (folder / "turned.gltf").string();
+  EXPECT_EQ(meanOf(Told(file.c_str()).draw().direct), 0);
+  lambent_world_two_sided(1);
+  EXPECT_GT(meanOf(Told(file.c_str()).draw().direct), 0);
+  lambent_world_two_sided(0);
+  EXPECT_EQ(meanOf(Told(file.c_str()).draw().direct), 0);
+}
+
 /// A picture of the sky is the world's own: told to the library after the host's copy and the file have gone.
 TEST_F(Worlds, SkiesFromExtrasAndFromTheHost) {
   const TemporaryFolder folder;

@@ -1,6 +1,7 @@
 // lambent stability SHOT...: errors of techniques over time against path-traced truth (paper 1, table 1 and fig. 7), or
 // of those from reflective shadow maps against every texel of these (paper 3, fig. 5).
 #include "engine/core/error.h"
+#include "engine/image/exposure.h"
 #include "gi/plan/techniques.h"
 #include "tools/lambent/picture.h"
 #include "tools/lambent/plot.h"

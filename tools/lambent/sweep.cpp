@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/progress.h"
+#include "engine/image/exposure.h"
 #include "gi/measure/stability.h"
 #include "gi/plan/techniques.h"
 #include "tools/kept/run_log.h"

@@ -101,9 +101,10 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
 }
 
 /// The file was tried from its own first camera; another may look into what is slow.
-void tryOtherCameras(LaunchContext& stage, FileTrust trust) {
+void tryOtherCameras(LaunchContext& stage, const LaunchOptions& options) {
   constexpr int kTimes = 5; // of a shot's camera
-  if (stage.cameraGiven) requireQuickRays(stage.scene, stage.camera, trust);
+  const FileTrust trust = options.trust;
+  if (stage.cameraGiven || options.fovDegrees) requireQuickRays(stage.scene, stage.camera, trust);
   if (stage.cameraGiven || !stage.shot || stage.shot->camera.empty()) return;
   for (int i = 0; i < kTimes; ++i)
     requireQuickRays(stage.scene, shotCamera(*stage.shot, stage.shot->seconds * i / (kTimes - 1), stage.scene.origin),
@@ -336,7 +337,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   };
   tell("view");
   chooseCamera(*stage, options);
-  tryOtherCameras(*stage, options.trust);
+  tryOtherCameras(*stage, options);
   tell("light");
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);

@@ -197,6 +197,11 @@ TEST_F(Import, MaterialsCarryColourEmissionAlphaAndTransform) {
   EXPECT_EQ(m.alphaMode, AlphaMode::Mask);
   EXPECT_FLOAT_EQ(m.alphaCutoff, 0.3f);
   EXPECT_TRUE(m.doubleSided);
+  EXPECT_FALSE(m.backHidden);
+  b.json["materials"][0].erase("doubleSided");
+  EXPECT_TRUE(b.load(folder).assets.materials[0].backHidden);
+  for (nlohmann::json& primitive : b.json["meshes"][0]["primitives"]) primitive.erase("material");
+  EXPECT_TRUE(b.load(folder).assets.materials[0].backHidden) << "glTF's default is not double-sided";
   const TextureRef& t = m.baseColorTexture;
   EXPECT_EQ(t.uvSet, 1u); // the extension's texCoord wins
   EXPECT_EQ(t.wrapU, Wrap::ClampToEdge);

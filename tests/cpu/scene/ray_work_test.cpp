@@ -144,7 +144,7 @@ TEST(RayWork, TooMuchIsRefusedAndSaysWhereUnlessTheFileIsTrusted) {
   EXPECT_EQ(refusalOf(sheets(15, 0.1f, 0.1f)), "");
   const GltfBuilder b = sheets(200, 0.02f, 0.1f, "BLEND");
   const std::string said = refusalOf(b);
-  EXPECT_NE(said.find("that are cut out or blended"), std::string::npos) << said;
+  EXPECT_NE(said.find("that are cut out, blended or hidden backs"), std::string::npos) << said;
   EXPECT_NE(said.find("(most from "), std::string::npos) << said;
   EXPECT_NE(said.find("--allow-large"), std::string::npos) << said;
   EXPECT_NO_THROW(b.load(TemporaryFolder(), {.large = true}));
@@ -297,6 +297,26 @@ TEST(RayWork, CountsFromTheCameraInUse) {
   EXPECT_THROW(requireQuickRays(scene, camera, {}), InputError);
   EXPECT_NO_THROW(requireQuickRays(scene, camera, {.large = true}));
   EXPECT_GT(scene.rayWork, 120) << "told to who draws";
+}
+
+/// A stack of sheets is one from before it, mirrored or not, and as many as there are from behind it.
+TEST(RayWork, CountsBacksThatTheCameraLooksThrough) {
+  const auto passed = [](bool doubleSided, bool behind, float scale) {
+    GltfBuilder b;
+    const int sheet = meshOf(b, kAcross, b.push("materials", {{"doubleSided", doubleSided}}));
+    for (int i = 0; i < 40; ++i)
+      b.addRoot({{"mesh", sheet}, {"translation", {0, 0, 0.01f * float(i)}}, {"scale", {scale, 1, 1}}});
+    const int camera = b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.3}, {"znear", 0.1}}}});
+    b.addRoot({{"camera", camera},
+               {"translation", {0, 0, behind ? -5 : 5}},
+               {"rotation", {0, behind ? 1 : 0, 0, behind ? 0 : 1}}});
+    return workOf(b).cutOut;
+  };
+  for (const float scale : {1.0f, -1.0f}) {
+    EXPECT_EQ(passed(false, false, scale), 0);
+    EXPECT_EQ(passed(false, true, scale), 40);
+    EXPECT_EQ(passed(true, true, scale), 0);
+  }
 }
 
 /// Nor need it be seen, or be met by many rays of what is seen.
